@@ -1,0 +1,85 @@
+// HY_INTEGRAL: XOUT(k) = XOUT(k−1) + TS·XIN(k), with a compensated sum
+#pragma once
+
+#include "blocks/description.hpp"
+
+namespace hysteron {
+
+struct Integral {
+  static constexpr About about{
+      .name = "HY_INTEGRAL",
+      .title = "Integral",
+      .group = Group::Dynamics,
+      .equation = "XOUT(k) = X0 where R1; else XOUT(k−1) + TS·XIN(k) where RUN; else XOUT(k−1)",
+      .meaning =
+          "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. The sum "
+          "is "
+          "compensated (Neumaier), so that small increments are not lost: a plain REAL sum of 1 over 100 s at 50 µs "
+          "gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at 0.",
+      .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), ahead by half a sample.",
+      .source = "IEC 61131-3, INTEGRAL; A. Neumaier, ZAMM 54 (1974) 39–51"};
+
+  template <class S>
+  using Params = NoFields<S>;
+
+  template <class S>
+  struct State {
+    S SUM;
+    S LOST;
+    using Self = State;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(SUM).in("'x*s").otherwise(0.0).means("running sum"),
+                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("low part that the sum could not hold")};
+    }
+  };
+  template <class S>
+  struct In {
+    S XIN;
+    Bool<S> RUN;
+    Bool<S> R1;
+    S X0;
+    using Self = In;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XIN).in("'x").means("signal to be integrated"),
+                        HY_FIELD(RUN).otherwise(1.0).means("integrates while TRUE, holds while FALSE"),
+                        HY_FIELD(R1).otherwise(0.0).means("reset, dominant: loads X0"),
+                        HY_FIELD(X0).in("'x*s").otherwise(0.0).means("value that a reset loads")};
+    }
+  };
+  template <class S>
+  struct Out {
+    S XOUT;
+    Bool<S> Q;
+    using Self = Out;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XOUT).in("'x*s").means("integral"), HY_FIELD(Q).means("NOT R1")};
+    }
+  };
+
+  /// The sum and its low part after the present input.
+  template <class S>
+  static State<S> advance(const State<S>& state, const In<S>& in, const S& ts) {
+    const S increment = select(in.RUN, in.XIN * ts, S(0.0));
+    const S sum = state.SUM + increment;
+    const S lost =
+        select(abs(state.SUM) >= abs(increment), (state.SUM - sum) + increment, (increment - sum) + state.SUM);
+    return {.SUM = select(in.R1, in.X0, sum), .LOST = select(in.R1, S(0.0), state.LOST + lost)};
+  }
+
+  template <class S>
+  static State<S> initial(const Params<S>& /*params*/) {
+    return {.SUM = S(0.0), .LOST = S(0.0)};
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& ts) {
+    const State<S> next = advance(state, in, ts);
+    return {.XOUT = next.SUM + next.LOST, .Q = !in.R1};
+  }
+  template <class S>
+  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
+                     const S& ts) {
+    state = advance(state, in, ts);
+  }
+};
+
+}  // namespace hysteron

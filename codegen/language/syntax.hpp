@@ -1,0 +1,170 @@
+// The syntax tree of a diagram file: what was written, where, before anything is known of its meaning.
+//
+// Names and texts are views into the source text, which the SourceFile owns; expressions stand in one array and
+// name each other by index, so that a file of 100 000 instances costs a handful of allocations.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "support/diagnostic.hpp"
+
+namespace hysteron::language {
+
+/// A stretch of the source text, by offset and length. Line and column are found when they are printed.
+struct Span {
+  std::uint32_t offset = 0;
+  std::uint32_t length = 0;
+};
+
+/// An identifier as written. Identifiers are compared without regard to case: see same_name and upper.
+struct Name {
+  std::string_view text{};
+  Span span{};
+};
+
+/// `@unit um` in a comment: key "unit", value "um". Value is empty where there is none.
+struct Annotation {
+  std::string_view key{};
+  std::string_view value{};
+  Span span{};  ///< key and value
+  Span value_span{};
+};
+
+enum class Operator : std::uint8_t {
+  Negate,
+  Not,  // unary
+  Add,
+  Subtract,
+  Multiply,
+  Divide,
+  Modulo,
+  Power,  // arithmetic
+  Less,
+  LessEqual,
+  Greater,
+  GreaterEqual,
+  Equal,
+  NotEqual,
+  And,
+  Or,
+  Xor
+};
+
+using ExpressionId = std::uint32_t;
+inline constexpr ExpressionId no_expression = std::numeric_limits<ExpressionId>::max();
+
+struct RealLiteral {
+  double value = 0.0;
+};
+struct IntLiteral {
+  std::int64_t value = 0;
+};
+struct BoolLiteral {
+  bool value = false;
+};
+/// `X` (pin empty) or `INSTANCE.PIN`.
+struct Reference {
+  Name name{};
+  Name pin{};
+};
+struct Unary {
+  Operator op{};
+  ExpressionId operand = no_expression;
+};
+struct Binary {
+  Operator op{};
+  ExpressionId left = no_expression;
+  ExpressionId right = no_expression;
+};
+/// `LIMIT(0.0, X, 1.0)`; a formal argument (`MN := 0.0`) keeps its name.
+struct FunctionArgument {
+  Name formal{};
+  ExpressionId value = no_expression;
+};
+struct FunctionCall {
+  Name function{};
+  std::vector<FunctionArgument> arguments{};
+};
+/// `[0.0, 1.0, 2.0]`, in an initial value only.
+struct ArrayLiteral {
+  std::vector<ExpressionId> elements{};
+};
+
+struct Expression {
+  std::variant<RealLiteral, IntLiteral, BoolLiteral, Reference, Unary, Binary, FunctionCall, ArrayLiteral> node{};
+  Span span{};
+};
+
+/// `XIN := RATE.XOUT` in a call or in the initial value of an instance.
+struct Argument {
+  Name pin{};
+  ExpressionId value = no_expression;
+};
+
+/// `RATE(XIN := Y_REF);`
+struct Call {
+  Name instance{};
+  std::vector<Argument> arguments{};
+  Span span{};
+};
+
+/// `U := SUM.XOUT;`
+struct Assignment {
+  Name target{};
+  ExpressionId value = no_expression;
+  Span span{};
+};
+
+using Statement = std::variant<Call, Assignment>;
+
+enum class Section : std::uint8_t { Input, Output, Local, Constant };
+
+/// One declared name. `X, Y : LREAL;` makes two variables.
+struct Variable {
+  Name name{};
+  Name type{};  ///< LREAL, BOOL, DINT, WORD, or the name of a block
+  Section section = Section::Local;
+  ExpressionId initial = no_expression;  ///< `:= 1.0` of an elementary variable
+  std::vector<Argument> settings{};      ///< `:= (C1 := 0.05, C2 := 1.3)` of an instance
+  std::vector<Annotation> annotations{};
+};
+
+struct FunctionBlock {
+  Name name{};
+  std::vector<Annotation> annotations{};
+  std::vector<Variable> variables{};
+  std::vector<Statement> statements{};
+  Span span{};
+};
+
+struct SourceFile {
+  std::string path{};
+  std::shared_ptr<const std::string> text{};  ///< all views and spans point into it
+  std::vector<FunctionBlock> blocks{};
+  std::vector<Expression> expressions{};
+
+  /// The place of a span: file, line and column.
+  [[nodiscard]] Place place(Span span) const;
+};
+
+/// Parses a text. Finds every syntax error, not only the first; the tree then holds what could be read.
+SourceFile parse(std::string path, std::string text, Diagnostics& diagnostics);
+
+/// Reads and parses a file; a file that cannot be read is a diagnostic like any other.
+SourceFile parse_file(const std::string& path, Diagnostics& diagnostics);
+
+/// Identifiers compared as the language does: without regard to case.
+bool same_name(std::string_view a, std::string_view b);
+std::string upper(std::string_view name);
+
+/// The same diagram in the house's layout: statements in the order in which data flows, one declaration a line,
+/// comments kept with what they stood beside. Formatting twice changes nothing.
+std::string format(const SourceFile& file);
+
+}  // namespace hysteron::language

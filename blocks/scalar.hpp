@@ -136,10 +136,11 @@ std::int32_t to_int(S x) {
   return x < S(2147483648.0) ? static_cast<std::int32_t>(x) : highest;
 }
 
-/// An integer as a real number.
-template <MachineReal S>
-S to_real(std::int32_t i) {
-  return static_cast<S>(i);
+/// An integer as a real number: to_real<S>(i). It stands here for every scalar whose integers are machine integers,
+/// since a call whose only argument is an int finds no overload that is declared after the block.
+template <class S>
+requires std::is_same_v<Int<S>, std::int32_t> S to_real(std::int32_t i) {
+  return static_cast<S>(static_cast<double>(i));
 }
 
 /// The element at an index; an index outside is taken to the nearest end.

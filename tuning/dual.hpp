@@ -1,0 +1,174 @@
+// Dual numbers: a value and its gradient with respect to N parameters, carried through every operation.
+//
+// A block, or a whole interpreter, run with Dual<N> as its scalar gives beside each output the exact derivatives
+// ∂output/∂θ₁ … ∂output/∂θ_N. Seed a parameter with Dual<N>::variable(value, index); everything else is a constant,
+// Dual<N>(value). The value goes through exactly the operations that double goes through, so that a rollout with
+// duals gives the bits of the plain one, and a comparison decides as it would there.
+//
+// Where a function has no derivative, one is chosen so that a single sample there cannot spoil the gradient of a
+// whole rollout with a NaN (∞ · 0):
+//
+//   abs at 0                            0, as a central difference gives
+//   min, max of equal values            the derivative of the first, whose value is also the one returned
+//   select                              the derivative of the side chosen
+//   sqrt at 0, asin and acos at ±1      0, where the one-sided derivative is infinite
+//   power at base 0                     see power
+//   to_int, comparisons                 step functions: no derivative
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "blocks/scalar.hpp"
+
+namespace hysteron {
+
+template <int N>
+class Dual {
+  static_assert(N > 0, "a dual number has at least one derivative");
+
+ public:
+  using Gradient = std::array<double, static_cast<std::size_t>(N)>;
+
+  constexpr Dual() = default;
+  /// A constant: its gradient is 0.
+  constexpr explicit Dual(double value) : value_(value) {}
+  constexpr Dual(double value, const Gradient& gradient) : value_(value), gradient_(gradient) {}
+  /// The parameter with this index: the gradient is 1 there and 0 elsewhere.
+  static constexpr Dual variable(double value, int index) {
+    Dual result(value);
+    result.gradient_[static_cast<std::size_t>(index)] = 1.0;
+    return result;
+  }
+
+  [[nodiscard]] constexpr double value() const { return value_; }
+  [[nodiscard]] constexpr const Gradient& gradient() const { return gradient_; }
+  [[nodiscard]] constexpr double derivative(int index) const { return gradient_[static_cast<std::size_t>(index)]; }
+
+  friend Dual operator-(const Dual& a) { return chain(-a.value_, -1.0, a); }
+  friend Dual operator+(const Dual& a, const Dual& b) {
+    Dual result(a.value_ + b.value_);
+    for (std::size_t i = 0; i < size; ++i) {
+      result.gradient_[i] = a.gradient_[i] + b.gradient_[i];
+    }
+    return result;
+  }
+  friend Dual operator-(const Dual& a, const Dual& b) {
+    Dual result(a.value_ - b.value_);
+    for (std::size_t i = 0; i < size; ++i) {
+      result.gradient_[i] = a.gradient_[i] - b.gradient_[i];
+    }
+    return result;
+  }
+  friend Dual operator*(const Dual& a, const Dual& b) { return chain(a.value_ * b.value_, b.value_, a, a.value_, b); }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    // d(a/b) = (da − (a/b)·db) / b
+    const double quotient = a.value_ / b.value_;
+    const double inverse = 1.0 / b.value_;
+    return chain(quotient, inverse, a, -quotient * inverse, b);
+  }
+
+  friend bool operator<(const Dual& a, const Dual& b) { return a.value_ < b.value_; }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.value_ <= b.value_; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.value_ > b.value_; }
+  friend bool operator>=(const Dual& a, const Dual& b) { return a.value_ >= b.value_; }
+  friend bool operator==(const Dual& a, const Dual& b) { return a.value_ == b.value_; }
+  friend bool operator!=(const Dual& a, const Dual& b) { return a.value_ != b.value_; }
+
+  friend Dual abs(const Dual& x) {
+    const double sign = static_cast<double>(x.value_ > 0.0) - static_cast<double>(x.value_ < 0.0);
+    return chain(std::fabs(x.value_), sign, x);
+  }
+  friend Dual sqrt(const Dual& x) {
+    const double root = std::sqrt(x.value_);
+    return chain(root, x.value_ == 0.0 ? 0.0 : 0.5 / root, x);
+  }
+  friend Dual exp(const Dual& x) {
+    const double result = std::exp(x.value_);
+    return chain(result, result, x);
+  }
+  friend Dual log(const Dual& x) { return chain(std::log(x.value_), 1.0 / x.value_, x); }
+  friend Dual sin(const Dual& x) { return chain(std::sin(x.value_), std::cos(x.value_), x); }
+  friend Dual cos(const Dual& x) { return chain(std::cos(x.value_), -std::sin(x.value_), x); }
+  friend Dual tan(const Dual& x) {
+    const double tangent = std::tan(x.value_);
+    return chain(tangent, 1.0 + tangent * tangent, x);
+  }
+  friend Dual asin(const Dual& x) { return chain(std::asin(x.value_), arc_slope(x.value_), x); }
+  friend Dual acos(const Dual& x) { return chain(std::acos(x.value_), -arc_slope(x.value_), x); }
+  friend Dual atan(const Dual& x) { return chain(std::atan(x.value_), 1.0 / (1.0 + x.value_ * x.value_), x); }
+
+  /// base^exponent, with the value of power(double, double) to the bit.
+  ///
+  /// ∂/∂base = exponent·base^(exponent−1) and ∂/∂exponent = base^exponent·log(base); the latter also where the
+  /// value takes a shortcut (exponent 0, ½, 1, 2): the shortcut is a faster way to the same function, not another
+  /// function. At base 0:
+  /// - ∂/∂exponent is 0, the limit of base^exponent·log(base) for every positive exponent;
+  /// - ∂/∂base is 1 for exponent 1, and 0 for every other. Above 1 that is exact. Below 1 the slope is infinite; the
+  ///   momentum p is 0 only in the one sample at a branching point, where p does not depend on the parameters, so
+  ///   that the true contribution is 0 and ∞ · 0 would lose it.
+  /// At a negative base a real power exists for whole exponents alone, so that there is no derivative with respect
+  /// to the exponent; it is taken as 0.
+  friend Dual power(const Dual& base, const Dual& exponent) {
+    const double b = base.value_;
+    const double e = exponent.value_;
+    const double result = power(b, e);
+    double by_base = 0.0;
+    if (e == 1.0) {
+      by_base = 1.0;
+    } else if (e == 2.0) {
+      by_base = 2.0 * b;
+    } else if (b != 0.0) {
+      by_base = e * result / b;
+    }
+    if (b > 0.0 && !exponent.is_constant()) {
+      return chain(result, by_base, base, result * std::log(b), exponent);
+    }
+    return chain(result, by_base, base);
+  }
+
+  friend Dual min(const Dual& a, const Dual& b) { return b.value_ < a.value_ ? b : a; }
+  friend Dual max(const Dual& a, const Dual& b) { return b.value_ > a.value_ ? b : a; }
+
+  friend std::int32_t to_int(const Dual& x) { return to_int(x.value_); }
+  friend double value_of(const Dual& x) { return x.value_; }
+
+ private:
+  static constexpr std::size_t size = static_cast<std::size_t>(N);
+
+  /// f(a) with df = slope·da.
+  static Dual chain(double value, double slope, const Dual& a) {
+    Dual result(value);
+    for (std::size_t i = 0; i < size; ++i) {
+      result.gradient_[i] = slope * a.gradient_[i];
+    }
+    return result;
+  }
+  /// f(a, b) with df = by_a·da + by_b·db.
+  static Dual chain(double value, double by_a, const Dual& a, double by_b, const Dual& b) {
+    Dual result(value);
+    for (std::size_t i = 0; i < size; ++i) {
+      result.gradient_[i] = by_a * a.gradient_[i] + by_b * b.gradient_[i];
+    }
+    return result;
+  }
+  /// d asin(x)/dx; 0 at the ends, where it is infinite.
+  static double arc_slope(double x) {
+    const double square = (1.0 - x) * (1.0 + x);
+    return square == 0.0 ? 0.0 : 1.0 / std::sqrt(square);
+  }
+  [[nodiscard]] bool is_constant() const {
+    bool constant = true;
+    for (std::size_t i = 0; i < size; ++i) {
+      constant = constant && gradient_[i] == 0.0;
+    }
+    return constant;
+  }
+
+  double value_ = 0.0;
+  Gradient gradient_{};
+};
+
+}  // namespace hysteron

@@ -6,7 +6,7 @@
 //   arithmetic   + - * / unary-           comparison  < <= > >= == !=       logic   ! && || !=
 //   abs sqrt exp log sin cos tan asin acos atan        power(base, exponent)   min max
 //   select(condition, a, b)               to_int (towards zero)   to_real
-//   at(array, index)   store(array, index, value)      value_of
+//   at(array, index)   store(array, index, value)   fill(array, value)   value_of
 //
 // A signal-dependent choice is select, never `if`: a traced scalar has no truth value. Both sides of a select
 // are evaluated, so a side may be infinite or NaN where it is not chosen. Literals are written S(0.5); integers
@@ -155,6 +155,12 @@ template <class S, std::size_t N>
 void store(std::array<S, N>& array, std::int32_t index, const S& value) {
   constexpr auto last = static_cast<std::int32_t>(N) - 1;
   array[static_cast<std::size_t>(index < 0 ? 0 : (index > last ? last : index))] = value;
+}
+
+/// Writes every element.
+template <class S, std::size_t N>
+void fill(std::array<S, N>& array, const S& value) {
+  array.fill(value);
 }
 
 /// The plain number inside a scalar.

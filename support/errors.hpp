@@ -36,6 +36,25 @@ inline constexpr int algebraic_loop = 401;
 inline constexpr int hidden_delay = 402;
 inline constexpr int rate_mismatch = 403;
 inline constexpr int missing_sample_time = 404;
+inline constexpr int record_too_short = 501;
+inline constexpr int missing_column = 502;
+inline constexpr int duplicate_column = 503;
+inline constexpr int ragged_row = 504;
+inline constexpr int text_for_number = 505;
+inline constexpr int number_not_finite = 506;
+inline constexpr int uneven_time = 507;
+inline constexpr int reversed_time = 508;
+inline constexpr int missing_header = 509;
+inline constexpr int not_text = 510;
+inline constexpr int ambiguous_decimal_mark = 511;
+inline constexpr int time_unit = 512;
+inline constexpr int parameter_file_syntax = 601;
+inline constexpr int duplicate_key = 602;
+inline constexpr int unknown_key = 603;
+inline constexpr int wrong_value_type = 604;
+inline constexpr int parameter_not_finite = 605;
+inline constexpr int contradicting_range = 606;
+inline constexpr int unwritable_file = 700;
 }  // namespace error
 
 inline constexpr std::array error_titles{
@@ -61,6 +80,25 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::hidden_delay, "Hidden delay"},
     ErrorTitle{error::rate_mismatch, "Wire between two rates"},
     ErrorTitle{error::missing_sample_time, "No sample time"},
+    ErrorTitle{error::record_too_short, "Record with too few rows"},
+    ErrorTitle{error::missing_column, "Missing column"},
+    ErrorTitle{error::duplicate_column, "Column named twice"},
+    ErrorTitle{error::ragged_row, "Row of another length than the header"},
+    ErrorTitle{error::text_for_number, "Text where a number belongs"},
+    ErrorTitle{error::number_not_finite, "Not a finite number"},
+    ErrorTitle{error::uneven_time, "Uneven time"},
+    ErrorTitle{error::reversed_time, "Time that repeats or runs back"},
+    ErrorTitle{error::missing_header, "No header row"},
+    ErrorTitle{error::not_text, "Not a text file in UTF-8"},
+    ErrorTitle{error::ambiguous_decimal_mark, "Decimal mark cannot be told"},
+    ErrorTitle{error::time_unit, "Time that is not in seconds"},
+    ErrorTitle{error::parameter_file_syntax, "Parameter file is not TOML"},
+    ErrorTitle{error::duplicate_key, "Key given twice"},
+    ErrorTitle{error::unknown_key, "Unknown key in a parameter file"},
+    ErrorTitle{error::wrong_value_type, "Value of the wrong type"},
+    ErrorTitle{error::parameter_not_finite, "Parameter that is not a finite number"},
+    ErrorTitle{error::contradicting_range, "Range or interval that contradicts itself"},
+    ErrorTitle{error::unwritable_file, "File cannot be written"},
 };
 
 }  // namespace hysteron

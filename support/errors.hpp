@@ -15,6 +15,34 @@ struct ErrorTitle {
 
 namespace error {
 inline constexpr int unreadable_file = 100;
+inline constexpr int illegal_character = 101;
+inline constexpr int unexpected_symbol = 102;
+inline constexpr int missing_semicolon = 103;
+inline constexpr int endless_comment = 104;
+inline constexpr int foreign_comment = 105;
+inline constexpr int pragma = 106;
+inline constexpr int malformed_number = 107;
+inline constexpr int number_out_of_range = 108;
+inline constexpr int time_literal = 109;
+inline constexpr int text_literal = 110;
+inline constexpr int control_statement = 111;
+inline constexpr int refused_section = 112;
+inline constexpr int refused_type = 113;
+inline constexpr int name_not_portable = 114;
+inline constexpr int missing_end = 115;
+inline constexpr int no_function_block = 116;
+inline constexpr int outside_function_block = 117;
+inline constexpr int argument_form = 118;
+inline constexpr int pin_assignment = 119;
+inline constexpr int ambiguous_sign = 120;
+inline constexpr int nested_too_deeply = 121;
+inline constexpr int stray_annotation = 122;
+inline constexpr int late_section = 123;
+inline constexpr int keyword_as_name = 124;
+inline constexpr int too_many_errors = 125;
+inline constexpr int array_in_expression = 126;
+inline constexpr int direct_address = 127;
+inline constexpr int refused_access = 128;
 inline constexpr int unknown_block = 201;
 inline constexpr int unknown_pin = 202;
 inline constexpr int unknown_name = 203;
@@ -59,6 +87,34 @@ inline constexpr int unwritable_file = 700;
 
 inline constexpr std::array error_titles{
     ErrorTitle{error::unreadable_file, "File cannot be read"},
+    ErrorTitle{error::illegal_character, "Character that has no meaning"},
+    ErrorTitle{error::unexpected_symbol, "Unexpected symbol"},
+    ErrorTitle{error::missing_semicolon, "Missing semicolon"},
+    ErrorTitle{error::endless_comment, "Comment without an end"},
+    ErrorTitle{error::foreign_comment, "Comment that is not portable"},
+    ErrorTitle{error::pragma, "Pragma"},
+    ErrorTitle{error::malformed_number, "Malformed number"},
+    ErrorTitle{error::number_out_of_range, "Number out of range"},
+    ErrorTitle{error::time_literal, "Time or date literal"},
+    ErrorTitle{error::text_literal, "Text literal"},
+    ErrorTitle{error::control_statement, "Control statement"},
+    ErrorTitle{error::refused_section, "Section that a diagram does not have"},
+    ErrorTitle{error::refused_type, "Type that a diagram does not have"},
+    ErrorTitle{error::name_not_portable, "Name that is not portable"},
+    ErrorTitle{error::missing_end, "Block or section without an end"},
+    ErrorTitle{error::no_function_block, "No FUNCTION_BLOCK in the file"},
+    ErrorTitle{error::outside_function_block, "Text outside of a FUNCTION_BLOCK"},
+    ErrorTitle{error::argument_form, "Argument in the wrong form"},
+    ErrorTitle{error::pin_assignment, "Assignment to a pin"},
+    ErrorTitle{error::ambiguous_sign, "Sign whose meaning is not portable"},
+    ErrorTitle{error::nested_too_deeply, "Expression nested too deeply"},
+    ErrorTitle{error::stray_annotation, "Annotation that belongs to nothing"},
+    ErrorTitle{error::late_section, "Section behind the statements"},
+    ErrorTitle{error::keyword_as_name, "Keyword used as a name"},
+    ErrorTitle{error::too_many_errors, "Too many errors"},
+    ErrorTitle{error::array_in_expression, "Array value in an expression"},
+    ErrorTitle{error::direct_address, "Direct address"},
+    ErrorTitle{error::refused_access, "Element or nested member"},
     ErrorTitle{error::unknown_block, "Unknown block"},
     ErrorTitle{error::unknown_pin, "Unknown pin"},
     ErrorTitle{error::unknown_name, "Unknown name"},

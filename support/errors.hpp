@@ -83,6 +83,12 @@ inline constexpr int wrong_value_type = 604;
 inline constexpr int parameter_not_finite = 605;
 inline constexpr int contradicting_range = 606;
 inline constexpr int unwritable_file = 700;
+inline constexpr int too_few_points = 710;
+inline constexpr int start_without_value = 711;
+inline constexpr int no_room_in_bounds = 712;
+inline constexpr int no_motion = 713;
+inline constexpr int unusable_point = 714;
+inline constexpr int nothing_above_c1 = 715;
 }  // namespace error
 
 inline constexpr std::array error_titles{
@@ -155,6 +161,12 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::parameter_not_finite, "Parameter that is not a finite number"},
     ErrorTitle{error::contradicting_range, "Range or interval that contradicts itself"},
     ErrorTitle{error::unwritable_file, "File cannot be written"},
+    ErrorTitle{error::too_few_points, "Too few points for a fit"},
+    ErrorTitle{error::start_without_value, "Model without a value at the start"},
+    ErrorTitle{error::no_room_in_bounds, "Bounds that leave no room for the start"},
+    ErrorTitle{error::no_motion, "No sample above the rate threshold"},
+    ErrorTitle{error::unusable_point, "Point that a fit cannot use"},
+    ErrorTitle{error::nothing_above_c1, "Nothing left for the logarithm of M - C1"},
 };
 
 }  // namespace hysteron

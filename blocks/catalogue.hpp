@@ -1,8 +1,61 @@
 // The catalogue: every block of the library, one line each. What is derived from blocks is derived over this list.
 #pragma once
 
+#include "blocks/absolute.hpp"
+#include "blocks/arctangent.hpp"
+#include "blocks/backlash.hpp"
+#include "blocks/blink.hpp"
+#include "blocks/constant.hpp"
+#include "blocks/cosine.hpp"
+#include "blocks/dead_band.hpp"
+#include "blocks/down_counter.hpp"
+#include "blocks/equal.hpp"
+#include "blocks/exponential.hpp"
+#include "blocks/falling_edge.hpp"
 #include "blocks/gain.hpp"
+#include "blocks/greater.hpp"
+#include "blocks/greater_equal.hpp"
+#include "blocks/hyperbolic_tangent.hpp"
+#include "blocks/hysteresis_switch.hpp"
 #include "blocks/integral.hpp"
+#include "blocks/less.hpp"
+#include "blocks/less_equal.hpp"
+#include "blocks/limit.hpp"
+#include "blocks/logarithm.hpp"
+#include "blocks/logic_and.hpp"
+#include "blocks/logic_not.hpp"
+#include "blocks/logic_or.hpp"
+#include "blocks/logic_xor.hpp"
+#include "blocks/maximum.hpp"
+#include "blocks/minimum.hpp"
+#include "blocks/not_equal.hpp"
+#include "blocks/off_delay.hpp"
+#include "blocks/on_delay.hpp"
+#include "blocks/pid.hpp"
+#include "blocks/power_function.hpp"
+#include "blocks/product.hpp"
+#include "blocks/pulse_timer.hpp"
+#include "blocks/quantizer.hpp"
+#include "blocks/quotient.hpp"
+#include "blocks/ramp.hpp"
+#include "blocks/rate_limit.hpp"
+#include "blocks/reset_dominant_latch.hpp"
+#include "blocks/rising_edge.hpp"
+#include "blocks/sample_and_hold.hpp"
+#include "blocks/set_dominant_latch.hpp"
+#include "blocks/sign.hpp"
+#include "blocks/sine.hpp"
+#include "blocks/sine_wave.hpp"
+#include "blocks/square_root.hpp"
+#include "blocks/step_reference.hpp"
+#include "blocks/subtract.hpp"
+#include "blocks/sum.hpp"
+#include "blocks/switch.hpp"
+#include "blocks/table.hpp"
+#include "blocks/tangent.hpp"
+#include "blocks/triangle_wave.hpp"
+#include "blocks/up_counter.hpp"
+#include "blocks/up_down_counter.hpp"
 
 namespace hysteron {
 
@@ -17,9 +70,22 @@ struct BlockList {
   }
 };
 
-using Catalogue = BlockList<  //
-    Gain,                     //
-    Integral                  //
-    >;
+using Catalogue = BlockList<
+    // arithmetic
+    Constant, Gain, Sum, Subtract, Product, Quotient,
+    // functions of one variable
+    Absolute, Sign, Minimum, Maximum, PowerFunction, SquareRoot, Exponential, Logarithm, Sine, Cosine, Tangent,
+    Arctangent, HyperbolicTangent,
+    // shaping
+    Limit, DeadBand, RateLimit, Switch, Table, Quantizer, Backlash, HysteresisSwitch, SampleAndHold,
+    // control and references
+    Pid, Ramp, StepReference, SineWave, TriangleWave,
+    // comparison and logic
+    Greater, GreaterEqual, Equal, LessEqual, Less, NotEqual, And, Or, Xor, Not, RisingEdge, FallingEdge,
+    SetDominantLatch, ResetDominantLatch,
+    // time and counting
+    OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
+    // dynamics
+    Integral>;
 
 }  // namespace hysteron

@@ -1,0 +1,28 @@
+// HY_MIN: XOUT = min(IN1, IN2)
+#pragma once
+
+#include "blocks/ports.hpp"
+
+namespace hysteron {
+
+struct Minimum : Stateless {
+  static constexpr About about{
+      .name = "HY_MIN",
+      .title = "Smaller of two",
+      .group = Group::Function,
+      .equation = "XOUT = min(IN1, IN2)",
+      .meaning = "Passes the smaller of two signals. IN1 passes where they are equal and where IN2 is not a number.",
+      .source = "IEC 61131-3, MIN"};
+
+  template <class S>
+  using In = TwoReals<S, "'x", "'x">;
+  template <class S>
+  using Out = Xout<S, "'x", "smaller of the two">;
+
+  template <class S>
+  static Out<S> output(const Params<S>& /*params*/, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
+    return {.XOUT = min(in.IN1, in.IN2)};
+  }
+};
+
+}  // namespace hysteron

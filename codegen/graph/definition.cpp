@@ -1,0 +1,577 @@
+#include "codegen/graph/definition.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "codegen/graph/units.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron {
+namespace {
+
+using language::Annotation;
+using language::SourceFile;
+using language::upper;
+using language::Variable;
+
+constexpr std::array<std::string_view, 8> variable_keys{"unit",    "min", "max",   "param",
+                                                        "neutral", "doc", "every", "phase"};
+constexpr std::array<std::string_view, 4> block_keys{"ts", "effect", "doc", "top"};
+
+std::string known_keys(std::span<const std::string_view> keys) {
+  std::string text;
+  for (const auto key : keys) {
+    text += (text.empty() ? "@" : ", @") + std::string(key);
+  }
+  return text;
+}
+
+bool number_of(std::string_view text, double& value) {
+  const auto* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  return problem == std::errc{} && stop == end && !std::isnan(value);
+}
+
+/// `50us`, `1 ms`, `0.5s` in whole nanoseconds.
+bool duration_of(std::string_view text, std::int64_t& nanoseconds) {
+  double number = 0.0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc{}) {
+    return false;
+  }
+  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  while (unit.starts_with(' ')) {
+    unit.remove_prefix(1);
+  }
+  double factor = 0.0;
+  for (const auto& [name, scale] :
+       {std::pair<std::string_view, double>{"ns", 1.0}, {"us", 1e3}, {"µs", 1e3}, {"ms", 1e6}, {"s", 1e9}}) {
+    if (unit == name) {
+      factor = scale;
+    }
+  }
+  const double exact = number * factor;
+  nanoseconds = factor > 0.0 && exact < 9e18 ? std::llround(exact) : 0;
+  return nanoseconds > 0 && std::abs(exact - static_cast<double>(nanoseconds)) < 1e-3;
+}
+
+class Reader {
+ public:
+  Reader(Definitions& definitions, Diagnostics& diagnostics)
+      : definitions_(definitions), source_(*definitions.source), diagnostics_(diagnostics) {}
+
+  void read_all() {
+    for (const auto& block : source_.blocks) {
+      const auto index = static_cast<std::uint32_t>(definitions_.list.size());
+      Definition& definition = definitions_.list.emplace_back();
+      definition.block = &block;
+      check_name(block.name);
+      if (find_block_type(block.name.text) != nullptr) {
+        error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
+              "Choose another name; names that begin with HY_ belong to the library.");
+      }
+      if (!definitions_.by_name.emplace(upper(block.name.text), index).second) {
+        error(error::duplicate_name, block.name.span, fmt::format("the block '{}' is defined twice", block.name.text),
+              "Rename one of the two.");
+      }
+    }
+    for (auto& definition : definitions_.list) {
+      read(definition);
+    }
+    sort_by_calls();
+  }
+
+ private:
+  void error(int number, language::Span span, std::string cause, std::string mend) {
+    diagnostics_.error(number, source_.place(span), std::move(cause), std::move(mend));
+  }
+
+  void check_name(const language::Name& name) {
+    if (is_reserved(name.text)) {
+      error(error::reserved_name, name.span, fmt::format("'{}' is a name that IEC 61131-3 keeps for itself", name.text),
+            "Choose another name, such as " + upper(name.text) + "_1.");
+    }
+  }
+
+  void read(Definition& definition) {
+    for (const Annotation& annotation : definition.block->annotations) {
+      const std::string key = language::upper(annotation.key);
+      if (key == "TS") {
+        if (!duration_of(annotation.value, definition.sample_time_ns)) {
+          error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a sample time", annotation.value),
+                "Write a positive whole number of nanoseconds with its unit: @ts 50us, @ts 1ms, @ts 0.5s.");
+        }
+      } else if (key == "EFFECT") {
+        definition.effect = annotation.value;
+      } else if (key != "DOC" && key != "TOP") {
+        unknown_key(annotation, block_keys);
+      }
+    }
+    definition.variables.reserve(definition.block->variables.size());
+    definition.by_name.reserve(definition.block->variables.size());
+    for (const Variable& variable : definition.block->variables) {
+      check_name(variable.name);
+      if (!definition.by_name
+               .emplace(upper(variable.name.text), static_cast<std::uint32_t>(definition.variables.size()))
+               .second) {
+        error(error::duplicate_name, variable.name.span, fmt::format("'{}' is declared twice", variable.name.text),
+              "Rename one of the two; upper and lower case do not differ.");
+      }
+      definition.variables.push_back(declare(variable));
+    }
+  }
+
+  Declared declare(const Variable& variable) {
+    Declared declared;
+    declared.variable = &variable;
+    declared.field.name = variable.name.text;
+    if (elementary_type(variable.type.text, declared.field.type)) {
+      declare_elementary(variable, declared);
+    } else if (const BlockType* block = find_block_type(variable.type.text)) {
+      declared.kind = Declared::Kind::LibraryBlock;
+      declared.block = block;
+    } else if (const auto found = definitions_.by_name.find(upper(variable.type.text));
+               found != definitions_.by_name.end()) {
+      declared.kind = Declared::Kind::UserBlock;
+      declared.definition = found->second;
+    } else {
+      unknown_type(variable);
+    }
+    const bool instance = declared.kind == Declared::Kind::LibraryBlock || declared.kind == Declared::Kind::UserBlock;
+    if (instance && variable.section != language::Section::Local) {
+      error(error::type_mismatch, variable.type.span,
+            fmt::format("the instance '{}' stands among inputs, outputs or constants", variable.name.text),
+            "Declare instances between VAR and END_VAR.");
+    }
+    for (const Annotation& annotation : variable.annotations) {
+      annotate(annotation, instance, declared);
+    }
+    if (declared.rate.phase >= declared.rate.every) {
+      error(error::bad_annotation, variable.name.span,
+            fmt::format("@phase {} is not below @every {}", declared.rate.phase, declared.rate.every),
+            "Give a phase from 0 to every − 1.");
+      declared.rate.phase = 0;
+    }
+    const Field& field = declared.field;
+    if (!instance && declared.has_preset && (field.preset < field.minimum || field.preset > field.maximum)) {
+      error(error::parameter_out_of_range, variable.name.span,
+            fmt::format("the default {} of '{}' lies outside its range", field.preset, field.name),
+            fmt::format("Give a value from {} to {}.", field.minimum, field.maximum));
+    }
+    return declared;
+  }
+
+  void declare_elementary(const Variable& variable, Declared& declared) {
+    using language::Section;
+    switch (variable.section) {
+      case Section::Input:
+        declared.kind = Declared::Kind::Input;
+        break;
+      case Section::Output:
+        declared.kind = Declared::Kind::Output;
+        break;
+      case Section::Local:
+        declared.kind = Declared::Kind::Local;
+        break;
+      case Section::Constant:
+        declared.kind = Declared::Kind::Constant;
+        break;
+    }
+    if (variable.initial != language::no_expression) {
+      Type type = Type::Real;
+      const auto span = source_.expressions[variable.initial].span;
+      if (!constant_value(source_, variable.initial, declared.field.preset, type)) {
+        error(error::type_mismatch, span,
+              fmt::format("the initial value of '{}' is not a constant", variable.name.text),
+              "Write a literal or an operation on literals.");
+      } else if (type != declared.field.type) {
+        error(error::type_mismatch, span,
+              fmt::format("'{}' is {}, its initial value is {}", variable.name.text, type_name(declared.field.type),
+                          type_name(type)),
+              fmt::format("Write {}.", literal_text(declared.field.type, declared.field.preset)));
+      }
+      declared.has_preset = true;
+    } else if (variable.section == Section::Constant) {
+      error(error::undriven_output, variable.name.span,
+            fmt::format("the constant '{}' has no value", variable.name.text), "Give it one: := 1.0.");
+    }
+  }
+
+  void annotate(const Annotation& annotation, bool instance, Declared& declared) {
+    const std::string key = language::upper(annotation.key);
+    Field& field = declared.field;
+    const auto number = [&](double& target) {
+      if (!number_of(annotation.value, target)) {
+        error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a number", annotation.value),
+              fmt::format("Write @{} and a number.", annotation.key));
+      }
+    };
+    if (key == "DOC") {
+      field.meaning = annotation.value;
+    } else if (instance && (key == "EVERY" || key == "PHASE")) {
+      double value = 0.0;
+      if (!number_of(annotation.value, value) || value != std::floor(value) || value < (key == "EVERY" ? 1.0 : 0.0) ||
+          value > 1e6) {
+        error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a number of steps", annotation.value),
+              "Write a whole number from 1 to 1000000: @every 4.");
+      } else {
+        (key == "EVERY" ? declared.rate.every : declared.rate.phase) = static_cast<std::uint32_t>(value);
+      }
+    } else if (!instance && key == "UNIT") {
+      field.unit = annotation.value;
+      std::string reason;
+      if (!units::is_unit(annotation.value, reason)) {
+        error(error::unknown_unit, annotation.span, fmt::format("'{}' is not a unit: {}", annotation.value, reason),
+              "Write SI symbols: um, V, m/s, N*m, 1/K, degC, % or 1.");
+        field.unit = {};
+      }
+    } else if (!instance && key == "MIN") {
+      number(field.minimum);
+    } else if (!instance && key == "MAX") {
+      number(field.maximum);
+    } else if (!instance && key == "NEUTRAL" && declared.kind != Declared::Kind::Output) {
+      number(field.neutral);
+      declared.kind = Declared::Kind::Parameter;
+    } else if (key == "PARAM" && declared.kind == Declared::Kind::Input) {
+      declared.kind = Declared::Kind::Parameter;
+    } else {
+      unknown_key(annotation, variable_keys);
+    }
+  }
+
+  void unknown_key(const Annotation& annotation, std::span<const std::string_view> keys) {
+    error(error::bad_annotation, annotation.span,
+          fmt::format("@{} is not an annotation that fits here", annotation.key),
+          fmt::format("Known here: {}.", known_keys(keys)));
+  }
+
+  void unknown_type(const Variable& variable) {
+    std::string mend = "`hysteron blocks` lists the library; other types are LREAL, BOOL, DINT and WORD.";
+    if (same_name_any(variable.type.text,
+                      {"REAL", "INT", "UINT", "UDINT", "SINT", "LINT", "TIME", "LTIME", "STRING", "BYTE", "DWORD"})) {
+      mend = "Use LREAL for numbers and for seconds, DINT for counts, BOOL for truth values.";
+    } else if (const std::string near = nearest_block(variable.type.text); !near.empty()) {
+      mend = fmt::format("Did you mean {}? `hysteron blocks` lists the library.", near);
+    }
+    error(error::unknown_block, variable.type.span, fmt::format("there is no block or type '{}'", variable.type.text),
+          mend);
+  }
+
+  static bool same_name_any(std::string_view name, std::initializer_list<std::string_view> list) {
+    return std::ranges::any_of(list, [&](std::string_view one) { return language::same_name(name, one); });
+  }
+
+  std::string nearest_block(std::string_view name) const;
+
+  void sort_by_calls() {
+    enum class Mark : std::uint8_t { New, Open, Done };
+    std::vector<Mark> marks(definitions_.list.size(), Mark::New);
+    // An explicit stack: files may nest definitions deeply.
+    struct Visit {
+      std::uint32_t definition;
+      std::size_t next;
+    };
+    for (std::uint32_t root = 0; root < definitions_.list.size(); ++root) {
+      std::vector<Visit> stack;
+      if (marks[root] == Mark::New) {
+        stack.push_back({root, 0});
+        marks[root] = Mark::Open;
+      }
+      while (!stack.empty()) {
+        auto& [current, next] = stack.back();
+        auto& variables = definitions_.list[current].variables;
+        if (next == variables.size()) {
+          marks[current] = Mark::Done;
+          definitions_.callees_first.push_back(current);
+          stack.pop_back();
+          continue;
+        }
+        const Declared& declared = variables[next++];
+        if (declared.kind != Declared::Kind::UserBlock) {
+          continue;
+        }
+        if (marks[declared.definition] == Mark::Open) {
+          error(error::recursive_block, declared.variable->type.span,
+                fmt::format("'{}' contains itself through '{}'", declared.variable->type.text,
+                            declared.variable->name.text),
+                "A block cannot be a part of itself; feed back through a delay instead.");
+          definitions_.list[current].usable = false;
+          definitions_.list[declared.definition].usable = false;
+        } else if (marks[declared.definition] == Mark::New) {
+          marks[declared.definition] = Mark::Open;
+          stack.push_back({declared.definition, 0});
+        }
+      }
+    }
+  }
+
+  Definitions& definitions_;
+  const SourceFile& source_;
+  Diagnostics& diagnostics_;
+};
+
+std::string Reader::nearest_block(std::string_view name) const {
+  const std::string prefixed = "HY_" + upper(name);
+  if (find_block_type(prefixed) != nullptr) {
+    return prefixed;
+  }
+  std::vector<std::string_view> candidates;
+  for (const BlockType& type : block_types()) {
+    candidates.push_back(type.about.name);
+  }
+  for (const Definition& definition : definitions_.list) {
+    candidates.push_back(definition.block->name.text);
+  }
+  return std::string(nearest_name(name, candidates));
+}
+
+}  // namespace
+
+Definitions define(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
+  Definitions definitions;
+  definitions.source = std::move(source);
+  Reader(definitions, diagnostics).read_all();
+  return definitions;
+}
+
+bool elementary_type(std::string_view name, Type& type) {
+  for (const Type candidate : {Type::Real, Type::Bool, Type::Int, Type::Word}) {
+    if (language::same_name(name, type_name(candidate))) {
+      type = candidate;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string_view type_name(Type type) {
+  switch (type) {
+    case Type::Real:
+      return "LREAL";
+    case Type::Bool:
+      return "BOOL";
+    case Type::Int:
+      return "DINT";
+    case Type::Word:
+      return "WORD";
+  }
+  return "";
+}
+
+std::string literal_text(Type type, double value) {
+  switch (type) {
+    case Type::Real: {
+      std::string text = fmt::format("{}", value);
+      return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+    }
+    case Type::Bool:
+      return value != 0.0 ? "TRUE" : "FALSE";
+    case Type::Int:
+      return fmt::format("{}", static_cast<std::int64_t>(value));
+    case Type::Word:
+      return fmt::format("WORD#16#{:X}", static_cast<unsigned>(value));
+  }
+  return "";
+}
+
+bool is_reserved(std::string_view name) {
+  static const std::unordered_map<std::string_view, bool> reserved = [] {
+    std::unordered_map<std::string_view, bool> words;
+    for (const std::string_view word : {"DT",
+                                        "TOD",
+                                        "DATE",
+                                        "STEP",
+                                        "TASK",
+                                        "ON",
+                                        "EN",
+                                        "ENO",
+                                        "TIME",
+                                        "LTIME",
+                                        "DATE_AND_TIME",
+                                        "TIME_OF_DAY",
+                                        "LIMIT",
+                                        "MAX",
+                                        "MIN",
+                                        "ABS",
+                                        "SEL",
+                                        "MUX",
+                                        "SQRT",
+                                        "LN",
+                                        "LOG",
+                                        "EXP",
+                                        "SIN",
+                                        "COS",
+                                        "TAN",
+                                        "ASIN",
+                                        "ACOS",
+                                        "ATAN",
+                                        "ATAN2",
+                                        "EXPT",
+                                        "TRUNC",
+                                        "ROUND",
+                                        "ADD",
+                                        "SUB",
+                                        "MUL",
+                                        "DIV",
+                                        "MOD",
+                                        "MOVE",
+                                        "SHL",
+                                        "SHR",
+                                        "ROL",
+                                        "ROR",
+                                        "AND",
+                                        "OR",
+                                        "XOR",
+                                        "NOT",
+                                        "GT",
+                                        "GE",
+                                        "EQ",
+                                        "LE",
+                                        "LT",
+                                        "NE",
+                                        "LEN",
+                                        "LEFT",
+                                        "RIGHT",
+                                        "MID",
+                                        "CONCAT",
+                                        "INSERT",
+                                        "DELETE",
+                                        "REPLACE",
+                                        "FIND",
+                                        "BOOL",
+                                        "BYTE",
+                                        "WORD",
+                                        "DWORD",
+                                        "LWORD",
+                                        "SINT",
+                                        "INT",
+                                        "DINT",
+                                        "LINT",
+                                        "USINT",
+                                        "UINT",
+                                        "UDINT",
+                                        "ULINT",
+                                        "REAL",
+                                        "LREAL",
+                                        "STRING",
+                                        "WSTRING",
+                                        "TRUE",
+                                        "FALSE",
+                                        "IF",
+                                        "THEN",
+                                        "ELSE",
+                                        "ELSIF",
+                                        "END_IF",
+                                        "FOR",
+                                        "TO",
+                                        "BY",
+                                        "DO",
+                                        "END_FOR",
+                                        "WHILE",
+                                        "END_WHILE",
+                                        "REPEAT",
+                                        "UNTIL",
+                                        "END_REPEAT",
+                                        "CASE",
+                                        "OF",
+                                        "END_CASE",
+                                        "EXIT",
+                                        "RETURN",
+                                        "CONTINUE",
+                                        "VAR",
+                                        "VAR_INPUT",
+                                        "VAR_OUTPUT",
+                                        "VAR_IN_OUT",
+                                        "VAR_TEMP",
+                                        "VAR_GLOBAL",
+                                        "VAR_EXTERNAL",
+                                        "VAR_ACCESS",
+                                        "VAR_CONFIG",
+                                        "CONSTANT",
+                                        "RETAIN",
+                                        "NON_RETAIN",
+                                        "END_VAR",
+                                        "FUNCTION",
+                                        "END_FUNCTION",
+                                        "FUNCTION_BLOCK",
+                                        "END_FUNCTION_BLOCK",
+                                        "PROGRAM",
+                                        "END_PROGRAM",
+                                        "CONFIGURATION",
+                                        "END_CONFIGURATION",
+                                        "RESOURCE",
+                                        "END_RESOURCE",
+                                        "TYPE",
+                                        "END_TYPE",
+                                        "STRUCT",
+                                        "END_STRUCT",
+                                        "ARRAY",
+                                        "AT",
+                                        "WITH",
+                                        "PRIORITY",
+                                        "SINGLE",
+                                        "INTERVAL",
+                                        "ACTION",
+                                        "END_ACTION",
+                                        "TRANSITION",
+                                        "END_TRANSITION",
+                                        "INITIAL_STEP",
+                                        "END_STEP",
+                                        "FROM",
+                                        "READ_ONLY",
+                                        "READ_WRITE",
+                                        "F_EDGE",
+                                        "R_EDGE",
+                                        "SR",
+                                        "RS",
+                                        "R_TRIG",
+                                        "F_TRIG",
+                                        "CTU",
+                                        "CTD",
+                                        "CTUD",
+                                        "TP",
+                                        "TON",
+                                        "TOF",
+                                        "SUPER",
+                                        "THIS",
+                                        "METHOD",
+                                        "END_METHOD",
+                                        "CLASS",
+                                        "END_CLASS",
+                                        "INTERFACE",
+                                        "END_INTERFACE",
+                                        "NAMESPACE",
+                                        "END_NAMESPACE",
+                                        "USING",
+                                        "EXTENDS",
+                                        "IMPLEMENTS",
+                                        "ABSTRACT",
+                                        "FINAL",
+                                        "OVERRIDE",
+                                        "PUBLIC",
+                                        "PRIVATE",
+                                        "PROTECTED",
+                                        "INTERNAL",
+                                        "OVERLAP",
+                                        "REF_TO",
+                                        "NULL",
+                                        "DEREF",
+                                        "LDT",
+                                        "LDATE",
+                                        "LTOD",
+                                        "CHAR",
+                                        "WCHAR"}) {
+      words.emplace(word, true);
+    }
+    return words;
+  }();
+  return reserved.contains(upper(name));
+}
+
+}  // namespace hysteron

@@ -1,0 +1,60 @@
+// Definitions: what each FUNCTION_BLOCK of a file declares, checked and ready to be instantiated.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "codegen/graph/graph.hpp"
+#include "codegen/language/syntax.hpp"
+
+namespace hysteron {
+
+/// What a declared name is.
+struct Declared {
+  enum class Kind : std::uint8_t { Input, Parameter, Output, Local, Constant, LibraryBlock, UserBlock };
+  Kind kind = Kind::Local;
+  Field field{};                     ///< name, type, unit, range, default of an elementary variable
+  bool has_preset = false;           ///< a default or initial value was written
+  const BlockType* block = nullptr;  ///< LibraryBlock
+  std::uint32_t definition = 0;      ///< UserBlock: which definition
+  Rate rate{};                       ///< of an instance: (* @every 4 *)
+  const language::Variable* variable = nullptr;
+};
+
+struct Definition {
+  const language::FunctionBlock* block = nullptr;
+  std::vector<Declared> variables{};
+  std::unordered_map<std::string, std::uint32_t> by_name{};  ///< upper-case name → variable
+  std::int64_t sample_time_ns = 0;
+  std::string effect{};      ///< (* @effect creep *): joins the candidates of a diagnosis
+  std::vector<bool> late{};  ///< by variable: an output that depends on an input within the same step
+  bool usable = true;        ///< FALSE where an error makes instances pointless
+};
+
+struct Definitions {
+  std::shared_ptr<const language::SourceFile> source{};
+  std::vector<Definition> list{};              ///< in the order of the text
+  std::vector<std::uint32_t> callees_first{};  ///< every definition after those that it instantiates
+  std::unordered_map<std::string, std::uint32_t> by_name{};
+};
+
+/// Collects and checks the declarations of a file: names, types, annotations, recursion.
+Definitions define(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics);
+
+/// The value of an expression without names: a literal, an operation on literals. False where it is not constant.
+bool constant_value(const language::SourceFile& source, language::ExpressionId id, double& value, Type& type);
+
+/// Names that the portable subset keeps for itself.
+bool is_reserved(std::string_view name);
+
+/// Whether a name is given to a type: LREAL, BOOL, DINT, WORD.
+bool elementary_type(std::string_view name, Type& type);
+std::string_view type_name(Type type);
+
+/// A literal of the language, as text: 1.5, TRUE, 3, WORD#16#1.
+std::string literal_text(Type type, double value);
+
+}  // namespace hysteron

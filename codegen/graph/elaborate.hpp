@@ -1,0 +1,14 @@
+// Elaboration: from definitions to a flat graph.
+#pragma once
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/graph.hpp"
+
+namespace hysteron {
+
+/// Instantiates a definition and, within it, all that it contains. Reports what is wrong with its statements: unknown
+/// names and pins, types, double drive, unconnected inputs, rates, and reads that come before the call. The graph is
+/// sound only where no error was reported.
+Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics);
+
+}  // namespace hysteron

@@ -1,0 +1,265 @@
+#include "codegen/graph/finish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <optional>
+
+#include "support/errors.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Paths in the order of their names, a part before what is inside it, numbers at the end by their value.
+bool path_before(const std::string& a, const std::string& b) {
+  const auto rank = [](char letter) {
+    const auto upper = std::toupper(static_cast<unsigned char>(letter));
+    return letter == '.' ? 0 : letter == '#' ? 1 : upper + 1;
+  };
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) {
+    const int left = rank(a[i]);
+    const int right = rank(b[i]);
+    if (left != right) {
+      return left < right;
+    }
+    if (a[i] == '#') {
+      return a.size() != b.size() ? a.size() < b.size() : a < b;
+    }
+  }
+  return a.size() < b.size();
+}
+
+template <class Range, class Path>
+std::vector<std::uint32_t> order_by_path(const Range& range, Path path) {
+  std::vector<std::uint32_t> order(range.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return path_before(path(range[a]), path(range[b])); });
+  return order;
+}
+
+class Finisher {
+ public:
+  Finisher(Graph& graph, const std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics)
+      : graph_(graph), slots_(slots), parameters_(parameters), diagnostics_(diagnostics) {}
+
+  void run() {
+    for (Wire& wire : graph_.wires) {
+      wire = follow(wire);
+    }
+    for (Port& output : graph_.outputs) {
+      output.wire = follow(output.wire);
+    }
+    sort_nodes();
+    sort_parameters();
+    settle_rates();
+  }
+
+ private:
+  Wire follow(Wire wire) {
+    std::size_t steps = 0;
+    while (wire.from == Wire::From::Alias) {
+      const Slot& slot = slots_[wire.index];
+      if (++steps > slots_.size()) {
+        diagnostics_.error(error::algebraic_loop, graph_.place(slot.span),
+                           "variables are assigned to each other in a circle",
+                           "Assign one of them from an input or from the output of an instance.");
+        return {};
+      }
+      wire = slot.wire;
+    }
+    return wire;
+  }
+
+  void sort_nodes() {
+    const auto order = order_by_path(graph_.nodes, [](const Node& node) -> const std::string& { return node.path; });
+    std::vector<std::uint32_t> moved_to(order.size());
+    std::vector<Node> nodes;
+    std::vector<Wire> wires;
+    std::vector<language::Span> spans;
+    nodes.reserve(order.size());
+    wires.reserve(graph_.wires.size());
+    spans.reserve(graph_.wires.size());
+    for (const std::uint32_t old : order) {
+      moved_to[old] = static_cast<std::uint32_t>(nodes.size());
+      Node& node = graph_.nodes[old];
+      const auto first = static_cast<std::uint32_t>(wires.size());
+      for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
+        wires.push_back(graph_.wires[node.first_wire + pin]);
+        spans.push_back(graph_.wire_spans[node.first_wire + pin]);
+      }
+      node.first_wire = first;
+      nodes.push_back(std::move(node));
+    }
+    const auto remap = [&](Wire& wire) {
+      if (wire.from == Wire::From::Node) {
+        wire.index = moved_to[wire.index];
+      }
+    };
+    std::ranges::for_each(wires, remap);
+    for (Port& output : graph_.outputs) {
+      remap(output.wire);
+    }
+    graph_.nodes = std::move(nodes);
+    graph_.wires = std::move(wires);
+    graph_.wire_spans = std::move(spans);
+    canonical_literals();
+  }
+
+  // Literals in the order of the wires that use them, so that nothing remembers the order of the text.
+  void canonical_literals() {
+    std::vector<double> literals;
+    const auto renumber = [&](Wire& wire) {
+      if (wire.from == Wire::From::Literal) {
+        literals.push_back(graph_.literals[wire.index]);
+        wire.index = static_cast<std::uint32_t>(literals.size() - 1);
+      }
+    };
+    std::ranges::for_each(graph_.wires, renumber);
+    for (Port& output : graph_.outputs) {
+      renumber(output.wire);
+    }
+    graph_.literals = std::move(literals);
+  }
+
+  void sort_parameters() {
+    // Parameters of one block keep the order of its description: they are met in the order of the pins.
+    std::vector<std::uint32_t> order;
+    std::vector<bool> taken(parameters_.size(), false);
+    const auto take = [&](const Wire& wire) {
+      if (wire.from == Wire::From::Parameter && !taken[wire.index]) {
+        taken[wire.index] = true;
+        order.push_back(wire.index);
+      }
+    };
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      if (parameters_[i].path.find('.') == std::string::npos) {
+        take({Wire::From::Parameter, Type::Real, 0, static_cast<std::uint32_t>(i)});
+      }
+    }
+    for (const Wire& wire : graph_.wires) {
+      take(wire);
+    }
+    for (const Port& output : graph_.outputs) {
+      take(output.wire);
+    }
+    std::vector<std::uint32_t> moved_to(parameters_.size());
+    for (const std::uint32_t old : order) {
+      moved_to[old] = static_cast<std::uint32_t>(graph_.parameters.size());
+      graph_.parameters.push_back(std::move(parameters_[old]));
+    }
+    const auto remap = [&](Wire& wire) {
+      if (wire.from == Wire::From::Parameter) {
+        wire.index = moved_to[wire.index];
+      }
+    };
+    std::ranges::for_each(graph_.wires, remap);
+    for (Port& output : graph_.outputs) {
+      remap(output.wire);
+    }
+  }
+
+  // --- rates ---
+
+  /// The rate at which a wire changes; none for literals and parameters.
+  std::optional<Rate> rate_of(const Wire& wire) {
+    switch (wire.from) {
+      case Wire::From::Input:
+        return Rate{};
+      case Wire::From::Node:
+        if (graph_.nodes[wire.index].block == nullptr) {
+          settle_operation(wire.index);
+          return constant_[wire.index] ? std::nullopt : std::optional(graph_.nodes[wire.index].rate);
+        }
+        return graph_.nodes[wire.index].rate;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  void settle_operation(std::uint32_t index) {
+    if (settled_[index]) {
+      return;
+    }
+    settled_[index] = true;  // set first: a loop of operations is reported by the scheduler
+    Node& node = graph_.nodes[index];
+    std::optional<Rate> rate;
+    for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
+      const auto one = rate_of(graph_.wires[node.first_wire + pin]);
+      if (one && rate && *one != *rate) {
+        report(node.span, fmt::format("an expression mixes signals of two rates (every {} and every {} steps)",
+                                      rate->every, one->every));
+      }
+      rate = rate ? rate : one;
+    }
+    constant_[index] = !rate;
+    node.rate = rate.value_or(Rate{});
+  }
+
+  void settle_rates() {
+    const bool one_rate = std::ranges::all_of(graph_.nodes, [](const Node& node) { return node.rate == Rate{}; });
+    if (one_rate) {
+      return;
+    }
+    settled_.assign(graph_.nodes.size(), false);
+    constant_.assign(graph_.nodes.size(), false);
+    for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
+      const Node& node = graph_.nodes[i];
+      if (node.block == nullptr) {
+        settle_operation(i);
+        continue;
+      }
+      if (node.block->about.rate_transition) {
+        continue;
+      }
+      for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
+        const auto rate = rate_of(graph_.wires[node.first_wire + pin]);
+        if (rate && *rate != node.rate) {
+          report(graph_.wire_spans[node.first_wire + pin],
+                 fmt::format("{} runs every {} steps, its input {} changes every {}", node.path, node.rate.every,
+                             node.block->pin(pin).name, rate->every));
+        }
+      }
+    }
+    for (const Port& output : graph_.outputs) {
+      const auto rate = rate_of(output.wire);
+      if (rate && *rate != Rate{}) {
+        report(output.span, fmt::format("the output {} changes only every {} steps", output.name, rate->every));
+      }
+    }
+  }
+
+  void report(language::Span span, std::string cause) {
+    diagnostics_.error(error::rate_mismatch, graph_.place(span), std::move(cause),
+                       "Put a HY_SAMPLE (towards the slower part, with its @every) or a HY_HOLD (towards the faster "
+                       "part) between them.");
+  }
+
+  Graph& graph_;
+  const std::vector<Slot>& slots_;
+  std::vector<Parameter>& parameters_;
+  Diagnostics& diagnostics_;
+  std::vector<bool> settled_;
+  std::vector<bool> constant_;
+};
+
+}  // namespace
+
+void finish(Graph& graph, const std::vector<Slot>& slots, std::vector<Parameter>& parameters,
+            Diagnostics& diagnostics) {
+  Finisher(graph, slots, parameters, diagnostics).run();
+}
+
+std::int64_t find_parameter(const Graph& graph, std::string_view path) {
+  const std::string wanted = language::upper(path);
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    if (graph.parameters[i].path == wanted) {
+      return static_cast<std::int64_t>(i);
+    }
+  }
+  return -1;
+}
+
+}  // namespace hysteron

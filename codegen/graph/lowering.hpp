@@ -1,0 +1,64 @@
+// Lowering: from expressions of the text to operation nodes of a graph.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "codegen/graph/graph.hpp"
+#include "codegen/language/syntax.hpp"
+
+namespace hysteron {
+
+/// Adds nodes, wires and literals to a graph that is being built.
+class GraphBuilder {
+ public:
+  explicit GraphBuilder(Graph& graph) : graph_(graph) {}
+
+  Wire literal(Type type, double value);
+  /// An operation on wires; folded where all are literals. `path` names the pin that the expression feeds.
+  Wire operation(Op op, std::initializer_list<Wire> operands, const std::string& path, language::Span span);
+  /// A block with all pins unconnected.
+  std::uint32_t block(const BlockType& type, std::string path, Rate rate, language::Span span);
+
+  Graph& graph() { return graph_; }
+  [[nodiscard]] bool is_literal(Wire wire) const { return wire.from == Wire::From::Literal; }
+  [[nodiscard]] double value(Wire wire) const { return graph_.literals[wire.index]; }
+
+ private:
+  Graph& graph_;
+  std::string numbered_path_;
+  std::uint32_t next_number_ = 0;
+};
+
+/// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
+class Lowering {
+ public:
+  using Resolve = std::function<Wire(const language::Reference&, language::Span)>;
+  using Report = std::function<void(int, language::Span, std::string, std::string)>;
+
+  Lowering(GraphBuilder& builder, const language::SourceFile& source, Resolve resolve, Report report)
+      : builder_(builder), source_(source), resolve_(std::move(resolve)), report_(std::move(report)) {}
+
+  /// The wire that carries the expression; From::Nothing where an error was reported. `path` names what it feeds.
+  Wire lower(language::ExpressionId id, const std::string& path);
+
+ private:
+  Wire lower_unary(const language::Unary& unary, language::Span span);
+  Wire lower_binary(const language::Binary& binary, language::Span span);
+  Wire lower_call(const language::FunctionCall& call, language::Span span);
+  Wire round_to_int(Wire x, language::Span span);
+  Wire expression(language::ExpressionId id);
+  Wire apply(Op op, std::initializer_list<Wire> operands, language::Span span) {
+    return builder_.operation(op, operands, path_, span);
+  }
+  Wire mismatch(language::Span span, std::string_view what, Type left, Type right);
+  [[nodiscard]] language::Span span_of(language::ExpressionId id) const { return source_.expressions[id].span; }
+
+  GraphBuilder& builder_;
+  const language::SourceFile& source_;
+  Resolve resolve_;
+  Report report_;
+  std::string path_{};
+};
+
+}  // namespace hysteron

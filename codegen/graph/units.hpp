@@ -1,0 +1,22 @@
+// Units: what a unit text means, and whether the units along all wires of a graph agree.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "codegen/graph/graph.hpp"
+#include "codegen/graph/schedule.hpp"
+
+namespace hysteron::units {
+
+/// Whether a text is a unit (SI symbols and prefixes, products, quotients, powers; `1` for none). Says why not.
+bool is_unit(std::string_view text, std::string& reason);
+
+/// The factor from one unit to another (`um` to `m`: 1e-6); false where their dimensions differ or one is unknown.
+bool conversion(std::string_view from, std::string_view to, double& factor);
+
+/// Checks the units of all wires. Blocks are polymorphic in unit variables ('x): each instance takes the units that
+/// are wired. A port without a unit is not checked. Reports HY301 where two units cannot agree.
+void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostics);
+
+}  // namespace hysteron::units

@@ -1,6 +1,7 @@
 // HY_INTEGRAL: XOUT(k) = XOUT(k−1) + TS·XIN(k), with a compensated sum
 #pragma once
 
+#include "blocks/compensated_sum.hpp"
 #include "blocks/description.hpp"
 
 namespace hysteron {
@@ -12,10 +13,10 @@ struct Integral {
       .group = Group::Dynamics,
       .equation = "XOUT(k) = X0 where R1; else XOUT(k−1) + TS·XIN(k) where RUN; else XOUT(k−1)",
       .meaning =
-          "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. The sum "
-          "is "
-          "compensated (Neumaier), so that small increments are not lost: a plain REAL sum of 1 over 100 s at 50 µs "
-          "gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at 0.",
+          "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. "
+          "The sum is compensated (Neumaier), so that small increments are not lost: a plain REAL sum of 1 "
+          "over 100 s at 50 µs gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at "
+          "0. Where it must close a loop, use HY_INTEGRAL_FORWARD.",
       .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), ahead by half a sample.",
       .source = "IEC 61131-3, INTEGRAL; A. Neumaier, ZAMM 54 (1974) 39–51"};
 
@@ -56,14 +57,12 @@ struct Integral {
     }
   };
 
-  /// The sum and its low part after the present input.
+  /// The sum after the present input.
   template <class S>
-  static State<S> advance(const State<S>& state, const In<S>& in, const S& ts) {
+  static CompensatedSum<S> advance(const State<S>& state, const In<S>& in, const S& ts) {
     const S increment = select(in.RUN, in.XIN * ts, S(0.0));
-    const S sum = state.SUM + increment;
-    const S lost =
-        select(abs(state.SUM) >= abs(increment), (state.SUM - sum) + increment, (increment - sum) + state.SUM);
-    return {.SUM = select(in.R1, in.X0, sum), .LOST = select(in.R1, S(0.0), state.LOST + lost)};
+    const CompensatedSum<S> sum = add<S>({.high = state.SUM, .low = state.LOST}, increment);
+    return select_sum<S>(in.R1, {.high = in.X0, .low = S(0.0)}, sum);
   }
 
   template <class S>
@@ -72,13 +71,14 @@ struct Integral {
   }
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& ts) {
-    const State<S> next = advance(state, in, ts);
-    return {.XOUT = next.SUM + next.LOST, .Q = !in.R1};
+    const CompensatedSum<S> next = advance(state, in, ts);
+    return {.XOUT = next.high + next.low, .Q = !in.R1};
   }
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
                      const S& ts) {
-    state = advance(state, in, ts);
+    const CompensatedSum<S> next = advance(state, in, ts);
+    state = {.SUM = next.high, .LOST = next.low};
   }
 };
 

@@ -1,0 +1,39 @@
+// The rate of a signal behind a first-order lag, s/(1 + T·s): what HY_LAG, HY_LEAD_LAG and HY_DERIVATIVE_FILTERED
+// are made of.
+//
+// It is ramp-invariant: exact when the signal runs straight between its samples,
+//   D(k) = a·D(k−1) + (1 − a)·(x(k) − x(k−1))/TS,   a = exp(−TS/T).
+// Then lag = x − T·D and lead-lag = x + (T1 − T2)·D, which are x itself, to the bit, where the time constants are 0,
+// and have the right derivative there.
+#pragma once
+
+#include "blocks/scalar.hpp"
+
+namespace hysteron {
+
+/// x, or 0 below 1e-36: a decaying state would otherwise end among the denormal numbers, where processors are slow,
+/// and stay there. The same bound serves double and float (smallest normal number 1.2e-38).
+template <class S>
+S without_denormals(const S& x) {
+  return select(abs(x) < S(1e-36), S(0.0), x);
+}
+
+/// 1 − exp(−TS/T), the part that one sample forgets; 1 for T up to TS/64. Slow time constants go through a series,
+/// since the difference from 1 would lose their digits (in float, 1 s at 50 µs by 6e-4).
+template <class S>
+S forgotten_part(const S& time_constant, const S& ts) {
+  const S u = ts / max(time_constant, ts * S(0.015625));
+  const S series =
+      u * (S(1.0) - u * (S(1.0 / 2.0) -
+                         u * (S(1.0 / 6.0) - u * (S(1.0 / 24.0) -
+                                                  u * (S(1.0 / 120.0) - u * (S(1.0 / 720.0) - u * S(1.0 / 5040.0)))))));
+  return select(u < S(0.03125), series, S(1.0) - exp(-u));
+}
+
+/// D(k) from D(k−1), x(k) and x(k−1).
+template <class S>
+S filtered_rate(const S& rate, const S& x, const S& x_before, const S& time_constant, const S& ts) {
+  return without_denormals(rate + forgotten_part(time_constant, ts) * ((x - x_before) / ts - rate));
+}
+
+}  // namespace hysteron

@@ -1,0 +1,55 @@
+// HY_M_INVERSE: XOUT = XIN/M(P), M(P) = C1 + C2·P^C3
+#pragma once
+
+#include "blocks/mem_element.hpp"
+
+namespace hysteron {
+
+struct SlopeMInverse {
+  static constexpr About about{
+      .name = "HY_M_INVERSE",
+      .title = "Inverse of the slope by momentum",
+      .group = Group::Memory,
+      .equation = "XOUT = XIN/M(P), M(P) = C1 + C2·P^C3; 0 where M(P) is not above 0",
+      .meaning =
+          "The rate of the input that gives a wanted rate of the output: the heart of the feedforward. Where "
+          "M(P) is 0, negative or not a number (C2 < 0 and P too large), there is no inverse: ERROR is TRUE "
+          "and XOUT is 0.",
+      .source = "Strijbosch and Oomen, equations (13) and (15)"};
+
+  template <class S>
+  using Params = MemSlopeParams<S>;
+  template <class S>
+  using State = NoFields<S>;
+  template <class S>
+  struct In {
+    S XIN;
+    S P;
+    using Self = In;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XIN).in("'y").means("wanted rate of the output"),
+                        HY_FIELD(P).in("'p").means("momentum")};
+    }
+  };
+  template <class S>
+  struct Out {
+    S XOUT;
+    S M;
+    Bool<S> ERROR;
+    Word<S> ERRORID;
+    using Self = Out;
+    static constexpr auto fields() {
+      return std::tuple{
+          HY_FIELD(XOUT).in("'u").means("rate of the input"), HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+          HY_FIELD(ERROR).means("the slope is not above 0"), HY_FIELD(ERRORID).means("0: none; 1: slope not above 0")};
+    }
+  };
+
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
+    const InverseOfSlope<S> inverse = invert_slope(mem_slope(params.C1, params.C2, params.C3, in.P), in.XIN);  // (15)
+    return {.XOUT = inverse.input, .M = inverse.slope, .ERROR = inverse.failed, .ERRORID = inverse.reason};
+  }
+};
+
+}  // namespace hysteron

@@ -1,0 +1,46 @@
+// HY_SAMPLE: XOUT = XIN, at the instants of the slower part
+#pragma once
+
+#include "blocks/description.hpp"
+
+namespace hysteron {
+
+struct Sample {
+  static constexpr About about{
+      .name = "HY_SAMPLE",
+      .title = "Sample, from a fast part into a slow one",
+      .group = Group::Rate,
+      .equation = "XOUT = XIN, at the instants of the slower part",
+      .meaning =
+          "The border at which a slower part (@every) reads a signal of a faster one: the slower part sees every n-th "
+          "sample. What lies between is not averaged: filter it first, with HY_LAG say, where it holds frequencies "
+          "above half the slower rate. Within one rate it changes nothing.",
+      .delay = "None; frequencies above half the slower rate fold down.",
+      .rate_transition = true};
+
+  template <class S>
+  using Params = NoFields<S>;
+  template <class S>
+  using State = NoFields<S>;
+  template <class S>
+  struct In {
+    S XIN;
+    using Self = In;
+    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal of the faster part")}; }
+  };
+  template <class S>
+  struct Out {
+    S XOUT;
+    using Self = Out;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XOUT).in("'x").means("the same signal at the slower rate")};
+    }
+  };
+
+  template <class S>
+  static Out<S> output(const Params<S>& /*params*/, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
+    return {.XOUT = in.XIN};
+  }
+};
+
+}  // namespace hysteron

@@ -5,9 +5,15 @@
 #include "blocks/arctangent.hpp"
 #include "blocks/backlash.hpp"
 #include "blocks/blink.hpp"
+#include "blocks/branch.hpp"
 #include "blocks/constant.hpp"
 #include "blocks/cosine.hpp"
 #include "blocks/dead_band.hpp"
+#include "blocks/dead_time.hpp"
+#include "blocks/delay.hpp"
+#include "blocks/derivative.hpp"
+#include "blocks/derivative4.hpp"
+#include "blocks/derivative_filtered.hpp"
 #include "blocks/down_counter.hpp"
 #include "blocks/equal.hpp"
 #include "blocks/exponential.hpp"
@@ -15,9 +21,15 @@
 #include "blocks/gain.hpp"
 #include "blocks/greater.hpp"
 #include "blocks/greater_equal.hpp"
+#include "blocks/hold.hpp"
 #include "blocks/hyperbolic_tangent.hpp"
+#include "blocks/hysteresis_ro.hpp"
+#include "blocks/hysteresis_ro_inverse.hpp"
 #include "blocks/hysteresis_switch.hpp"
 #include "blocks/integral.hpp"
+#include "blocks/integral_forward.hpp"
+#include "blocks/lag.hpp"
+#include "blocks/lead_lag.hpp"
 #include "blocks/less.hpp"
 #include "blocks/less_equal.hpp"
 #include "blocks/limit.hpp"
@@ -26,8 +38,15 @@
 #include "blocks/logic_not.hpp"
 #include "blocks/logic_or.hpp"
 #include "blocks/logic_xor.hpp"
+#include "blocks/m.hpp"
+#include "blocks/m_inverse.hpp"
+#include "blocks/m_table.hpp"
+#include "blocks/m_table_inverse.hpp"
 #include "blocks/maximum.hpp"
+#include "blocks/mem.hpp"
+#include "blocks/mem_inverse.hpp"
 #include "blocks/minimum.hpp"
+#include "blocks/momentum.hpp"
 #include "blocks/not_equal.hpp"
 #include "blocks/off_delay.hpp"
 #include "blocks/on_delay.hpp"
@@ -41,7 +60,9 @@
 #include "blocks/rate_limit.hpp"
 #include "blocks/reset_dominant_latch.hpp"
 #include "blocks/rising_edge.hpp"
+#include "blocks/sample.hpp"
 #include "blocks/sample_and_hold.hpp"
+#include "blocks/second_order.hpp"
 #include "blocks/set_dominant_latch.hpp"
 #include "blocks/sign.hpp"
 #include "blocks/sine.hpp"
@@ -71,9 +92,12 @@ struct BlockList {
 };
 
 using Catalogue = BlockList<
+    // memory: hysteresis and MEM elements
+    Branch, Momentum, SlopeM, SlopeMInverse, SlopeMTable, SlopeMTableInverse, Mem, MemInverse, HysteresisRo,
+    HysteresisRoInverse,
     // arithmetic
     Constant, Gain, Sum, Subtract, Product, Quotient,
-    // functions of one variable
+    // functions
     Absolute, Sign, Minimum, Maximum, PowerFunction, SquareRoot, Exponential, Logarithm, Sine, Cosine, Tangent,
     Arctangent, HyperbolicTangent,
     // shaping
@@ -86,6 +110,8 @@ using Catalogue = BlockList<
     // time and counting
     OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
     // dynamics
-    Integral>;
+    Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, Delay, DeadTime, Lag, LeadLag, SecondOrder,
+    // borders between rates
+    Sample, Hold>;
 
 }  // namespace hysteron

@@ -13,7 +13,8 @@
 
 namespace hysteron {
 
-/// A stretch of a text file. Lines and columns count from 1; line 0 means the file as a whole.
+/// A stretch of a text file. Lines and columns count from 1; line 0 means the file as a whole, column 0 the line as a
+/// whole. Columns and lengths count characters (code points), not bytes.
 struct Place {
   std::string file{};
   std::uint32_t line = 0;

@@ -1,0 +1,28 @@
+// Output files that are there whole or not at all.
+//
+// Each is written to a temporary in its own folder, flushed to the disk, and renamed. On any failure the temporaries
+// and the folders made for them are removed, and files that had been there before are as they were.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hysteron {
+
+struct OutputFile {
+  std::filesystem::path path{};
+  std::string contents{};
+};
+
+/// Writes one file. Missing folders are made; permissions of an existing file are kept; a symbolic link is followed;
+/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700.
+void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
+
+/// Writes a set of files, all or none. All are on the disk before the first is renamed, so that only a failing rename
+/// or a power cut between two can separate them; after a failing rename the earlier ones are put back. Throws
+/// InputError HY700; std::invalid_argument where two have the same path.
+void write_files_atomically(const std::vector<OutputFile>& files);
+
+}  // namespace hysteron

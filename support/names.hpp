@@ -1,0 +1,25 @@
+// Names without regard to case, and the nearest known name for "did you mean".
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hysteron {
+
+/// Whether two names are the same but for the case of ASCII letters.
+[[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+/// The name in ASCII capitals: the form to compare and sort by.
+[[nodiscard]] std::string in_capitals(std::string_view name);
+
+/// The number of single-character edits (insert, delete, replace, swap of neighbours) between two names, without
+/// regard to case; limit + 1 where there are more than `limit`.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit);
+
+/// The candidate nearest to a mistyped name: at most one edit for every three characters of the name, so none for a
+/// name of one or two letters, where C1 would be near C2. The first of equals. Empty where none is near.
+[[nodiscard]] std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
+[[nodiscard]] std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates);
+
+}  // namespace hysteron

@@ -1,0 +1,108 @@
+#include "support/numbers.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
+
+namespace hysteron {
+namespace {
+
+/// The shortest digits d₁d₂… of a finite number and its decimal exponent: ±d₁.d₂… · 10^exponent.
+struct Decimal {
+  bool negative = false;
+  std::string digits{};
+  int exponent = 0;
+};
+
+template <class Real>
+Decimal shortest(Real value) {
+  std::array<char, 48> buffer{};
+  const auto written =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific);
+  std::string_view text(buffer.data(), static_cast<std::size_t>(written.ptr - buffer.data()));
+  Decimal result;
+  if (text.front() == '-') {
+    result.negative = true;
+    text.remove_prefix(1);
+  }
+  const auto mark = text.find('e');
+  for (const char c : text.substr(0, mark)) {
+    if (c != '.') {
+      result.digits += c;
+    }
+  }
+  result.exponent = std::atoi(std::string(text.substr(mark + 1)).c_str());
+  return result;
+}
+
+template <class Real>
+std::string to_text(Real value, bool literal) {
+  if (std::isnan(value)) {
+    return "nan";
+  }
+  if (std::isinf(value)) {
+    return value < 0 ? "-inf" : "inf";
+  }
+  const Decimal decimal = shortest(value);
+  const auto& digits = decimal.digits;
+  std::string text = decimal.negative ? "-" : "";
+  if (decimal.exponent < -5 || decimal.exponent > 15) {
+    text += digits.front();
+    if (digits.size() > 1) {
+      text.append(".").append(digits, 1);
+    } else if (literal) {
+      text += ".0";
+    }
+    return text.append("e").append(std::to_string(decimal.exponent));
+  }
+  if (decimal.exponent < 0) {
+    return text.append("0.").append(static_cast<std::size_t>(-decimal.exponent - 1), '0').append(digits);
+  }
+  const auto before_point = static_cast<std::size_t>(decimal.exponent) + 1;
+  if (digits.size() > before_point) {
+    return text.append(digits, 0, before_point).append(".").append(digits, before_point);
+  }
+  return text.append(digits).append(before_point - digits.size(), '0').append(literal ? ".0" : "");
+}
+
+}  // namespace
+
+std::string number_text(double value) {
+  return to_text(value, false);
+}
+std::string number_text(float value) {
+  return to_text(value, false);
+}
+std::string real_literal(double value) {
+  return to_text(value, true);
+}
+std::string real_literal(float value) {
+  return to_text(value, true);
+}
+
+ParsedNumber parse_number(std::string_view text) {
+  ParsedNumber result;
+  const char* begin = text.data();
+  const char* const end = begin + text.size();
+  if (begin != end && *begin == '+') {
+    ++begin;  // from_chars knows only the minus
+    if (begin != end && *begin == '-') {
+      return result;
+    }
+  }
+  const auto read = std::from_chars(begin, end, result.value);
+  if (read.ptr != end || read.ec == std::errc::invalid_argument) {
+    return {};
+  }
+  if (read.ec == std::errc::result_out_of_range) {
+    result.value = 0.0;
+    result.status = NumberStatus::OutOfRange;
+  } else {
+    result.status = std::isfinite(result.value) ? NumberStatus::Finite : NumberStatus::NotFinite;
+  }
+  return result;
+}
+
+}  // namespace hysteron

@@ -1,0 +1,72 @@
+#include "support/text_file.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "support/diagnostic.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron {
+namespace {
+
+/// A file of nearly the same name in the same folder, for the mend.
+std::string neighbour(const std::filesystem::path& path) {
+  constexpr std::size_t most = 10000;
+  std::error_code ignored;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::vector<std::string> names;
+  auto entries = std::filesystem::directory_iterator(folder, ignored);
+  for (; entries != std::filesystem::directory_iterator() && names.size() < most; entries.increment(ignored)) {
+    names.push_back(entries->path().filename().string());
+  }
+  return std::string(nearest_name(path.filename().string(), names));
+}
+
+[[noreturn]] void refuse(const std::string& path, int reason) {
+  const auto shown = path.empty() ? std::string("(no name)") : path;
+  std::string mend = "give the path of an existing file, as seen from the current folder.";
+  if (reason == ENOENT) {
+    if (const auto near = neighbour(path); !near.empty()) {
+      mend = fmt::format("did you mean {}?", (std::filesystem::path(path).parent_path() / near).string());
+    }
+  } else if (reason == EISDIR) {
+    mend = "give the path of a file inside it.";
+  } else if (reason == EACCES) {
+    mend = "ask for permission to read it (chmod, chown).";
+  }
+  throw InputError(error::unreadable_file, Place{.file = path},
+                   fmt::format("The file {} cannot be read: {}.", shown, std::strerror(reason)), mend);
+}
+
+}  // namespace
+
+std::string read_text_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) {
+    refuse(path, errno);
+  }
+  std::string text;
+  struct stat status {};
+  if (fstat(fileno(file.get()), &status) == 0 && S_ISREG(status.st_mode)) {
+    text.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  }
+  std::array<char, 1U << 16U> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+    text.append(buffer.data(), count);
+  }
+  if (std::ferror(file.get()) != 0) {
+    refuse(path, errno);
+  }
+  return text;
+}
+
+}  // namespace hysteron

@@ -64,6 +64,7 @@ inline constexpr int algebraic_loop = 401;
 inline constexpr int hidden_delay = 402;
 inline constexpr int rate_mismatch = 403;
 inline constexpr int missing_sample_time = 404;
+inline constexpr int read_after_call = 405;
 inline constexpr int record_too_short = 501;
 inline constexpr int missing_column = 502;
 inline constexpr int duplicate_column = 503;
@@ -142,6 +143,7 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::hidden_delay, "Hidden delay"},
     ErrorTitle{error::rate_mismatch, "Wire between two rates"},
     ErrorTitle{error::missing_sample_time, "No sample time"},
+    ErrorTitle{error::read_after_call, "Delayed output read after its call"},
     ErrorTitle{error::record_too_short, "Record with too few rows"},
     ErrorTitle{error::missing_column, "Missing column"},
     ErrorTitle{error::duplicate_column, "Column named twice"},

@@ -16,7 +16,7 @@ constexpr auto none = std::numeric_limits<std::uint32_t>::max();
 /// A part of a node's work that is done at once: some outputs, the update, or both.
 struct Task {
   std::uint32_t node = 0;
-  PinSet pins{};  ///< the pins that must be known
+  PinSet pins{};                     ///< the pins that must be known
   bool outputs = false;              ///< computes outputs
   bool update = false;               ///< moves the state on
   std::uint32_t after_first = none;  ///< tasks of the same node that must come before: [after_first, after_end)

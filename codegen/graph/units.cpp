@@ -237,6 +237,17 @@ class Parser {
     return result;
   }
 
+  // Byte by byte would not do: °, µ, · and the superscripts begin with the same one.
+  [[nodiscard]] bool at_separator() const {
+    const std::string_view rest = text_.substr(at_);
+    for (const std::string_view separator : {"*", "/", "^", "(", ")", " ", "·", "²", "³"}) {
+      if (rest.starts_with(separator)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   std::optional<Fraction> exponent_of() {
     const bool bracket = take("(");
     const auto over = whole();
@@ -282,10 +293,9 @@ class Parser {
       return Unit{};
     }
     const std::size_t begin = at_;
-    while (at_ < text_.size() && std::string_view("*/^() ·²³").find(text_[at_]) == std::string_view::npos) {
+    while (at_ < text_.size() && !at_separator()) {
       ++at_;
     }
-    // `·` and the superscripts begin with the byte C2, as do ° and µ, which belong to symbols.
     const std::string_view name = text_.substr(begin, at_ - begin);
     if (name.empty()) {
       fail("a symbol is missing");

@@ -1,0 +1,166 @@
+#include "codegen/compile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/elaborate.hpp"
+#include "codegen/graph/text_order.hpp"
+#include "codegen/graph/units.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Sorted by place, each once: a block that is instantiated twice has its faults once.
+void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics) {
+  std::vector<Diagnostic> list = found.all();
+  const auto key = [](const Diagnostic& one) {
+    return std::tie(one.place.file, one.place.line, one.place.column, one.number, one.cause);
+  };
+  std::ranges::stable_sort(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i > 0 && key(list[i]) == key(list[i - 1])) {
+      continue;
+    }
+    if (any_order && list[i].number == error::hidden_delay) {
+      list[i].severity = Severity::Warning;
+    }
+    diagnostics.add(std::move(list[i]));
+  }
+}
+
+bool blocks_work(const Diagnostics& diagnostics) {
+  return std::ranges::any_of(diagnostics.all(), [](const Diagnostic& one) {
+    return one.severity == Severity::Error && one.number != error::hidden_delay;
+  });
+}
+
+/// All blocks of a file, elaborated each by itself, those that others contain first.
+struct Checked {
+  Definitions definitions;
+  std::vector<Program> programs;  ///< beside definitions.list
+};
+
+Checked check_all(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
+  Checked result{.definitions = define(std::move(source), diagnostics), .programs = {}};
+  Definitions& definitions = result.definitions;
+  result.programs.resize(definitions.list.size());
+  for (const std::uint32_t index : definitions.callees_first) {
+    Definition& definition = definitions.list[index];
+    Program& program = result.programs[index];
+    Diagnostics own;
+    if (definition.usable) {
+      program.graph = elaborate(definitions, index, own);
+      if (!own.has_errors() && !blocks_work(diagnostics)) {
+        program.schedule = schedule(program.graph, own);
+      }
+      if (!own.has_errors() && !blocks_work(diagnostics)) {
+        check_text_order(definitions, index, program.graph, own);
+        units::check(program.graph, program.schedule, own);
+        const auto late = outputs_with_feedthrough(program.graph);
+        definition.late.assign(definition.variables.size(), true);
+        std::size_t output = 0;
+        for (std::size_t i = 0; i < definition.variables.size(); ++i) {
+          if (definition.variables[i].kind == Declared::Kind::Output) {
+            definition.late[i] = late[output++];
+          }
+        }
+      }
+    }
+    for (const Diagnostic& one : own.all()) {
+      diagnostics.add(one);
+    }
+  }
+  return result;
+}
+
+/// The block to be run: the named one, or the only one that no other contains.
+std::int64_t find_top(const Definitions& definitions, const std::string& wanted, Diagnostics& diagnostics) {
+  const auto& source = *definitions.source;
+  std::vector<bool> contained(definitions.list.size(), false);
+  for (const Definition& definition : definitions.list) {
+    for (const Declared& declared : definition.variables) {
+      if (declared.kind == Declared::Kind::UserBlock) {
+        contained[declared.definition] = true;
+      }
+    }
+  }
+  std::vector<std::string> names;
+  std::int64_t top = -1;
+  for (std::size_t i = 0; i < definitions.list.size(); ++i) {
+    const auto name = definitions.list[i].block->name.text;
+    if (!wanted.empty() && language::same_name(name, wanted)) {
+      return static_cast<std::int64_t>(i);
+    }
+    if (!contained[i] || !wanted.empty()) {
+      names.emplace_back(name);
+      top = static_cast<std::int64_t>(i);
+    }
+  }
+  if (wanted.empty() && names.size() == 1) {
+    return top;
+  }
+  if (!definitions.list.empty()) {
+    diagnostics.error(error::ambiguous_top, {.file = source.path},
+                      wanted.empty() ? fmt::format("the file has several top blocks: {}", fmt::join(names, ", "))
+                                     : fmt::format("there is no block '{}'", wanted),
+                      fmt::format("Choose one with --top NAME: {}.", fmt::join(names, ", ")));
+  }
+  return -1;
+}
+
+}  // namespace
+
+void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
+  Diagnostics found;
+  check_all(std::move(source), found);
+  tidy_up(found, false, diagnostics);
+}
+
+Program compile(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
+                Diagnostics& diagnostics) {
+  Diagnostics found;
+  Checked checked = check_all(std::move(source), found);
+  const std::int64_t top = find_top(checked.definitions, options.top, found);
+  tidy_up(found, options.any_order, diagnostics);
+  return top < 0 ? Program{} : std::move(checked.programs[static_cast<std::size_t>(top)]);
+}
+
+namespace {
+
+Program compile_source(language::SourceFile parsed, const CompileOptions& options, Diagnostics& syntax,
+                       Diagnostics& warnings) {
+  if (syntax.has_errors()) {
+    throw InputError(std::move(syntax));
+  }
+  Program program = compile(std::make_shared<const language::SourceFile>(std::move(parsed)), options, syntax);
+  if (syntax.has_errors()) {
+    throw InputError(std::move(syntax));
+  }
+  for (const Diagnostic& one : syntax.all()) {
+    warnings.add(one);
+  }
+  return program;
+}
+
+}  // namespace
+
+Program compile_file(const std::string& path, const CompileOptions& options, Diagnostics& warnings) {
+  Diagnostics syntax;
+  auto parsed = language::parse_file(path, syntax);
+  return compile_source(std::move(parsed), options, syntax, warnings);
+}
+
+Program compile_text(std::string text, const CompileOptions& options) {
+  Diagnostics syntax;
+  Diagnostics warnings;
+  auto parsed = language::parse("text", std::move(text), syntax);
+  return compile_source(std::move(parsed), options, syntax, warnings);
+}
+
+}  // namespace hysteron

@@ -1,0 +1,44 @@
+// From the text of a diagram to a program: the front door of codegen.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "codegen/graph/graph.hpp"
+#include "codegen/graph/schedule.hpp"
+#include "codegen/language/syntax.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron {
+
+/// What the interpreter and the back-ends need of a diagram.
+struct Program {
+  Graph graph;
+  Schedule schedule;
+};
+
+struct CompileOptions {
+  std::string top{};       ///< which FUNCTION_BLOCK; empty: the only one that no other contains
+  bool any_order = false;  ///< statements may stand in any order: HY402 becomes a warning
+};
+
+/// Checks every block of a file. All diagnostics, sorted by place, each once.
+void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics);
+
+/// Checks a file and compiles its top block. Sound only where no error was reported.
+Program compile(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
+                Diagnostics& diagnostics);
+
+/// Reads, checks and compiles a file. Throws InputError with all diagnostics where there is an error; warnings are
+/// added to `warnings`.
+Program compile_file(const std::string& path, const CompileOptions& options, Diagnostics& warnings);
+
+/// The same for a text in memory.
+Program compile_text(std::string text, const CompileOptions& options = {});
+
+/// The text in the house's layout, with the statements of each block in the order of the data flow. Diagnostics that
+/// keep it from being understood are added; hidden delays are mended, not reported.
+std::string format_text(std::string path, std::string text, Diagnostics& diagnostics);
+
+}  // namespace hysteron

@@ -63,7 +63,8 @@ struct RealLiteral {
   double value = 0.0;
 };
 struct IntLiteral {
-  std::int64_t value = 0;
+  std::int64_t value = 0;  ///< within DINT, or within WORD
+  bool is_word = false;    ///< written WORD#…
 };
 struct BoolLiteral {
   bool value = false;
@@ -125,7 +126,7 @@ using Statement = std::variant<Call, Assignment>;
 
 enum class Section : std::uint8_t { Input, Output, Local, Constant };
 
-/// One declared name. `X, Y : LREAL;` makes two variables.
+/// One declared name. `X, Y : LREAL;` makes two variables, which share the expressions of their initial value.
 struct Variable {
   Name name{};
   Name type{};  ///< LREAL, BOOL, DINT, WORD, or the name of a block
@@ -148,6 +149,8 @@ struct SourceFile {
   std::shared_ptr<const std::string> text{};  ///< all views and spans point into it
   std::vector<FunctionBlock> blocks{};
   std::vector<Expression> expressions{};
+  std::vector<std::uint32_t> line_starts{};  ///< the offset at which each line begins
+  bool valid = false;                        ///< read without a syntax error
 
   /// The place of a span: file, line and column.
   [[nodiscard]] Place place(Span span) const;
@@ -163,8 +166,13 @@ SourceFile parse_file(const std::string& path, Diagnostics& diagnostics);
 bool same_name(std::string_view a, std::string_view b);
 std::string upper(std::string_view name);
 
-/// The same diagram in the house's layout: statements in the order in which data flows, one declaration a line,
-/// comments kept with what they stood beside. Formatting twice changes nothing.
-std::string format(const SourceFile& file);
+/// For each block of a file, its statements by their indexes in the order wanted; an empty order keeps the source's.
+using StatementOrders = std::vector<std::vector<std::uint32_t>>;
+
+/// The same diagram in the house's layout: one declaration and one call a line, columns aligned, comments kept with
+/// what they stood beside, statements in the order given. Formatting twice changes nothing. A file with syntax
+/// errors is given back as it is. Throws std::invalid_argument where an order is not a permutation of the
+/// statements.
+std::string format(const SourceFile& file, const StatementOrders& orders = {});
 
 }  // namespace hysteron::language

@@ -1,0 +1,95 @@
+#include "codegen/language/annotation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "support/errors.hpp"
+
+namespace hysteron::language {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+}
+bool is_key_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_key_character(char c) {
+  return is_key_letter(c) || (c >= '0' && c <= '9');
+}
+
+}  // namespace
+
+std::vector<Annotation> annotations_of(std::string_view text, Span comment) {
+  std::vector<Annotation> found;
+  const auto inside = text.substr(0, comment.offset + comment.length);
+  const auto body_end = inside.ends_with("*)") && comment.length >= 4 ? inside.size() - 2 : inside.size();
+  const auto starts_key = [&](std::size_t i) {
+    return text[i] == '@' && (i == comment.offset + 2 || is_blank(text[i - 1])) && i + 1 < body_end &&
+           is_key_letter(text[i + 1]);
+  };
+  for (std::size_t i = inside.find('@', comment.offset + 2); i < body_end;) {
+    if (!starts_key(i)) {
+      i = inside.find('@', i + 1);
+      continue;
+    }
+    const auto start = i++;
+    while (i < body_end && is_key_character(text[i])) {
+      ++i;
+    }
+    const auto key = text.substr(start + 1, i - start - 1);
+    auto value_start = i;
+    while (i < body_end && text[i] != '\n' && !starts_key(i)) {
+      ++i;
+    }
+    auto value_end = i;
+    while (value_start < value_end && is_blank(text[value_start])) {
+      ++value_start;
+    }
+    while (value_end > value_start && is_blank(text[value_end - 1])) {
+      --value_end;
+    }
+    const auto span = [](std::size_t from, std::size_t to) {
+      return Span{static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to - from)};
+    };
+    const bool has_value = value_end > value_start;
+    const auto end = has_value ? value_end : start + 1 + key.size();
+    found.push_back({key, text.substr(value_start, value_end - value_start), span(start, end),
+                     has_value ? span(value_start, value_end) : span(end, end)});
+    i = inside.find('@', i);
+  }
+  return found;
+}
+
+void attach_annotations(SourceFile& file, const std::vector<Comment>& comments,
+                        const std::vector<Declaration>& declarations, Reporter& reporter) {
+  for (const auto& comment : comments) {
+    const auto found = annotations_of(*file.text, comment.span);
+    if (found.empty()) {
+      continue;
+    }
+    const auto after = std::upper_bound(declarations.begin(), declarations.end(), comment.span.offset,
+                                        [](std::uint32_t offset, const Declaration& d) { return offset < d.begin; });
+    const Declaration* owner = after == declarations.begin() ? nullptr : &*(after - 1);
+    const bool inside = owner != nullptr && comment.span.offset < owner->end;
+    const bool behind = owner != nullptr && comment.previous_end == owner->end;
+    if (inside || (behind && (owner->is_head || comment.trailing))) {
+      auto& block = file.blocks[owner->block];
+      if (owner->is_head) {
+        block.annotations.insert(block.annotations.end(), found.begin(), found.end());
+      }
+      for (std::size_t i = 0; i < owner->variable_count; ++i) {
+        auto& annotations = block.variables[owner->first_variable + i].annotations;
+        annotations.insert(annotations.end(), found.begin(), found.end());
+      }
+      continue;
+    }
+    reporter.error(error::stray_annotation, found.front().span,
+                   fmt::format("@{} stands beside no declaration.", found.front().key),
+                   "Put the comment behind the declaration that it speaks of, on the same line, or behind "
+                   "FUNCTION_BLOCK and its name.");
+  }
+}
+
+}  // namespace hysteron::language

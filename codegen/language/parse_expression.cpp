@@ -1,0 +1,293 @@
+// Expressions by precedence climbing. From the strongest: parentheses and calls; - NOT; **; * / MOD; + -;
+// < > <= >=; = <>; AND &; XOR; OR (IEC 61131-3, table 71). Equals are taken from left to right.
+//
+// The editions and the compilers differ on whether - or ** binds more strongly, so -A ** B is refused; so are two
+// signs in a row, and the unary plus, which older compilers do not know.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "codegen/language/parser.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::language {
+namespace {
+
+struct BinarySign {
+  Operator op{};
+  int strength = -1;  ///< -1: no binary operator
+};
+
+BinarySign binary_sign(const Token& token) {
+  switch (token.symbol) {
+    case Symbol::Power:
+      return {Operator::Power, 7};
+    case Symbol::Star:
+      return {Operator::Multiply, 6};
+    case Symbol::Slash:
+      return {Operator::Divide, 6};
+    case Symbol::Plus:
+      return {Operator::Add, 5};
+    case Symbol::Minus:
+      return {Operator::Subtract, 5};
+    case Symbol::Less:
+      return {Operator::Less, 4};
+    case Symbol::LessEqual:
+      return {Operator::LessEqual, 4};
+    case Symbol::Greater:
+      return {Operator::Greater, 4};
+    case Symbol::GreaterEqual:
+      return {Operator::GreaterEqual, 4};
+    case Symbol::Equal:
+      return {Operator::Equal, 3};
+    case Symbol::NotEqual:
+      return {Operator::NotEqual, 3};
+    case Symbol::Ampersand:
+      return {Operator::And, 2};
+    default:
+      break;
+  }
+  switch (token.keyword) {
+    case Keyword::Mod:
+      return {Operator::Modulo, 6};
+    case Keyword::And:
+      return {Operator::And, 2};
+    case Keyword::Xor:
+      return {Operator::Xor, 1};
+    case Keyword::Or:
+      return {Operator::Or, 0};
+    default:
+      return {};
+  }
+}
+
+bool is_unary_sign(const Token& token) {
+  return token.symbol == Symbol::Minus || token.symbol == Symbol::Plus || token.keyword == Keyword::Not;
+}
+
+}  // namespace
+
+ExpressionId Parser::make(Expression expression, std::uint32_t height) {
+  if (too_deep(height, expression.span)) {
+    return no_expression;
+  }
+  file_.expressions.push_back(std::move(expression));
+  heights_.push_back(static_cast<std::uint16_t>(height));
+  return static_cast<ExpressionId>(file_.expressions.size() - 1);
+}
+
+bool Parser::too_deep(std::uint32_t depth, Span span) {
+  if (depth <= deepest_expression) {
+    return false;
+  }
+  error(error::nested_too_deeply, span,
+        fmt::format("This expression is nested more than {} levels deep.", deepest_expression),
+        "Give a part of it to a variable of its own.");
+  return true;
+}
+
+ExpressionId Parser::binary(int weakest) {
+  ExpressionId left = operand();
+  while (left != no_expression) {
+    const auto sign = binary_sign(now());
+    if (sign.strength < weakest) {
+      break;
+    }
+    advance();
+    const ExpressionId right = binary(sign.strength + 1);
+    if (right == no_expression) {
+      return no_expression;
+    }
+    const auto begin = file_.expressions[left].span.offset;
+    const auto height = 1U + std::max(heights_[left], heights_[right]);
+    left = make({.node = Binary{sign.op, left, right}, .span = since(begin)}, height);
+  }
+  return left;
+}
+
+ExpressionId Parser::operand() {
+  return is_unary_sign(now()) ? unary() : primary(false);
+}
+
+ExpressionId Parser::unary() {
+  const Token sign = now();
+  if (sign.symbol == Symbol::Plus) {
+    error(error::ambiguous_sign, span_of(sign), "A plus before a value is not portable.", "Leave it out.");
+  }
+  advance();
+  if (is_unary_sign(now())) {
+    error(error::ambiguous_sign, span_of(now()),
+          fmt::format("{} right behind {} is not portable.", described(now()), described(sign)),
+          "Put the inner one and its value in parentheses.");
+    while (is_unary_sign(now())) {
+      advance();
+    }
+  }
+  const ExpressionId value = primary(sign.symbol == Symbol::Minus);
+  if (value == no_expression) {
+    return no_expression;
+  }
+  if (is(Symbol::Power)) {
+    error(error::ambiguous_sign, since(sign.offset),
+          fmt::format("Compilers differ on whether {} or ** comes first.", described(sign)),
+          fmt::format("Write {0}(A ** B) or ({0}A) ** B.", sign.keyword == Keyword::Not ? "NOT " : "-"));
+  }
+  if (sign.symbol == Symbol::Plus) {
+    return value;
+  }
+  const auto op = sign.symbol == Symbol::Minus ? Operator::Negate : Operator::Not;
+  return make({.node = Unary{op, value}, .span = since(sign.offset)}, 1U + heights_[value]);
+}
+
+ExpressionId Parser::primary(bool behind_minus) {
+  switch (now().symbol) {
+    case Symbol::Number:
+    case Symbol::Typed:
+      return literal(behind_minus);
+    case Symbol::Refused:
+      advance();
+      return make({.node = RealLiteral{}, .span = span_of(last_)}, 1);
+    case Symbol::LeftParenthesis:
+      return parenthesized();
+    case Symbol::LeftBracket:
+      error(error::array_in_expression, span_of(now()), "An array is no value to compute with.",
+            "Give arrays in the declaration of an instance only: T : HY_TABLE := (X := [0.0, 1.0], …);");
+      return no_expression;
+    case Symbol::Identifier:
+      return ahead(1).symbol == Symbol::LeftParenthesis ? function_call() : reference();
+    default:
+      break;
+  }
+  if (is(Keyword::True) || is(Keyword::False)) {
+    advance();
+    return make({.node = BoolLiteral{last_.keyword == Keyword::True}, .span = span_of(last_)}, 1);
+  }
+  unexpected("a value", "Put a number, a name, INSTANCE.PIN or a function here.");
+  return no_expression;
+}
+
+ExpressionId Parser::literal(bool behind_minus) {
+  const auto span = span_of(now());
+  const auto value = is(Symbol::Number) ? number_literal(text_of(span), behind_minus) : typed_literal(text_of(span));
+  advance();
+  if (const auto* problem = std::get_if<LiteralError>(&value)) {
+    error(problem->number, span, problem->cause, problem->mend);
+    return make({.node = RealLiteral{}, .span = span}, 1);
+  }
+  if (const auto* real = std::get_if<RealLiteral>(&value)) {
+    return make({.node = *real, .span = span}, 1);
+  }
+  if (const auto* integer = std::get_if<IntLiteral>(&value)) {
+    return make({.node = *integer, .span = span}, 1);
+  }
+  return make({.node = std::get<BoolLiteral>(value), .span = span}, 1);
+}
+
+ExpressionId Parser::parenthesized() {
+  const auto begin = now().offset;
+  if (too_deep(depth_ + 1, span_of(now()))) {
+    return no_expression;
+  }
+  advance();
+  ++depth_;
+  const ExpressionId inner = expression();
+  --depth_;
+  if (inner == no_expression || !expect(Symbol::RightParenthesis, "`)`")) {
+    return no_expression;
+  }
+  file_.expressions[inner].span = since(begin);
+  return inner;
+}
+
+ExpressionId Parser::reference() {
+  const auto begin = now().offset;
+  Reference reference{.name = name_of(now())};
+  advance();
+  if (accept(Symbol::Dot) && !expect_name(reference.pin, "the name of a pin")) {
+    return no_expression;
+  }
+  if (is(Symbol::Dot) || is(Symbol::LeftBracket)) {
+    error(error::refused_access, span_of(now()),
+          is(Symbol::Dot) ? "Only the pins of an instance can be read, not what is inside of it."
+                          : "A diagram has no elements of arrays.",
+          is(Symbol::Dot) ? "Give the inner block a VAR_OUTPUT for the value."
+                          : "Use one variable for each element, or HY_TABLE for a curve.");
+    return no_expression;
+  }
+  return make({.node = reference, .span = since(begin)}, 1);
+}
+
+ExpressionId Parser::function_call() {
+  const auto begin = now().offset;
+  FunctionCall call{.function = name_of(now())};
+  if (too_deep(depth_ + 1, span_of(now()))) {
+    return no_expression;
+  }
+  advance();
+  advance();
+  ++depth_;
+  bool right = true;
+  if (!is(Symbol::RightParenthesis)) {
+    do {
+      right = function_argument(call.arguments);
+    } while (right && accept(Symbol::Comma));
+  }
+  --depth_;
+  if (!right || !expect(Symbol::RightParenthesis, "`,` or `)`")) {
+    return no_expression;
+  }
+  std::uint32_t height = 1;
+  for (const auto& argument : call.arguments) {
+    height = std::max(height, 1U + heights_[argument.value]);
+  }
+  return make({.node = std::move(call), .span = since(begin)}, height);
+}
+
+bool Parser::function_argument(std::vector<FunctionArgument>& list) {
+  FunctionArgument argument;
+  const auto start = now();
+  if (is(Symbol::Identifier) && ahead(1).symbol == Symbol::Arrow) {
+    error(error::argument_form, span_of(ahead(1)), "Outputs are not taken inside of a call.",
+          "Use the value of the function itself.");
+    return false;
+  }
+  const bool named = is(Symbol::Identifier) && ahead(1).symbol == Symbol::Assign;
+  if (named) {
+    argument.formal = name_of(now());
+    advance();
+    advance();
+  }
+  if (!list.empty() && named == list.front().formal.text.empty()) {
+    error(error::argument_form, span_of(start), "Arguments with and without names are mixed.",
+          "Name all arguments of this call, or none.");
+  }
+  argument.value = expression();
+  if (argument.value == no_expression) {
+    return false;
+  }
+  list.push_back(argument);
+  return true;
+}
+
+ExpressionId Parser::array() {
+  const auto begin = now().offset;
+  ArrayLiteral array;
+  advance();
+  std::uint32_t height = 1;
+  do {
+    const ExpressionId element = expression();
+    if (element == no_expression) {
+      return no_expression;
+    }
+    array.elements.push_back(element);
+    height = std::max(height, 1U + heights_[element]);
+  } while (accept(Symbol::Comma));
+  if (!expect(Symbol::RightBracket, "`,` or `]`")) {
+    return no_expression;
+  }
+  return make({.node = std::move(array), .span = since(begin)}, height);
+}
+
+}  // namespace hysteron::language

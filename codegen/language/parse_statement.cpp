@@ -1,0 +1,182 @@
+// Statements: calls of instances and assignments, and the advice for what else one might write there.
+#include <fmt/format.h>
+
+#include "codegen/language/parser.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::language {
+
+void Parser::statement(FunctionBlock& block) {
+  if (is(Keyword::ControlBegin) || is(Keyword::ControlEnd) || is(Keyword::Control)) {
+    control();
+    return;
+  }
+  if (is(Symbol::Semicolon)) {
+    error(error::unexpected_symbol, span_of(now()), "This semicolon ends no statement.", "Remove it.");
+    advance();
+    return;
+  }
+  if (is(Keyword::EndVar)) {
+    error(error::unexpected_symbol, span_of(now()), "This END_VAR ends no section.",
+          "Remove it, or write VAR before the declarations.");
+    advance();
+    return;
+  }
+  const auto before = now().offset;
+  if (!named_statement(block)) {
+    if (now().offset == before) {
+      advance();
+    }
+    recover();
+  }
+}
+
+bool Parser::named_statement(FunctionBlock& block) {
+  if (is(Symbol::Keyword)) {
+    error(error::unexpected_symbol, span_of(now()), fmt::format("A statement cannot begin with {}.", described(now())),
+          "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
+    return false;
+  }
+  if (!is(Symbol::Identifier)) {
+    unexpected("a statement", "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
+    return false;
+  }
+  switch (ahead(1).symbol) {
+    case Symbol::LeftParenthesis:
+      return call(block);
+    case Symbol::Assign:
+      return assignment(block);
+    case Symbol::Dot:
+      return pin_assignment();
+    case Symbol::LeftBracket:
+      advance();
+      error(error::refused_access, span_of(now()), "A diagram has no elements of arrays.",
+            "Use one variable for each element, or HY_TABLE for a curve.");
+      return false;
+    case Symbol::Equal:
+      advance();
+      unexpected("`:=`", "Write := to assign; = compares.");
+      return false;
+    case Symbol::Colon:
+    case Symbol::Comma:
+      advance();
+      error(error::unexpected_symbol, span_of(now()), "This declaration stands outside of a section.",
+            "Move it between VAR and END_VAR, before the first statement.");
+      return false;
+    default:
+      advance();
+      unexpected("`(` or `:=`", "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
+      return false;
+  }
+}
+
+bool Parser::call(FunctionBlock& block) {
+  const auto begin = now().offset;
+  Call call{.instance = name_of(now())};
+  advance();
+  advance();
+  if (!accept(Symbol::RightParenthesis) && !arguments(call.arguments, false)) {
+    return false;
+  }
+  if (!expect_semicolon()) {
+    return false;
+  }
+  call.span = since(begin);
+  block.statements.emplace_back(std::move(call));
+  return true;
+}
+
+bool Parser::assignment(FunctionBlock& block) {
+  const auto begin = now().offset;
+  Assignment assignment{.target = name_of(now())};
+  advance();
+  advance();
+  assignment.value = expression();
+  if (assignment.value == no_expression || !expect_semicolon()) {
+    return false;
+  }
+  assignment.span = since(begin);
+  block.statements.emplace_back(assignment);
+  return true;
+}
+
+bool Parser::pin_assignment() {
+  const auto instance = name_of(now());
+  advance();
+  advance();
+  const auto pin = is(Symbol::Identifier) ? now() : last_;
+  const bool is_assignment = is(Symbol::Identifier) && ahead(1).symbol == Symbol::Assign;
+  if (!is_assignment) {
+    unexpected("a call or an assignment", "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
+    return false;
+  }
+  const auto name = name_of(pin);
+  error(error::pin_assignment, {instance.span.offset, pin.end() - instance.span.offset},
+        fmt::format("The pin {}.{} is assigned outside of its call.", instance.text, name.text),
+        fmt::format("Wire it in the call: {}({} := …);", instance.text, name.text));
+  return false;
+}
+
+/// The arguments behind an opening parenthesis, which stands before now(), up to the closing one.
+bool Parser::arguments(std::vector<Argument>& list, bool arrays) {
+  do {
+    const auto second = ahead(1).symbol;
+    if (is(Symbol::Identifier) && second == Symbol::Arrow) {
+      error(error::argument_form, span_of(ahead(1)), "Outputs are not taken inside of a call.",
+            fmt::format("Write NAME := INSTANCE.{}; as a statement of its own.", text_of(span_of(now()))));
+      return false;
+    }
+    if (is(Symbol::Identifier) && second != Symbol::Assign) {
+      const bool compares = second == Symbol::Equal || second == Symbol::Colon;
+      const auto& place = compares ? ahead(1) : now();
+      error(error::argument_form, span_of(place),
+            compares ? fmt::format("{} does not wire a pin.", described(place))
+                     : "This argument does not say which pin it is for.",
+            "Write PIN := value.");
+      return false;
+    }
+    if (!is(Symbol::Identifier) && !is(Symbol::Keyword)) {
+      const bool value = is(Symbol::Number) || is(Symbol::Typed) || is(Symbol::Minus) || is(Symbol::LeftParenthesis) ||
+                         is(Symbol::LeftBracket);
+      if (value) {
+        error(error::argument_form, span_of(now()), "This argument does not say which pin it is for.",
+              "Write PIN := value.");
+        return false;
+      }
+    }
+    Argument argument;
+    if (!expect_name(argument.pin, "the name of a pin") || !expect(Symbol::Assign, "`:=`")) {
+      return false;
+    }
+    argument.value = arrays && is(Symbol::LeftBracket) ? array() : expression();
+    if (argument.value == no_expression) {
+      return false;
+    }
+    list.push_back(argument);
+  } while (accept(Symbol::Comma));
+  return expect(Symbol::RightParenthesis, "`,` or `)`");
+}
+
+/// Passes over a control statement with all that is in it.
+void Parser::control() {
+  error(error::control_statement, span_of(now()),
+        fmt::format("{} is not part of a diagram: a diagram says what is wired to what, not what is done when.",
+                    described(now())),
+        "Choose between values with SEL(condition, value_if_false, value_if_true) or HY_SWITCH; repeat by one instance "
+        "for each repetition.");
+  std::size_t open = 0;
+  while (!is(Keyword::EndFunctionBlock) && !is(Keyword::EndVar) && !ends_block() && !starts_section()) {
+    if (is(Keyword::ControlBegin)) {
+      ++open;
+    } else if (is(Keyword::ControlEnd)) {
+      open -= open > 0 ? 1 : 0;
+    }
+    advance();
+    if (open == 0) {
+      break;
+    }
+  }
+  accept(Symbol::Semicolon);
+}
+
+}  // namespace hysteron::language

@@ -1,0 +1,302 @@
+#include "codegen/language/parser.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "support/errors.hpp"
+#include "support/utf8.hpp"
+
+namespace hysteron::language {
+namespace {
+
+/// A text for a message: the beginning of it, on one line.
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t most = 40;
+  const auto line = text.substr(0, std::min(text.find_first_of("\r\n"), most));
+  return printable(line) + (line.size() < text.size() ? "…" : "");
+}
+
+}  // namespace
+
+Parser::Parser(SourceFile& file, Reporter& reporter)
+    : file_(file), text_(*file.text), reporter_(reporter), lexer_(text_, Comments::Annotated, &reporter) {
+  for (auto& token : window_) {
+    token = lexer_.next();
+  }
+}
+
+void Parser::read_file() {
+  while (!is(Symbol::End)) {
+    if (is(Keyword::FunctionBlock)) {
+      function_block();
+    } else {
+      outside();
+    }
+  }
+  if (file_.blocks.empty() && reporter_.empty()) {
+    error(error::no_function_block, {0, 0}, "There is no FUNCTION_BLOCK in this file.",
+          "Write FUNCTION_BLOCK, a name, the declarations, the calls, and END_FUNCTION_BLOCK.");
+  }
+  attach_annotations(file_, lexer_.comments(), declarations_, reporter_);
+}
+
+void Parser::outside() {
+  const bool unit = is(Keyword::Unit);
+  error(error::outside_function_block, span_of(now()),
+        fmt::format("{} stands outside of a FUNCTION_BLOCK.", described(now())),
+        unit ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
+             : "Move it between FUNCTION_BLOCK and END_FUNCTION_BLOCK, or remove it.");
+  while (!is(Symbol::End) && !is(Keyword::FunctionBlock)) {
+    advance();
+  }
+}
+
+void Parser::function_block() {
+  const auto begin = now().offset;
+  advance();
+  const auto index = file_.blocks.size();
+  auto& block = file_.blocks.emplace_back();
+  expect_name(block.name, "the name of the FUNCTION_BLOCK");
+  declarations_.push_back({.begin = begin, .end = last_.end(), .block = index, .is_head = true});
+  while (!is(Keyword::EndFunctionBlock)) {
+    if (ends_block()) {
+      error(error::missing_end, {begin, static_cast<std::uint32_t>(std::strlen("FUNCTION_BLOCK"))},
+            fmt::format("FUNCTION_BLOCK {} has no END_FUNCTION_BLOCK.", block.name.text),
+            "Write END_FUNCTION_BLOCK behind its last statement.");
+      block.span = since(begin);
+      return;
+    }
+    if (!starts_section()) {
+      statement(block);
+      continue;
+    }
+    if (!block.statements.empty()) {
+      error(error::late_section, span_of(now()), "This section stands behind the statements.",
+            "Move it up: all declarations stand before the first statement.");
+    }
+    section(block);
+  }
+  advance();
+  block.span = since(begin);
+}
+
+void Parser::section(FunctionBlock& block) {
+  const Token opening = now();
+  const auto keyword = opening.keyword;
+  Section kind = keyword == Keyword::VarInput    ? Section::Input
+                 : keyword == Keyword::VarOutput ? Section::Output
+                                                 : Section::Local;
+  if (keyword == Keyword::RefusedSection) {
+    error(error::refused_section, span_of(opening), fmt::format("A diagram has no {}.", described(opening)),
+          "Use VAR_INPUT, VAR_OUTPUT, VAR or VAR CONSTANT; what goes in and out is wired through ports.");
+  }
+  advance();
+  for (; is(Keyword::Constant) || is(Keyword::Qualifier); advance()) {
+    if (is(Keyword::Constant) && keyword == Keyword::Var) {
+      kind = Section::Constant;
+    } else {
+      error(error::refused_section, span_of(now()),
+            fmt::format("{} does not go with {}.", described(now()), described(opening)),
+            is(Keyword::Constant) ? "Put constants into a section VAR CONSTANT of their own."
+                                  : "Remove it; what outlives a restart is said in the parameter file.");
+    }
+  }
+  while (!is(Keyword::EndVar)) {
+    const auto second = ahead(1).symbol;
+    const bool is_statement = is(Symbol::Identifier) && (second == Symbol::LeftParenthesis || second == Symbol::Dot);
+    if (is_statement || ends_block() || is(Keyword::EndFunctionBlock) || starts_section()) {
+      error(error::missing_end, span_of(opening), fmt::format("The section {} has no END_VAR.", described(opening)),
+            "Write END_VAR behind its last declaration.");
+      return;
+    }
+    declaration(block, kind);
+  }
+  advance();
+}
+
+void Parser::declaration(FunctionBlock& block, Section section) {
+  const auto begin = now().offset;
+  const auto first = block.variables.size();
+  Variable variable{.section = section};
+  const bool understood = declared_names() && expect(Symbol::Colon, "`:` and a type") && declared_type(variable.type) &&
+                          (!accept(Symbol::Assign) || initial_value(variable.initial, variable.settings)) &&
+                          expect_semicolon();
+  if (understood) {
+    for (std::size_t i = 0; i + 1 < names_.size(); ++i) {
+      block.variables.push_back(variable);
+      block.variables.back().name = names_[i];
+    }
+    variable.name = names_.back();
+    block.variables.push_back(std::move(variable));
+  } else {
+    recover();
+  }
+  declarations_.push_back({.begin = begin,
+                           .end = last_.end(),
+                           .block = file_.blocks.size() - 1,
+                           .first_variable = first,
+                           .variable_count = block.variables.size() - first});
+}
+
+bool Parser::declared_names() {
+  names_.clear();
+  do {
+    if (!expect_name(names_.emplace_back(), "the name of a variable")) {
+      return false;
+    }
+  } while (accept(Symbol::Comma));
+  if (is(Keyword::At)) {
+    error(error::direct_address, span_of(now()), "AT binds the diagram to an address of one machine.",
+          "Make it a VAR_INPUT or VAR_OUTPUT; addresses stand in the parameter file beside the diagram.");
+    return false;
+  }
+  return true;
+}
+
+bool Parser::declared_type(Name& type) {
+  if (is(Keyword::Derived) || (is(Symbol::Identifier) && is_refused_type(text_of(span_of(now()))))) {
+    error(error::refused_type, span_of(now()), fmt::format("A diagram has no {}.", described(now())),
+          is(Keyword::Derived)
+              ? "Declare LREAL, BOOL, DINT, WORD or a block; arrays are values of a block's parameters only."
+              : "Write LREAL for numbers and times in seconds, BOOL, DINT or WORD.");
+    return false;
+  }
+  return expect_name(type, "a type: LREAL, BOOL, DINT, WORD or the name of a block");
+}
+
+bool Parser::initial_value(ExpressionId& initial, std::vector<Argument>& settings) {
+  const bool is_settings =
+      is(Symbol::LeftParenthesis) && ahead(1).symbol == Symbol::Identifier && ahead(2).symbol == Symbol::Assign;
+  if (is_settings) {
+    advance();
+    return arguments(settings, true);
+  }
+  initial = is(Symbol::LeftBracket) ? array() : expression();
+  return initial != no_expression;
+}
+
+void Parser::advance() {
+  last_ = window_[0];
+  window_[0] = window_[1];
+  window_[1] = window_[2];
+  window_[2] = lexer_.next();
+}
+
+bool Parser::accept(Symbol symbol) {
+  if (!is(symbol)) {
+    return false;
+  }
+  advance();
+  return true;
+}
+
+bool Parser::expect(Symbol symbol, std::string_view wanted) {
+  if (accept(symbol)) {
+    return true;
+  }
+  unexpected(wanted, fmt::format("Put {} here.", wanted));
+  return false;
+}
+
+bool Parser::expect_name(Name& name, std::string_view wanted) {
+  if (is(Symbol::Identifier)) {
+    name = name_of(now());
+    advance();
+    return true;
+  }
+  if (is(Symbol::Keyword) && !ends_block() && !starts_section() && !is(Keyword::EndVar) &&
+      !is(Keyword::EndFunctionBlock)) {
+    error(error::keyword_as_name, span_of(now()),
+          fmt::format("{} is a keyword of the language and cannot be {}.", described(now()), wanted),
+          "Choose another name.");
+    advance();
+  } else {
+    unexpected(wanted, fmt::format("Put {} here.", wanted));
+  }
+  return false;
+}
+
+/// A semicolon that is missing at the end of a line, or before an END, is reported where it belongs, and nothing is
+/// skipped.
+bool Parser::expect_semicolon() {
+  if (accept(Symbol::Semicolon)) {
+    return true;
+  }
+  const auto between = text_.substr(last_.end(), now().offset - last_.end());
+  const bool line_ends = between.find('\n') != std::string_view::npos;
+  const bool starts_anew = is(Symbol::Identifier) || is(Symbol::Keyword) || is(Symbol::End);
+  const bool is_end = is(Keyword::EndVar) || is(Keyword::EndFunctionBlock) || is(Symbol::End);
+  const bool is_next =
+      is(Symbol::Identifier) && (ahead(1).symbol == Symbol::Assign || ahead(1).symbol == Symbol::LeftParenthesis ||
+                                 ahead(1).symbol == Symbol::Colon);
+  if (is_end || is_next || (line_ends && starts_anew)) {
+    error(error::missing_semicolon, {last_.end(), 1},
+          fmt::format("A semicolon is missing behind {}.", described(last_)), "Write ; here.");
+    return true;
+  }
+  unexpected("`;`", "Put `;` here, or remove what is too much.");
+  return false;
+}
+
+/// Skips to behind the next semicolon, or to what ends or begins a part of a block.
+void Parser::recover() {
+  while (!is(Keyword::EndVar) && !is(Keyword::EndFunctionBlock) && !ends_block() && !starts_section()) {
+    if (accept(Symbol::Semicolon)) {
+      return;
+    }
+    advance();
+  }
+}
+
+bool Parser::starts_section() const {
+  return is(Keyword::Var) || is(Keyword::VarInput) || is(Keyword::VarOutput) || is(Keyword::RefusedSection);
+}
+
+bool Parser::ends_block() const {
+  return is(Symbol::End) || is(Keyword::FunctionBlock) || is(Keyword::Unit);
+}
+
+std::string Parser::described(const Token& token) const {
+  return token.symbol == Symbol::End ? "the end of the file" : fmt::format("`{}`", excerpt(text_of(span_of(token))));
+}
+
+void Parser::unexpected(std::string_view wanted, std::string mend) {
+  error(error::unexpected_symbol, span_of(now()),
+        fmt::format("{} stands where {} is expected.", described(now()), wanted), std::move(mend));
+}
+
+void Parser::error(int number, Span span, std::string cause, std::string mend) {
+  if (cause[0] >= 'a' && cause[0] <= 'z') {
+    cause[0] = static_cast<char>(cause[0] - 'a' + 'A');
+  }
+  reporter_.error(number, span, std::move(cause), std::move(mend));
+}
+
+SourceFile parse(std::string path, std::string text, Diagnostics& diagnostics) {
+  constexpr std::size_t largest = std::size_t{1} << 30U;
+  SourceFile file;
+  file.path = std::move(path);
+  if (text.size() > largest) {
+    diagnostics.error(error::unreadable_file, {.file = file.path}, "The file is larger than 1 GiB.",
+                      "Split the diagram into several files.");
+    text.clear();
+    file.text = std::make_shared<const std::string>();
+    return file;
+  }
+  file.text = std::make_shared<const std::string>(std::move(text));
+  const auto& all = *file.text;
+  file.line_starts.push_back(0);
+  for (auto end = all.find('\n'); end != std::string::npos; end = all.find('\n', end + 1)) {
+    file.line_starts.push_back(static_cast<std::uint32_t>(end) + 1);
+  }
+  Reporter reporter;
+  Parser(file, reporter).read_file();
+  file.valid = reporter.empty();
+  reporter.publish(file, diagnostics);
+  return file;
+}
+
+}  // namespace hysteron::language

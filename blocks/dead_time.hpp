@@ -1,7 +1,7 @@
 // HY_DEAD_TIME: XOUT(t) = XIN(t − DEAD_TIME)
 #pragma once
 
-#include "blocks/description.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -72,7 +72,7 @@ struct DeadTime {
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(XOUT).in("'x").means("delayed signal"),
                         HY_FIELD(ERROR).means("the dead time is longer than 1024 samples, or below 0"),
-                        HY_FIELD(ERRORID).means("0: none; 1: dead time too long; 2: below 0")};
+                        HY_FIELD(ERRORID).means("0 no error, 5 dead time too long or below 0")};
     }
   };
 
@@ -115,11 +115,10 @@ struct DeadTime {
     const Int<S> count = held(state, in);
     const S newer = select(whole < Int<S>(1), in.XIN, past<S>(state, whole, count, earlier));
     const S older = past<S>(state, whole + Int<S>(1), count, earlier);
-    const Bool<S> too_long = wanted > S(longest);
-    const Bool<S> negative = wanted < S(0.0);
+    const Bool<S> held_back = !(wanted >= S(0.0) && wanted <= S(longest));
     return {.XOUT = newer + fraction * (older - newer),
-            .ERROR = too_long || negative,
-            .ERRORID = select(too_long, Word<S>(1), select(negative, Word<S>(2), Word<S>(0)))};
+            .ERROR = held_back,
+            .ERRORID = select(held_back, Word<S>(fault::dead_time_too_long), Word<S>(std::uint16_t{0}))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/,

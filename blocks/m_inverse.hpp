@@ -39,9 +39,10 @@ struct SlopeMInverse {
     Word<S> ERRORID;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XOUT).in("'u").means("rate of the input"), HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
-          HY_FIELD(ERROR).means("the slope is not above 0"), HY_FIELD(ERRORID).means("0: none; 1: slope not above 0")};
+      return std::tuple{HY_FIELD(XOUT).in("'u").means("rate of the input"),
+                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+                        HY_FIELD(ERROR).means("the slope is not above 0"),
+                        HY_FIELD(ERRORID).means("0 no error, 4 slope not above 0")};
     }
   };
 

@@ -14,24 +14,47 @@ struct SlopeMTable {
       .equation = "XOUT = M(P)·XIN, M(P) straight between the points (P_TABLE, M_TABLE), held outside them",
       .meaning =
           "The memory function of a MEM element where no formula fits it: up to 32 measured points, of which the "
-          "first COUNT count. P_TABLE ascends; where two points share a momentum the slope jumps. A table that "
-          "rises or falls throughout and stays above 0 can be inverted by HY_M_TABLE_INVERSE.",
+          "first COUNT are used. P_TABLE must rise; that is checked at reset, and where it fails XOUT is 0 and "
+          "ERROR is TRUE. A table whose M_TABLE rises or falls throughout and stays above 0 is undone by "
+          "HY_M_TABLE_INVERSE.",
       .source = "Strijbosch and Oomen, equation (5)"};
 
   template <class S>
   using Params = SlopeTableParams<S>;
   template <class S>
-  using State = NoFields<S>;
+  using State = SlopeTableState<S>;
   template <class S>
   using In = SlopeM::In<S>;
   template <class S>
-  using Out = SlopeM::Out<S>;
+  struct Out {
+    S XOUT;
+    S M;
+    Bool<S> ERROR;
+    Word<S> ERRORID;
+    using Self = Out;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XOUT).in("'y").means("rate of the output"),
+                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+                        HY_FIELD(ERROR).means("TRUE where P_TABLE does not rise"),
+                        HY_FIELD(ERRORID).means("0 no error, 3 points of the table do not rise")};
+    }
+  };
 
   template <class S>
-  static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
-    const S slope = table_slope(params, in.P);
-    return {.XOUT = slope * in.XIN, .M = slope};  // (5)
+  static State<S> initial(const Params<S>& params) {
+    return check_slope_table(params);
   }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
+    const S slope = table_slope(params, in.P);
+    return {.XOUT = select(state.RISING, slope * in.XIN, S(0.0)),  // (5)
+            .M = select(state.RISING, slope, S(0.0)),
+            .ERROR = !state.RISING,
+            .ERRORID = select(state.RISING, Word<S>(std::uint16_t{0}), Word<S>(fault::points_not_rising))};
+  }
+  template <class S>
+  static void update(const Params<S>& /*params*/, State<S>& /*state*/, const In<S>& /*in*/, const Out<S>& /*out*/,
+                     const S& /*ts*/) {}
 };
 
 }  // namespace hysteron

@@ -13,24 +13,47 @@ struct SlopeMTableInverse {
       .group = Group::Memory,
       .equation = "XOUT = XIN/M(P), M(P) straight between the points (P_TABLE, M_TABLE); 0 where M(P) is not above 0",
       .meaning =
-          "The rate of the input that gives a wanted rate of the output, with the table of HY_M_TABLE. Where the "
-          "table gives no slope above 0 there is no inverse: ERROR is TRUE and XOUT is 0.",
+          "The rate of the input that gives a wanted rate of the output, with the table of HY_M_TABLE. Where "
+          "the table gives no slope above 0, or its P_TABLE does not rise, ERROR is TRUE and XOUT is 0.",
       .source = "Strijbosch and Oomen, equation (13)"};
 
   template <class S>
   using Params = SlopeTableParams<S>;
   template <class S>
-  using State = NoFields<S>;
+  using State = SlopeTableState<S>;
   template <class S>
   using In = SlopeMInverse::In<S>;
   template <class S>
-  using Out = SlopeMInverse::Out<S>;
+  struct Out {
+    S XOUT;
+    S M;
+    Bool<S> ERROR;
+    Word<S> ERRORID;
+    using Self = Out;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XOUT).in("'u").means("rate of the input"),
+                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+                        HY_FIELD(ERROR).means("TRUE where there is no inverse"),
+                        HY_FIELD(ERRORID).means("0 no error, 3 points of the table do not rise, 4 slope not above 0")};
+    }
+  };
 
   template <class S>
-  static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
-    const InverseOfSlope<S> inverse = invert_slope(table_slope(params, in.P), in.XIN);  // (13)
-    return {.XOUT = inverse.input, .M = inverse.slope, .ERROR = inverse.failed, .ERRORID = inverse.reason};
+  static State<S> initial(const Params<S>& params) {
+    return check_slope_table(params);
   }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
+    const S slope = select(state.RISING, table_slope(params, in.P), S(0.0));
+    const InverseOfSlope<S> inverse = invert_slope(slope, in.XIN);  // (13)
+    return {.XOUT = inverse.input,
+            .M = slope,
+            .ERROR = inverse.failed,
+            .ERRORID = select(state.RISING, inverse.reason, Word<S>(fault::points_not_rising))};
+  }
+  template <class S>
+  static void update(const Params<S>& /*params*/, State<S>& /*state*/, const In<S>& /*in*/, const Out<S>& /*out*/,
+                     const S& /*ts*/) {}
 };
 
 }  // namespace hysteron

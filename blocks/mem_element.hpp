@@ -2,7 +2,7 @@
 // hysteresis blocks.
 #pragma once
 
-#include "blocks/description.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -41,7 +41,7 @@ struct InverseOfSlope {
   S input;
   S slope;
   Bool<S> failed;
-  Word<S> reason;  ///< 0: none; 1: the slope is not above 0
+  Word<S> reason;  ///< 0, or fault::slope_not_positive
 };
 
 template <class S>
@@ -50,7 +50,7 @@ InverseOfSlope<S> invert_slope(const S& slope, const S& output) {
   return {.input = select(invertible, output / select(invertible, slope, S(1.0)), S(0.0)),
           .slope = slope,
           .failed = !invertible,
-          .reason = select(invertible, Word<S>(0), Word<S>(1))};
+          .reason = select(invertible, Word<S>(std::uint16_t{0}), Word<S>(fault::slope_not_positive))};
 }
 
 }  // namespace hysteron

@@ -62,7 +62,7 @@ struct MemInverse {
                         HY_FIELD(P).in("'y*s").means("momentum at the start of the sampling interval"),
                         HY_FIELD(M).in("'x/'y").means("gain of the element at this momentum"),
                         HY_FIELD(ERROR).means("the gain is not above 0"),
-                        HY_FIELD(ERRORID).means("0: none; 1: gain not above 0")};
+                        HY_FIELD(ERRORID).means("0 no error, 4 gain not above 0")};
     }
   };
 

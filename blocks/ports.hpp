@@ -21,9 +21,11 @@ struct Label {
 
 /// What ERRORID says. 0 is no error; the other numbers mean the same in every block.
 namespace fault {
-inline constexpr std::uint16_t zero_divisor = 1;       ///< the divisor is zero
-inline constexpr std::uint16_t outside_domain = 2;     ///< the function is not defined at this argument
-inline constexpr std::uint16_t points_not_rising = 3;  ///< the X of a table do not rise, or fewer than two are counted
+inline constexpr std::uint16_t zero_divisor = 1;        ///< the divisor is zero
+inline constexpr std::uint16_t outside_domain = 2;      ///< the function is not defined at this argument
+inline constexpr std::uint16_t points_not_rising = 3;   ///< the X of a table do not rise, or fewer than two are counted
+inline constexpr std::uint16_t slope_not_positive = 4;  ///< M(p) is not above 0, so that it has no inverse
+inline constexpr std::uint16_t dead_time_too_long = 5;  ///< the dead time is below 0 or longer than the block can hold
 }  // namespace fault
 
 /// A block without parameters and without memory. A block that has parameters hides Params by its own.

@@ -163,4 +163,21 @@ Program compile_text(std::string text, const CompileOptions& options) {
   return compile_source(std::move(parsed), options, syntax, warnings);
 }
 
+std::string format_text(std::string path, std::string text, Diagnostics& diagnostics) {
+  auto parsed = language::parse(std::move(path), std::move(text), diagnostics);
+  if (diagnostics.has_errors()) {
+    return *parsed.text;
+  }
+  const auto source = std::make_shared<const language::SourceFile>(std::move(parsed));
+  Diagnostics found;
+  const Checked checked = check_all(source, found);
+  language::StatementOrders orders(source->blocks.size());
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    if (!blocks_work(found)) {
+      orders[i] = statement_order(checked.definitions, static_cast<std::uint32_t>(i), checked.programs[i].graph);
+    }
+  }
+  return language::format(*source, orders);
+}
+
 }  // namespace hysteron

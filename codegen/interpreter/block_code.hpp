@@ -1,0 +1,138 @@
+// The functions of every block for one scalar, behind pointers: what the interpreter calls.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "blocks/catalogue.hpp"
+
+namespace hysteron {
+
+/// One action of a step, ready to run: where the pins are read, where state and outputs stand.
+template <class S>
+struct Instruction {
+  void (*run)(const Instruction&) = nullptr;
+  const void* const* pins = nullptr;
+  void* state = nullptr;
+  void* out = nullptr;
+  const S* ts = nullptr;
+};
+
+/// A block for the scalar S: sizes of its structures, offsets of their members, and its functions.
+template <class S>
+struct BlockCode {
+  using Run = void (*)(const Instruction<S>&);
+  std::size_t state_size = 0;
+  std::size_t out_size = 0;
+  std::size_t alignment = 1;
+  std::vector<std::size_t> state_offsets;
+  std::vector<std::size_t> out_offsets;
+  Run reset = nullptr;  ///< constructs state and outputs, state from the parameters
+  Run output = nullptr;
+  Run update = nullptr;  ///< null without memory
+  Run step = nullptr;    ///< output, then update
+};
+
+namespace detail {
+
+template <class Struct>
+std::vector<std::size_t> member_offsets() {
+  static Struct sample{};
+  return std::apply(
+      [](const auto&... field) {
+        return std::vector<std::size_t>{static_cast<std::size_t>(
+            reinterpret_cast<const char*>(&(sample.*(field.member))) - reinterpret_cast<const char*>(&sample))...};
+      },
+      Struct::fields());
+}
+
+/// A structure whose members are read through pointers.
+template <class Struct, std::size_t... I>
+Struct gather(const void* const* pins, std::index_sequence<I...> /*indices*/) {
+  constexpr auto fields = Struct::fields();
+  Struct result{};
+  ((result.*(std::get<I>(fields).member) =
+        *static_cast<const std::remove_cvref_t<decltype(result.*(std::get<I>(fields).member))>*>(pins[I])),
+   ...);
+  return result;
+}
+template <class Struct>
+inline constexpr std::size_t field_count = std::tuple_size_v<decltype(Struct::fields())>;
+template <class Struct>
+Struct gather(const void* const* pins) {
+  return gather<Struct>(pins, std::make_index_sequence<field_count<Struct>>{});
+}
+
+template <class B, class S>
+struct Code {
+  using In = typename B::template In<S>;
+  using Out = typename B::template Out<S>;
+  using Params = typename B::template Params<S>;
+  using State = typename B::template State<S>;
+  static constexpr std::size_t inputs = field_count<In>;
+
+  static const State& state(const Instruction<S>& at) { return *static_cast<const State*>(at.state); }
+
+  static void reset(const Instruction<S>& at) {
+    new (at.out) Out{};
+    if constexpr (HasMemory<B>) {
+      new (at.state) State(B::initial(gather<Params>(at.pins + inputs)));
+    } else {
+      new (at.state) State{};
+    }
+  }
+  static void output(const Instruction<S>& at) {
+    *static_cast<Out*>(at.out) = B::output(gather<Params>(at.pins + inputs), state(at), gather<In>(at.pins), *at.ts);
+  }
+  static void update(const Instruction<S>& at) {
+    if constexpr (HasMemory<B>) {
+      B::update(gather<Params>(at.pins + inputs), *static_cast<State*>(at.state), gather<In>(at.pins),
+                *static_cast<const Out*>(at.out), *at.ts);
+    }
+  }
+  static void step(const Instruction<S>& at) {
+    const auto params = gather<Params>(at.pins + inputs);
+    const auto in = gather<In>(at.pins);
+    auto& out = *static_cast<Out*>(at.out);
+    out = B::output(params, state(at), in, *at.ts);
+    if constexpr (HasMemory<B>) {
+      B::update(params, *static_cast<State*>(at.state), in, out, *at.ts);
+    }
+  }
+
+  static BlockCode<S> make() {
+    static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Out>);
+    return {.state_size = sizeof(State),
+            .out_size = sizeof(Out),
+            .alignment = alignof(State) > alignof(Out) ? alignof(State) : alignof(Out),
+            .state_offsets = member_offsets<State>(),
+            .out_offsets = member_offsets<Out>(),
+            .reset = &reset,
+            .output = &output,
+            .update = HasMemory<B> ? &update : nullptr,
+            .step = &step};
+  }
+};
+
+}  // namespace detail
+
+/// The code of all blocks, in the order of the catalogue.
+template <class S>
+std::span<const BlockCode<S>> block_codes() {
+  static const std::vector<BlockCode<S>> codes = [] {
+    std::vector<BlockCode<S>> list;
+    list.reserve(Catalogue::size);
+    Catalogue::for_each([&]<class B> { list.push_back(detail::Code<B, S>::make()); });
+    return list;
+  }();
+  return codes;
+}
+
+}  // namespace hysteron

@@ -1,0 +1,94 @@
+// The interpreter: runs a program with any scalar, by the blocks' own functions.
+//
+// With double or float it predicts the bits of generated code; with a dual scalar it gives exact derivatives of
+// every signal with respect to parameters. Instances for double and float are compiled here; another scalar
+// includes machine_impl.hpp in one source file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/interpreter/block_code.hpp"
+
+namespace hysteron {
+
+template <class S>
+class Machine {
+ public:
+  /// Lays out a program and resets it. The sample time is the program's own, or the one given in seconds where the
+  /// program has none. Throws InputError (HY404) without either.
+  explicit Machine(const Program& program, double sample_time = 0.0);
+  Machine(Machine&&) noexcept = default;
+  Machine& operator=(Machine&&) noexcept = default;
+
+  /// Sets an element of a parameter, by its place in the graph. Takes effect at once; reset() starts from it.
+  void set_parameter(std::size_t parameter, const S& value, std::size_t element = 0);
+  [[nodiscard]] S parameter(std::size_t parameter, std::size_t element = 0) const;
+
+  /// Every state as its block says, steps counted from 0.
+  void reset();
+
+  void set_input(std::size_t input, const S& value);  ///< of any type: not 0 is TRUE
+  /// One step: allocates nothing, calls nothing of the system, throws nothing.
+  void step() noexcept;
+  [[nodiscard]] S output(std::size_t output) const;  ///< of any type, as a number
+
+  /// The value that a wire carries after a step, as a number.
+  [[nodiscard]] S value(const Wire& wire) const;
+  /// A state of type LREAL, to be read or set between steps; null where there is none of that name.
+  [[nodiscard]] S* real_state(std::string_view path);
+
+  /// The whole state as bytes: to be kept, and put back into this machine later.
+  [[nodiscard]] std::vector<std::byte> save() const;
+  void restore(std::span<const std::byte> bytes);
+
+  [[nodiscard]] const Program& program() const { return *program_; }
+  [[nodiscard]] double sample_time() const { return sample_time_; }
+
+ private:
+  struct Placed {
+    std::size_t state = 0;
+    std::size_t out = 0;
+    std::size_t first_pin = 0;
+  };
+  struct Timed {
+    Instruction<S> instruction;
+    Rate rate;
+  };
+
+  void lay_out();
+  void place_instructions();
+  [[nodiscard]] const void* source_of(const Wire& wire) const;
+  [[nodiscard]] std::size_t output_offset(const Wire& wire) const;
+  [[nodiscard]] const S* ts_of(const Node& node);
+  Instruction<S> instruction_of(std::uint32_t node);
+
+  struct Free {
+    void operator()(std::byte* memory) const { ::operator delete[](memory, std::align_val_t{64}); }
+  };
+
+  std::shared_ptr<const Program> program_;
+  double sample_time_ = 0.0;
+  std::unique_ptr<std::byte[], Free> memory_;  ///< states and outputs of all nodes, inputs, literals, parameters
+  std::size_t live_size_ = 0;                  ///< the front of memory_: what changes from step to step
+  std::vector<Placed> placed_;                 ///< by node
+  std::vector<std::size_t> inputs_;
+  std::vector<std::size_t> literals_;
+  std::vector<std::size_t> parameters_;
+  std::vector<const void*> pins_;
+  std::vector<std::pair<std::uint32_t, std::unique_ptr<S>>> sample_times_;  ///< by `every`
+  std::vector<Instruction<S>> resets_;
+  std::vector<Instruction<S>> instructions_;
+  std::vector<Timed> timed_;  ///< instead of instructions_, where there are several rates
+  std::uint64_t steps_ = 0;
+};
+
+extern template class Machine<double>;
+extern template class Machine<float>;
+
+}  // namespace hysteron

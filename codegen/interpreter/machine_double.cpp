@@ -1,0 +1,3 @@
+#include "codegen/interpreter/machine_impl.hpp"
+
+template class hysteron::Machine<double>;

@@ -1,0 +1,338 @@
+// The body of Machine, to be included by the source files that instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+
+#include "codegen/interpreter/machine.hpp"
+#include "codegen/trace/evaluate.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron {
+namespace detail {
+
+/// An operation of an expression, as an instruction: operands behind pins, the result in out.
+template <Op op, class S>
+void run_operation(const Instruction<S>& at) {
+  constexpr OperationInfo about = info(op);
+  const auto real = [&](std::size_t i) -> const S& { return *static_cast<const S*>(at.pins[i]); };
+  const auto integer = [&](std::size_t i) { return *static_cast<const std::int32_t*>(at.pins[i]); };
+  const auto truth = [&](std::size_t i) { return *static_cast<const bool*>(at.pins[i]); };
+  if constexpr (op == Op::Select) {
+    *static_cast<S*>(at.out) = truth(0) ? real(1) : real(2);
+  } else if constexpr (op == Op::SelectInt) {
+    *static_cast<std::int32_t*>(at.out) = truth(0) ? integer(1) : integer(2);
+  } else if constexpr (op == Op::SelectBool) {
+    *static_cast<bool*>(at.out) = truth(0) ? truth(1) : truth(2);
+  } else if constexpr (op == Op::SelectWord) {
+    *static_cast<std::uint16_t*>(at.out) = *static_cast<const std::uint16_t*>(truth(0) ? at.pins[1] : at.pins[2]);
+  } else if constexpr (op == Op::ToInt) {
+    *static_cast<std::int32_t*>(at.out) = to_int(real(0));
+  } else if constexpr (op == Op::ToReal) {
+    *static_cast<S*>(at.out) = to_real<S>(integer(0));
+  } else if constexpr (about.operand == Type::Real && about.result == Type::Real && about.arity > 0) {
+    *static_cast<S*>(at.out) = real_operation(op, real(0), real(about.arity - 1));
+  } else if constexpr (about.operand == Type::Real && about.result == Type::Bool) {
+    *static_cast<bool*>(at.out) = comparison(op, real(0), real(1));
+  } else if constexpr (about.operand == Type::Int && about.result == Type::Bool) {
+    *static_cast<bool*>(at.out) = comparison(op, integer(0), integer(1));
+  } else if constexpr (about.operand == Type::Int && about.arity > 0) {
+    *static_cast<std::int32_t*>(at.out) = int_operation(op, integer(0), integer(about.arity - 1));
+  } else if constexpr (about.operand == Type::Bool && about.arity > 0) {
+    *static_cast<bool*>(at.out) = bool_operation(op, truth(0), truth(about.arity - 1));
+  }
+}
+
+template <class S, std::size_t... I>
+auto operation_table(std::index_sequence<I...> /*ops*/) {
+  return std::array<void (*)(const Instruction<S>&), sizeof...(I)>{&run_operation<static_cast<Op>(I), S>...};
+}
+
+template <class S>
+void write_as(void* target, Type type, double number) {
+  switch (type) {
+    case Type::Real:
+      new (target) S(static_cast<S>(number));
+      break;
+    case Type::Bool:
+      new (target) bool(number != 0.0);
+      break;
+    case Type::Int:
+      new (target) std::int32_t(to_int(number));
+      break;
+    case Type::Word:
+      new (target) std::uint16_t(static_cast<std::uint16_t>(to_int(number)));
+      break;
+  }
+}
+
+template <class S>
+S read_as(const void* source, Type type) {
+  switch (type) {
+    case Type::Real:
+      return *static_cast<const S*>(source);
+    case Type::Bool:
+      return S(*static_cast<const bool*>(source) ? 1.0 : 0.0);
+    case Type::Int:
+      return to_real<S>(*static_cast<const std::int32_t*>(source));
+    default:
+      return S(static_cast<double>(*static_cast<const std::uint16_t*>(source)));
+  }
+}
+
+}  // namespace detail
+
+template <class S>
+Machine<S>::Machine(const Program& program, double sample_time)
+    : program_(std::make_shared<const Program>(program)),
+      sample_time_(program.graph.sample_time_ns > 0 ? program.graph.sample_time() : sample_time) {
+  if (!(sample_time_ > 0.0)) {
+    throw InputError(error::missing_sample_time,
+                     {.file = program.graph.source ? program.graph.source->path : std::string()},
+                     "the diagram states no sample time",
+                     "Write it behind the name: FUNCTION_BLOCK " + program.graph.name + " (* @ts 1ms *).");
+  }
+  lay_out();
+  place_instructions();
+  reset();
+}
+
+template <class S>
+void Machine<S>::lay_out() {
+  const Graph& graph = program_->graph;
+  const auto codes = block_codes<S>();
+  std::size_t size = 0;
+  const auto reserve = [&](std::size_t bytes, std::size_t alignment) {
+    size = (size + alignment - 1) / alignment * alignment;
+    const std::size_t at = size;
+    size += bytes;
+    return at;
+  };
+  constexpr std::size_t align = alignof(S) > 8 ? alignof(S) : 8;
+  for (const Node& node : graph.nodes) {
+    Placed placed;
+    if (node.block != nullptr) {
+      const auto& code = codes[static_cast<std::size_t>(node.block - block_types().data())];
+      placed.state = reserve(code.state_size, code.alignment);
+      placed.out = reserve(code.out_size, code.alignment);
+    } else {
+      placed.out = reserve(sizeof(S), align);
+    }
+    placed_.push_back(placed);
+  }
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    inputs_.push_back(reserve(sizeof(S), align));
+  }
+  live_size_ = size;
+  for (std::size_t i = 0; i < graph.literals.size(); ++i) {
+    literals_.push_back(reserve(sizeof(S), align));
+  }
+  for (const Parameter& parameter : graph.parameters) {
+    parameters_.push_back(reserve(sizeof(S) * parameter.value.size(), align));
+  }
+  memory_.reset(static_cast<std::byte*>(::operator new[](size == 0 ? 1 : size, std::align_val_t{64})));
+  std::memset(memory_.get(), 0, size);
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    const Parameter& parameter = graph.parameters[i];
+    for (std::size_t element = 0; element < parameter.value.size(); ++element) {
+      // An array is an array of S; a single value stands alone.
+      detail::write_as<S>(memory_.get() + parameters_[i] + element * sizeof(S), parameter.field.type,
+                          parameter.value[element]);
+    }
+  }
+  const auto write_literal = [&](const Wire& wire) {
+    if (wire.from == Wire::From::Literal) {
+      detail::write_as<S>(memory_.get() + literals_[wire.index], wire.type, graph.literals[wire.index]);
+    }
+  };
+  std::ranges::for_each(graph.wires, write_literal);
+  for (const Port& output : graph.outputs) {
+    write_literal(output.wire);
+  }
+}
+
+template <class S>
+std::size_t Machine<S>::output_offset(const Wire& wire) const {
+  const Node& node = program_->graph.nodes[wire.index];
+  const Placed& placed = placed_[wire.index];
+  if (node.block == nullptr) {
+    return placed.out;
+  }
+  const auto& code = block_codes<S>()[static_cast<std::size_t>(node.block - block_types().data())];
+  return placed.out + code.out_offsets[wire.port];
+}
+
+template <class S>
+const void* Machine<S>::source_of(const Wire& wire) const {
+  switch (wire.from) {
+    case Wire::From::Literal:
+      return memory_.get() + literals_[wire.index];
+    case Wire::From::Parameter:
+      return memory_.get() + parameters_[wire.index];
+    case Wire::From::Input:
+      return memory_.get() + inputs_[wire.index];
+    case Wire::From::Node:
+      return memory_.get() + output_offset(wire);
+    default:
+      return nullptr;
+  }
+}
+
+template <class S>
+const S* Machine<S>::ts_of(const Node& node) {
+  for (const auto& [every, ts] : sample_times_) {
+    if (every == node.rate.every) {
+      return ts.get();
+    }
+  }
+  // Whole nanoseconds times the divisor, once rounded: the same number as in generated code.
+  const double ts = program_->graph.sample_time_ns > 0
+                        ? static_cast<double>(program_->graph.sample_time_ns * node.rate.every) * 1e-9
+                        : sample_time_ * node.rate.every;
+  sample_times_.emplace_back(node.rate.every, std::make_unique<S>(static_cast<S>(ts)));
+  return sample_times_.back().second.get();
+}
+
+template <class S>
+Instruction<S> Machine<S>::instruction_of(std::uint32_t index) {
+  const Node& node = program_->graph.nodes[index];
+  return {.run = nullptr,
+          .pins = pins_.data() + placed_[index].first_pin,
+          .state = memory_.get() + placed_[index].state,
+          .out = memory_.get() + placed_[index].out,
+          .ts = ts_of(node)};
+}
+
+template <class S>
+void Machine<S>::place_instructions() {
+  static const auto operations =
+      detail::operation_table<S>(std::make_index_sequence<static_cast<std::size_t>(Op::At)>{});
+  const Graph& graph = program_->graph;
+  const auto codes = block_codes<S>();
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    placed_[index].first_pin = pins_.size();
+    const Node& node = graph.nodes[index];
+    for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
+      pins_.push_back(source_of(graph.wire(node, pin)));
+    }
+  }
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    if (const BlockType* block = graph.nodes[index].block; block != nullptr) {
+      auto instruction = instruction_of(index);
+      instruction.run = codes[static_cast<std::size_t>(block - block_types().data())].reset;
+      resets_.push_back(instruction);
+    }
+  }
+  const bool one_rate = std::ranges::all_of(graph.nodes, [](const Node& node) { return node.rate == Rate{}; });
+  for (const Action& action : program_->schedule.actions) {
+    const Node& node = graph.nodes[action.node];
+    auto instruction = instruction_of(action.node);
+    if (node.block == nullptr) {
+      instruction.run = operations[static_cast<std::size_t>(node.op)];
+    } else {
+      const auto& code = codes[static_cast<std::size_t>(node.block - block_types().data())];
+      instruction.run = action.kind == Action::Kind::Output   ? code.output
+                        : action.kind == Action::Kind::Update ? code.update
+                                                              : code.step;
+    }
+    if (one_rate) {
+      instructions_.push_back(instruction);
+    } else {
+      timed_.push_back({instruction, node.rate});
+    }
+  }
+}
+
+template <class S>
+void Machine<S>::set_parameter(std::size_t parameter, const S& value, std::size_t element) {
+  const Type type = program_->graph.parameters[parameter].field.type;
+  std::byte* target = memory_.get() + parameters_[parameter] + element * sizeof(S);
+  if (type == Type::Real) {
+    *reinterpret_cast<S*>(target) = value;
+  } else {
+    detail::write_as<S>(target, type, value_of(value));
+  }
+}
+
+template <class S>
+S Machine<S>::parameter(std::size_t parameter, std::size_t element) const {
+  return detail::read_as<S>(memory_.get() + parameters_[parameter] + element * sizeof(S),
+                            program_->graph.parameters[parameter].field.type);
+}
+
+template <class S>
+void Machine<S>::reset() {
+  steps_ = 0;
+  for (const auto& instruction : resets_) {
+    instruction.run(instruction);
+  }
+}
+
+template <class S>
+void Machine<S>::set_input(std::size_t input, const S& value) {
+  if (program_->graph.inputs[input].type == Type::Real) {
+    *reinterpret_cast<S*>(memory_.get() + inputs_[input]) = value;
+  } else {
+    detail::write_as<S>(memory_.get() + inputs_[input], program_->graph.inputs[input].type, value_of(value));
+  }
+}
+
+template <class S>
+void Machine<S>::step() noexcept {
+  for (const auto& instruction : instructions_) {
+    instruction.run(instruction);
+  }
+  for (const auto& [instruction, rate] : timed_) {
+    if (steps_ % rate.every == rate.phase) {
+      instruction.run(instruction);
+    }
+  }
+  ++steps_;
+}
+
+template <class S>
+S Machine<S>::output(std::size_t output) const {
+  return value(program_->graph.outputs[output].wire);
+}
+
+template <class S>
+S Machine<S>::value(const Wire& wire) const {
+  return detail::read_as<S>(source_of(wire), wire.type);
+}
+
+template <class S>
+S* Machine<S>::real_state(std::string_view path) {
+  const Graph& graph = program_->graph;
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
+    if (node.block == nullptr || path.size() <= node.path.size() + 1 || path[node.path.size()] != '.' ||
+        !language::same_name(path.substr(0, node.path.size()), node.path)) {
+      continue;
+    }
+    const auto& code = block_codes<S>()[static_cast<std::size_t>(node.block - block_types().data())];
+    for (std::size_t state = 0; state < node.block->states.size(); ++state) {
+      const Field& field = node.block->states[state];
+      if (field.type == Type::Real && field.length == 1 &&
+          language::same_name(field.name, path.substr(node.path.size() + 1))) {
+        return reinterpret_cast<S*>(memory_.get() + placed_[index].state + code.state_offsets[state]);
+      }
+    }
+  }
+  return nullptr;
+}
+
+template <class S>
+std::vector<std::byte> Machine<S>::save() const {
+  std::vector<std::byte> bytes(live_size_ + sizeof(steps_));
+  std::memcpy(bytes.data(), memory_.get(), live_size_);
+  std::memcpy(bytes.data() + live_size_, &steps_, sizeof(steps_));
+  return bytes;
+}
+
+template <class S>
+void Machine<S>::restore(std::span<const std::byte> bytes) {
+  std::memcpy(memory_.get(), bytes.data(), live_size_);
+  std::memcpy(&steps_, bytes.data() + live_size_, sizeof(steps_));
+}
+
+}  // namespace hysteron

@@ -243,7 +243,7 @@ class Formatter {
     for (auto i = first; i < last; ++i) {
       if (const auto parts = declared(items_[i]); parts.is_aligned) {
         columns.names = std::max(columns.names, parts.names_width);
-        columns.type = std::max(columns.type, parts.type_width);
+        columns.type = std::max(columns.type, parts.has_value() ? parts.type_width : 0);
       }
     }
     for (auto i = first; i < last; ++i) {

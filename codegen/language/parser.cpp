@@ -23,6 +23,10 @@ std::string excerpt(std::string_view text) {
 
 Parser::Parser(SourceFile& file, Reporter& reporter)
     : file_(file), text_(*file.text), reporter_(reporter), lexer_(text_, Comments::Annotated, &reporter) {
+  constexpr std::size_t most_reserved = std::size_t{1} << 20U;
+  const auto likely = std::min(text_.size() / 20, most_reserved);
+  file_.expressions.reserve(likely);
+  heights_.reserve(likely);
   for (auto& token : window_) {
     token = lexer_.next();
   }
@@ -263,7 +267,11 @@ std::string Parser::described(const Token& token) const {
   return token.symbol == Symbol::End ? "the end of the file" : fmt::format("`{}`", excerpt(text_of(span_of(token))));
 }
 
+/// Where something was refused just before, what is missing is that, and it has been said.
 void Parser::unexpected(std::string_view wanted, std::string mend) {
+  if (reporter_.has_error_within(last_.end(), now().offset)) {
+    return;
+  }
   error(error::unexpected_symbol, span_of(now()),
         fmt::format("{} stands where {} is expected.", described(now()), wanted), std::move(mend));
 }

@@ -16,6 +16,11 @@ void Reporter::error(int number, Span span, std::string cause, std::string mend)
   }
 }
 
+bool Reporter::has_error_within(std::uint32_t begin, std::uint32_t end) const {
+  return std::any_of(found_.begin(), found_.end(),
+                     [&](const Found& found) { return found.span.offset >= begin && found.span.offset < end; });
+}
+
 void Reporter::publish(const SourceFile& file, Diagnostics& diagnostics) {
   std::stable_sort(found_.begin(), found_.end(),
                    [](const Found& a, const Found& b) { return a.span.offset < b.span.offset; });

@@ -18,6 +18,9 @@ class Reporter {
 
   void error(int number, Span span, std::string cause, std::string mend);
 
+  /// Whether an error was found between two offsets.
+  [[nodiscard]] bool has_error_within(std::uint32_t begin, std::uint32_t end) const;
+
   [[nodiscard]] bool empty() const { return found_.empty(); }
 
   /// Hands the errors over in the order of the text, one for each place.

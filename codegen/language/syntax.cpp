@@ -1,14 +1,10 @@
 #include "codegen/language/syntax.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "codegen/language/lexer.hpp"
-#include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/text_file.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::language {
@@ -44,27 +40,17 @@ std::string upper(std::string_view name) {
 }
 
 SourceFile parse_file(const std::string& path, Diagnostics& diagnostics) {
-  const auto refuse = [&](std::string cause) {
-    diagnostics.error(error::unreadable_file, {.file = path}, std::move(cause),
-                      "Check the path, and that you may read it.");
+  try {
+    return parse(path, read_text_file(path), diagnostics);
+  } catch (const InputError& problem) {
+    for (const auto& diagnostic : problem.diagnostics().all()) {
+      diagnostics.add(diagnostic);
+    }
     SourceFile file;
     file.path = path;
     file.text = std::make_shared<const std::string>();
     return file;
-  };
-  std::error_code problem;
-  if (std::filesystem::is_directory(path, problem)) {
-    return refuse(path + " is a folder, not a file.");
   }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return refuse(path + " cannot be opened.");
-  }
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) {
-    return refuse(path + " cannot be read to its end.");
-  }
-  return parse(path, std::move(text), diagnostics);
 }
 
 }  // namespace hysteron::language

@@ -13,8 +13,7 @@ struct PowerFunction : Stateless {
       .equation = "XOUT = XIN^EXPONENT",
       .meaning =
           "Raises a signal to a constant power, which can be tuned. A negative signal needs a whole exponent (below "
-          "2^31 "
-          "in magnitude), and zero an exponent that is not negative; elsewhere XOUT is 0 and ERROR is TRUE. The "
+          "2^31 in magnitude), and zero an exponent that is not negative; elsewhere XOUT is 0 and ERROR is TRUE. The "
           "exponents 0, 1/2, 1 and 2 cost no call of pow. The unit of the output is not checked.",
       .source = "IEC 61131-3, EXPT"};
 
@@ -25,9 +24,9 @@ struct PowerFunction : Stateless {
     static constexpr auto fields() { return std::tuple{HY_FIELD(EXPONENT).in("1").otherwise(1.0).means("exponent")}; }
   };
   template <class S>
-  using In = Xin<S, "", "base">;
+  using In = Xin<S, "", "base, in any unit">;
   template <class S>
-  using Out = CheckedXout<S, "", "XIN to the power EXPONENT">;
+  using Out = CheckedXout<S, "", "XIN to the power EXPONENT, its unit to that power">;
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

@@ -12,9 +12,9 @@ struct Backlash {
       .group = Group::Shaping,
       .equation = "XOUT(k) = max(XIN(k) - WIDTH/2, min(XIN(k) + WIDTH/2, XOUT(k-1)))",
       .meaning =
-          "The play of a gear: the output moves only once the input has crossed the gap, and then follows at half "
-          "the gap's width behind it. A loop narrower than WIDTH does not move it at all. It starts in the middle "
-          "of the gap: the first sample passes as it is.",
+          "The play of a gear: the output moves only once the input has crossed the gap, and then follows at half the "
+          "gap's width behind it. A loop narrower than WIDTH does not move it at all. It starts in the middle of the "
+          "gap: the first sample passes as it is.",
       .source = "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, 1989, play operator",
       .effect = "backlash"};
 

@@ -12,8 +12,8 @@ struct Constant : Stateless {
       .group = Group::Arithmetic,
       .equation = "XOUT = K",
       .meaning =
-          "A value that does not change while the diagram runs. Unlike a literal in the diagram it has a name, a "
-          "unit and a place in the parameter file, and can be tuned."};
+          "A value that does not change while the diagram runs. Unlike a literal in the diagram it has a name, a unit "
+          "and a place in the parameter file, and can be tuned."};
 
   template <class S>
   struct Params {

@@ -6,16 +6,15 @@
 namespace hysteron {
 
 struct DeadBand : Stateless {
-  static constexpr About about{
-      .name = "HY_DEAD_BAND",
-      .title = "Dead band",
-      .group = Group::Shaping,
-      .equation = "XOUT = max(XIN - WIDTH/2, min(XIN + WIDTH/2, 0))",
-      .meaning =
-          "Gives 0 while the signal lies within WIDTH/2 of zero, and the rest of the signal outside: slope 1, no "
-          "jump at the ends of the band. As a model it is a valve that overlaps; in a controller it keeps a loop "
-          "quiet near its set point.",
-      .effect = "dead_zone"};
+  static constexpr About about{.name = "HY_DEAD_BAND",
+                               .title = "Dead band",
+                               .group = Group::Shaping,
+                               .equation = "XOUT = max(XIN - WIDTH/2, min(XIN + WIDTH/2, 0))",
+                               .meaning =
+                                   "Gives 0 while the signal lies within WIDTH/2 of zero, and the rest of the signal "
+                                   "outside: slope 1, no jump at the ends of the band. As a model it is a valve that "
+                                   "overlaps; in a controller it keeps a loop quiet near its set point.",
+                               .effect = "dead_zone"};
 
   template <class S>
   struct Params {

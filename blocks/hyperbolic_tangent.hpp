@@ -13,8 +13,8 @@ struct HyperbolicTangent : Stateless {
       .equation = "XOUT = (e^XIN - e^-XIN)/(e^XIN + e^-XIN)",
       .meaning =
           "A soft limit between -1 and 1 with slope 1 at zero. Accurate to a few units in the last place everywhere: "
-          "it neither overflows at large arguments nor cancels at small ones. Structured Text has no TANH; here it "
-          "is built from EXP, equal on every target.",
+          "it neither overflows at large arguments nor cancels at small ones. Structured Text has no TANH; here it is "
+          "built from EXP, equal on every target.",
       .source = "J. H. Lambert's continued fraction below |XIN| = 1/2"};
 
   template <class S>

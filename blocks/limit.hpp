@@ -13,8 +13,8 @@ struct Limit : Stateless {
       .equation = "XOUT = min(max(XIN, MN), MX)",
       .meaning =
           "Holds a signal between two bounds: the range of an amplifier, the stroke of an actuator. QLOW and QHIGH "
-          "tell when a bound is at work, for example to stop an integral. A bound that is not set is infinite; "
-          "where MN is above MX, MX wins. For bounds that are signals use HY_MIN and HY_MAX.",
+          "tell when a bound is at work, for example to stop an integral. A bound that is not set is infinite; where "
+          "MN is above MX, MX wins. For bounds that are signals use HY_MIN and HY_MAX.",
       .source = "IEC 61131-3, LIMIT",
       .effect = "saturation"};
 

@@ -6,16 +6,15 @@
 namespace hysteron {
 
 struct OnDelay : Timer {
-  static constexpr About about{
-      .name = "HY_TON",
-      .title = "On-delay timer",
-      .group = Group::Time,
-      .equation = "Q = IN AND n·TS >= PT, ET = min(n·TS, PT), n = steps since IN rose",
-      .meaning =
-          "Q follows IN, but rises only once IN has been TRUE for PT. With PT = n·TS, Q rises exactly n steps after "
-          "IN, "
-          "also where n·TS cannot be represented; with PT = 0 it rises at once. PT may change while the timer runs.",
-      .source = "IEC 61131-3, TON"};
+  static constexpr About about{.name = "HY_TON",
+                               .title = "On-delay timer",
+                               .group = Group::Time,
+                               .equation = "Q = IN AND n·TS >= PT, ET = min(n·TS, PT), n = steps since IN rose",
+                               .meaning =
+                                   "Q follows IN, but rises only once IN has been TRUE for PT. With PT = n·TS, Q rises "
+                                   "exactly n steps after IN, also where n·TS cannot be represented; with PT = 0 it "
+                                   "rises at once. PT may change while the timer runs.",
+                               .source = "IEC 61131-3, TON"};
 
   template <class S>
   struct State {

@@ -11,22 +11,17 @@ struct Pid {
       .title = "PID controller",
       .group = Group::Control,
       .equation =
-          "XOUT = min(max(KP·E + I - KP·TD·R, MN), MX), E = SP - PV, I(k) = I(k-1) + KP·E·TS/TR, "
-          "R = d(PV)/dt through a lag of TD/N",
+          "XOUT = min(max(KP·E + I - KP·TD·R, MN), MX), E = SP - PV, I(k) = I(k-1) + KP·E·TS/TR, R = d(PV)/dt through "
+          "a lag of TD/N",
       .meaning =
           "The standard's PID, with what a real loop needs. A positive KP belongs to a process that rises with XOUT: E "
-          "is SP - "
-          "PV, where the standard's text has PV - SP. The derivative acts on PV alone, so a jump of SP does not kick, "
-          "and "
-          "is filtered by a lag of TD/N. Anti-windup by clamping: the integral moves towards a bound only until the "
-          "output "
-          "reaches it, so the output leaves the bound in the step in which the error turns. While AUTO is FALSE the "
-          "output is X0, within "
-          "the bounds; the first automatic sample repeats the last manual one, whatever the error is. For the way "
-          "back, wire X0 to the "
-          "output through a delay. If AUTO is TRUE from the start, the integral starts at X0. A change of KP, TR, TD "
-          "or N "
-          "while running does not make the output jump.",
+          "is SP - PV, where the standard's text has PV - SP. The derivative acts on PV alone, so a jump of SP does "
+          "not kick, and is filtered by a lag of TD/N. Anti-windup by clamping: the integral moves towards a bound "
+          "only until the output reaches it, so the output leaves the bound in the step in which the error turns. "
+          "While AUTO is FALSE the output is X0, within the bounds; the first automatic sample repeats the last manual "
+          "one, whatever the error is. For the way back, wire X0 to the output through a delay. If AUTO is TRUE from "
+          "the start, the integral starts at X0. A change of KP, TR, TD or N while running does not make the output "
+          "jump.",
       .delay = "Backward Euler, as the standard's INTEGRAL: the present error counts at once; no delay.",
       .source = "IEC 61131-3, PID; K. J. Åström, T. Hägglund, PID Controllers, 1995, 3.2-3.6"};
 

@@ -7,16 +7,15 @@
 namespace hysteron {
 
 struct Quantizer : Stateless {
-  static constexpr About about{
-      .name = "HY_QUANTIZER",
-      .title = "Quantizer",
-      .group = Group::Shaping,
-      .equation = "XOUT = QUANTUM·round(XIN/QUANTUM)",
-      .meaning =
-          "Rounds a signal to the nearest whole multiple of QUANTUM, halves away from zero: the resolution of a "
-          "converter or an encoder. The error is at most QUANTUM/2. A signal beyond 2^31 quanta, and any signal "
-          "where QUANTUM is 0, passes as it is.",
-      .effect = "quantization"};
+  static constexpr About about{.name = "HY_QUANTIZER",
+                               .title = "Quantizer",
+                               .group = Group::Shaping,
+                               .equation = "XOUT = QUANTUM·round(XIN/QUANTUM)",
+                               .meaning =
+                                   "Rounds a signal to the nearest whole multiple of QUANTUM, halves away from zero: "
+                                   "the resolution of a converter or an encoder. The error is at most QUANTUM/2. A "
+                                   "signal beyond 2^31 quanta, and any signal where QUANTUM is 0, passes as it is.",
+                               .effect = "quantization"};
 
   template <class S>
   struct Params {

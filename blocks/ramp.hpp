@@ -15,8 +15,7 @@ struct Ramp {
       .meaning =
           "Leads from X0 to X1 in a straight line that takes TR, from the step in which RUN rises; BUSY tells that it "
           "is on its way. RUN FALSE returns to X0 at once. X0 is remembered as RUN rises, X1 and TR may change on the "
-          "way. "
-          "TR is exact in steps, however long it is (up to 2^31 steps).",
+          "way. TR is exact in steps, however long it is (up to 2^31 steps).",
       .source = "IEC 61131-3, RAMP"};
 
   template <class S>

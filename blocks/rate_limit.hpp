@@ -6,16 +6,15 @@
 namespace hysteron {
 
 struct RateLimit {
-  static constexpr About about{
-      .name = "HY_RATE_LIMIT",
-      .title = "Rate limiter",
-      .group = Group::Shaping,
-      .equation = "XOUT(k) = min(max(XIN(k), XOUT(k-1) - FALL·TS), XOUT(k-1) + RISE·TS)",
-      .meaning =
-          "Follows a signal no faster than RISE upwards and FALL downwards: the slew rate of an amplifier, or a gentle "
-          "set point. The first sample passes as it is. A rate that is not set is infinite; a rate of 0 holds the "
-          "output in that direction.",
-      .effect = "rate_limit"};
+  static constexpr About about{.name = "HY_RATE_LIMIT",
+                               .title = "Rate limiter",
+                               .group = Group::Shaping,
+                               .equation = "XOUT(k) = min(max(XIN(k), XOUT(k-1) - FALL·TS), XOUT(k-1) + RISE·TS)",
+                               .meaning =
+                                   "Follows a signal no faster than RISE upwards and FALL downwards: the slew rate of "
+                                   "an amplifier, or a gentle set point. The first sample passes as it is. A rate that "
+                                   "is not set is infinite; a rate of 0 holds the output in that direction.",
+                               .effect = "rate_limit"};
 
   template <class S>
   struct Params {

@@ -6,15 +6,14 @@
 namespace hysteron {
 
 struct SampleAndHold {
-  static constexpr About about{
-      .name = "HY_SAMPLE_AND_HOLD",
-      .title = "Sample and hold",
-      .group = Group::Shaping,
-      .equation = "XOUT = XIN where TRACK, else XOUT of the step before",
-      .meaning =
-          "Follows a signal while TRACK is TRUE and keeps its last value while it is FALSE. Before the first tracked "
-          "sample it gives X0. To take a single sample, put HY_R_TRIG before TRACK; to pass between two rates, use "
-          "HY_SAMPLE and HY_HOLD."};
+  static constexpr About about{.name = "HY_SAMPLE_AND_HOLD",
+                               .title = "Sample and hold",
+                               .group = Group::Shaping,
+                               .equation = "XOUT = XIN where TRACK, else XOUT of the step before",
+                               .meaning =
+                                   "Follows a signal while TRACK is TRUE and keeps its last value while it is FALSE. "
+                                   "Before the first tracked sample it gives X0. To take a single sample, put "
+                                   "HY_R_TRIG before TRACK; to pass between two rates, use HY_SAMPLE and HY_HOLD."};
 
   template <class S>
   struct Params {

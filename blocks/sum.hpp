@@ -12,8 +12,8 @@ struct Sum : Stateless {
       .group = Group::Arithmetic,
       .equation = "XOUT = ((IN1 + IN2) + IN3) + IN4",
       .meaning =
-          "Adds two to four signals of the same unit, from the first to the last, so that the rounding is the same "
-          "on every target. IN3 and IN4 are 0 where they are not connected.",
+          "Adds two to four signals of the same unit, from the first to the last, so that the rounding is the same on "
+          "every target. IN3 and IN4 are 0 where they are not connected.",
       .source = "IEC 61131-3, ADD"};
 
   template <class S>

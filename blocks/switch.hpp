@@ -6,16 +6,15 @@
 namespace hysteron {
 
 struct Switch : Stateless {
-  static constexpr About about{
-      .name = "HY_SWITCH",
-      .title = "Switch",
-      .group = Group::Shaping,
-      .equation = "XOUT = IN1 where G, else IN0",
-      .meaning =
-          "Passes one of two signals of the same unit. Both are computed in every step, whichever is chosen, and the "
-          "output jumps at the change; put HY_RATE_LIMIT behind it where that would hurt. The pins are those of "
-          "the standard's SEL.",
-      .source = "IEC 61131-3, SEL"};
+  static constexpr About about{.name = "HY_SWITCH",
+                               .title = "Switch",
+                               .group = Group::Shaping,
+                               .equation = "XOUT = IN1 where G, else IN0",
+                               .meaning =
+                                   "Passes one of two signals of the same unit. Both are computed in every step, "
+                                   "whichever is chosen, and the output jumps at the change; put HY_RATE_LIMIT behind "
+                                   "it where that would hurt. The pins are those of the standard's SEL.",
+                               .source = "IEC 61131-3, SEL"};
 
   template <class S>
   struct In {

@@ -18,8 +18,7 @@ struct Table {
           "A curve through up to 32 points, straight between them: a calibration, a characteristic, a schedule. COUNT "
           "points are used, and their X must rise. Outside the points the end values hold, or with EXTRAPOLATE the end "
           "lines run on. The order of X is checked at reset, and the pair in use in every step: where it fails XOUT is "
-          "0 "
-          "and ERROR is TRUE."};
+          "0 and ERROR is TRUE."};
 
   template <class S>
   struct Params {

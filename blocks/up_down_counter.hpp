@@ -14,9 +14,8 @@ struct UpDownCounter {
       .equation = "CV = 0 where R; else PV where LD; else CV + 1 where CU rises alone, CV - 1 where CD rises alone",
       .meaning =
           "Counts the rises of CU up and those of CD down; where both rise in the same step the count stays. R "
-          "dominates "
-          "LD, and both dominate counting. The count stays at the ends, 2^31 - 1 and -2^31 + 1. CU or CD TRUE in the "
-          "first step counts as a rise.",
+          "dominates LD, and both dominate counting. The count stays at the ends, 2^31 - 1 and -2^31 + 1. CU or CD "
+          "TRUE in the first step counts as a rise.",
       .source = "IEC 61131-3, CTUD"};
 
   template <class S>

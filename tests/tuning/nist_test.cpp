@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/tuning/nist_problems.hpp"
+#include "tuning/covariance.hpp"
 #include "tuning/dual.hpp"
 #include "tuning/ipopt_problem.hpp"
 
@@ -55,14 +57,24 @@ void score(const nist::Problem<P, N>& data, Curve curve, Start1 start1 = Start1:
     for (std::size_t j = 0; j < P; ++j) {
       worst = std::min(worst, digits(fit.x[static_cast<Eigen::Index>(j)], data.certified[j]));
     }
-    fmt::print("{:<9} start {}: {:4.1f} digits, sum of squares {:4.1f}, {:4} iterations, {:4} evaluations. {}\n",
-               data.name, start, worst, digits(2.0 * fit.cost, data.residual_sum_of_squares), fit.iterations,
-               fit.residual_evaluations, fit.message);
+    const Covariance covariance = covariance_of(fit, std::vector<std::string>(P, "b"));
+    double deviation = 11.0;  // NIST's residuals count as independent: without the correlation time
+    for (std::size_t j = 0; j < P; ++j) {
+      const double error = covariance.standard_errors[static_cast<Eigen::Index>(j)];
+      deviation =
+          std::min(deviation, digits(error / std::sqrt(covariance.correlation_time), data.standard_deviation[j]));
+    }
+    fmt::print(
+        "{:<9} start {}: {:4.1f} digits, standard errors {:4.1f}, sum of squares {:4.1f}, {:4} iterations, {:4} "
+        "evaluations. {}\n",
+        data.name, start, worst, deviation, digits(2.0 * fit.cost, data.residual_sum_of_squares), fit.iterations,
+        fit.residual_evaluations, fit.message);
     if (start == 1 && start1 == Start1::RunsAway) {
       EXPECT_FALSE(fit.converged()) << data.name << ": " << fit.message;
       continue;
     }
     EXPECT_GE(worst, wanted) << data.name;
+    EXPECT_GE(deviation, 6.0) << data.name;
     EXPECT_TRUE(fit.converged()) << data.name << ": " << fit.message;
   }
 }

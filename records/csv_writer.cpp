@@ -1,0 +1,39 @@
+#include "records/csv.hpp"
+#include "support/atomic_file.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::records {
+namespace {
+
+/// A header cell; in quotes where a separator, a comment mark or a blank at its ends would be taken for something else.
+std::string header_cell(const Column& column) {
+  const std::string text = column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
+  const bool plain = text.find_first_of(",;\t\"#") == std::string::npos;
+  return plain ? text : '"' + text + '"';
+}
+
+}  // namespace
+
+std::string csv_text(const Record& record) {
+  std::string text = "t";
+  for (const Column& column : record.columns()) {
+    text += ',' + header_cell(column);
+  }
+  text += '\n';
+  text.reserve(text.size() + record.size() * (record.columns().size() + 1) * 12);
+  for (std::size_t row = 0; row < record.size(); ++row) {
+    text += number_text(record.time()[row]);
+    for (const Column& column : record.columns()) {
+      text += ',';
+      text += number_text(column.values[row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void write_csv(const std::filesystem::path& path, const Record& record) {
+  write_file_atomically(path, csv_text(record));
+}
+
+}  // namespace hysteron::records

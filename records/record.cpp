@@ -1,0 +1,100 @@
+#include "records/record.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::records {
+
+Record Record::even(double start, double sample_time, std::size_t rows) {
+  if (!(sample_time > 0.0) || !std::isfinite(sample_time) || !std::isfinite(start)) {
+    throw std::invalid_argument("a record needs a sample time above 0");
+  }
+  std::vector<double> time(rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    time[k] = start + static_cast<double>(k) * sample_time;
+  }
+  return {std::move(time), sample_time, {}, {}};
+}
+
+Record::Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header)
+    : time_(std::move(time)), sample_time_(sample_time), header_(std::move(header)) {
+  columns_.reserve(columns.size());
+  for (Column& column : columns) {
+    add(std::move(column));
+  }
+}
+
+std::vector<std::string> Record::names() const {
+  std::vector<std::string> result;
+  result.reserve(columns_.size());
+  for (const Column& column : columns_) {
+    result.push_back(column.name);
+  }
+  return result;
+}
+
+const Column* Record::find(std::string_view name) const {
+  const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                  [&](const Column& column) { return equal_ignoring_case(column.name, name); });
+  return found == columns_.end() ? nullptr : &*found;
+}
+
+const Column& Record::column(std::string_view name) const {
+  if (const Column* const found = find(name)) {
+    return *found;
+  }
+  const auto known = names();
+  const auto near = nearest_name(name, known);
+  throw InputError(error::missing_column, header_,
+                   fmt::format("There is no column {}; the columns are {}.", name,
+                               known.empty() ? std::string("t alone") : fmt::format("t, {}", fmt::join(known, ", "))),
+                   near.empty() ? fmt::format("record the signal, or give the column that holds it the name {}.", name)
+                                : fmt::format("if {} is meant, give it the name {}.", near, name));
+}
+
+void Record::add(Column column) {
+  if (column.values.size() != size()) {
+    throw std::invalid_argument(
+        fmt::format("column {} has {} values for {} rows", column.name, column.values.size(), size()));
+  }
+  if (column.name.empty() || equal_ignoring_case(column.name, "t") || find(column.name) != nullptr) {
+    throw std::invalid_argument(fmt::format("column name \"{}\" is empty, t, or taken", column.name));
+  }
+  columns_.push_back(std::move(column));
+}
+
+Record Record::slice(RowRange rows) const {
+  if (rows.first > rows.last || rows.last > size()) {
+    throw std::out_of_range(fmt::format("rows {} to {} of {}", rows.first, rows.last, size()));
+  }
+  const auto cut = [&](const std::vector<double>& values) {
+    const auto begin = values.begin();
+    return std::vector<double>(begin + static_cast<std::ptrdiff_t>(rows.first),
+                               begin + static_cast<std::ptrdiff_t>(rows.last));
+  };
+  Record result(cut(time_), sample_time_, {}, header_);
+  for (const Column& column : columns_) {
+    result.add({column.name, column.unit, cut(column.values)});
+  }
+  return result;
+}
+
+RowRange Record::rows_between(double begin, double end) const {
+  const double equal = 0.01 * sample_time_;
+  const auto row_at = [&](double time) {
+    const auto found = std::lower_bound(time_.begin(), time_.end(), time - equal);
+    return static_cast<std::size_t>(found - time_.begin());
+  };
+  const std::size_t first = row_at(begin);
+  return {first, std::max(first, row_at(end))};
+}
+
+}  // namespace hysteron::records

@@ -1,0 +1,69 @@
+// A record: named columns of numbers over an even time, as measured on a machine or computed by a diagram.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/diagnostic.hpp"
+
+namespace hysteron::records {
+
+struct Column {
+  std::string name{};
+  std::string unit{};  ///< as written in the header, `u [V]`; empty where none is given
+  std::vector<double> values{};
+};
+
+/// Rows first, first + 1, … last − 1.
+struct RowRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  [[nodiscard]] std::size_t size() const { return last - first; }
+};
+
+/// Column names are compared without regard to case, as the language does; `t`, the time, is none of the columns.
+class Record {
+ public:
+  /// A record without columns, at times start, start + sample_time, … The sample time is in seconds, above 0.
+  static Record even(double start, double sample_time, std::size_t rows);
+
+  /// A record read from a file. `header` is the place of its header row, for errors about missing columns.
+  Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header);
+
+  [[nodiscard]] std::size_t size() const { return time_.size(); }
+  /// In seconds. Estimated from the whole record; the times themselves may be rounded.
+  [[nodiscard]] double sample_time() const { return sample_time_; }
+  /// In seconds, as recorded.
+  [[nodiscard]] std::span<const double> time() const { return time_; }
+  /// The file it came from; empty where it came from none.
+  [[nodiscard]] const std::string& file() const { return header_.file; }
+
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// Null where there is no such column.
+  [[nodiscard]] const Column* find(std::string_view name) const;
+  /// Throws InputError HY502, which names the columns there are, where there is no such column.
+  [[nodiscard]] const Column& column(std::string_view name) const;
+
+  /// Appends a column of as many values as there are rows. Throws std::invalid_argument on another number of values
+  /// and on a name that is empty, taken or `t`.
+  void add(Column column);
+
+  /// The rows of a range, with their times as they are.
+  [[nodiscard]] Record slice(RowRange rows) const;
+
+  /// The rows with begin ≤ t < end, in seconds. A hundredth of a sample counts as equal, so that rounded times fall
+  /// on the side they are meant to, and adjoining intervals share no row.
+  [[nodiscard]] RowRange rows_between(double begin, double end) const;
+
+ private:
+  std::vector<double> time_;
+  double sample_time_;
+  std::vector<Column> columns_;
+  Place header_;
+};
+
+}  // namespace hysteron::records

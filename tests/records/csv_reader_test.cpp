@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "records/csv.hpp"
+#include "support/errors.hpp"
+#include "tests/records/refusal.hpp"
+
+namespace hysteron::records {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+void expect_plain(const Record& record) {
+  EXPECT_THAT(record.names(), ElementsAre("u", "y"));
+  EXPECT_THAT(record.time(), ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(record.column("u").values, ElementsAre(1.5, -2.25, 3.0));
+  EXPECT_THAT(record.column("y").values, ElementsAre(10.0, 20.0, 30.0));
+  EXPECT_EQ(record.sample_time(), 0.5);
+}
+
+TEST(CsvReader, ThePlainForm) {
+  expect_plain(parse_csv("log.csv", "t,u,y\n0,1.5,10\n0.5,-2.25,20\n1.0,3,30\n"));
+}
+
+TEST(CsvReader, TheSameInEveryFormThatIsTolerated) {
+  for (const std::string_view text : {
+           "\xEF\xBB\xBFt,u,y\r\n0,1.5,10\r\n0.5,-2.25,20\r\n1.0,3,30\r\n",    // byte order mark, CRLF
+           "t;u;y\n0;1.5;10\n0.5;-2.25;20\n1.0;3;30",                          // semicolons, no last line end
+           "t;u;y\n0;1,5;10\n0,5;-2,25;20\n1,0;3;30\n",                        // decimal commas
+           "t\tu\ty\n0\t1,5\t10\n0,5\t-2,25\t20\n1\t3\t30\n",                  // tabs
+           "\"t\",\"u\",\"y\"\n0,\"1,5\",10\n\"0,5\",\"-2,25\",20\n1,3,30\n",  // quotes
+           " t , u , y \n 0 , +1.5 , 1e1\n0.5,-2.25,2.0E+01\n1.0,3.,30\n",     // blanks, signs, exponents
+           "# a log\n\nt,u,y\n# of today\n0,1.5,10\n0.5,-2.25,20\n  # end\n1.0,3,30\n\n \n,,\n",
+           "U,T,Y\n1.5,0,10\n-2.25,0.5,20\n3,1,30\n",  // t anywhere, capitals
+       }) {
+    SCOPED_TRACE(text);
+    const Record record = parse_csv("log.csv", text);
+    EXPECT_EQ(record.size(), 3U);
+    EXPECT_THAT(record.time(), ElementsAre(0.0, 0.5, 1.0));
+    EXPECT_THAT(record.column("u").values, ElementsAre(1.5, -2.25, 3.0));
+    EXPECT_THAT(record.column("Y").values, ElementsAre(10.0, 20.0, 30.0));
+    EXPECT_EQ(record.sample_time(), 0.5);
+  }
+}
+
+TEST(CsvReader, KeepsUnits) {
+  const auto record = parse_csv("log.csv", "t [s],u [V],y[µm],\"p [bar, gauge]\",n\n0,1,2,3,4\n1,1,2,3,4\n");
+  EXPECT_THAT(record.names(), ElementsAre("u", "y", "p", "n"));
+  EXPECT_EQ(record.column("u").unit, "V");
+  EXPECT_EQ(record.column("y").unit, "µm");
+  EXPECT_EQ(record.column("p").unit, "bar, gauge");
+  EXPECT_EQ(record.column("n").unit, "");
+}
+
+TEST(CsvReader, SaysWhatIsWrongWhereAndHowToMendIt) {
+  EXPECT_EQ(refusal_of("t,u\n0,1\n1,nan\n"),
+            "HY506 error: log.csv:3:3: Column u holds nan, which is no finite number.\n"
+            "    3 | 1,nan\n"
+            "      |   ^^^\n"
+            "mend: cut the record before this row, or record the signal again.\n");
+  EXPECT_EQ(refusal_of("\xEF\xBB\xBFt;µ\r\n0;1\r\n1;on\r\n"),
+            "HY505 error: log.csv:3:3: \"on\" in column µ is no number.\n"
+            "    3 | 1;on\n"
+            "      |   ^^\n"
+            "mend: write a number, such as 1.25e-3, or remove the column.\n");
+}
+
+struct Refused {
+  std::string text;
+  std::string beginning;  ///< of the first diagnostic
+  std::string mend;       ///< part of it
+};
+
+TEST(CsvReader, RefusesWhatIsNoRecord) {
+  const Refused cases[] = {
+      {"", "HY501 error: log.csv: The file holds no header", "header row"},
+      {"\n\n# only\n", "HY501 error: log.csv: The file holds no header", "header row"},
+      {"t,u\n", "HY501 error: log.csv:1:1: The record has no rows", "two rows"},
+      {"t,u", "HY501 error: log.csv:1:1: The record has no rows", "two rows"},
+      {"t,u\n0,1\n", "HY501 error: log.csv:1:1: The record has one row", "two rows"},
+      {"u,y\n0,1\n1,2\n", "HY502 error: log.csv:1:1: There is no column t", "add the time"},
+      {"t u y\n0 1 2\n1 1 2\n", "HY502 error: log.csv:1:1: There is no column t", "commas, semicolons or tabs"},
+      {"Time,u\n0,1\n1,2\n", "HY502 error: log.csv:1:1: There is no column t", "column Time the name t"},
+      {"t,u,U\n0,1,2\n1,1,2\n", "HY503 error: log.csv:1:5: There are two columns U", "name of its own"},
+      {"t,u,T\n0,1,2\n1,1,2\n", "HY503 error: log.csv:1:5: There are two columns T", "name of its own"},
+      {"t,u\n0,1\n1,2,3\n", "HY504 error: log.csv:3:1: The row has 3 cells where the header names 2 columns",
+       "one number"},
+      {"t,u\n0,1\n1\n", "HY504 error: log.csv:3:1: The row has 1 cell ", "one number"},
+      {"t,u\n0,1,\n1,2,\n", "HY504 error: log.csv:2:1: ", "no separator at the end"},
+      {"t,u\n0,000,1,25\n0,005,1,50\n", "HY504 error: log.csv:2:1: ", "decimal points"},
+      {"t,u\n0,1\n\n1,2\n", "HY504 error: log.csv:3:1: There is a blank row", "no sample is missing"},
+      {"t,u\n0,1\n1,\n", "HY505 error: log.csv:3:3: Column u has no number in this row", "measured"},
+      {"t,u\n0,1\n1,0x10\n", "HY505 error: log.csv:3:3: \"0x10\"", "such as"},
+      {"t,u\n0,1\n1,1 2\n", "HY505 error: log.csv:3:3: \"1 2\"", "such as"},
+      {"t,u\n0,1\n1,\"2\n", "HY505 error: log.csv:3:3: \"\"2\"", "such as"},
+      {"t;u\n0;1\n1;a,b\n", "HY505 error: log.csv:3:3: \"a,b\"", "such as"},
+      {"t,u\n0,1\n1,-Inf\n", "HY506 error: log.csv:3:3: Column u holds -Inf", "cut the record"},
+      {"t,u\n0,1\n1,1e999\n", "HY506 error: log.csv:3:3: 1e999 in column u is beyond the range", "scale"},
+      {"t,u\nnan,1\n1,2\n", "HY506 error: log.csv:2:1: Column t holds nan", "cut the record"},
+      {"0,1\n1,2\n", "HY509 error: log.csv:1:1: The first row names the columns, but 0 is a number", "header row"},
+      {"0,5;1\n1;2\n", "HY509 error: log.csv:1:1: The first row names the columns, but 0,5 is a number", "header row"},
+      {"# t,u\n0,1\n1,2\n", "HY509 error: log.csv:2:1: ", "begins with #"},
+      {"t,,u\n0,1,2\n1,1,2\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
+      {"t,[V]\n0,1\n1,1\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
+      {"t,u\n0,1\n1,\xB5\n", "HY510 error: log.csv:3:3: The byte 16#B5", "UTF-8"},
+      {std::string("t,u\n0,1\n1,\0\n", 11), "HY510 error: log.csv:3:3: The byte 16#00", "UTF-8"},
+      {"\xFF\xFEt\x01,\x01", "HY510 error: log.csv: The file is UTF-16", "CSV UTF-8"},
+      {"t;u\n0,1;1.5\n1;2\n",
+       "HY511 error: log.csv:2:5: 1.5 has a decimal point, an earlier number has a decimal comma", "same decimal mark"},
+      {"t;u\n0;1.234,5\n1;2\n", "HY511 error: log.csv:2:3: 1.234,5 has more than one decimal mark", "thousands"},
+      {"t;u\n0;1,234,567\n1;2\n", "HY511 error: log.csv:2:3: 1,234,567 has more than one decimal mark", "thousands"},
+      {"t [ms],u\n0,1\n1,2\n", "HY512 error: log.csv:1:1: The time is given in ms", "convert"},
+  };
+  for (const auto& [text, beginning, mend] : cases) {
+    SCOPED_TRACE(text);
+    const auto said = refusal_of(text);
+    EXPECT_THAT(said, StartsWith(beginning));
+    EXPECT_THAT(said.substr(said.find("mend: ")), HasSubstr(mend));
+  }
+}
+
+TEST(CsvReader, TheEarlierDecimalMarkIsNoted) {
+  const auto list = refusals_of("t;u\n0,1;1\n1;1.5\n");
+  ASSERT_EQ(list.all().front().notes.size(), 1U);
+  EXPECT_EQ(list.all().front().notes.front().place.line, 2U);
+  EXPECT_EQ(list.all().front().notes.front().place.column, 1U);
+}
+
+TEST(CsvReader, RefusesTimesThatAreNoGrid) {
+  EXPECT_EQ(refusal_of("t,u\n0,1\n0.5,1\n0.5,1\n1,1\n"),
+            "HY508 error: log.csv:4:1: The time 0.5 s stands in two rows.\n"
+            "    4 | 0.5,1\n"
+            "      | ^^^\n"
+            "mend: print the time with more digits, or remove the row that was written twice.\n"
+            "note: log.csv:3:1: the row before\n"
+            "    3 | 0.5,1\n"
+            "      | ^^^\n");
+  EXPECT_THAT(refusal_of("u,t\n1,0\n1,0.5\n1,0.25\n"),
+              StartsWith("HY508 error: log.csv:4:3: The time runs back, from 0.5 s to 0.25 s."));
+  EXPECT_THAT(refusal_of("t,u\n0.000,1\n0.005,1\n# lost\n0.020,1\n0.025,1\n0.030,1\n"),
+              StartsWith("HY507 error: log.csv:5:1: The time goes on by 0.015 s here, elsewhere by 0.005 s."));
+}
+
+TEST(CsvReader, CollectsErrorsButNotWithoutEnd) {
+  std::string text = "t,u,y\n";
+  for (int row = 0; row < 3; ++row) {
+    text += fmt::format("{},x,1\n", row);
+  }
+  EXPECT_EQ(refusals_of(text).all().size(), 3U);
+  for (int row = 3; row < 10000; ++row) {
+    text += fmt::format("{},x,nan\n", row);
+  }
+  EXPECT_LE(refusals_of(text).all().size(), 12U);
+}
+
+TEST(CsvReader, AMissingFileIsHY100) {
+  try {
+    (void)read_csv("/no/such/log.csv");
+    FAIL();
+  } catch (const InputError& refused) {
+    EXPECT_EQ(refused.diagnostics().all().front().number, error::unreadable_file);
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::records

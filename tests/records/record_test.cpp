@@ -1,0 +1,126 @@
+#include "records/record.hpp"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "records/csv.hpp"
+#include "support/errors.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::records {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Record sample() {
+  Record record = Record::even(0.0, 0.25, 8);
+  record.add({"u", "V", {0, 1, 2, 3, 4, 5, 6, 7}});
+  record.add({"Y", "um", {0, -1, -2, -3, -4, -5, -6, -7}});
+  return record;
+}
+
+TEST(Record, ColumnsByName) {
+  const Record record = sample();
+  EXPECT_EQ(record.size(), 8U);
+  EXPECT_EQ(record.time()[7], 1.75);
+  EXPECT_EQ(record.column("y").unit, "um");
+  EXPECT_EQ(record.find("U")->values[3], 3.0);
+  EXPECT_EQ(record.find("z"), nullptr);
+  EXPECT_THAT(record.names(), ElementsAre("u", "Y"));
+}
+
+TEST(Record, AMissingColumnNamesThoseThereAre) {
+  const auto record = parse_csv("log.csv", "# x\nt,ref,position\n0,1,2\n1,1,2\n");
+  try {
+    (void)record.column("postion");
+    FAIL();
+  } catch (const InputError& refused) {
+    const auto& said = refused.diagnostics().all().front();
+    EXPECT_EQ(said.number, error::missing_column);
+    EXPECT_EQ(said.place.file, "log.csv");
+    EXPECT_EQ(said.place.line, 2U);
+    EXPECT_EQ(said.cause, "There is no column postion; the columns are t, ref, position.");
+    EXPECT_EQ(said.mend, "if position is meant, give it the name postion.");
+  }
+}
+
+TEST(Record, RefusesColumnsThatDoNotFit) {
+  Record record = sample();
+  EXPECT_THROW(record.add({"z", "", {1, 2}}), std::invalid_argument);
+  EXPECT_THROW(record.add({"U", "", std::vector<double>(8)}), std::invalid_argument);
+  EXPECT_THROW(record.add({"T", "", std::vector<double>(8)}), std::invalid_argument);
+  EXPECT_THROW(record.add({"", "", std::vector<double>(8)}), std::invalid_argument);
+  EXPECT_THROW((void)Record::even(0.0, 0.0, 3), std::invalid_argument);
+  EXPECT_THROW((void)Record::even(0.0, std::numeric_limits<double>::quiet_NaN(), 3), std::invalid_argument);
+}
+
+TEST(Record, SlicesAndIntervals) {
+  const Record record = sample();
+  const Record part = record.slice({2, 5});
+  EXPECT_THAT(part.time(), ElementsAre(0.5, 0.75, 1.0));
+  EXPECT_THAT(part.column("u").values, ElementsAre(2, 3, 4));
+  EXPECT_EQ(part.column("u").unit, "V");
+  EXPECT_EQ(part.sample_time(), 0.25);
+  EXPECT_THROW((void)record.slice({2, 9}), std::out_of_range);
+  EXPECT_THROW((void)record.slice({3, 2}), std::out_of_range);
+
+  const auto range = [&](double begin, double end) {
+    const auto rows = record.rows_between(begin, end);
+    return std::pair(rows.first, rows.last);
+  };
+  EXPECT_EQ(range(0.5, 1.0), std::pair(std::size_t{2}, std::size_t{4}));
+  EXPECT_EQ(range(0.5000001, 1.0000001), std::pair(std::size_t{2}, std::size_t{4})) << "rounded times";
+  EXPECT_EQ(range(-5.0, 99.0), std::pair(std::size_t{0}, std::size_t{8}));
+  EXPECT_EQ(record.rows_between(3.0, 2.0).size(), 0U);
+  EXPECT_EQ(record.rows_between(0.0, 0.9).size() + record.rows_between(0.9, 9.0).size(), 8U);
+}
+
+TEST(CsvWriter, WritesTheShortestNumbers) {
+  Record record = Record::even(0.0, 0.1, 3);
+  record.add({"u", "V", {1.0, 1e-11, 0.1 + 0.2}});
+  EXPECT_EQ(csv_text(record), "t,u [V]\n0,1\n0.1,1e-11\n0.2,0.30000000000000004\n");
+}
+
+TEST(CsvWriter, ReadsBackToTheSameBits) {
+  std::mt19937_64 random(5);
+  const auto finite = [&] {
+    while (true) {
+      if (const auto value = std::bit_cast<double>(random()); std::isfinite(value)) {
+        return value;
+      }
+    }
+  };
+  Record record = Record::even(-1.0, 1.0 / 6400.0, 5000);
+  for (const auto& [name, unit] : {std::pair("u", "V"), std::pair("flow", "l/min, at 20 °C"), std::pair("a b", "")}) {
+    Column column{name, unit, {}};
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      column.values.push_back(finite());
+    }
+    record.add(std::move(column));
+  }
+  const test::ScratchFolder folder;
+  write_csv(folder / "out.csv", record);
+  const Record read = read_csv(folder / "out.csv");
+  ASSERT_EQ(read.size(), record.size());
+  EXPECT_EQ(read.names(), record.names());
+  EXPECT_DOUBLE_EQ(read.sample_time(), record.sample_time());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    ASSERT_EQ(read.time()[i], record.time()[i]);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(read.columns()[c].unit, record.columns()[c].unit);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(read.columns()[c].values[i]),
+                std::bit_cast<std::uint64_t>(record.columns()[c].values[i]));
+    }
+  }
+  EXPECT_EQ(csv_text(read), csv_text(record));
+}
+
+}  // namespace
+}  // namespace hysteron::records

@@ -12,7 +12,7 @@ struct SquareRoot : Stateless {
                                .equation = "XOUT = √XIN",
                                .meaning =
                                    "Square root of a signal that is not negative. Below zero XOUT is 0 and ERROR is "
-                                   "TRUE. The unit of the output is not checked.",
+                                   "TRUE. The unit of the output is the root of that of the input.",
                                .source = "IEC 61131-3, SQRT"};
 
   template <class S>

@@ -16,9 +16,9 @@ struct SquareRoot : Stateless {
                                .source = "IEC 61131-3, SQRT"};
 
   template <class S>
-  using In = Xin<S, "", "signal, not negative, in any unit">;
+  using In = Xin<S, "'x", "signal, not negative">;
   template <class S>
-  using Out = CheckedXout<S, "", "root of XIN, its unit the root of that of XIN">;
+  using Out = CheckedXout<S, "'x^(1/2)", "root of XIN">;
 
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

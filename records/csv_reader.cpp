@@ -155,6 +155,12 @@ class Reader {
                                           : "write a header row above the numbers, such as t,u,y.");
       return;
     }
+    if (std::any_of(cell.text.begin(), cell.text.end(),
+                    [](char c) { return c == '"' || (c >= 0 && c < ' ') || c == '\x7F'; })) {
+      diagnostics_.error(error::missing_header, place, "The name of the column holds a quote or a control character.",
+                         "use letters, digits and _ in the names of columns, as a diagram does.");
+      return;
+    }
     if (equal_ignoring_case(name, "t")) {
       if (!unit.empty() && unit != "s") {
         diagnostics_.error(error::time_unit, place, fmt::format("The time is given in {}, not in seconds.", unit),

@@ -108,6 +108,7 @@ TEST(CsvReader, RefusesWhatIsNoRecord) {
       {"t,,u\n0,1,2\n1,1,2\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
       {"t,[V]\n0,1\n1,1\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
       {"t,u\n0,1\n1,\xB5\n", "HY510 error: log.csv:3:3: The byte 16#B5", "UTF-8"},
+      {"t,\"u\"x\"\n0,1\n1,1\n", "HY509 error: log.csv:1:4: The name of the column holds a quote", "letters"},
       {std::string("t,u\n0,1\n1,\0\n", 11), "HY510 error: log.csv:3:3: The byte 16#00", "UTF-8"},
       {"\xFF\xFEt\x01,\x01", "HY510 error: log.csv: The file is UTF-16", "CSV UTF-8"},
       {"t;u\n0,1;1.5\n1;2\n",

@@ -352,6 +352,11 @@ class Scheduler {
       return;
     }
     // The last outputs of a node whose update could follow at once: one action instead of two.
+    const Node& node = graph_.nodes[task.node];
+    if (node.block == nullptr || node.block->states.empty()) {
+      result.actions.push_back({Action::Kind::Step, task.node});
+      return;
+    }
     const std::uint32_t last = last_task(task.node);
     bool ready = tasks_[last].update && last != index;
     if (ready) {

@@ -263,6 +263,7 @@ S Machine<S>::parameter(std::size_t parameter, std::size_t element) const {
 template <class S>
 void Machine<S>::reset() {
   steps_ = 0;
+  std::memset(memory_.get(), 0, live_size_);  // a parameter that is wired to a signal begins at 0
   for (const auto& instruction : resets_) {
     instruction.run(instruction);
   }

@@ -63,6 +63,8 @@ BinarySign binary_sign(const Token& token) {
   }
 }
 
+constexpr std::int64_t lowest_dint_magnitude = 2147483648;
+
 bool is_unary_sign(const Token& token) {
   return token.symbol == Symbol::Minus || token.symbol == Symbol::Plus || token.keyword == Keyword::Not;
 }
@@ -135,6 +137,13 @@ ExpressionId Parser::unary() {
           fmt::format("Write {0}(A ** B) or ({0}A) ** B.", sign.keyword == Keyword::Not ? "NOT " : "-"));
   }
   if (sign.symbol == Symbol::Plus) {
+    return value;
+  }
+  // DINT reaches one further below zero than above: -2147483648 is one literal.
+  if (auto* lowest = std::get_if<IntLiteral>(&file_.expressions[value].node);
+      lowest != nullptr && lowest->value == lowest_dint_magnitude) {
+    lowest->value = -lowest_dint_magnitude;
+    file_.expressions[value].span = since(sign.offset);
     return value;
   }
   const auto op = sign.symbol == Symbol::Minus ? Operator::Negate : Operator::Not;

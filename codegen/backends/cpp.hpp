@@ -1,0 +1,27 @@
+// The C++ target: one header with a step of its own, a main that runs it over a record, and a CMakeLists for both.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+
+namespace hysteron {
+
+struct GeneratedFile {
+  std::string name;
+  std::string text;
+};
+
+struct CppOptions {
+  bool float32 = false;  ///< real numbers of the target are float
+};
+
+/// The header (NAME.hpp), main.cpp and CMakeLists.txt of a program. The text depends on the program alone, to the byte.
+/// Throws InputError (HY404) where the diagram states no sample time.
+std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions& options = {});
+
+/// The header alone.
+GeneratedFile generate_cpp_header(const Program& program, const CppOptions& options = {});
+
+}  // namespace hysteron

@@ -1,23 +1,25 @@
-// A running sum that keeps what rounding would lose (Neumaier): shared by the integrals and the momenta.
+// A running sum that keeps what rounding would lose: shared by the integrals and the momenta.
 #pragma once
 
 #include "blocks/scalar.hpp"
 
 namespace hysteron {
 
-/// The sum is high + low; low holds what high has no digits for.
+/// `high` is the sum as far as S can hold it; `low` is what rounding took from it, smaller than its last digit.
 template <class S>
 struct CompensatedSum {
   S high;
   S low;
 };
 
-/// One more term. A. Neumaier, ZAMM 54 (1974) 39–51.
+/// One more term. What was lost goes in again with the term, so that it never grows large enough to lose digits of its
+/// own. Kahan, CACM 8 (1965) 40, with Neumaier's choice of the larger operand, ZAMM 54 (1974) 39–51.
 template <class S>
 CompensatedSum<S> add(const CompensatedSum<S>& total, const S& term) {
-  const S high = total.high + term;
-  const S rounding = select(abs(total.high) >= abs(term), (total.high - high) + term, (term - high) + total.high);
-  return {.high = high, .low = total.low + rounding};
+  const S due = term + total.low;
+  const S high = total.high + due;
+  const S low = select(abs(total.high) >= abs(due), (total.high - high) + due, (due - high) + total.high);
+  return {.high = high, .low = low};
 }
 
 template <class S>

@@ -14,11 +14,11 @@ struct Integral {
       .equation = "XOUT(k) = X0 where R1; else XOUT(k−1) + TS·XIN(k) where RUN; else XOUT(k−1)",
       .meaning =
           "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. "
-          "The sum is compensated (Neumaier), so that small increments are not lost: a plain REAL sum of 1 "
+          "The sum is compensated (Kahan), so that small increments are not lost: a plain REAL sum of 1 "
           "over 100 s at 50 µs gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at "
           "0. Where it must close a loop, use HY_INTEGRAL_FORWARD.",
       .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), ahead by half a sample.",
-      .source = "IEC 61131-3, INTEGRAL; A. Neumaier, ZAMM 54 (1974) 39–51"};
+      .source = "IEC 61131-3, INTEGRAL; W. Kahan, CACM 8 (1965) 40"};
 
   template <class S>
   using Params = NoFields<S>;
@@ -30,7 +30,7 @@ struct Integral {
     using Self = State;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(SUM).in("'x*s").otherwise(0.0).means("running sum"),
-                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("low part that the sum could not hold")};
+                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("what rounding took from the sum")};
     }
   };
   template <class S>
@@ -72,7 +72,7 @@ struct Integral {
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& ts) {
     const CompensatedSum<S> next = advance(state, in, ts);
-    return {.XOUT = next.high + next.low, .Q = !in.R1};
+    return {.XOUT = next.high, .Q = !in.R1};
   }
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,

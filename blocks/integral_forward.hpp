@@ -17,7 +17,7 @@ struct IntegralForward {
           "of a plant is such an integral. Compensated as HY_INTEGRAL is. RUN FALSE holds the value; R1 "
           "dominates and loads X0, from which the same interval already integrates. Starts at 0.",
       .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), behind by half a sample.",
-      .source = "A. Neumaier, ZAMM 54 (1974) 39–51"};
+      .source = "W. Kahan, CACM 8 (1965) 40"};
 
   template <class S>
   using Params = NoFields<S>;
@@ -41,7 +41,7 @@ struct IntegralForward {
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const CompensatedSum<S> sum = present(state, in);
-    return {.XOUT = sum.high + sum.low, .Q = !in.R1};
+    return {.XOUT = sum.high, .Q = !in.R1};
   }
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,

@@ -71,7 +71,7 @@ struct Mem {
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const CompensatedSum<S> momentum = Momentum::present(state, momentum_input(in, in.XIN));
-    const S p = momentum.high + momentum.low;
+    const S p = momentum.high;
     const S gain = mem_slope(params.C1, params.C2, params.C3, p);  // (17)
     return {.XOUT = gain * in.XIN, .P = p, .M = gain};             // (5)
   }

@@ -73,7 +73,7 @@ struct MemInverse {
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const CompensatedSum<S> momentum = Momentum::present(state, momentum_input(in, in.XIN));
-    const S p = momentum.high + momentum.low;
+    const S p = momentum.high;
     const InverseOfSlope<S> inverse = invert_slope(mem_slope(params.C1, params.C2, params.C3, p), in.XIN);  // (13)
     return {.XOUT = inverse.input, .P = p, .M = inverse.slope, .ERROR = inverse.failed, .ERRORID = inverse.reason};
   }

@@ -36,7 +36,7 @@ struct Momentum {
     using Self = State;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(SUM).in("'x*s").otherwise(0.0).means("momentum"),
-                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("low part that the sum could not hold")};
+                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("what rounding took from the sum")};
     }
   };
   template <class S>
@@ -73,7 +73,7 @@ struct Momentum {
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const CompensatedSum<S> momentum = present(state, in);
-    return {.XOUT = momentum.high + momentum.low};
+    return {.XOUT = momentum.high};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {

@@ -31,8 +31,8 @@ LoopSlopes<S> loop_slopes(const LoopConstants<S>& loop, const S& p) {
   return {.chord = loop.c1 + growth / (loop.c3 + S(1.0)), .tangent = loop.c1 + growth};
 }
 
-/// Newton steps of loop_inverse. From its starting point the relative error of p after k steps is at most, over C3 in
-/// 0…10 and all C1 > 0, C2 ≥ 0: 0.11, 0.021, 1.6e-3, 8e-6, 2e-10, and from the sixth on 2 units in the last place.
+/// Newton steps of loop_inverse. Over millions of random loops with C3 in 0…10 the relative error of p after 1, 2, …
+/// steps was at most 0.10, 0.022, 1.6e-3, 9e-6, 3e-10, and from the sixth on 4e-16.
 inline constexpr int loop_inverse_steps = 6;
 
 /// The p ≥ 0 with Y(p) = q, for q ≥ 0.

@@ -1,0 +1,213 @@
+#include "codegen/parameters/apply.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::parameters {
+namespace {
+
+/// More names than these are not listed in a message.
+constexpr std::size_t most_names = 8;
+
+std::string_view type_in_words(const Field& field) {
+  if (field.length > 1) {
+    return "a list of numbers";
+  }
+  switch (field.type) {
+    case Type::Bool:
+      return "true or false";
+    case Type::Real:
+      return "a number";
+    default:
+      return "a whole number";
+  }
+}
+
+std::string kind_of(const Value& value) {
+  if (const auto* const list = std::get_if<std::vector<double>>(&value)) {
+    return fmt::format("a list of {}", list->size());
+  }
+  if (const auto* const truth = std::get_if<bool>(&value)) {
+    return *truth ? "true" : "false";
+  }
+  if (const auto* const whole = std::get_if<std::int64_t>(&value)) {
+    return fmt::format("{}", *whole);
+  }
+  return number_text(std::get<double>(value));
+}
+
+std::string example_of(const Field& field) {
+  if (field.length > 1) {
+    return fmt::format("{} = [0.0, 1.0]", field.name);
+  }
+  switch (field.type) {
+    case Type::Bool:
+      return fmt::format("{} = true", field.name);
+    case Type::Real:
+      return fmt::format("{} = {}", field.name, real_literal(field.preset));
+    default:
+      return fmt::format("{} = {}", field.name, number_text(field.preset));
+  }
+}
+
+/// The numbers of a value, where it is of a field's type.
+std::optional<std::vector<double>> numbers_of(const Value& value, const Field& field) {
+  const auto* const list = std::get_if<std::vector<double>>(&value);
+  if ((list != nullptr) != (field.length > 1)) {
+    return std::nullopt;
+  }
+  if (list != nullptr) {
+    return *list;
+  }
+  if (const auto* const truth = std::get_if<bool>(&value)) {
+    return field.type == Type::Bool ? std::optional(std::vector{*truth ? 1.0 : 0.0}) : std::nullopt;
+  }
+  if (field.type == Type::Bool) {
+    return std::nullopt;
+  }
+  if (const auto* const whole = std::get_if<std::int64_t>(&value)) {
+    return std::vector{static_cast<double>(*whole)};
+  }
+  return field.type == Type::Real ? std::optional(std::vector{std::get<double>(value)}) : std::nullopt;
+}
+
+/// The instance that a path names by its front, if it has the pin that it names by its end.
+const Node* instance_with_pin(const Graph& graph, std::string_view path) {
+  const auto dot = path.rfind('.');
+  if (dot == std::string_view::npos) {
+    return nullptr;
+  }
+  for (const Node& node : graph.nodes) {
+    if (node.block != nullptr && equal_ignoring_case(node.path, path.substr(0, dot))) {
+      for (std::size_t i = 0; i < node.block->pin_count(); ++i) {
+        if (equal_ignoring_case(node.block->pin(i).name, path.substr(dot + 1))) {
+          return &node;
+        }
+      }
+    }
+  }
+  return nullptr;
+}
+
+bool is_input(const Graph& graph, std::string_view path) {
+  return std::any_of(graph.inputs.begin(), graph.inputs.end(),
+                     [&](const Port& input) { return equal_ignoring_case(input.name, path); });
+}
+
+void set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnostics) {
+  const Field& field = parameter.field;
+  const auto numbers = numbers_of(given.value, field);
+  if (!numbers) {
+    diagnostics.error(error::wrong_value_type, given.value_place,
+                      fmt::format("{} takes {}, not {}.", parameter.path, type_in_words(field), kind_of(given.value)),
+                      fmt::format("write it as in {}.", example_of(field)));
+    return;
+  }
+  if (numbers->size() > field.length) {
+    diagnostics.error(
+        error::wrong_value_type, given.value_place,
+        fmt::format("{} takes at most {} numbers, here are {}.", parameter.path, field.length, numbers->size()),
+        "leave some out.");
+    return;
+  }
+  for (const double number : *numbers) {
+    if (const auto fault = range_fault(field, number); !fault.empty()) {
+      diagnostics.error(error::parameter_out_of_range, given.value_place,
+                        fmt::format("{} = {} lies outside of its range.", parameter.path, number_text(number)),
+                        fmt::format("{} {}.", field.name, fault));
+      return;
+    }
+  }
+  std::fill(parameter.value.begin(), parameter.value.end(), 0.0);
+  std::copy(numbers->begin(), numbers->end(), parameter.value.begin());
+}
+
+}  // namespace
+
+std::string range_fault(const Field& field, double value) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low = field.minimum;
+  double high = field.maximum;
+  if (field.type == Type::Int) {
+    low = std::max<double>(low, std::numeric_limits<std::int32_t>::min());
+    high = std::min<double>(high, std::numeric_limits<std::int32_t>::max());
+  } else if (field.type == Type::Word) {
+    low = std::max<double>(low, 0.0);
+    high = std::min<double>(high, std::numeric_limits<std::uint16_t>::max());
+  }
+  const bool too_low = field.above_minimum ? !(value > low) : !(value >= low);
+  if (!too_low && value <= high) {
+    return {};
+  }
+  const auto at_least =
+      low > -infinity ? fmt::format("{} {}", field.above_minimum ? "above" : "at least", number_text(low)) : "";
+  const auto at_most = high < infinity ? fmt::format("at most {}", number_text(high)) : "";
+  return fmt::format("must be {}{}{}", at_least, at_least.empty() || at_most.empty() ? "" : " and ", at_most);
+}
+
+void report_unknown_parameter(const Graph& graph, std::string_view path, const Place& place, Diagnostics& diagnostics) {
+  if (const Node* const node = instance_with_pin(graph, path)) {
+    diagnostics.error(error::unknown_key, place,
+                      fmt::format("{} is not free to be set: the diagram connects or fixes it.", path),
+                      "remove it here, or remove what the diagram gives to that pin.",
+                      {{.place = graph.place(node->span), .text = fmt::format("{} in the diagram", node->path)}});
+    return;
+  }
+  if (is_input(graph, path)) {
+    diagnostics.error(error::unknown_key, place, fmt::format("{} is an input of the diagram, not a parameter.", path),
+                      "give it a column in the record, or mark it (* @param *) in the diagram.");
+    return;
+  }
+  std::vector<std::string> known;
+  known.reserve(graph.parameters.size());
+  for (const Parameter& parameter : graph.parameters) {
+    known.push_back(parameter.path);
+  }
+  std::string mend = "remove it; the diagram has no parameters.";
+  if (const auto near = nearest_name(path, known); !near.empty()) {
+    mend = fmt::format("did you mean {}?", near);
+  } else if (!known.empty()) {
+    const auto shown = std::min(known.size(), most_names);
+    mend =
+        fmt::format("the parameters are {}{}.", fmt::join(known.begin(), known.begin() + static_cast<int>(shown), ", "),
+                    shown < known.size() ? fmt::format(" and {} more", known.size() - shown) : "");
+  }
+  diagnostics.error(error::unknown_key, place, fmt::format("{} has no parameter {}.", graph.name, path),
+                    std::move(mend));
+}
+
+void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
+  std::unordered_map<std::string, std::size_t> by_path;
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    by_path.emplace(graph.parameters[i].path, i);
+  }
+  for (const ParameterValue& given : file.values) {
+    const auto found = by_path.find(in_capitals(given.path));
+    if (found == by_path.end()) {
+      report_unknown_parameter(graph, given.path, given.place, diagnostics);
+    } else {
+      set(given, graph.parameters[found->second], diagnostics);
+    }
+  }
+}
+
+void apply(const ParameterFile& file, Graph& graph) {
+  Diagnostics diagnostics;
+  apply(file, graph, diagnostics);
+  if (diagnostics.has_errors()) {
+    throw InputError(std::move(diagnostics));
+  }
+}
+
+}  // namespace hysteron::parameters

@@ -1,0 +1,440 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "codegen/parameters/parameter_file.hpp"
+#include "codegen/parameters/toml_text.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "support/text_file.hpp"
+
+namespace hysteron::parameters {
+namespace {
+
+/// Instances inside instances. Further down is no diagram but an attack on the stack.
+constexpr int most_levels = 64;
+
+constexpr std::array<std::string_view, 3> top_keys{"parameters", "fit", "tune"};
+constexpr std::array<std::string_view, 4> fit_keys{"min", "max", "start", "scale"};
+constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", "test", "initial_states"};
+
+bool is_path(std::string_view key) {
+  const bool letters = std::all_of(key.begin(), key.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+  });
+  return letters && !key.empty() && key.front() != '.' && key.back() != '.' && key.find("..") == std::string_view::npos;
+}
+
+std::string_view kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+      return "a whole number";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+template <class Item>
+void sort_by_place(std::vector<Item>& items) {
+  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  });
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text)) { result_.file = file; }
+
+  ParameterFile read() {
+    for (const auto& [key, node] : root_) {
+      if (const auto* const table = known_key(key, node, top_keys, "") ? as_table(key, node) : nullptr) {
+        if (key.str() == "parameters") {
+          read_values(*table, "", 0);
+        } else if (key.str() == "fit") {
+          read_fits(*table, "", 0);
+        } else {
+          read_tune(*table);
+        }
+      }
+    }
+    sort_by_place(result_.values);
+    sort_by_place(result_.fits);
+    refuse_doubles(result_.values);
+    refuse_doubles(result_.fits);
+    for (const FitSetting& fit : result_.fits) {
+      check_range(fit);
+    }
+    if (diagnostics_.has_errors()) {
+      throw InputError(diagnostics_);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Place at(const toml::node& node) const { return place_of(result_.file, node.source()); }
+  [[nodiscard]] Place at(const toml::key& key) const { return place_of(result_.file, key.source()); }
+
+  void wrong_type(const toml::key& key, const toml::node& node, std::string_view wanted, std::string_view example) {
+    diagnostics_.error(error::wrong_value_type, at(node),
+                       fmt::format("{} must be {}, but is {}.", key.str(), wanted, kind_of(node)),
+                       fmt::format("write it as in {}.", example));
+  }
+
+  // ---- keys -------------------------------------------------------------------------------------------------------
+
+  bool known_key(const toml::key& key, const toml::node& node, std::span<const std::string_view> known,
+                 std::string_view table) {
+    if (std::find(known.begin(), known.end(), key.str()) != known.end()) {
+      return true;
+    }
+    const auto near = nearest_name(key.str(), known);
+    std::string mend = fmt::format("remove it, or use one of {}.", fmt::join(known, ", "));
+    if (!near.empty()) {
+      mend = fmt::format("did you mean {}?", near);
+    } else if (table.empty()) {
+      mend = fmt::format("values stand under [parameters], those of the instance {0} under [parameters.{0}].",
+                         node.is_table() && is_path(key.str()) ? key.str() : "INV");
+    }
+    diagnostics_.error(error::unknown_key, at(key),
+                       table.empty() ? fmt::format("There is no table or key {} in a parameter file.", key.str())
+                                     : fmt::format("There is no key {} in {}.", key.str(), table),
+                       mend);
+    return false;
+  }
+
+  const toml::table* as_table(const toml::key& key, const toml::node& node) {
+    if (!node.is_table()) {
+      wrong_type(key, node, "a table", fmt::format("[{}]", key.str()));
+    }
+    return node.as_table();
+  }
+
+  /// The path of a key below a path; nothing, with an error, where it cannot be that of an instance or parameter.
+  std::optional<std::string> path_below(const std::string& path, const toml::key& key, int level) {
+    if (!is_path(key.str())) {
+      diagnostics_.error(error::unknown_key, at(key),
+                         fmt::format("\"{}\" is no name of an instance or parameter.", key.str()),
+                         "use letters, digits and _, as in the diagram.");
+      return std::nullopt;
+    }
+    if (level > most_levels) {
+      diagnostics_.error(error::parameter_file_syntax, at(key),
+                         fmt::format("The tables are nested more than {} deep.", most_levels),
+                         "nest instances less deeply.");
+      return std::nullopt;
+    }
+    return path.empty() ? std::string(key.str()) : fmt::format("{}.{}", path, key.str());
+  }
+
+  template <class Item>
+  void refuse_doubles(const std::vector<Item>& items) {
+    std::map<std::string, const Item*> seen;
+    for (const Item& item : items) {
+      const auto [first, fresh] = seen.emplace(in_capitals(item.path), &item);
+      if (!fresh) {
+        diagnostics_.error(error::duplicate_key, item.place, fmt::format("{} has been given before.", item.path),
+                           "keep one of the two; case makes no difference.",
+                           {{.place = first->second->place, .text = "the first"}});
+      }
+    }
+  }
+
+  // ---- values -----------------------------------------------------------------------------------------------------
+
+  void read_values(const toml::table& table, const std::string& path, int level) {
+    for (const auto& [key, node] : table) {
+      const auto below = path_below(path, key, level);
+      if (!below) {
+        continue;
+      }
+      if (const auto* const instance = node.as_table()) {
+        read_values(*instance, *below, level + 1);
+      } else if (auto value = value_of(key, node)) {
+        result_.values.push_back(
+            {.path = *below, .value = std::move(*value), .place = at(key), .value_place = at(node)});
+      }
+    }
+  }
+
+  std::optional<Value> value_of(const toml::key& key, const toml::node& node) {
+    constexpr std::string_view wanted = "a number, true or false, or a list of numbers";
+    if (const auto* const truth = node.as_boolean()) {
+      return truth->get();
+    }
+    if (const auto* const whole = node.as_integer()) {
+      return whole->get();
+    }
+    if (node.is_floating_point()) {
+      const auto number = finite(key, node);
+      return number ? std::optional<Value>(number->value) : std::nullopt;
+    }
+    const auto* const list = node.as_array();
+    if (list == nullptr || list->empty()) {
+      wrong_type(key, node, wanted, fmt::format("{0} = 0.05, or {0} = [0.0, 0.5, 1.0]", key.str()));
+      return std::nullopt;
+    }
+    std::vector<double> numbers;
+    for (const toml::node& element : *list) {
+      if (!element.is_number()) {
+        wrong_type(key, element, "a list of numbers", fmt::format("{} = [0.0, 0.5, 1.0]", key.str()));
+        return std::nullopt;
+      }
+      const auto number = finite(key, element);
+      if (!number) {
+        return std::nullopt;
+      }
+      numbers.push_back(number->value);
+    }
+    return numbers;
+  }
+
+  /// A number, whole or not, that may be infinite.
+  std::optional<PlacedNumber> number_of(const toml::key& key, const toml::node& node) {
+    const auto number = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!number) {
+      wrong_type(key, node, "a number", fmt::format("{} = 0.05", key.str()));
+      return std::nullopt;
+    }
+    return PlacedNumber{.value = *number, .place = at(node)};
+  }
+
+  void not_finite(const toml::key& key, const PlacedNumber& number, std::string_view mend) {
+    diagnostics_.error(error::parameter_not_finite, number.place,
+                       fmt::format("{} is {}.", key.str(), std::isnan(number.value) ? "not a number" : "infinite"),
+                       std::string(mend));
+  }
+
+  std::optional<PlacedNumber> finite(const toml::key& key, const toml::node& node) {
+    const auto number = number_of(key, node);
+    if (number && !std::isfinite(number->value)) {
+      not_finite(key, *number, "write a finite number.");
+      return std::nullopt;
+    }
+    return number;
+  }
+
+  // ---- fit --------------------------------------------------------------------------------------------------------
+
+  /// A table of nothing but tables is an instance; one with settings, or an empty one, is a parameter.
+  void read_fits(const toml::table& table, const std::string& path, int level) {
+    for (const auto& [key, node] : table) {
+      const auto below = path_below(path, key, level);
+      if (!below) {
+        continue;
+      }
+      const auto* const inner = node.as_table();
+      if (inner == nullptr) {
+        diagnostics_.error(error::wrong_value_type, at(node),
+                           fmt::format("{} must be a table of settings, but is {}.", *below, kind_of(node)),
+                           fmt::format("write {} = {{}}, or {} = {{min = 0.0, max = 1.0}}.", key.str(), key.str()));
+        continue;
+      }
+      const bool instance = !inner->empty() && std::all_of(inner->cbegin(), inner->cend(),
+                                                           [](const auto& entry) { return entry.second.is_table(); });
+      if (instance) {
+        read_fits(*inner, *below, level + 1);
+      } else {
+        read_fit(*inner, *below, at(key));
+      }
+    }
+  }
+
+  void read_fit(const toml::table& table, const std::string& path, const Place& place) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    FitSetting fit{.path = path, .place = place};
+    for (const auto& [key, node] : table) {
+      if (!known_key(key, node, fit_keys, "the fit of " + path)) {
+        continue;
+      }
+      if (key.str() == "min" || key.str() == "max") {
+        const bool low = key.str() == "min";
+        auto bound = number_of(key, node);
+        if (bound && !std::isfinite(bound->value) && bound->value != (low ? -infinity : infinity)) {
+          not_finite(key, *bound, "write a finite number, or leave the key out where there is no bound.");
+          bound.reset();
+        }
+        (low ? fit.minimum : fit.maximum) = bound;
+      } else {
+        (key.str() == "start" ? fit.start : fit.scale) = finite(key, node);
+      }
+    }
+    result_.fits.push_back(std::move(fit));
+  }
+
+  void contradiction(const Place& place, std::string cause, std::string mend) {
+    diagnostics_.error(error::contradicting_range, place, std::move(cause), std::move(mend));
+  }
+
+  void check_range(const FitSetting& fit) {
+    if (fit.scale && !(fit.scale->value > 0.0)) {
+      contradiction(fit.scale->place, fmt::format("The scale of {} is not above 0.", fit.path),
+                    "write the size of a notable change of the parameter, or leave it out.");
+    }
+    if (fit.minimum && fit.maximum && !(fit.minimum->value < fit.maximum->value)) {
+      contradiction(fit.maximum->place, fmt::format("The max of {} is not above its min.", fit.path),
+                    "exchange the two, or remove the parameter from the fit where it is known.");
+      return;
+    }
+    std::optional<PlacedNumber> start = fit.start;
+    if (const auto* const given = start ? nullptr : result_.find(fit.path)) {
+      if (const auto* const real = std::get_if<double>(&given->value)) {
+        start = PlacedNumber{.value = *real, .place = given->value_place};
+      } else if (const auto* const whole = std::get_if<std::int64_t>(&given->value)) {
+        start = PlacedNumber{.value = static_cast<double>(*whole), .place = given->value_place};
+      }
+    }
+    const bool outside = start && ((fit.minimum && start->value < fit.minimum->value) ||
+                                   (fit.maximum && start->value > fit.maximum->value));
+    if (outside) {
+      const auto bound = [](const std::optional<PlacedNumber>& number, std::string_view none) {
+        return number ? number_text(number->value) : std::string(none);
+      };
+      contradiction(start->place,
+                    fmt::format("The fit of {} would start at {}, outside of {} to {}.", fit.path,
+                                number_text(start->value), bound(fit.minimum, "-inf"), bound(fit.maximum, "inf")),
+                    "widen the range, or start inside of it.");
+    }
+  }
+
+  // ---- tune -------------------------------------------------------------------------------------------------------
+
+  void read_tune(const toml::table& table) {
+    for (const auto& [key, node] : table) {
+      if (!known_key(key, node, tune_keys, "[tune]")) {
+        continue;
+      }
+      if (key.str() == "outputs") {
+        result_.tune.outputs = names_of(key, node, "outputs = [\"Y\"]");
+      } else if (key.str() == "initial_states") {
+        result_.tune.initial_states = names_of(key, node, "initial_states = [\"LAG.XOUT\"]");
+      } else if (key.str() == "loss") {
+        read_loss(key, node);
+      } else {
+        (key.str() == "train" ? result_.tune.train : result_.tune.test) = intervals_of(key, node);
+      }
+    }
+  }
+
+  void read_loss(const toml::key& key, const toml::node& node) {
+    constexpr std::array<std::string_view, 2> losses{"squares", "huber"};
+    const auto text = node.value<std::string_view>();
+    if (!text) {
+      wrong_type(key, node, "a text", "loss = \"huber\"");
+    } else if (*text == losses[0] || *text == losses[1]) {
+      result_.tune.loss = *text == losses[1] ? Loss::Huber : Loss::Squares;
+    } else {
+      const auto near = nearest_name(*text, losses);
+      diagnostics_.error(error::wrong_value_type, at(node), fmt::format("There is no loss \"{}\".", *text),
+                         near.empty() ? "write \"squares\", or \"huber\" where single samples are far off."
+                                      : fmt::format("did you mean \"{}\"?", near));
+    }
+  }
+
+  std::vector<PlacedText> names_of(const toml::key& key, const toml::node& node, std::string_view example) {
+    std::vector<PlacedText> names;
+    const auto* const list = node.as_array();
+    if (list == nullptr || list->empty()) {
+      wrong_type(key, node, "a list of names", example);
+      return {};
+    }
+    for (const toml::node& element : *list) {
+      const auto text = element.value<std::string_view>();
+      if (!text || !is_path(*text)) {
+        wrong_type(key, element, "a list of names", example);
+        continue;
+      }
+      const auto first = std::find_if(names.begin(), names.end(),
+                                      [&](const PlacedText& name) { return equal_ignoring_case(name.text, *text); });
+      if (first != names.end()) {
+        diagnostics_.error(error::duplicate_key, at(element), fmt::format("{} stands in the list twice.", *text),
+                           "keep one of the two; case makes no difference.",
+                           {{.place = first->place, .text = "the first"}});
+        continue;
+      }
+      names.push_back({.text = std::string(*text), .place = at(element)});
+    }
+    return names;
+  }
+
+  /// [1.0, 21.0], or a list of such.
+  std::vector<Interval> intervals_of(const toml::key& key, const toml::node& node) {
+    std::vector<Interval> intervals;
+    const auto* const list = node.as_array();
+    const bool many = list != nullptr && !list->empty() && list->front().is_array();
+    if (many) {
+      for (const toml::node& element : *list) {
+        add_interval(intervals, key, element);
+      }
+    } else {
+      add_interval(intervals, key, node);
+    }
+    std::stable_sort(intervals.begin(), intervals.end(),
+                     [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+    for (std::size_t i = 1; i < intervals.size(); ++i) {
+      if (intervals[i].begin < intervals[i - 1].end) {
+        contradiction(intervals[i].place, fmt::format("Two intervals of {} overlap.", key.str()),
+                      "join them, so that no sample counts twice.");
+      }
+    }
+    return intervals;
+  }
+
+  void add_interval(std::vector<Interval>& intervals, const toml::key& key, const toml::node& node) {
+    const auto* const pair = node.as_array();
+    if (pair == nullptr || pair->size() != 2 || !pair->front().is_number() || !pair->back().is_number()) {
+      wrong_type(key, node, "an interval of two numbers, or a list of such",
+                 fmt::format("{0} = [1.0, 21.0], or {0} = [[1.0, 9.0], [12.0, 21.0]]", key.str()));
+      return;
+    }
+    const auto begin = finite(key, pair->front());
+    const auto end = finite(key, pair->back());
+    if (begin && end) {
+      if (!(begin->value < end->value)) {
+        contradiction(at(node), fmt::format("The interval of {} ends before it begins.", key.str()),
+                      "exchange the two times.");
+        return;
+      }
+      intervals.push_back({.begin = begin->value, .end = end->value, .place = at(node)});
+    }
+  }
+
+  toml::table root_;
+  ParameterFile result_;
+  Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+const ParameterValue* ParameterFile::find(std::string_view path) const {
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [&](const ParameterValue& value) { return equal_ignoring_case(value.path, path); });
+  return found == values.end() ? nullptr : &*found;
+}
+
+ParameterFile parse_parameter_file(const std::string& file, std::string_view text) {
+  return Reader(file, text).read();
+}
+
+ParameterFile read_parameter_file(const std::string& path) {
+  return parse_parameter_file(path, read_text_file(path));
+}
+
+}  // namespace hysteron::parameters

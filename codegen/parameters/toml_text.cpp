@@ -1,0 +1,105 @@
+#include "codegen/parameters/toml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "support/errors.hpp"
+#include "support/render.hpp"
+#include "support/utf8.hpp"
+
+namespace hysteron::parameters {
+namespace {
+
+/// Dots in one key. The library frees nested tables by recursion, so a key of 10^5 dots would overrun the stack.
+constexpr int most_dots = 32;
+
+void refuse_deep_keys(const std::string& file, std::string_view text) {
+  Place place{.file = file, .line = 1, .column = 1};
+  int dots = 0;
+  for (const char c : text) {
+    if (c == '.') {
+      ++dots;
+    } else if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) {
+      dots = 0;
+    }
+    if (dots > most_dots) {
+      throw InputError(error::parameter_file_syntax, place,
+                       fmt::format("There are more than {} dots in a row.", most_dots),
+                       "nest instances less deeply, or shorten the comment.");
+    }
+    place.line += c == '\n' ? 1 : 0;
+    place.column = c == '\n' ? 1 : place.column + ((static_cast<unsigned char>(c) & 0xC0U) != 0x80 ? 1 : 0);
+  }
+}
+
+struct KnownMistake {
+  std::string_view said;  ///< part of what the library says
+  std::string_view mend;
+};
+
+/// What those who come from Structured Text or a spreadsheet write.
+constexpr std::array known_mistakes{
+    KnownMistake{"expected a comment or whitespace, saw ','", "write a decimal point: 0.5."},
+    KnownMistake{"expected 'true', saw 'T'", "write true in small letters."},
+    KnownMistake{"expected 'false', saw 'F'", "write false in small letters."},
+    KnownMistake{"parsing floating-point: expected decimal digit",
+                 "write digits on both sides of the point: 0.5, 5.0."},
+    KnownMistake{"could not be interpreted as a value", "write a number that LREAL can hold, up to about 1.8e308."},
+    KnownMistake{"not representable in 64 bits",
+                 "write a whole number of at most 18 digits, or a real number with a point."},
+    KnownMistake{"utf-8", "save the file as UTF-8."},
+    KnownMistake{"end-of-file", "complete the last line; the file may have been cut off."},
+    KnownMistake{"saw ':'", "write an equals sign between name and value: C1 = 0.05."},
+};
+
+InputError translated(const std::string& file, std::string_view text, const toml::parse_error& said) {
+  Place place = place_of(file, said.source());
+  const std::string description = printable(said.description());
+  if (description.find("cannot redefine") != std::string::npos) {
+    // The library points behind the key. The line as a whole is meant.
+    Sources sources;
+    sources.put(file, text);
+    if (const auto line = sources.line(file, place.line)) {
+      const auto begin = std::min(line->find_first_not_of(" \t"), line->size());
+      place.column = static_cast<std::uint32_t>(begin) + 1;
+      place.length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(line->substr(begin))));
+    }
+    return {error::duplicate_key, place, "This key or table has been given before.",
+            "keep one of the two; a table may be opened only once."};
+  }
+  const auto colon = description.find(": ");
+  const bool prefixed = description.starts_with("Error while parsing ") && colon != std::string::npos;
+  const auto reason = prefixed
+                          ? fmt::format("{} ({})", description.substr(colon + 2), description.substr(20, colon - 20))
+                          : description;
+  const auto known = std::find_if(known_mistakes.begin(), known_mistakes.end(), [&](const KnownMistake& mistake) {
+    return description.find(mistake.said) != std::string::npos;
+  });
+  return {error::parameter_file_syntax, place, fmt::format("This is no TOML: {}.", reason),
+          known != known_mistakes.end()
+              ? std::string(known->mend)
+              : "write a table as [parameters.INV] and a value as C1 = 0.05; toml.io has the rules."};
+}
+
+}  // namespace
+
+Place place_of(const std::string& file, const toml::source_region& region) {
+  const bool one_line = region.end.line == region.begin.line && region.end.column > region.begin.column;
+  return {.file = file,
+          .line = region.begin.line,
+          .column = region.begin.column,
+          .length = one_line ? region.end.column - region.begin.column : 1};
+}
+
+toml::table parse_toml(const std::string& file, std::string_view text) {
+  refuse_deep_keys(file, text);
+  try {
+    return toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& said) {
+    throw translated(file, text, said);
+  }
+}
+
+}  // namespace hysteron::parameters

@@ -15,10 +15,9 @@ struct Branch {
           "Finds where a signal reverses. XIN is the signal itself, not its rate. Since the last branching point its "
           "extreme is held; once it has come back from there by more than EPS, a reversal is declared: Q is TRUE in "
           "that step and XB becomes the extreme. A plateau is no reversal. The first sample, and the sample at a "
-          "reset, "
-          "count as the start of a branch (XB) without a Q; the direction is 0 until the signal has moved by more "
-          "than EPS. EPS = 0 suits an exact reference; a measured or computed signal that dwells needs some of its "
-          "noise.",
+          "reset, count as the start of a branch (XB) without a Q; the direction is 0 until the signal has moved by "
+          "more than EPS. EPS = 0 suits an exact reference; a measured or computed signal that dwells needs some of "
+          "its noise.",
       .delay = "A reversal is seen in the first sample that lies more than EPS behind the extreme.",
       .source = "Strijbosch and Oomen, section II.B and Theorem 4"};
 

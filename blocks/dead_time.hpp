@@ -13,11 +13,11 @@ struct DeadTime {
       .equation = "XOUT(t) = XIN(t − DEAD_TIME), straight between samples",
       .meaning =
           "Transport delay of any length up to 1024 samples, whole or not. Before the first sample the signal is "
-          "taken to have stood at its first value (SETTLED) or at X0. R1 empties the delay: all that came before "
-          "the present sample is then X0. A longer dead time is held at 1024 samples, with ERROR.",
+          "taken to have stood at its first value (SETTLED) or at X0. R1 empties the delay: all that came before the "
+          "present sample is then X0. A longer dead time is held at 1024 samples, with ERROR.",
       .delay =
-          "DEAD_TIME; between samples, at the fraction f, the gain falls to |1 − f + f·exp(−jw)|: at the worst, f "
-          "= ½, cos(w/2) at w = ωTS.",
+          "DEAD_TIME; between samples, at the fraction f, the gain falls to |1 − f + f·exp(−jw)|: at the worst, f = "
+          "½, cos(w/2) at w = ωTS.",
       .source = "linear interpolation of the sampled signal",
       .effect = "delay"};
 
@@ -108,7 +108,7 @@ struct DeadTime {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     constexpr auto longest = static_cast<double>(capacity);
     const S wanted = params.DEAD_TIME / ts;
-    const S steps = max(min(wanted, S(longest)), S(0.0));
+    const S steps = max(min(S(longest), wanted), S(0.0));
     const Int<S> whole = to_int(steps);
     const S fraction = steps - to_real<S>(whole);
     const S earlier = before(params, state, in);

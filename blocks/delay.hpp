@@ -12,8 +12,8 @@ struct Delay {
       .group = Group::Dynamics,
       .equation = "XOUT(k) = XIN(k−1); X0 in the first sample and where R1",
       .meaning =
-          "The input of the step before: the block that closes a loop. In the first sample, and while R1 is "
-          "TRUE, XOUT is X0.",
+          "The input of the step before: the block that closes a loop. In the first sample, and while R1 is TRUE, "
+          "XOUT is X0.",
       .delay = "One sample, gain 1."};
 
   template <class S>

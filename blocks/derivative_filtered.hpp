@@ -14,8 +14,8 @@ struct DerivativeFiltered {
       .equation = "XOUT(k) = a·XOUT(k−1) + (1 − a)·(XIN(k) − XIN(k−1))/TS, a = exp(−TS/T1), where RUN; else 0",
       .meaning =
           "Rate of change of a noisy signal: s/(1 + T1·s), exact for a signal that runs straight between its "
-          "samples. T1 = 0 is HY_DERIVATIVE. In the first sample there is no history and XOUT is 0; RUN FALSE "
-          "gives 0, from which the filter starts again.",
+          "samples. T1 = 0 is HY_DERIVATIVE. In the first sample there is no history and XOUT is 0; RUN FALSE gives "
+          "0, from which the filter starts again.",
       .delay =
           "At low frequency 0.5 samples + a/(1 − a) samples, together T1 + TS²/(12·T1) for T1 above TS; gain "
           "sin(w/2)/(w/2)·(1 − a)/√(1 − 2a·cos(w) + a²) times the ideal ω at w = ωTS.",

@@ -15,14 +15,12 @@ struct HysteresisRo {
           "XOUT = y_i ± Y(|XIN − u_i|), Y(p) = C1·p + C2·p^(C3+1)/(C3+1); on the skeleton XOUT = Y0 ± Y(2|XIN − "
           "U0|)/2",
       .meaning =
-          "Hysteresis that remembers its last branching point (u_i, y_i), in closed form: exact at every sample time, "
-          "without drift. It finds its branching points itself, as HY_BRANCH does with the dead band EPS. START = 0 "
-          "begins on the skeleton curve about (U0, Y0), as a virgin actuator does; START = 1 or -1 begins in the "
-          "middle "
-          "of a loop, on a branch that left (U0, Y0) upwards or downwards. R1 begins so again, with the present "
-          "sample. "
-          "With EPS > 0 a return within the dead band runs back along the branch, and a declared reversal jumps by at "
-          "most Y(EPS).",
+          "Hysteresis that remembers its last branching point (u_i, y_i), in closed form: exact at every sample "
+          "time, without drift. It finds its branching points itself, as HY_BRANCH does with the dead band EPS. "
+          "START = 0 begins on the skeleton curve about (U0, Y0), as a virgin actuator does; START = 1 or -1 begins "
+          "in the middle of a loop, on a branch that left (U0, Y0) upwards or downwards. R1 begins so again, with "
+          "the present sample. With EPS > 0 a return within the dead band runs back along the branch, and a reversal "
+          "declared after it makes XOUT jump by less than EPS*SLOPE.",
       .delay = "None.",
       .source = "Strijbosch and Oomen, equations (2), (3) and (17); integrated in closed form"};
 

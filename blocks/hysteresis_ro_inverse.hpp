@@ -12,8 +12,8 @@ struct HysteresisRoInverse {
       .title = "Inverse of the Ramberg-Osgood hysteresis",
       .group = Group::Memory,
       .equation =
-          "XOUT = u_i ± Y⁻¹(|XIN − y_i|), Y(p) = C1·p + C2·p^(C3+1)/(C3+1); on the skeleton XOUT = U0 ± "
-          "Y⁻¹(2|XIN − Y0|)/2",
+          "XOUT = u_i ± Y⁻¹(|XIN − y_i|), Y(p) = C1·p + C2·p^(C3+1)/(C3+1); on the skeleton XOUT = U0 ± Y⁻¹(2|XIN − "
+          "Y0|)/2",
       .meaning =
           "The input that makes HY_HYSTERESIS_RO of the same parameters follow XIN exactly, at every sample and "
           "without drift: a feedforward in closed form. It finds the branching points of XIN itself; EPS is a dead "
@@ -67,8 +67,7 @@ struct HysteresisRoInverse {
     static constexpr auto fields() {
       return std::tuple{
           HY_FIELD(XOUT).in("'y").means("input for the hysteresis, a voltage say"),
-          HY_FIELD(P).in("'y").means("momentum: travel of XOUT since the branching point, twice that on the "
-                                     "skeleton"),
+          HY_FIELD(P).in("'y").means("momentum: travel of XOUT since the branching point, twice that on the skeleton"),
           HY_FIELD(SLOPE).in("'x/'y").means("slope of the loop, M(P)"),
           HY_FIELD(Q).means("TRUE in the step in which a reversal is declared")};
     }

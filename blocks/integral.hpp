@@ -13,10 +13,10 @@ struct Integral {
       .group = Group::Dynamics,
       .equation = "XOUT(k) = X0 where R1; else XOUT(k−1) + TS·XIN(k) where RUN; else XOUT(k−1)",
       .meaning =
-          "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. "
-          "The sum is compensated (Kahan), so that small increments are not lost: a plain REAL sum of 1 "
-          "over 100 s at 50 µs gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at "
-          "0. Where it must close a loop, use HY_INTEGRAL_FORWARD.",
+          "Integral by the backward Euler rule, as the standard's INTEGRAL: the present input counts at once. The "
+          "sum is compensated (Kahan), so that small increments are not lost: a plain REAL sum of 1 over 100 s at 50 "
+          "µs gives 101.97. RUN FALSE holds the value; R1 dominates and loads X0. Starts at 0. Where it must close a "
+          "loop, use HY_INTEGRAL_FORWARD.",
       .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), ahead by half a sample.",
       .source = "IEC 61131-3, INTEGRAL; W. Kahan, CACM 8 (1965) 40"};
 

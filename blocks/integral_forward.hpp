@@ -12,10 +12,10 @@ struct IntegralForward {
       .group = Group::Dynamics,
       .equation = "XOUT(k) = X0 where R1; XOUT(k+1) = XOUT(k) + TS·XIN(k) where RUN; else XOUT(k)",
       .meaning =
-          "Integral by the forward Euler rule: the output is the integral up to the start of the present "
-          "sampling interval, so that it does not depend on the present input and may close a loop. The state "
-          "of a plant is such an integral. Compensated as HY_INTEGRAL is. RUN FALSE holds the value; R1 "
-          "dominates and loads X0, from which the same interval already integrates. Starts at 0.",
+          "Integral by the forward Euler rule: the output is the integral up to the start of the present sampling "
+          "interval, so that it does not depend on the present input and may close a loop. The state of a plant is "
+          "such an integral. Compensated as HY_INTEGRAL is. RUN FALSE holds the value; R1 dominates and loads X0, "
+          "from which the same interval already integrates. Starts at 0.",
       .delay = "Ideal integral times (ωTS/2)/sin(ωTS/2), behind by half a sample.",
       .source = "W. Kahan, CACM 8 (1965) 40"};
 

@@ -13,11 +13,11 @@ struct Lag {
       .group = Group::Dynamics,
       .equation = "T1·XOUT' + XOUT = XIN",
       .meaning =
-          "First-order lag, exact at the samples for an input that runs straight between them (ramp-invariant); T1 = 0 "
-          "passes the input through. It starts as if the first input had stood for ever, so that a record which begins "
-          "away from 0 gives no transient; with SETTLED FALSE it starts at X0, as a plant at rest does. R1 loads X0. "
-          "A rate below 1e-36 counts as 0, so that no denormal numbers arise. XOUT depends on the present input: to "
-          "close a loop, put HY_DELAY in it.",
+          "First-order lag, exact at the samples for an input that runs straight between them (ramp-invariant); T1 = "
+          "0 passes the input through. It starts as if the first input had stood for ever, so that a record which "
+          "begins away from 0 gives no transient; with SETTLED FALSE it starts at X0, as a plant at rest does. R1 "
+          "loads X0. A rate below 1e-36 counts as 0, so that no denormal numbers arise. XOUT depends on the present "
+          "input: to close a loop, put HY_DELAY in it.",
       .delay = "T1 at low frequency; gain 1/√(1 + (ωT1)²) up to factors (sin(ωTS/2)/(ωTS/2))² of the straight line.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed.",
       .effect = "lag"};

@@ -13,9 +13,9 @@ struct LeadLag {
       .group = Group::Dynamics,
       .equation = "T2·XOUT' + XOUT = T1·XIN' + XIN",
       .meaning =
-          "Lead T1 over lag T2, exact at the samples for an input that runs straight between them "
-          "(ramp-invariant). T1 = T2 passes the input through; T2 = 0 is a pure lead, XIN + T1·XIN', with the "
-          "two-point derivative. The first sample, and R1, settle it: XOUT = XIN.",
+          "Lead T1 over lag T2, exact at the samples for an input that runs straight between them (ramp-invariant). "
+          "T1 = T2 passes the input through; T2 = 0 is a pure lead, XIN + T1·XIN', with the two-point derivative. "
+          "The first sample, and R1, settle it: XOUT = XIN.",
       .delay = "T2 − T1 at low frequency; high frequencies are raised by T1/T2.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed."};
 

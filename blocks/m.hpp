@@ -13,8 +13,8 @@ struct SlopeM {
       .equation = "XOUT = M(P)·XIN, M(P) = C1 + C2·P^C3; for P < 0, M(P) = C1 − C2·|P|^C3",
       .meaning =
           "The memory function of a MEM element: the slope of a hysteresis loop after the input has travelled P "
-          "since the last branching point. XIN is the rate of the input and XOUT the rate of the output. From "
-          "the Ramberg-Osgood constants y*, u*, α, γ: C1 = y*/u*, C2 = C1·α·γ/(2u*)^(γ−1), C3 = γ − 1.",
+          "since the last branching point. XIN is the rate of the input and XOUT the rate of the output. From the "
+          "Ramberg-Osgood constants y*, u*, α, γ: C1 = y*/u*, C2 = C1·α·γ/(2u*)^(γ−1), C3 = γ − 1.",
       .source = "Strijbosch and Oomen, equations (5) and (17)"};
 
   template <class S>

@@ -12,9 +12,8 @@ struct SlopeMInverse {
       .group = Group::Memory,
       .equation = "XOUT = XIN/M(P), M(P) = C1 + C2·P^C3; 0 where M(P) is not above 0",
       .meaning =
-          "The rate of the input that gives a wanted rate of the output: the heart of the feedforward. Where "
-          "M(P) is 0, negative or not a number (C2 < 0 and P too large), there is no inverse: ERROR is TRUE "
-          "and XOUT is 0.",
+          "The rate of the input that gives a wanted rate of the output: the heart of the feedforward. Where M(P) is "
+          "0, negative or not a number (C2 < 0 and P too large), there is no inverse: ERROR is TRUE and XOUT is 0.",
       .source = "Strijbosch and Oomen, equations (13) and (15)"};
 
   template <class S>

@@ -14,8 +14,8 @@ struct SlopeMTable {
       .equation = "XOUT = M(P)·XIN, M(P) straight between the points (P_TABLE, M_TABLE), held outside them",
       .meaning =
           "The memory function of a MEM element where no formula fits it: up to 32 measured points, of which the "
-          "first COUNT are used. P_TABLE must rise; that is checked at reset, and where it fails XOUT is 0 and "
-          "ERROR is TRUE. A table whose M_TABLE rises or falls throughout and stays above 0 is undone by "
+          "first COUNT are used. P_TABLE must rise; that is checked at reset, and where it fails XOUT is 0 and ERROR "
+          "is TRUE. A table whose M_TABLE rises or falls throughout and stays above 0 is undone by "
           "HY_M_TABLE_INVERSE.",
       .source = "Strijbosch and Oomen, equation (5)"};
 

@@ -13,8 +13,8 @@ struct SlopeMTableInverse {
       .group = Group::Memory,
       .equation = "XOUT = XIN/M(P), M(P) straight between the points (P_TABLE, M_TABLE); 0 where M(P) is not above 0",
       .meaning =
-          "The rate of the input that gives a wanted rate of the output, with the table of HY_M_TABLE. Where "
-          "the table gives no slope above 0, or its P_TABLE does not rise, ERROR is TRUE and XOUT is 0.",
+          "The rate of the input that gives a wanted rate of the output, with the table of HY_M_TABLE. Where the "
+          "table gives no slope above 0, or its P_TABLE does not rise, ERROR is TRUE and XOUT is 0.",
       .source = "Strijbosch and Oomen, equation (13)"};
 
   template <class S>

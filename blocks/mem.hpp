@@ -14,10 +14,10 @@ struct Mem {
       .equation = "XOUT = M(P)·XIN, P' = g(XIN), P = P0 where R1; M(P) = C1 + C2·P^C3; g(u) = |u| (G = 0) or u (G = 1)",
       .meaning =
           "An element whose gain depends on what has passed through it. G = 1 without resets: memristor (XIN "
-          "current, XOUT voltage), memcapacitor, meminductor, MEM damper (XIN force, XOUT velocity). G = 0 with "
-          "a reset at each branching point: the rates of a hysteresis. Its loop is pinched: XIN = 0 gives XOUT "
-          "= 0. For P < 0 the power is continued oddly, so that M stays one-to-one: C3 = 1 is the straight line "
-          "C1 + C2·P. Any other M or g: HY_MOMENTUM with HY_M_TABLE.",
+          "current, XOUT voltage), memcapacitor, meminductor, MEM damper (XIN force, XOUT velocity). G = 0 with a "
+          "reset at each branching point: the rates of a hysteresis. Its loop is pinched: XIN = 0 gives XOUT = 0. "
+          "For P < 0 the power is continued oddly, so that M stays one-to-one: C3 = 1 is the straight line C1 + "
+          "C2·P. Any other M or g: HY_MOMENTUM with HY_M_TABLE.",
       .delay = "P is the momentum at the start of the sampling interval (forward Euler).",
       .source = "Strijbosch and Oomen, equations (5), (6), Examples 2 and 3, Table I"};
 

@@ -14,9 +14,9 @@ struct MemInverse {
       .equation =
           "XOUT = XIN/M(P), P' = g(XOUT), P = P0 where R1; M(P) = C1 + C2·P^C3; g(u) = |u| (G = 0) or u (G = 1)",
       .meaning =
-          "The input that makes HY_MEM of the same parameters and resets follow XIN, sample by sample. Where M(P) "
-          "is not above 0 there is no inverse: ERROR is TRUE and XOUT is 0, so that a momentum with g(u) stays "
-          "where it is until a reset.",
+          "The input that makes HY_MEM of the same parameters and resets follow XIN, sample by sample. Where M(P) is "
+          "not above 0 there is no inverse: ERROR is TRUE and XOUT is 0, so that a momentum with g(u) stays where it "
+          "is until a reset.",
       .delay = "P is the momentum at the start of the sampling interval (forward Euler).",
       .source = "Strijbosch and Oomen, Theorem 6, equations (13) and (14)"};
 

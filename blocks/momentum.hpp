@@ -14,9 +14,9 @@ struct Momentum {
       .equation = "XOUT(k) = P0 where R1; XOUT(k+1) = XOUT(k) + TS·g(XIN(k)); g(u) = |u| (G = 0) or u (G = 1)",
       .meaning =
           "How far the input has travelled since the last reset. XIN is the rate of the input, R1 the branching "
-          "point. XOUT is the momentum at the start of the sampling interval, so that XIN may be computed from "
-          "it: the loop of HY_M_INVERSE and HY_MOMENTUM closes without a delay block. At a reset XOUT is P0 at "
-          "once, and the interval that begins there counts. The sum is compensated. Starts at 0.",
+          "point. XOUT is the momentum at the start of the sampling interval, so that XIN may be computed from it: "
+          "the loop of HY_M_INVERSE and HY_MOMENTUM closes without a delay block. At a reset XOUT is P0 at once, and "
+          "the interval that begins there counts. The sum is compensated. Starts at 0.",
       .delay = "Forward Euler: the integral up to the start of the interval.",
       .source = "Strijbosch and Oomen, equations (6) and (11)"};
 

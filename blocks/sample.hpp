@@ -12,9 +12,9 @@ struct Sample {
       .group = Group::Rate,
       .equation = "XOUT = XIN, at the instants of the slower part",
       .meaning =
-          "The border at which a slower part (@every) reads a signal of a faster one: the slower part sees every n-th "
-          "sample. What lies between is not averaged: filter it first, with HY_LAG say, where it holds frequencies "
-          "above half the slower rate. Within one rate it changes nothing.",
+          "The border at which a slower part (@every) reads a signal of a faster one: the slower part sees every "
+          "n-th sample. What lies between is not averaged: filter it first, with HY_LAG say, where it holds "
+          "frequencies above half the slower rate. Within one rate it changes nothing.",
       .delay = "None; frequencies above half the slower rate fold down.",
       .rate_transition = true};
 

@@ -14,9 +14,8 @@ struct SecondOrder {
       .equation = "T²·XOUT'' + 2·ZETA·T·XOUT' + XOUT = K·XIN, ω = 1/T",
       .meaning =
           "A mass on a spring, a current loop, a resonance: undamped natural frequency ω = 1/T, damping ratio ZETA. "
-          "Exact "
-          "at the samples for an input that runs straight between them (ramp-invariant), for every damping. It is "
-          "written with T rather than ω so that T = 0, K = 1 passes the input through. For T below TS/π the "
+          "Exact at the samples for an input that runs straight between them (ramp-invariant), for every damping. It "
+          "is written with T rather than ω so that T = 0, K = 1 passes the input through. For T below TS/π the "
           "oscillation lies above half the sample rate and cannot be seen: there XOUT = K·(XIN − 2·ZETA·T·XIN'). It "
           "starts as if the first input had stood for ever; with SETTLED FALSE at X0, at rest. R1 loads X0, at rest. "
           "Parts of the state below 1e-36 count as 0, so that no denormal numbers arise.",

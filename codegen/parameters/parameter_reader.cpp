@@ -233,7 +233,13 @@ class Reader {
 
   // ---- fit --------------------------------------------------------------------------------------------------------
 
-  /// A table of nothing but tables is an instance; one with settings, or an empty one, is a parameter.
+  /// A table below [fit] is a parameter where it is empty or has a setting, be it mistyped; else it is an instance.
+  static bool is_parameter(const toml::table& table) {
+    return table.empty() || std::any_of(table.cbegin(), table.cend(), [](const auto& entry) {
+             return !entry.second.is_table() && !nearest_name(entry.first.str(), fit_keys).empty();
+           });
+  }
+
   void read_fits(const toml::table& table, const std::string& path, int level) {
     for (const auto& [key, node] : table) {
       const auto below = path_below(path, key, level);
@@ -247,12 +253,10 @@ class Reader {
                            fmt::format("write {} = {{}}, or {} = {{min = 0.0, max = 1.0}}.", key.str(), key.str()));
         continue;
       }
-      const bool instance = !inner->empty() && std::all_of(inner->cbegin(), inner->cend(),
-                                                           [](const auto& entry) { return entry.second.is_table(); });
-      if (instance) {
-        read_fits(*inner, *below, level + 1);
-      } else {
+      if (is_parameter(*inner)) {
         read_fit(*inner, *below, at(key));
+      } else {
+        read_fits(*inner, *below, level + 1);
       }
     }
   }

@@ -141,11 +141,13 @@ TEST(LeadLag, UndoesALagOfItsLead) {
   double worst = 0.0;
   for (int k = 0; k < 2000; ++k) {
     const double x = std::sin(0.01 * k);
-    worst =
-        std::max(worst, std::fabs(lead({.XIN = lag({.XIN = x, .R1 = false, .X0 = 0.0}).XOUT, .R1 = false}).XOUT - x));
+    const double back = lead({.XIN = lag({.XIN = x, .R1 = false, .X0 = 0.0}).XOUT, .R1 = false}).XOUT;
+    if (k > 200) {  // the corner at the start has died away
+      worst = std::max(worst, std::fabs(back - x));
+    }
   }
   // The two-point derivative is late by half a sample: an error of T1·TS/2·|y''|.
-  EXPECT_LT(worst, 0.51 * t1 / ts * 1e-4);
+  EXPECT_NEAR(worst, 0.5 * t1 / ts * 1e-4, 0.02 * t1 / ts * 1e-4);
 }
 
 TEST(LeadLag, EqualTimeConstantsPassTheInputThrough) {

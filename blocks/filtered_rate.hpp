@@ -11,11 +11,12 @@
 
 namespace hysteron {
 
-/// x, or 0 below 1e-36: a decaying state would otherwise end among the denormal numbers, where processors are slow,
-/// and stay there. The same bound serves double and float (smallest normal number 1.2e-38).
+/// x, or 0 below 1e-36: a decaying state would otherwise end among the denormal numbers, where processors are slow, and
+/// stay there. The same bound serves double and float (smallest normal number 1.2e-38). The 0 is (x + 1) − 1 so that a
+/// dual number keeps its derivative: a tuner starts from effects that are 0 and whose derivative is not.
 template <class S>
 S without_denormals(const S& x) {
-  return select(abs(x) < S(1e-36), S(0.0), x);
+  return select(abs(x) < S(1e-36), (x + S(1.0)) - S(1.0), x);
 }
 
 /// 1 − exp(−TS/T), the part that one sample forgets; 1 for T up to TS/64. Slow time constants go through a series,

@@ -114,7 +114,7 @@ void Layout::blank_line() {
   }
 }
 
-/// The lines of a long comment keep their place below its beginning.
+/// The lines of a long comment keep their place below its beginning; those that stood left of it go below its text.
 void Layout::write_comment(const Element& comment) {
   const auto text = source_.substr(comment.span.offset, comment.span.length);
   auto end = text.find('\n');
@@ -137,8 +137,9 @@ void Layout::write_comment(const Element& comment) {
     const auto blanks = std::min(line.find_first_not_of(' '), line.size());
     append("\n");
     if (!line.empty() && line[blanks] != '\t') {
+      constexpr std::size_t text_indent = 3;  // below the text of `(* text`
       line.remove_prefix(blanks);
-      append(std::string(blanks + new_column - std::min(old_column, blanks + new_column), ' '));
+      append(std::string(new_column + (blanks >= old_column ? blanks - old_column : text_indent), ' '));
     }
     append(line);
     end = next;
@@ -185,6 +186,7 @@ void Layout::write(const std::vector<Element>& elements, std::size_t first, std:
   constexpr std::size_t step = 4;
   auto argument_column = column_ + step;
   std::size_t depth = 0;
+  bool is_broken_inside = false;  // the argument at hand
   const auto enter = [&](const Element& element) {
     depth += is_opening(element) ? 1 : 0;
     depth -= is_closing(element) && depth > 0 ? 1 : 0;
@@ -202,7 +204,9 @@ void Layout::write(const std::vector<Element>& elements, std::size_t first, std:
         enter(elements[end++]);
       }
       depth = outside;
-      if (!fits(elements, i, std::min(end + 1, last))) {
+      const bool breaks = (behind_argument && is_broken_inside) || !fits(elements, i, std::min(end + 1, last));
+      is_broken_inside = !behind_argument && (breaks || is_broken_inside);
+      if (breaks) {
         new_line(argument_column + (has_arguments && !behind_argument ? step : 0));
       }
     }

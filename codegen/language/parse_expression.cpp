@@ -173,6 +173,10 @@ ExpressionId Parser::primary(bool behind_minus) {
     advance();
     return make({.node = BoolLiteral{last_.keyword == Keyword::True}, .span = span_of(last_)}, 1);
   }
+  const bool is_sign = binary_sign(now()).strength >= 0 || is_unary_sign(now());
+  if (!is_sign && keyword_for_name("a value")) {
+    return no_expression;
+  }
   unexpected("a value", "Put a number, a name, INSTANCE.PIN or a function here.");
   return no_expression;
 }

@@ -48,7 +48,7 @@ void Parser::read_file() {
 }
 
 void Parser::outside() {
-  const bool unit = is(Keyword::Unit);
+  const bool unit = is(Keyword::Unit) || is(Keyword::UnitEnd);
   error(error::outside_function_block, span_of(now()),
         fmt::format("{} stands outside of a FUNCTION_BLOCK.", described(now())),
         unit ? "A diagram file holds FUNCTION_BLOCKs only; move the rest into a file of its own."
@@ -67,9 +67,9 @@ void Parser::function_block() {
   declarations_.push_back({.begin = begin, .end = last_.end(), .block = index, .is_head = true});
   while (!is(Keyword::EndFunctionBlock)) {
     if (ends_block()) {
-      error(error::missing_end, {begin, static_cast<std::uint32_t>(std::strlen("FUNCTION_BLOCK"))},
-            fmt::format("FUNCTION_BLOCK {} has no END_FUNCTION_BLOCK.", block.name.text),
-            "Write END_FUNCTION_BLOCK behind its last statement.");
+      missing_end({begin, static_cast<std::uint32_t>(std::strlen("FUNCTION_BLOCK"))},
+                  fmt::format("FUNCTION_BLOCK {} has no END_FUNCTION_BLOCK.", block.name.text),
+                  "Write END_FUNCTION_BLOCK behind its last statement.");
       block.span = since(begin);
       return;
     }
@@ -112,8 +112,8 @@ void Parser::section(FunctionBlock& block) {
     const auto second = ahead(1).symbol;
     const bool is_statement = is(Symbol::Identifier) && (second == Symbol::LeftParenthesis || second == Symbol::Dot);
     if (is_statement || ends_block() || is(Keyword::EndFunctionBlock) || starts_section()) {
-      error(error::missing_end, span_of(opening), fmt::format("The section {} has no END_VAR.", described(opening)),
-            "Write END_VAR behind its last declaration.");
+      missing_end(span_of(opening), fmt::format("The section {} has no END_VAR.", described(opening)),
+                  "Write END_VAR behind its last declaration.");
       return;
     }
     declaration(block, kind);
@@ -211,13 +211,7 @@ bool Parser::expect_name(Name& name, std::string_view wanted) {
     advance();
     return true;
   }
-  if (is(Symbol::Keyword) && !ends_block() && !starts_section() && !is(Keyword::EndVar) &&
-      !is(Keyword::EndFunctionBlock)) {
-    error(error::keyword_as_name, span_of(now()),
-          fmt::format("{} is a keyword of the language and cannot be {}.", described(now()), wanted),
-          "Choose another name.");
-    advance();
-  } else {
+  if (!keyword_for_name(wanted)) {
     unexpected(wanted, fmt::format("Put {} here.", wanted));
   }
   return false;
@@ -260,7 +254,8 @@ bool Parser::starts_section() const {
 }
 
 bool Parser::ends_block() const {
-  return is(Symbol::End) || is(Keyword::FunctionBlock) || is(Keyword::Unit);
+  const bool starts_unit = is(Keyword::Unit) && ahead(1).symbol == Symbol::Identifier;
+  return is(Symbol::End) || is(Keyword::FunctionBlock) || starts_unit;
 }
 
 std::string Parser::described(const Token& token) const {
@@ -274,6 +269,26 @@ void Parser::unexpected(std::string_view wanted, std::string mend) {
   }
   error(error::unexpected_symbol, span_of(now()),
         fmt::format("{} stands where {} is expected.", described(now()), wanted), std::move(mend));
+}
+
+/// Where a comment without an end took the rest of the file along, that has been said.
+void Parser::missing_end(Span opening, std::string cause, std::string mend) {
+  if (!reporter_.has_error_within(last_.end(), now().end())) {
+    error(error::missing_end, opening, std::move(cause), std::move(mend));
+  }
+}
+
+/// Reports and passes over a keyword that is used like a name, unless it rather begins or ends a part of a block.
+bool Parser::keyword_for_name(std::string_view wanted) {
+  if (!is(Symbol::Keyword) || ends_block() || starts_section() || is(Keyword::EndVar) ||
+      is(Keyword::EndFunctionBlock)) {
+    return false;
+  }
+  error(error::keyword_as_name, span_of(now()),
+        fmt::format("{} is a keyword of the language and cannot be {}.", described(now()), wanted),
+        "Choose another name.");
+  advance();
+  return true;
 }
 
 void Parser::error(int number, Span span, std::string cause, std::string mend) {

@@ -82,6 +82,8 @@ class Parser {
   [[nodiscard]] Name name_of(const Token& token) const { return {text_of(span_of(token)), span_of(token)}; }
   [[nodiscard]] std::string described(const Token& token) const;
   void unexpected(std::string_view wanted, std::string mend);
+  void missing_end(Span opening, std::string cause, std::string mend);
+  bool keyword_for_name(std::string_view wanted);
   void error(int number, Span span, std::string cause, std::string mend);
 
   SourceFile& file_;

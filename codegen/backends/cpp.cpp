@@ -385,6 +385,12 @@ class CppHeader {
 
   std::string statements(const std::vector<Statement>& list) {
     const auto uses = count_uses(routine_.tape, list);
+    own_names_.assign(routine_.tape.size(), {});
+    for (const Statement& statement : list) {
+      if (statement.kind == Statement::Kind::Define && statement.target == 1 && own_names_[statement.value].empty()) {
+        own_names_[statement.value] = statement.name;
+      }
+    }
     std::string text;
     std::string indent = "  ";
     std::string section;
@@ -466,9 +472,11 @@ class CppHeader {
         continue;
       }
       if (entered) {
-        if (uses[id] > 1 && (with_root || id != root)) {
+        const std::string_view own = own_names_[id];
+        if ((uses[id] > 1 || !own.empty()) && (with_root || id != root)) {
           const std::string expression = expressions_.text(id);
-          const std::string name = locals_.make(fmt::format("{}_t", owner.substr(0, owner.find('#'))));
+          const std::string name =
+              locals_.make(own.empty() ? fmt::format("{}_t", owner.substr(0, owner.find('#'))) : std::string(own));
           lines += fmt::format("{}const {} {} = {};\n", indent, cpp_type(value.type), name, expression);
           expressions_.name(id, name);
         }
@@ -493,6 +501,7 @@ class CppHeader {
   std::vector<std::string> output_names_;
   std::vector<Member> parameter_members_;
   std::vector<Member> cell_members_;
+  std::vector<std::string_view> own_names_;  ///< by value: the output or next state that it is
 };
 
 void require_sample_time(const Graph& graph) {

@@ -68,7 +68,10 @@ void CppExpressions::binary(const Value& value, std::string_view spelled, int st
     out += '(';
   }
   const auto side = [&](ValueId id, int needed) {
-    const bool mixed = value.op == Op::Or && tape_[id].op == Op::And && !is_named(id);
+    // Brackets that C++ does not need, but its readers do.
+    const Op inner = tape_[id].op;
+    const bool mixed = !is_named(id) && ((value.op == Op::Or && inner == Op::And) ||
+                                         (strength == Equality && inner >= Op::Less && inner <= Op::IntNotEqual));
     print(id, mixed ? Primary : needed, out);
   };
   side(value.args[0], strength == Equality || strength == Relation ? strength + 1 : strength);
@@ -203,6 +206,9 @@ void CppExpressions::print(ValueId id, int outer, std::string& out) const {
     case Op::Or:
       return binary(value, "||", LogicalOr, outer, out);
     case Op::Not:
+      if (const Value& inner = tape_[value.args[0]]; inner.op == Op::Not && !is_named(value.args[0])) {
+        return print(inner.args[0], outer, out);
+      }
       out += '!';
       print(value.args[0], Primary, out);
       return;

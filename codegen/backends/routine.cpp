@@ -184,6 +184,9 @@ class RoutineBuilder {
     const Op op = routine_.tape[value].op;
     const bool constant = is_literal(op) || op == Op::Input || op == Op::Parameter || op == Op::SampleTime;
     if (!constant) {
+      if (always_named) {
+        mark_defined(value);
+      }
       routine_.step.push_back(
           {.kind = Statement::Kind::Define, .target = always_named ? 1U : 0U, .value = value, .name = std::move(name)});
     }
@@ -253,8 +256,15 @@ class RoutineBuilder {
     routine_.step.insert(routine_.step.end(), sets.begin(), sets.end());
   }
 
+  [[nodiscard]] bool defined(ValueId id) const { return id < defined_.size() && defined_[id]; }
+  void mark_defined(ValueId id) {
+    defined_.resize(routine_.tape.size(), false);
+    defined_[id] = true;
+  }
+
   void name_first(const Node& node, ValueId value, std::uint32_t cell, std::string_view what) {
     if (!is_literal(routine_.tape[value].op)) {
+      mark_defined(value);
       routine_.step.push_back({.kind = Statement::Kind::Define,
                                .target = 1,
                                .value = value,
@@ -262,16 +272,23 @@ class RoutineBuilder {
     }
   }
 
-  [[nodiscard]] bool reads_cell(ValueId root, std::uint32_t cell) const {
+  bool reads_cell(ValueId root, std::uint32_t cell) {
+    seen_.resize(routine_.tape.size(), 0);
+    ++search_;
     std::vector<ValueId> stack{root};
     while (!stack.empty()) {
-      const Value& value = routine_.tape[stack.back()];
+      const ValueId id = stack.back();
       stack.pop_back();
+      if (seen_[id] == search_) {
+        continue;
+      }
+      seen_[id] = search_;
+      const Value& value = routine_.tape[id];
       if (value.op == Op::Cell && value.index == cell) {
         return true;
       }
       for (const ValueId arg : value.args) {
-        if (arg != no_value) {
+        if (arg != no_value && !defined(arg)) {
           stack.push_back(arg);
         }
       }
@@ -384,6 +401,9 @@ class RoutineBuilder {
   std::vector<ValueId> outputs_;     ///< by output of any node
   std::vector<std::uint32_t> held_;  ///< by output: the cell that holds it between the steps of a slower rate
   std::unordered_map<std::uint32_t, std::vector<ValueId>> laid_;
+  std::vector<bool> defined_;        ///< values that have a name by now: their cells were read before
+  std::vector<std::uint32_t> seen_;  ///< by value: the last search that met it
+  std::uint32_t search_ = 0;
 };
 
 }  // namespace

@@ -1,0 +1,149 @@
+// Generated against interpreted: random programs, compiled by the system's compiler, give the interpreter's bits.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "codegen/backends/cpp.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "tests/codegen/random_program.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+constexpr int programs = 40;
+constexpr int instances = 30;
+constexpr int steps = 400;
+
+/// The same pseudo-random inputs here and in the generated program.
+struct Inputs {
+  std::uint64_t state = 88172645463325252ULL;
+  std::uint64_t next() {
+    state ^= state << 13U;
+    state ^= state >> 7U;
+    state ^= state << 17U;
+    return state;
+  }
+  double real() { return static_cast<double>(next() >> 11U) * 0x1p-53 * 6.0 - 3.0; }
+};
+constexpr std::string_view inputs_text = R"(
+struct Inputs {
+  std::uint64_t state = 88172645463325252ULL;
+  std::uint64_t next() { state ^= state << 13U; state ^= state >> 7U; state ^= state << 17U; return state; }
+  double real() { return static_cast<double>(next() >> 11U) * 0x1p-53 * 6.0 - 3.0; }
+};
+)";
+
+/// A hash of the outputs' bits; all not-a-numbers are one.
+template <class Real>
+void mix(std::uint64_t& hash, Real value) {
+  std::uint64_t bits = 0x7FF8;
+  if (value == value) {
+    if constexpr (sizeof(Real) == 8) {
+      bits = std::bit_cast<std::uint64_t>(value);
+    } else {
+      bits = std::bit_cast<std::uint32_t>(value);
+    }
+  }
+  hash = (hash ^ bits) * 0x100000001B3ULL;
+}
+
+template <class Real>
+std::uint64_t interpreted(const Program& program) {
+  Machine<Real> machine(program);
+  Inputs inputs;
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (int k = 0; k < steps; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      machine.set_input(i, static_cast<Real>(inputs.real()));
+    }
+    machine.set_input(3, static_cast<Real>(inputs.next() % 2));
+    machine.set_input(4, static_cast<Real>(inputs.next() % 8 == 0));
+    machine.set_input(5, static_cast<Real>(inputs.next() % 5));
+    machine.step();
+    for (std::size_t i = 0; i < program.graph.outputs.size(); ++i) {
+      mix(hash, machine.output(i));
+    }
+  }
+  return hash;
+}
+
+std::string compiler_says(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <class Real>
+void hold_generated_against_interpreted() {
+  const test::ScratchFolder folder;
+  std::string main_text = "#include <bit>\n#include <cstdint>\n#include <cstdio>\n";
+  std::string calls;
+  std::vector<std::uint64_t> expected;
+  for (int i = 0; i < programs; ++i) {
+    const std::string name = "P" + std::to_string(i);
+    const RandomDiagram diagram(static_cast<std::uint64_t>(i) + 1000 * sizeof(Real), name, instances);
+    const Program program = diagram.program();
+    expected.push_back(interpreted<Real>(program));
+    const GeneratedFile header = generate_cpp_header(program, {.float32 = sizeof(Real) == 4});
+    std::ofstream(folder.path() / header.name) << header.text;
+    main_text += "#include \"" + header.name + "\"\n";
+    calls += fmt::format("  run<p{0}::Params, p{0}::State, p{0}::In>(p{0}::reset, p{0}::step);\n", i);
+  }
+  main_text += inputs_text;
+  main_text += fmt::format("using Real = {};\nusing Bits = {};\n", sizeof(Real) == 4 ? "float" : "double", sizeof(Real) == 4 ? "std::uint32_t" : "std::uint64_t");
+  main_text += R"(
+void mix(std::uint64_t& hash, Real value) {
+  hash = (hash ^ (value == value ? std::uint64_t{std::bit_cast<Bits>(value)} : 0x7FF8U)) * 0x100000001B3ULL;
+}
+template <class Params, class State, class In, class Reset, class Step>
+void run(Reset reset, Step step) {
+  Params params;
+  State state;
+  In in;
+  reset(params, state);
+  Inputs inputs;
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (int k = 0; k < 400; ++k) {
+    in.x1 = static_cast<Real>(inputs.real());
+    in.x2 = static_cast<Real>(inputs.real());
+    in.x3 = static_cast<Real>(inputs.real());
+    in.b1 = inputs.next() % 2 != 0;
+    in.b2 = inputs.next() % 8 == 0;
+    in.n1 = static_cast<std::int32_t>(inputs.next() % 5);
+    const auto out = step(params, state, in);
+    mix(hash, out.y0);
+    mix(hash, out.y1);
+    mix(hash, out.y2);
+    mix(hash, out.y3);
+    mix(hash, static_cast<Real>(out.q));
+    mix(hash, static_cast<Real>(out.n));
+  }
+  std::printf("%llu\n", static_cast<unsigned long long>(hash));
+}
+int main() {
+)" + calls + "}\n";
+  std::ofstream(folder.path() / "main.cpp") << main_text;
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  const std::string compile = fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare -ffp-contract=off {} -o {} 2> {}", at("main.cpp"), at("run"), at("log"));
+  ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
+  ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("hashes")).c_str()), 0);
+  std::ifstream hashes(at("hashes"));
+  for (int i = 0; i < programs; ++i) {
+    std::uint64_t got = 0;
+    hashes >> got;
+    EXPECT_EQ(got, expected[static_cast<std::size_t>(i)])
+        << RandomDiagram(static_cast<std::uint64_t>(i) + 1000 * sizeof(Real), "P", instances).text();
+  }
+}
+
+TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) { hold_generated_against_interpreted<double>(); }
+TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) { hold_generated_against_interpreted<float>(); }
+
+}  // namespace
+}  // namespace hysteron::testing

@@ -1,0 +1,157 @@
+// Random diagrams: instances of any block, wired at random, with feedback through delays.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/elaborate.hpp"
+#include "codegen/trace/block_type.hpp"
+
+namespace hysteron::testing {
+
+class RandomDiagram {
+ public:
+  RandomDiagram(std::uint64_t seed, std::string name, int instances) : engine_(seed), name_(std::move(name)) { write(instances); }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+  /// The program, without a check of units (random wires do not care).
+  [[nodiscard]] Program program() const {
+    Diagnostics diagnostics;
+    const auto source = std::make_shared<const language::SourceFile>(language::parse(name_, text_, diagnostics));
+    const Definitions definitions = define(source, diagnostics);
+    Program result;
+    result.graph = elaborate(definitions, 0, diagnostics);
+    result.schedule = schedule(result.graph, diagnostics);
+    if (diagnostics.has_errors()) {
+      throw InputError(diagnostics);
+    }
+    return result;
+  }
+
+ private:
+  std::size_t pick(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+  double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+
+  std::string literal(Type type) {
+    switch (type) {
+      case Type::Real:
+        return fmt::format("({:.6f})", 4.0 * unit() - 2.0);
+      case Type::Int:
+        return fmt::format("{}", pick(7));
+      case Type::Bool:
+        return pick(2) != 0 ? "TRUE" : "FALSE";
+      default:
+        return "";
+    }
+  }
+
+  std::string source(Type type, int depth = 0) {
+    const auto& list = sources_[static_cast<std::size_t>(type)];
+    if (depth < 2 && pick(4) == 0) {
+      const auto real = [&] { return source(Type::Real, depth + 1); };
+      const auto truth = [&] { return source(Type::Bool, depth + 1); };
+      const auto integer = [&] { return source(Type::Int, depth + 1); };
+      switch (type) {
+        case Type::Real: {
+          const std::vector<std::string> forms{fmt::format("({} + {})", real(), real()),        fmt::format("({} - {} * {})", real(), real(), real()),
+                                               fmt::format("({} / ({} - {}))", real(), real(), real()), fmt::format("(-({}))", real()),
+                                               fmt::format("SEL({}, {}, {})", truth(), real(), real()), fmt::format("MIN({}, {})", real(), real()),
+                                               fmt::format("LIMIT(-1.0, {}, 1.0)", real()),     fmt::format("ABS({})", real()),
+                                               fmt::format("SIN({})", real()),                   fmt::format("EXP(-(ABS({})))", real()),
+                                               fmt::format("(ABS({}) ** ({}))", real(), real()),     fmt::format("DINT_TO_LREAL({})", integer()),
+                                               fmt::format("({} - ({} - {}))", real(), real(), real()), fmt::format("({} / {} / {})", real(), real(), real())};
+          return forms[pick(forms.size())];
+        }
+        case Type::Bool: {
+          const std::vector<std::string> forms{fmt::format("({} < {})", real(), real()), fmt::format("({} AND {} OR {})", truth(), truth(), truth()),
+                                               fmt::format("({} XOR {})", truth(), truth()), fmt::format("(NOT {})", truth()),
+                                               fmt::format("({} >= {})", integer(), integer()), fmt::format("({} = {})", truth(), truth())};
+          return forms[pick(forms.size())];
+        }
+        case Type::Int: {
+          const std::vector<std::string> forms{fmt::format("({} + {})", integer(), integer()), fmt::format("({} * {} - {})", integer(), integer(), integer()),
+                                               fmt::format("({} MOD {})", integer(), integer()), fmt::format("({} / {})", integer(), integer()),
+                                               fmt::format("LREAL_TO_DINT({})", real()), fmt::format("TRUNC({})", real())};
+          return forms[pick(forms.size())];
+        }
+        default:
+          break;
+      }
+    }
+    return list.empty() || pick(8) == 0 ? literal(type) : list[pick(list.size())];
+  }
+
+  std::string setting(const Field& field) {
+    const double low = std::isfinite(field.minimum) ? field.minimum + (field.above_minimum ? 0.01 : 0.0) : -2.0;
+    const double high = std::isfinite(field.maximum) ? field.maximum : low + 3.0;
+    if (field.type == Type::Int) {
+      return fmt::format("{}", static_cast<int>(low + std::floor(unit() * (std::min(high, low + 5.0) - low + 1.0))));
+    }
+    return field.type == Type::Bool ? literal(Type::Bool) : fmt::format("{:.6f}", low + unit() * (high - low));
+  }
+
+  void write(int instances) {
+    const auto types = block_types();
+    std::string declarations;
+    std::string statements;
+    std::string late;
+    sources_[static_cast<std::size_t>(Type::Real)] = {"X1", "X2", "X3"};
+    sources_[static_cast<std::size_t>(Type::Bool)] = {"B1", "B2"};
+    sources_[static_cast<std::size_t>(Type::Int)] = {"N1"};
+    for (int i = 0; i < 3; ++i) {  // feedback
+      declarations += fmt::format("    Z{} : HY_DELAY;\n", i);
+      sources_[static_cast<std::size_t>(Type::Real)].push_back(fmt::format("Z{}.XOUT", i));
+    }
+    for (int i = 0; i < instances; ++i) {
+      const BlockType& type = types[pick(types.size())];
+      std::vector<std::string> settings;
+      for (const Field& param : type.params) {
+        if (param.length > 1) {
+          settings.push_back(fmt::format("{} := [-2.0, -0.5, 0.25, 3.0]", param.name));
+        } else if (param.name == "COUNT") {
+          settings.emplace_back("COUNT := 4");
+        } else if (param.required || pick(2) == 0) {
+          settings.push_back(fmt::format("{} := {}", param.name, setting(param)));
+        }
+      }
+      declarations += fmt::format("    I{} : {}{};\n", i, type.about.name, settings.empty() ? "" : fmt::format(" := ({})", fmt::join(settings, ", ")));
+      std::vector<std::string> arguments;
+      for (const Field& input : type.inputs) {
+        if (input.required || pick(3) != 0) {
+          arguments.push_back(fmt::format("{} := {}", input.name, source(input.type)));
+        }
+      }
+      statements += fmt::format("  I{}({});\n", i, fmt::join(arguments, ", "));
+      for (const Field& output : type.outputs) {
+        if (output.type != Type::Word) {
+          sources_[static_cast<std::size_t>(output.type)].push_back(fmt::format("I{}.{}", i, output.name));
+        }
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      // Bounded, so that feedback does not run away to infinity at once.
+      late += fmt::format("  Z{}(XIN := LIMIT(-10.0, {}, 10.0));\n", i, source(Type::Real));
+    }
+    std::string outputs;
+    for (int i = 0; i < 4; ++i) {
+      outputs += fmt::format("    Y{} : LREAL;\n", i);
+      late += fmt::format("  Y{} := {};\n", i, source(Type::Real));
+    }
+    text_ = fmt::format("FUNCTION_BLOCK {} (* @ts 1ms *)\n  VAR_INPUT\n    X1, X2, X3 : LREAL;\n    B1, B2 : BOOL;\n    N1 : DINT;\n  END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N := {};\nEND_FUNCTION_BLOCK\n",
+                        name_, outputs, declarations, statements, late, source(Type::Bool), source(Type::Int));
+  }
+
+  std::mt19937_64 engine_;
+  std::string name_;
+  std::string text_;
+  std::array<std::vector<std::string>, 4> sources_;
+};
+
+}  // namespace hysteron::testing

@@ -84,12 +84,28 @@ inline constexpr int wrong_value_type = 604;
 inline constexpr int parameter_not_finite = 605;
 inline constexpr int contradicting_range = 606;
 inline constexpr int unwritable_file = 700;
+inline constexpr int sample_time_mismatch = 704;
+inline constexpr int input_out_of_range = 705;
+inline constexpr int output_not_finite = 706;
+inline constexpr int unfit_value = 707;
+inline constexpr int unknown_signal = 708;
+inline constexpr int overwrites_input = 709;
 inline constexpr int too_few_points = 710;
 inline constexpr int start_without_value = 711;
 inline constexpr int no_room_in_bounds = 712;
 inline constexpr int no_motion = 713;
 inline constexpr int unusable_point = 714;
 inline constexpr int nothing_above_c1 = 715;
+inline constexpr int test_file_syntax = 720;
+inline constexpr int unknown_test_key = 721;
+inline constexpr int wrong_test_value = 722;
+inline constexpr int unusable_test = 723;
+inline constexpr int missing_test_file = 724;
+inline constexpr int no_compiler = 725;
+inline constexpr int generated_code_fails = 726;
+inline constexpr int no_test_selected = 727;
+inline constexpr int bad_usage = 730;
+inline constexpr int foreign_file = 731;
 }  // namespace error
 
 inline constexpr std::array error_titles{
@@ -163,12 +179,28 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::parameter_not_finite, "Parameter that is not a finite number"},
     ErrorTitle{error::contradicting_range, "Range or interval that contradicts itself"},
     ErrorTitle{error::unwritable_file, "File cannot be written"},
+    ErrorTitle{error::sample_time_mismatch, "Sample times of record and diagram differ"},
+    ErrorTitle{error::input_out_of_range, "Input outside of its range"},
+    ErrorTitle{error::output_not_finite, "Output that is not a finite number"},
+    ErrorTitle{error::unfit_value, "Value that an input cannot take"},
+    ErrorTitle{error::unknown_signal, "Unknown signal"},
+    ErrorTitle{error::overwrites_input, "Output that would overwrite an input"},
     ErrorTitle{error::too_few_points, "Too few points for a fit"},
     ErrorTitle{error::start_without_value, "Model without a value at the start"},
     ErrorTitle{error::no_room_in_bounds, "Bounds that leave no room for the start"},
     ErrorTitle{error::no_motion, "No sample above the rate threshold"},
     ErrorTitle{error::unusable_point, "Point that a fit cannot use"},
     ErrorTitle{error::nothing_above_c1, "Nothing left for the logarithm of M - C1"},
+    ErrorTitle{error::test_file_syntax, "Test file is not TOML"},
+    ErrorTitle{error::unknown_test_key, "Unknown key in a test file"},
+    ErrorTitle{error::wrong_test_value, "Wrong value in a test file"},
+    ErrorTitle{error::unusable_test, "Test case that cannot be run or checks nothing"},
+    ErrorTitle{error::missing_test_file, "No test file"},
+    ErrorTitle{error::no_compiler, "No C++ compiler"},
+    ErrorTitle{error::generated_code_fails, "Generated code that does not compile or run"},
+    ErrorTitle{error::no_test_selected, "No test case to run"},
+    ErrorTitle{error::bad_usage, "Command line that is not understood"},
+    ErrorTitle{error::foreign_file, "File that Hysteron did not write"},
 };
 
 }  // namespace hysteron

@@ -3,14 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "records/csv.hpp"
-#include "support/diagnostic.hpp"
-#include "support/render.hpp"
+#include "tests/fuzz/csv_property.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -50,29 +47,9 @@ TEST(CsvReader, DamagedFilesEndInARecordOrAnError) {
   int errors = 0;
   for (int i = 0; i < 20000; ++i) {
     const auto text = test::mutated(seeds[random() % seeds.size()], pieces, random);
-    try {
-      const Record record = parse_csv("log.csv", text);
-      ASSERT_GE(record.size(), 2U) << text;
-      ASSERT_GT(record.sample_time(), 0.0) << text;
-      ASSERT_TRUE(std::isfinite(record.sample_time())) << text;
-      for (const Column& column : record.columns()) {
-        ASSERT_EQ(column.values.size(), record.size()) << text;
-      }
-      // What was read can be written and read again.
-      ASSERT_EQ(parse_csv("again.csv", csv_text(record)).names(), record.names()) << text;
-      ++records;
-    } catch (const InputError& refused) {
-      for (const Diagnostic& diagnostic : refused.diagnostics().all()) {
-        ASSERT_TRUE(diagnostic.number > 500 && diagnostic.number < 600) << text;
-        ASSERT_EQ(diagnostic.place.file, "log.csv") << diagnostic.cause << text;
-        ASSERT_FALSE(diagnostic.cause.empty());
-        ASSERT_FALSE(diagnostic.mend.empty());
-      }
-      Sources sources;
-      sources.put("log.csv", text);
-      ASSERT_FALSE(as_text(refused.diagnostics(), sources).empty());
-      ++errors;
-    }
+    const auto outcome = test::read_as_record(text);
+    ASSERT_EQ(outcome.flaw, "") << text;
+    ++(outcome.accepted ? records : errors);
   }
   EXPECT_GT(records, 1000) << "mutations too harsh to reach the far end";
   EXPECT_GT(errors, 1000) << "mutations too tame";

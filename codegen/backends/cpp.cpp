@@ -193,7 +193,7 @@ class CppHeader {
         "Sample time {} s. State: {} bytes. Operations a step: {} (calls of exp, log, power and the like: {}).",
         number_text(graph_.sample_time()), state_bytes(), routine_.operations, routine_.function_calls));
     line(fmt::format("Hash of diagram and parameters: {}.", program_hash(program_)));
-    line("Compile with -ffp-contract=off and without -ffast-math: then a step has the bits that `hysteron run` shows.");
+    line(fmt::format("Compile with {}: then a step has the bits that `hysteron run` shows.", cpp_numeric_flags));
     line("");
     text += schedule_lines();
     return text + "#pragma once\n\n";

@@ -2,11 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/compile.hpp"
 
 namespace hysteron {
+
+/// What generated code is to be compiled with, so that it has the interpreter's bits: no fused multiply-add, and no
+/// exp, pow or atan of constants at compile time, where the compiler rounds better than the library.
+inline constexpr std::string_view cpp_numeric_flags = "-ffp-contract=off -frounding-math";
 
 struct GeneratedFile {
   std::string name;

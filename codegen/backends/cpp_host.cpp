@@ -111,8 +111,9 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# A fused multiply-add or a reordered sum would change the bits that the diagram defines.
-add_compile_options(-Wall -Wextra -ffp-contract=off)
+# A fused multiply-add, a reordered sum, or a function of constants that the compiler rounds in its own way would change
+# the bits that the diagram defines.
+add_compile_options(-Wall -Wextra {flags})
 add_executable({name}_run main.cpp)
 )";
 
@@ -155,7 +156,8 @@ GeneratedFile cpp_host_main(const Program& program) {
 
 GeneratedFile cpp_host_cmake(const Program& program) {
   return {"CMakeLists.txt",
-          fmt::format(fmt::runtime(cmake_text), fmt::arg("name", lower_identifier(program.graph.name)))};
+          fmt::format(fmt::runtime(cmake_text), fmt::arg("name", lower_identifier(program.graph.name)),
+                      fmt::arg("flags", cpp_numeric_flags))};
 }
 
 }  // namespace hysteron

@@ -130,7 +130,7 @@ int main() {
 )" + calls + "}\n";
   std::ofstream(folder.path() / "main.cpp") << main_text;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
-  const std::string compile = fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare -ffp-contract=off {} -o {} 2> {}", at("main.cpp"), at("run"), at("log"));
+  const std::string compile = fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare {} {} -o {} 2> {}", cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
   ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
   ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("hashes")).c_str()), 0);
   std::ifstream hashes(at("hashes"));

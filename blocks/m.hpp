@@ -22,14 +22,7 @@ struct SlopeM {
   template <class S>
   using State = NoFields<S>;
   template <class S>
-  struct In {
-    S XIN;
-    S P;
-    using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'u").means("rate of the input"), HY_FIELD(P).in("'p").means("momentum")};
-    }
-  };
+  using In = SlopeIn<S, "'u", "rate of the input">;
   template <class S>
   struct Out {
     S XOUT;
@@ -43,8 +36,8 @@ struct SlopeM {
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
-    const S slope = mem_slope(params.C1, params.C2, params.C3, in.P);  // (17)
-    return {.XOUT = slope * in.XIN, .M = slope};                       // (5)
+    const S slope = mem_slope(params.C1, params.C2, params.C3, in.momentum());  // (17)
+    return {.XOUT = slope * in.XIN, .M = slope};                                // (5)
   }
 };
 

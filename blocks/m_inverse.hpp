@@ -21,15 +21,7 @@ struct SlopeMInverse {
   template <class S>
   using State = NoFields<S>;
   template <class S>
-  struct In {
-    S XIN;
-    S P;
-    using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'y").means("wanted rate of the output"),
-                        HY_FIELD(P).in("'p").means("momentum")};
-    }
-  };
+  using In = SlopeIn<S, "'y", "wanted rate of the output">;
   template <class S>
   struct Out {
     S XOUT;
@@ -47,7 +39,8 @@ struct SlopeMInverse {
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
-    const InverseOfSlope<S> inverse = invert_slope(mem_slope(params.C1, params.C2, params.C3, in.P), in.XIN);  // (15)
+    const InverseOfSlope<S> inverse =
+        invert_slope(mem_slope(params.C1, params.C2, params.C3, in.momentum()), in.XIN);  // (15)
     return {.XOUT = inverse.input, .M = inverse.slope, .ERROR = inverse.failed, .ERRORID = inverse.reason};
   }
 };

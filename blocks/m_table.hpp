@@ -46,7 +46,7 @@ struct SlopeMTable {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const S slope = table_slope(params, in.P);
+    const S slope = table_slope(params, in.momentum());
     return {.XOUT = select(state.RISING, slope * in.XIN, S(0.0)),  // (5)
             .M = select(state.RISING, slope, S(0.0)),
             .ERROR = !state.RISING,

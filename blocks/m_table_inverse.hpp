@@ -44,7 +44,7 @@ struct SlopeMTableInverse {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const S slope = select(state.RISING, table_slope(params, in.P), S(0.0));
+    const S slope = select(state.RISING, table_slope(params, in.momentum()), S(0.0));
     const InverseOfSlope<S> inverse = invert_slope(slope, in.XIN);  // (13)
     return {.XOUT = inverse.input,
             .M = slope,

@@ -35,6 +35,21 @@ struct MemSlopeParams {
   }
 };
 
+/// The inputs of a block that applies M(p) or its inverse. At a branching point the momentum begins anew at once, while
+/// HY_MOMENTUM, which closes the loop, still gives that of the branch before: hence R1 here too.
+template <class S, Label unit, Label meaning>
+struct SlopeIn {
+  S XIN;
+  S P;
+  Bool<S> R1;
+  using Self = SlopeIn;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(XIN).in(unit).means(meaning), HY_FIELD(P).in("'p").means("momentum"),
+                      HY_FIELD(R1).otherwise(0.0).means("branching point: P counts as 0")};
+  }
+  [[nodiscard]] S momentum() const { return select(R1, S(0.0), P); }
+};
+
 /// The input of an element of a given slope that gives a wanted output, or 0 and the reason why there is none.
 template <class S>
 struct InverseOfSlope {

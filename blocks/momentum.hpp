@@ -11,12 +11,13 @@ struct Momentum {
       .name = "HY_MOMENTUM",
       .title = "Momentum",
       .group = Group::Memory,
-      .equation = "XOUT(k) = P0 where R1; XOUT(k+1) = XOUT(k) + TS·g(XIN(k)); g(u) = |u| (G = 0) or u (G = 1)",
+      .equation = "XOUT(k+1) = XOUT(k) + TS·g(XIN(k)), where R1: P0 + TS·g(XIN(k)); g(u) = |u| (G = 0) or u (G = 1)",
       .meaning =
           "How far the input has travelled since the last reset. XIN is the rate of the input, R1 the branching "
-          "point. XOUT is the momentum at the start of the sampling interval, so that XIN may be computed from it: "
-          "the loop of HY_M_INVERSE and HY_MOMENTUM closes without a delay block. At a reset XOUT is P0 at once, and "
-          "the interval that begins there counts. The sum is compensated. Starts at 0.",
+          "point. XOUT is the momentum at the start of the sampling interval and depends on the state alone, so that "
+          "XIN may be computed from it: the loop of HY_M_INVERSE and HY_MOMENTUM closes without a delay block. The "
+          "interval in which R1 is TRUE is the first of the new branch; HY_M and HY_M_INVERSE take the same R1 and "
+          "count P as 0 in it. The sum is compensated. Starts at 0.",
       .delay = "Forward Euler: the integral up to the start of the interval.",
       .source = "Strijbosch and Oomen, equations (6) and (11)"};
 
@@ -71,9 +72,8 @@ struct Momentum {
     return {.SUM = S(0.0), .LOST = S(0.0)};
   }
   template <class S>
-  static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const CompensatedSum<S> momentum = present(state, in);
-    return {.XOUT = momentum.high};
+  static Out<S> output(const Params<S>& /*params*/, const State<S>& state, const In<S>& /*in*/, const S& /*ts*/) {
+    return {.XOUT = state.SUM};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {

@@ -16,7 +16,7 @@ namespace hysteron::testing {
 namespace {
 
 double slope(double c1, double c2, double c3, double p) {
-  return Stepper<SlopeM>(1.0, {.C1 = c1, .C2 = c2, .C3 = c3})({.XIN = 1.0, .P = p}).M;
+  return Stepper<SlopeM>(1.0, {.C1 = c1, .C2 = c2, .C3 = c3})({.XIN = 1.0, .P = p, .R1 = false}).M;
 }
 
 TEST(SlopeM, IsTheFormula) {
@@ -71,8 +71,8 @@ TEST(SlopeMInverse, UndoesTheSlope) {
     const MemSlopeParams<double> params{.C1 = random.unit(), .C2 = random.unit(), .C3 = c3};
     const double u = random.unit() - 0.5;
     const double p = 3.0 * random.unit();
-    const double y = Stepper<SlopeM>(1.0, params)({.XIN = u, .P = p}).XOUT;
-    const auto out = Stepper<SlopeMInverse>(1.0, params)({.XIN = y, .P = p});
+    const double y = Stepper<SlopeM>(1.0, params)({.XIN = u, .P = p, .R1 = false}).XOUT;
+    const auto out = Stepper<SlopeMInverse>(1.0, params)({.XIN = y, .P = p, .R1 = false});
     EXPECT_NEAR(out.XOUT, u, 4e-16 * std::fabs(u));
     EXPECT_FALSE(out.ERROR);
     EXPECT_EQ(out.ERRORID, 0);
@@ -81,9 +81,9 @@ TEST(SlopeMInverse, UndoesTheSlope) {
 
 TEST(SlopeMInverse, SaysWhereThereIsNone) {
   Stepper<SlopeMInverse> block(1.0, {.C1 = 1.0, .C2 = -1.0, .C3 = 1.0});
-  EXPECT_FALSE(block({.XIN = 1.0, .P = 0.5}).ERROR);
+  EXPECT_FALSE(block({.XIN = 1.0, .P = 0.5, .R1 = false}).ERROR);
   for (const double p : {1.0, 2.0, infinity, not_a_number}) {
-    const auto out = block({.XIN = 1.0, .P = p});
+    const auto out = block({.XIN = 1.0, .P = p, .R1 = false});
     EXPECT_EQ(out.XOUT, 0.0) << p;
     EXPECT_TRUE(out.ERROR) << p;
     EXPECT_EQ(out.ERRORID, fault::slope_not_positive);
@@ -107,11 +107,11 @@ TEST(SlopeMTable, PassesThroughItsPointsAndHoldsOutside) {
     Stepper<SlopeMTable> block(1.0, table);
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      EXPECT_EQ(block({.XIN = 1.0, .P = table.P_TABLE[k]}).M, table.M_TABLE[k]);
+      EXPECT_EQ(block({.XIN = 1.0, .P = table.P_TABLE[k], .R1 = false}).M, table.M_TABLE[k]);
     }
     const auto last = static_cast<std::size_t>(count - 1);
-    EXPECT_EQ(block({.XIN = 1.0, .P = -1.0}).M, table.M_TABLE[0]);
-    EXPECT_EQ(block({.XIN = 1.0, .P = 1e9}).M, table.M_TABLE[last]);
+    EXPECT_EQ(block({.XIN = 1.0, .P = -1.0, .R1 = false}).M, table.M_TABLE[0]);
+    EXPECT_EQ(block({.XIN = 1.0, .P = 1e9, .R1 = false}).M, table.M_TABLE[last]);
   }
 }
 
@@ -126,7 +126,7 @@ TEST(SlopeMTable, IsStraightBetweenItsPoints) {
     }
     const double share = (p - table.P_TABLE[i]) / (table.P_TABLE[i + 1] - table.P_TABLE[i]);
     const double expected = std::lerp(table.M_TABLE[i], table.M_TABLE[i + 1], share);
-    EXPECT_NEAR(block({.XIN = -2.0, .P = p}).XOUT, -2.0 * expected, 1e-14);
+    EXPECT_NEAR(block({.XIN = -2.0, .P = p, .R1 = false}).XOUT, -2.0 * expected, 1e-14);
   }
 }
 
@@ -138,7 +138,7 @@ TEST(SlopeMTableInverse, UndoesTheTable) {
   for (int k = 0; k < 1000; ++k) {
     const double u = random.unit() - 0.5;
     const double p = 12.0 * random.unit() - 1.0;
-    const auto out = inverse({.XIN = forward({.XIN = u, .P = p}).XOUT, .P = p});
+    const auto out = inverse({.XIN = forward({.XIN = u, .P = p, .R1 = false}).XOUT, .P = p, .R1 = false});
     EXPECT_NEAR(out.XOUT, u, 4e-16 * std::fabs(u));
     EXPECT_FALSE(out.ERROR);
   }
@@ -147,11 +147,11 @@ TEST(SlopeMTableInverse, UndoesTheTable) {
 TEST(SlopeMTable, SaysThatItsPointsDoNotRise) {
   auto table = sampled_square_root(5);
   std::swap(table.P_TABLE[2], table.P_TABLE[3]);
-  const auto forward = Stepper<SlopeMTable>(1.0, table)({.XIN = 1.0, .P = 0.1});
+  const auto forward = Stepper<SlopeMTable>(1.0, table)({.XIN = 1.0, .P = 0.1, .R1 = false});
   EXPECT_EQ(forward.XOUT, 0.0);
   EXPECT_TRUE(forward.ERROR);
   EXPECT_EQ(forward.ERRORID, fault::points_not_rising);
-  const auto inverse = Stepper<SlopeMTableInverse>(1.0, table)({.XIN = 1.0, .P = 0.1});
+  const auto inverse = Stepper<SlopeMTableInverse>(1.0, table)({.XIN = 1.0, .P = 0.1, .R1 = false});
   EXPECT_EQ(inverse.XOUT, 0.0);
   EXPECT_TRUE(inverse.ERROR);
   EXPECT_EQ(inverse.ERRORID, fault::points_not_rising);
@@ -161,8 +161,8 @@ TEST(SlopeMTableInverse, SaysWhereTheTableIsNotPositive) {
   auto table = sampled_square_root(3);
   table.M_TABLE = {1.0, 0.5, -0.5};
   Stepper<SlopeMTableInverse> block(1.0, table);
-  EXPECT_FALSE(block({.XIN = 1.0, .P = 0.0}).ERROR);
-  const auto out = block({.XIN = 1.0, .P = 1.0});
+  EXPECT_FALSE(block({.XIN = 1.0, .P = 0.0, .R1 = false}).ERROR);
+  const auto out = block({.XIN = 1.0, .P = 1.0, .R1 = false});
   EXPECT_TRUE(out.ERROR);
   EXPECT_EQ(out.ERRORID, fault::slope_not_positive);
   EXPECT_EQ(out.XOUT, 0.0);

@@ -94,7 +94,7 @@ TEST(Mem, PositionOfAMemDamperIsAFunctionOfItsMomentum) {
     const double force = 1.4 * std::sin(3.0 * t) + 0.5 * std::sin(11.0 * t);
     const double p = momentum({.XIN = force, .R1 = false, .P0 = 0.0}).XOUT;
     worst = std::max(worst, std::fabs(position - position_of(p)));
-    position += ts * damper({.XIN = force, .P = p}).XOUT;
+    position += ts * damper({.XIN = force, .P = p, .R1 = false}).XOUT;
   }
   // A left Riemann sum: TS/2·∫|φ'|·F² dt at most.
   EXPECT_LT(worst, 0.5 * ts * 2.0 * 4.0 * 1.9 * 1.9);

@@ -30,10 +30,10 @@ TEST(Momentum, SignedMomentumIsTheIntegral) {
   EXPECT_EQ(block({.XIN = 0.0, .R1 = false, .P0 = 0.0}).XOUT, -1.0);
 }
 
-TEST(Momentum, AResetActsAtOnceAndItsIntervalCounts) {
+TEST(Momentum, TheIntervalOfAResetCounts) {
   Stepper<Momentum> block(1.0, {.G = 0});
   block({.XIN = 7.0, .R1 = false, .P0 = 0.0});
-  EXPECT_EQ(block({.XIN = 2.0, .R1 = true, .P0 = 0.25}).XOUT, 0.25);
+  EXPECT_EQ(block({.XIN = 2.0, .R1 = true, .P0 = 0.25}).XOUT, 7.0) << "the state alone: no feedthrough from R1";
   EXPECT_EQ(block({.XIN = 0.0, .R1 = false, .P0 = 0.25}).XOUT, 2.25);
 }
 
@@ -66,9 +66,8 @@ double feedforward_error(double ts) {
   for (int k = 0; k <= steps; ++k) {
     const double y = -y_turn * std::cos(2.0 * std::numbers::pi * k * ts);
     const bool reversal = branch({.XIN = y, .R1 = false}).Q;
-    const double p =
-        Momentum::output(momentum.params, momentum.state, {.XIN = 0.0, .R1 = reversal, .P0 = 0.0}, ts).XOUT;
-    const double u_rate = inverse({.XIN = rate({.XIN = y, .RUN = true}).XOUT, .P = p}).XOUT;
+    const double p = Momentum::output(momentum.params, momentum.state, {}, ts).XOUT;
+    const double u_rate = inverse({.XIN = rate({.XIN = y, .RUN = true}).XOUT, .P = p, .R1 = reversal}).XOUT;
     momentum({.XIN = u_rate, .R1 = reversal, .P0 = 0.0});
     const double u = sum({.XIN = u_rate, .RUN = true, .R1 = k == 0, .X0 = -half_range}).XOUT;
     worst = std::max(worst, std::fabs(u - closed_form({.XIN = y, .R1 = false}).XOUT));

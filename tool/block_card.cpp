@@ -1,0 +1,274 @@
+#include "tool/block_card.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
+
+#include "codegen/graph/definition.hpp"
+#include "support/numbers.hpp"
+#include "support/utf8.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::size_t page_width = 100;
+
+std::string value_text(Type type, double value) {
+  return type == Type::Bool ? (value != 0.0 ? "TRUE" : "FALSE") : number_text(value);
+}
+
+std::string type_text(const Field& field) {
+  return field.length > 1 ? fmt::format("ARRAY [0..{}] OF {}", field.length - 1, type_name(field.type))
+                          : std::string(type_name(field.type));
+}
+
+/// Words in lines of the page's width, each behind an indent.
+std::string wrapped(std::string_view words, std::size_t indent) {
+  std::string text;
+  std::size_t width = 0;
+  while (!words.empty()) {
+    const auto end = std::min(words.find(' '), words.size());
+    const auto word = words.substr(0, end);
+    words.remove_prefix(std::min(end + 1, words.size()));
+    const auto length = character_count(word);
+    if (width == 0 || width + 1 + length > page_width) {
+      text += (text.empty() ? "" : "\n") + std::string(indent, ' ');
+      width = indent;
+    } else {
+      text += ' ';
+      ++width;
+    }
+    text += word;
+    width += length;
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+/// What is to be known of a field besides its meaning: range, default, neutral setting.
+std::string limits_text(const Field& field, bool is_output) {
+  std::vector<std::string> parts;
+  if (const auto range = range_text(field); !range.empty()) {
+    parts.push_back(range);
+  }
+  if (!is_output) {
+    const auto preset = preset_text(field);
+    parts.push_back(preset.empty() ? "must be connected" : "default " + preset);
+  }
+  if (field.has_neutral()) {
+    parts.push_back("neutral at " + value_text(field.type, field.neutral));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::size_t widest(std::span<const Field> fields, std::string (*text)(const Field&)) {
+  std::size_t width = 0;
+  for (const Field& field : fields) {
+    width = std::max(width, character_count(text(field)));
+  }
+  return width;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, character_count(text)), ' ');
+}
+
+std::string section(std::string_view title, std::span<const Field> fields, bool are_outputs) {
+  if (fields.empty()) {
+    return {};
+  }
+  const auto name_text = [](const Field& field) { return std::string(field.name); };
+  const auto unit_text = [](const Field& field) { return std::string(field.unit); };
+  const auto names = widest(fields, name_text);
+  const auto types = widest(fields, type_text);
+  const auto units = widest(fields, unit_text);
+  std::string text = fmt::format("\n{}\n", title);
+  for (const Field& field : fields) {
+    const auto limits = limits_text(field, are_outputs);
+    text += fmt::format("  {}  {}  {}  {}{}\n", padded(name_text(field), names), padded(type_text(field), types),
+                        padded(unit_text(field), units), field.meaning, limits.empty() ? "" : "; " + limits);
+  }
+  return text;
+}
+
+std::string feedthrough_line(const BlockType& block, std::size_t output) {
+  const auto inputs = feedthrough_inputs(block, output);
+  return fmt::format(
+      "{}: {}", block.outputs[output].name,
+      inputs.empty() ? std::string("no input, so it can close a loop") : fmt::format("{}", fmt::join(inputs, ", ")));
+}
+
+std::string markdown_cell(std::string text) {
+  for (auto at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
+    text.insert(at, "\\");
+  }
+  return text;
+}
+
+std::string markdown_table(std::string_view title, std::span<const Field> fields, bool are_outputs) {
+  if (fields.empty()) {
+    return {};
+  }
+  std::string text = fmt::format("\n| {} | type | unit | meaning | {} |\n| --- | --- | --- | --- | --- |\n", title,
+                                 are_outputs ? "range" : "range, default");
+  for (const Field& field : fields) {
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.name, type_text(field),
+                        field.unit.empty() ? "" : fmt::format("`{}`", field.unit),
+                        markdown_cell(std::string(field.meaning)), limits_text(field, are_outputs));
+  }
+  return text;
+}
+
+nlohmann::json field_json(const Field& field, bool is_output) {
+  nlohmann::json json = {{"name", field.name},
+                         {"type", type_name(field.type)},
+                         {"unit", field.unit},
+                         {"meaning", field.meaning},
+                         {"length", field.length}};
+  if (std::isfinite(field.minimum)) {
+    json[field.above_minimum ? "above" : "minimum"] = field.minimum;
+  }
+  if (std::isfinite(field.maximum)) {
+    json["maximum"] = field.maximum;
+  }
+  if (field.has_neutral()) {
+    json["neutral"] = field.neutral;
+  }
+  if (!is_output && !field.required) {
+    json["default"] = field.preset;
+  }
+  return json;
+}
+
+nlohmann::json fields_json(std::span<const Field> fields, bool are_outputs) {
+  auto list = nlohmann::json::array();
+  for (const Field& field : fields) {
+    list.push_back(field_json(field, are_outputs));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string_view group_name(Group group) {
+  switch (group) {
+    case Group::Memory:
+      return "memory";
+    case Group::Arithmetic:
+      return "arithmetic";
+    case Group::Function:
+      return "function";
+    case Group::Shaping:
+      return "shaping";
+    case Group::Dynamics:
+      return "dynamics";
+    case Group::Control:
+      return "control";
+    case Group::Logic:
+      return "logic";
+    case Group::Time:
+      return "time";
+    case Group::Rate:
+      return "rate";
+  }
+  return {};
+}
+
+std::string range_text(const Field& field) {
+  const bool low = std::isfinite(field.minimum);
+  const bool high = std::isfinite(field.maximum);
+  if (low && high && !field.above_minimum) {
+    return fmt::format("{} to {}", number_text(field.minimum), number_text(field.maximum));
+  }
+  return fmt::format("{}{}{}{}{}", low ? (field.above_minimum ? "above " : "at least ") : "",
+                     low ? number_text(field.minimum) : "", low && high ? " and " : "", high ? "at most " : "",
+                     high ? number_text(field.maximum) : "");
+}
+
+std::string preset_text(const Field& field) {
+  return field.required ? std::string() : value_text(field.type, field.preset);
+}
+
+std::vector<std::string_view> feedthrough_inputs(const BlockType& block, std::size_t output) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < block.inputs.size(); ++i) {
+    if (block.trace.feedthrough[output].contains(i)) {
+      names.push_back(block.inputs[i].name);
+    }
+  }
+  return names;
+}
+
+std::string card_text(const BlockType& block) {
+  const About& about = block.about;
+  std::string text = fmt::format("{}: {} ({})\n\n", about.name, about.title, group_name(about.group));
+  text += wrapped(about.equation, 2) + "\n" + wrapped(about.meaning, 0);
+  text += section("inputs", block.inputs, false);
+  text += section("parameters", block.params, false);
+  text += section("outputs", block.outputs, true);
+  text += "\nfeedthrough: inputs that an output depends on within the same step\n";
+  for (std::size_t i = 0; i < block.outputs.size(); ++i) {
+    text += "  " + feedthrough_line(block, i) + "\n";
+  }
+  if (!about.delay.empty()) {
+    text += "\ndelay and gain\n" + wrapped(about.delay, 2);
+  }
+  if (!about.effect.empty()) {
+    text += fmt::format("\neffect\n  {}, between XIN and XOUT\n", about.effect);
+  }
+  if (!about.source.empty()) {
+    text += "\nsource\n" + wrapped(about.source, 2);
+  }
+  return text;
+}
+
+std::string card_markdown(const BlockType& block) {
+  const About& about = block.about;
+  std::string text = fmt::format("### {}: {}\n\n", about.name, about.title);
+  text += fmt::format("`{}`\n\n{}", about.equation, wrapped(about.meaning, 0));
+  text += markdown_table("input", block.inputs, false);
+  text += markdown_table("parameter", block.params, false);
+  text += markdown_table("output", block.outputs, true);
+  text += "\nFeedthrough, the inputs that an output depends on within the same step:\n\n";
+  for (std::size_t i = 0; i < block.outputs.size(); ++i) {
+    text += fmt::format("- {}\n", feedthrough_line(block, i));
+  }
+  if (!about.delay.empty()) {
+    text += "\nDelay and gain: " + std::string(about.delay) + "\n";
+  }
+  if (!about.effect.empty()) {
+    text += fmt::format("\nEffect: `{}`, between `XIN` and `XOUT`.\n", about.effect);
+  }
+  if (!about.source.empty()) {
+    text += "\nSource: " + std::string(about.source) + "\n";
+  }
+  return text;
+}
+
+nlohmann::json card_json(const BlockType& block) {
+  const About& about = block.about;
+  nlohmann::json feedthrough = nlohmann::json::object();
+  for (std::size_t i = 0; i < block.outputs.size(); ++i) {
+    feedthrough[std::string(block.outputs[i].name)] = feedthrough_inputs(block, i);
+  }
+  return {{"name", about.name},
+          {"title", about.title},
+          {"group", group_name(about.group)},
+          {"equation", about.equation},
+          {"meaning", about.meaning},
+          {"delay", about.delay},
+          {"effect", about.effect},
+          {"source", about.source},
+          {"rate_transition", about.rate_transition},
+          {"inputs", fields_json(block.inputs, false)},
+          {"parameters", fields_json(block.params, false)},
+          {"outputs", fields_json(block.outputs, true)},
+          {"feedthrough", feedthrough}};
+}
+
+}  // namespace hysteron::tool

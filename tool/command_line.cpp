@@ -1,0 +1,155 @@
+#include "tool/command_line.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <new>
+#include <string_view>
+
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "tool/commands.hpp"
+#include "tool/version.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron check plant.st
+  hysteron run plant.st --in log.csv --out out.csv
+  hysteron generate plant.st --target cpp --out generated
+  hysteron help run
+
+Each error has a number and a page: docs/errors/HYnnn.md.
+Exit codes: 0 done; 1 done, and something was found; 2 bad usage or input.
+)";
+
+InputError bad_usage(std::string cause, std::string mend) {
+  return {error::bad_usage, {}, std::move(cause), std::move(mend)};
+}
+
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const Command& command : commands()) {
+    names.emplace_back(command.name);
+  }
+  return names;
+}
+
+void check_command(const std::string& name) {
+  const auto names = command_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    return;
+  }
+  const auto near = nearest_name(name, names);
+  throw bad_usage(fmt::format("There is no command {}.", name),
+                  near.empty() ? fmt::format("the commands are {}.", fmt::join(names, ", "))
+                               : fmt::format("did you mean {}?", near));
+}
+
+/// The nearest option of a command to one that it does not have.
+std::string nearest_option(const CLI::App& app, std::string option) {
+  option = option.substr(0, option.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* known : app.get_options()) {
+    for (const std::string& name : known->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return std::string(nearest_name(option, names));
+}
+
+/// What the library says of a bad command line, as a diagnostic.
+InputError translated(const CLI::App& app, const CLI::ParseError& said) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const auto full_name = chosen.empty() ? std::string("hysteron") : "hysteron " + command.get_name();
+  const auto see = fmt::format("`{} --help` shows its options, with examples.", full_name);
+  if (dynamic_cast<const CLI::ExtrasError*>(&said) != nullptr) {
+    for (const std::string& extra : app.remaining(true)) {
+      if (extra.starts_with('-') && extra != "-") {
+        const auto near = nearest_option(command, extra);
+        return bad_usage(fmt::format("{} has no option {}.", full_name, extra),
+                         near.empty() ? see : fmt::format("did you mean {}?", near));
+      }
+    }
+    return bad_usage(fmt::format("{} does not take the argument {}.", full_name, app.remaining(true).front()), see);
+  }
+  return bad_usage(fmt::format("{}: {}.", full_name, said.what()), see);
+}
+
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.name("hysteron");
+    app_.set_help_flag("-h,--help", "Shows this help.");
+    app_.set_version_flag("--version", fmt::format("hysteron {}\n", version));
+    app_.footer(std::string(examples));
+    for (const Command& command : commands()) {
+      CLI::App* const options = app_.add_subcommand(std::string(command.name), std::string(command.summary));
+      options->set_help_flag("-h,--help", "Shows this help.");
+      options->get_formatter()->column_width(34);
+      actions_[options] = command.add(*options);
+    }
+  }
+
+  int run(std::vector<std::string> arguments, Console& console) {
+    if (arguments.empty()) {
+      throw bad_usage("No command is given.", fmt::format("the commands are {}; `hysteron help` says what they do.",
+                                                          fmt::join(command_names(), ", ")));
+    }
+    if (arguments.front() == "help") {
+      arguments.front() = "--help";
+      if (arguments.size() > 1) {
+        std::swap(arguments[0], arguments[1]);
+      }
+    }
+    if (!arguments.front().starts_with('-')) {
+      check_command(arguments.front());
+    }
+    try {
+      std::reverse(arguments.begin(), arguments.end());  // so the library wants them
+      app_.parse(arguments);
+    } catch (const CLI::CallForHelp&) {
+      console.print(app_.help());
+      return exit_ok;
+    } catch (const CLI::CallForVersion& version_text) {
+      console.print(version_text.what());
+      return exit_ok;
+    } catch (const CLI::ParseError& said) {
+      throw translated(app_, said);
+    }
+    const auto chosen = app_.get_subcommands();
+    if (chosen.empty()) {
+      throw bad_usage("No command is given.", "`hysteron help` lists the commands.");
+    }
+    return actions_.at(chosen.front())(console);
+  }
+
+ private:
+  CLI::App app_{"Block diagrams for hysteresis and its compensation: check, run, tune, generate."};
+  std::map<const CLI::App*, Action> actions_;
+};
+
+}  // namespace
+
+int run_command_line(std::vector<std::string> arguments, Console& console) {
+  int exit_code = exit_bad_input;
+  try {
+    exit_code = CommandLine().run(std::move(arguments), console);
+  } catch (const InputError& refused) {
+    console.report(refused.diagnostics());
+  } catch (const std::bad_alloc&) {
+    (void)std::fputs("hysteron: there is not enough memory for this input.\n", stderr);
+  } catch (const std::exception& fault) {
+    (void)std::fputs(fmt::format("hysteron: a fault of the tool itself, please report it: {}\n", fault.what()).c_str(),
+                     stderr);
+  }
+  return console.finish(exit_code);
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,19 @@
+#include "tool/commands.hpp"
+
+#include <array>
+
+namespace hysteron::tool {
+
+std::span<const Command> commands() {
+  static constexpr std::array list{
+      Command{"check", "Checks diagrams: syntax, names, types, wires, units, loops.", add_check},
+      Command{"fmt", "Formats diagrams, with statements in the order of the data flow.", add_fmt},
+      Command{"run", "Runs a diagram over a record.", add_run},
+      Command{"generate", "Generates code from a diagram.", add_generate},
+      // Command{"test", "Runs the tests that stand beside diagrams, interpreted and as generated code.", add_test},
+      // Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+  };
+  return list;
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,41 @@
+// The commands of the tool. A new one is a file with its `add_` function and one line in commands.cpp.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "tool/console.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace hysteron::tool {
+
+/// What the tool says to the shell.
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_findings = 1;   ///< the work was done, and something was found: errors, failed tests
+inline constexpr int exit_bad_input = 2;  ///< the work could not be done: bad usage, bad input
+
+/// Runs a command once its options are read; gives back the exit code. An InputError that it lets out is printed by
+/// the caller, and is exit_bad_input.
+using Action = std::function<int(Console&)>;
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  Action (*add)(CLI::App& options);  ///< adds the options of the command
+};
+
+/// All commands, in the order in which the help lists them.
+[[nodiscard]] std::span<const Command> commands();
+
+Action add_check(CLI::App& options);
+Action add_fmt(CLI::App& options);
+Action add_run(CLI::App& options);
+Action add_generate(CLI::App& options);
+Action add_test(CLI::App& options);
+Action add_blocks(CLI::App& options);
+
+}  // namespace hysteron::tool

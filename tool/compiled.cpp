@@ -1,0 +1,258 @@
+#include "tool/compiled.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp_host.hpp"
+#include "support/errors.hpp"
+#include "support/sha256.hpp"
+#include "support/text_file.hpp"
+#include "tool/build_cache.hpp"
+#include "tool/process.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Optimised a little: it is compiled in half the time, and bits do not depend on it.
+constexpr std::array flags{"-std=c++20", "-O1"};
+
+/// More lines than these of what a compiler says do not help.
+constexpr std::size_t most_lines = 12;
+
+/// A program that reads rows of inputs as doubles and writes rows of outputs as doubles: no digit is lost.
+constexpr std::string_view host_head = R"(#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+)";
+constexpr std::string_view host_tail = R"(
+int main(int count, char** arguments) {
+  const int program = count > 1 ? std::atoi(arguments[1]) : -1;
+  const std::size_t steps = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 0;
+  switch (program) {
+)";
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) {
+    throw InputError(error::unwritable_file, {.file = path.string()},
+                     fmt::format("The file {} cannot be written.", path.string()),
+                     "make room on the disk, or set TMPDIR to another folder.");
+  }
+}
+
+std::string first_lines(const fs::path& path) {
+  std::istringstream lines(read_text_file(path.string()));
+  std::string text;
+  std::string line;
+  for (std::size_t i = 0; i < most_lines && std::getline(lines, line); ++i) {
+    text += "\n    " + line;
+  }
+  return text.empty() ? "\n    (it says nothing)" : text;
+}
+
+std::string as_member(Type type, std::string_view member, std::size_t column) {
+  return type == Type::Bool ? fmt::format("    in.{} = row[{}] != 0.0;\n", member, column)
+                            : fmt::format("    in.{0} = static_cast<decltype(in.{0})>(row[{1}]);\n", member, column);
+}
+
+/// The function that runs one program over all its rows.
+std::string runner(const std::string& name, const Graph& graph) {
+  const auto inputs = cpp_port_names(graph.inputs);
+  const auto outputs = cpp_port_names(graph.outputs);
+  std::string text = fmt::format(
+      "int run_{0}(std::size_t steps) {{\n"
+      "  {0}::Params params;\n  {0}::State state;\n  {0}::In in;\n  {0}::reset(params, state);\n"
+      "  std::vector<double> row({1});\n  std::vector<double> results({2});\n"
+      "  for (std::size_t k = 0; k < steps; ++k) {{\n"
+      "    if (std::fread(row.data(), sizeof(double), row.size(), stdin) != row.size()) {{\n      return 3;\n    }}\n",
+      name, inputs.size(), outputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    text += as_member(graph.inputs[i].type, inputs[i], i);
+  }
+  text += fmt::format("    {}const auto out = {}::step(params, state, in);\n",
+                      outputs.empty() ? "[[maybe_unused]] " : "", name);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    text += fmt::format("    results[{}] = static_cast<double>(out.{});\n", i, outputs[i]);
+  }
+  return text +
+         "    if (std::fwrite(results.data(), sizeof(double), results.size(), stdout) != results.size()) {\n"
+         "      return 4;\n    }\n  }\n  return std::fflush(stdout) == 0 ? 0 : 4;\n}\n";
+}
+
+struct Sources {
+  std::string host;
+  std::vector<GeneratedFile> headers;
+};
+
+Sources sources_of(const std::vector<GeneratedProgram>& programs) {
+  Sources sources{.host = std::string(host_head), .headers = {}};
+  std::string runners;
+  std::string cases;
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    // Diagrams of the same name, with other parameters, have to stand side by side.
+    Program renamed = *programs[i].program;
+    renamed.graph.name = fmt::format("program_{}", i);
+    sources.headers.push_back(generate_cpp_header(renamed, {.float32 = programs[i].float32}));
+    sources.host += fmt::format("#include \"{}\"\n", sources.headers.back().name);
+    runners += "\n" + runner(renamed.graph.name, renamed.graph);
+    cases += fmt::format("    case {}:\n      return run_program_{}(steps);\n", i, i);
+  }
+  sources.host += "\nnamespace {\n" + runners + "\n}  // namespace\n" + std::string(host_tail) + cases +
+                  "    default:\n      return 2;\n  }\n}\n";
+  return sources;
+}
+
+std::string version_of(const std::vector<std::string>& compiler, const fs::path& folder) {
+  auto command = compiler;
+  command.emplace_back("--version");
+  const auto output = folder / "version";
+  return run_program(command, {.output = output}) == 0 ? read_text_file(output.string()) : std::string();
+}
+
+void compile_sources(const Sources& sources, std::vector<std::string> command, const fs::path& executable) {
+  const auto folder = executable.parent_path();
+  for (const GeneratedFile& header : sources.headers) {
+    write_text(folder / header.name, header.text);
+  }
+  write_text(folder / "main.cpp", sources.host);
+  command.insert(command.end(), flags.begin(), flags.end());
+  for (const std::string& flag : words_of(cpp_numeric_flags)) {
+    command.push_back(flag);
+  }
+  command.insert(command.end(), {(folder / "main.cpp").string(), "-o", executable.string(), "-lm"});
+  const auto errors = folder / "errors";
+  if (const int code = run_program(command, {.errors = errors}); code != 0) {
+    throw InputError(error::generated_code_fails, {},
+                     fmt::format("The compiler {} refuses the generated code (exit code {}):{}", command.front(), code,
+                                 first_lines(errors)),
+                     "set CXX to a compiler for C++20, or leave generated code out with --no-generated.");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> compiler_command() {
+  if (const char* const set = std::getenv("CXX"); set != nullptr && *set != '\0') {
+    const auto command = words_of(set);
+    if (!command.empty() && find_program(command.front())) {
+      return command;
+    }
+    throw InputError(error::no_compiler, {}, fmt::format("CXX is \"{}\", which cannot be run.", set),
+                     "set CXX to a C++ compiler, or unset it.");
+  }
+  for (const char* const name : {"c++", "g++", "clang++"}) {
+    if (find_program(name)) {
+      return {name};
+    }
+  }
+  throw InputError(error::no_compiler, {}, "There is no C++ compiler (c++, g++ or clang++) on the path.",
+                   "install one (Debian: apt install g++), set CXX, or leave generated code out with --no-generated.");
+}
+
+CompiledPrograms::CompiledPrograms(const std::vector<GeneratedProgram>& programs) {
+  const auto compiler = compiler_command();
+  const Sources sources = sources_of(programs);
+  for (const GeneratedProgram& one : programs) {
+    shapes_.push_back({.name = one.program->graph.name,
+                       .inputs = one.program->graph.inputs.size(),
+                       .outputs = one.program->graph.outputs.size()});
+  }
+  BuildCache cache;
+  scratch_ = cache.folder();
+  std::string everything = sources.host;
+  for (const GeneratedFile& header : sources.headers) {
+    everything += header.text;
+  }
+  for (const std::string& word : compiler) {
+    everything += word + " ";
+  }
+  for (const char* const flag : flags) {
+    everything += flag;
+  }
+  everything += cpp_numeric_flags;
+  {
+    const TemporaryFolder folder(scratch_);
+    everything += version_of(compiler, folder.path());
+  }
+  executable_ =
+      cache.find_or_build(sha256(everything), [&](const fs::path& path) { compile_sources(sources, compiler, path); });
+}
+
+std::vector<Signal> CompiledPrograms::run(std::size_t program, const Drive& drive) const {
+  const Shape& shape = shapes_[program];
+  std::vector<double> rows;
+  rows.reserve(drive.steps * shape.inputs);
+  for (std::size_t k = 0; k < drive.steps; ++k) {
+    for (const Signal& input : drive.inputs) {
+      rows.push_back(at_step(input, k));
+    }
+  }
+  std::string bytes(rows.size() * sizeof(double), '\0');
+  if (!rows.empty()) {
+    std::memcpy(bytes.data(), rows.data(), bytes.size());
+  }
+  const TemporaryFolder folder(scratch_);
+  const Streams streams{
+      .input = folder.path() / "in", .output = folder.path() / "out", .errors = folder.path() / "err"};
+  write_text(streams.input, bytes);
+  const int code = run_program({executable_.string(), std::to_string(program), std::to_string(drive.steps)}, streams);
+  const auto written = code == 0 ? read_text_file(streams.output.string()) : std::string();
+  if (code != 0 || written.size() != drive.steps * shape.outputs * sizeof(double)) {
+    throw InputError(error::generated_code_fails, {},
+                     fmt::format("The program generated from {} does not run to its end (exit code {}):{}", shape.name,
+                                 code, first_lines(streams.errors)),
+                     "see whether programs may be run from the folder for temporary files; TMPDIR sets another.");
+  }
+  std::vector<double> results(drive.steps * shape.outputs);
+  if (!results.empty()) {
+    std::memcpy(results.data(), written.data(), written.size());
+  }
+  std::vector<Signal> columns(shape.outputs, Signal(drive.steps));
+  for (std::size_t k = 0; k < drive.steps; ++k) {
+    for (std::size_t i = 0; i < shape.outputs; ++i) {
+      columns[i][k] = results[k * shape.outputs + i];
+    }
+  }
+  return columns;
+}
+
+std::size_t first_difference(const Signal& a, const Signal& b) {
+  for (std::size_t k = 0; k < a.size() && k < b.size(); ++k) {
+    const bool same = std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k]);
+    if (!same && !(std::isnan(a[k]) && std::isnan(b[k]))) {
+      return k;
+    }
+  }
+  return a.size() == b.size() ? same_bits : std::min(a.size(), b.size());
+}
+
+}  // namespace hysteron::tool

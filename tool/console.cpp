@@ -1,0 +1,46 @@
+#include "tool/console.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "support/errors.hpp"
+#include "tool/commands.hpp"
+
+namespace hysteron::tool {
+
+void Console::print(std::string_view text) {
+  if (write_error_ == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
+    write_error_ = errno;
+  }
+}
+
+void Console::report(const Diagnostics& diagnostics) {
+  if (!diagnostics.all().empty()) {
+    (void)std::fflush(stdout);
+    const auto text = as_text(diagnostics, sources_, {.colour = wants_colour(stderr)});
+    (void)std::fwrite(text.data(), 1, text.size(), stderr);
+  }
+}
+
+void Console::print(const Diagnostics& diagnostics) {
+  print(as_text(diagnostics, sources_, {.colour = colour()}));
+}
+
+int Console::finish(int exit_code) {
+  if (std::fflush(stdout) != 0 && write_error_ == 0) {
+    write_error_ = errno;
+  }
+  if (write_error_ == 0 || write_error_ == EPIPE) {
+    return exit_code;
+  }
+  Diagnostics diagnostics;
+  diagnostics.error(error::unwritable_file, {},
+                    fmt::format("The results cannot be written: {}.", std::strerror(write_error_)),
+                    "make room on the disk, or send the results elsewhere.");
+  report(diagnostics);
+  return exit_bad_input;
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,38 @@
+// What a command prints: results to the standard output, diagnostics to the standard error.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "support/diagnostic.hpp"
+#include "support/render.hpp"
+
+namespace hysteron::tool {
+
+class Console {
+ public:
+  /// Results. Where the reader of a pipe has gone, what is left is dropped without a word.
+  void print(std::string_view text);
+
+  /// Diagnostics with the lines that they speak of, and their count.
+  void report(const Diagnostics& diagnostics);
+
+  /// The same among the results: for the command whose results they are.
+  void print(const Diagnostics& diagnostics);
+
+  /// For diagnostics about a text that is not in the file of that name.
+  [[nodiscard]] Sources& sources() { return sources_; }
+
+  /// Whether results may be coloured.
+  [[nodiscard]] static bool colour() { return wants_colour(stdout); }
+
+  /// Flushes. Gives back the exit code, or exit_bad_input with an error where results could not be written.
+  [[nodiscard]] int finish(int exit_code);
+
+ private:
+  Sources sources_;
+  int write_error_ = 0;
+};
+
+}  // namespace hysteron::tool

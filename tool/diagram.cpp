@@ -1,0 +1,46 @@
+#include "tool/diagram.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <system_error>
+
+#include "codegen/parameters/apply.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::tool {
+
+void add_diagram_options(CLI::App& options, DiagramOptions& diagram) {
+  options.add_option("FILE", diagram.file, "The diagram, a file in Structured Text.")
+      ->required()
+      ->type_name("FILE.st")
+      ->option_text("FILE.st");
+  options.add_option("--params", diagram.parameters, "Parameters, over those that the diagram gives.")
+      ->option_text("P.toml");
+  options.add_option("--top", diagram.top, "The block to take, where the file has several that no other contains.")
+      ->option_text("NAME");
+  options.add_flag("--float32", diagram.float32, "LREAL is a 32-bit float, as on a target without a double.");
+  options.add_flag("--any-order", diagram.any_order, "The statements may stand in any order: HY402 becomes a warning.");
+}
+
+Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {
+  Program program = compile_file(options.file, {.top = options.top, .any_order = options.any_order}, warnings);
+  if (!options.parameters.empty()) {
+    parameters::apply(parameters::read_parameter_file(options.parameters), program.graph);
+  }
+  return program;
+}
+
+void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code unknown;
+    if (!output.empty() && !input.empty() && (output == input || std::filesystem::equivalent(output, input, unknown))) {
+      throw InputError(error::overwrites_input, {.file = output},
+                       fmt::format("The output {} would overwrite the input {}.", output, input),
+                       "give the output another name.");
+    }
+  }
+}
+
+}  // namespace hysteron::tool

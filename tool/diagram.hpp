@@ -1,0 +1,32 @@
+// A diagram as commands take it: the file, its top block, and the parameters set from a file.
+#pragma once
+
+#include <string>
+
+#include "codegen/compile.hpp"
+#include "support/diagnostic.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace hysteron::tool {
+
+struct DiagramOptions {
+  std::string file{};
+  std::string top{};
+  std::string parameters{};
+  bool any_order = false;
+  bool float32 = false;
+};
+
+/// The options --top, --params, --any-order and --float32, and the file itself. The structure must outlive the parse.
+void add_diagram_options(CLI::App& options, DiagramOptions& diagram);
+
+/// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
+[[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
+
+/// Refuses an output that is one of the inputs, under whatever name. Throws InputError HY709. Empty names are ignored.
+void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs);
+
+}  // namespace hysteron::tool

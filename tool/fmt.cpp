@@ -1,0 +1,75 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "support/atomic_file.hpp"
+#include "support/text_file.hpp"
+#include "tool/commands.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron fmt plant.st                     format in place
+  hysteron fmt --check src/*.st             for a build server: lists what would change
+  hysteron fmt --stdout /dev/stdin < a.st   for an editor
+
+Comments are kept; formatting twice changes nothing. A file with syntax errors is left as it is.
+Exit codes: 0 done; 1 with --check, files would change; 2 a file cannot be read, understood or written.
+)";
+
+struct Options {
+  std::vector<std::string> files;
+  bool check = false;
+  bool to_stdout = false;
+};
+
+int format_files(const Options& options, Console& console) {
+  Diagnostics refused;
+  bool would_change = false;
+  for (const std::string& path : options.files) {
+    try {
+      const auto text = read_text_file(path);
+      Diagnostics own;
+      console.sources().put(path, text);
+      const auto formatted = format_text(path, text, own);
+      if (own.has_errors()) {
+        throw InputError(own);
+      }
+      if (options.check) {
+        if (formatted != text) {
+          would_change = true;
+          console.print(path + " would change\n");
+        }
+      } else if (options.to_stdout) {
+        console.print(formatted);
+      } else if (formatted != text) {
+        write_file_atomically(path, formatted);
+        console.print(path + " formatted\n");
+      }
+    } catch (const InputError& error) {
+      for (const Diagnostic& one : error.diagnostics().all()) {
+        refused.add(one);
+      }
+    }
+  }
+  if (refused.has_errors()) {
+    throw InputError(refused);
+  }
+  return would_change ? exit_findings : exit_ok;
+}
+
+}  // namespace
+
+Action add_fmt(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text("FILE.st...");
+  auto* const check = app.add_flag("--check", options->check, "Changes nothing; lists the files that would change.");
+  app.add_flag("--stdout", options->to_stdout, "Prints the formatted text instead of writing it.")->excludes(check);
+  app.footer(std::string(examples));
+  return [options](Console& console) { return format_files(*options, console); };
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,40 @@
+// Running another program, with its streams in files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hysteron::tool {
+
+struct Streams {
+  std::filesystem::path input = "/dev/null";
+  std::filesystem::path output = "/dev/null";
+  std::filesystem::path errors = "/dev/null";
+};
+
+/// Runs a program to its end. Its exit code; 128 and the number of the signal where it was killed, as shells say; 127
+/// where it cannot be started.
+[[nodiscard]] int run_program(const std::vector<std::string>& command, const Streams& streams);
+
+/// Where PATH has a program; nothing where it has none. A name with a slash is taken as it is.
+[[nodiscard]] std::optional<std::filesystem::path> find_program(const std::string& name);
+
+/// A folder of its own below another, removed with everything in it.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::filesystem::path& below);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  TemporaryFolder(TemporaryFolder&&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace hysteron::tool

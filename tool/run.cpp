@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "records/csv.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "support/progress.hpp"
+#include "support/text_file.hpp"
+#include "tool/commands.hpp"
+#include "tool/diagram.hpp"
+#include "tool/output_record.hpp"
+#include "tool/signals.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron run feedforward.st --in reference.csv --out voltage.csv
+  hysteron run feedforward.st --in reference.csv --out voltage.csv --params tuned.toml --summary
+  hysteron run feedforward.st --in reference.csv --out voltage.csv --trace INV.XOUT --trace BRANCH.Q
+  hysteron run feedforward.st --in - --out - < reference.csv | head
+
+The columns of the record are matched to the inputs by name, without regard to case; t is in seconds, and its step is
+the sample time that the diagram states with @ts. An input without a column keeps the default that the diagram gives
+it. Written are t and the outputs, with the shortest numbers that read back to the same bits; TRUE is 1, FALSE is 0.
+Exit codes: 0 done; 1 done, but an output is not a finite number (nan and inf are written as such); 2 an error in the
+diagram, the parameters or the record, and nothing is written.
+)";
+
+struct Options {
+  DiagramOptions diagram;
+  std::string input;
+  std::string output;
+  std::vector<std::string> traces;
+  bool summary = false;
+};
+
+/// The outputs of the instances, as INSTANCE.PIN.
+std::vector<std::string> signal_names(const Graph& graph) {
+  std::vector<std::string> names;
+  for (const Node& node : graph.nodes) {
+    for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
+      names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
+    }
+  }
+  return names;
+}
+
+Wire find_signal(const Graph& graph, const std::string& path) {
+  const auto dot = path.rfind('.');
+  for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
+    if (node.block == nullptr || !equal_ignoring_case(node.path, path.substr(0, dot))) {
+      continue;
+    }
+    for (std::size_t i = 0; i < node.block->outputs.size(); ++i) {
+      if (equal_ignoring_case(node.block->outputs[i].name, path.substr(dot + 1))) {
+        return {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index};
+      }
+    }
+  }
+  const auto names = signal_names(graph);
+  const auto near = nearest_name(path, names);
+  std::string mend = "name an output of an instance, as in INSTANCE.XOUT; the diagram has no instances.";
+  if (!near.empty()) {
+    mend = fmt::format("did you mean {}?", near);
+  } else if (!names.empty()) {
+    mend = fmt::format("name an output of an instance of a library block, such as {}.", names.front());
+  }
+  throw InputError(error::unknown_signal, {.file = graph.source->path},
+                   fmt::format("{} has no signal {}.", graph.name, path), std::move(mend));
+}
+
+std::string column_summary(const std::string& name, const std::string& unit, const Signal& values,
+                           const records::Column* recorded) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto with_unit = unit.empty() ? std::string() : " " + unit;
+  std::string text = fmt::format("  {:<16} {:.6g} to {:.6g}{}", name, *low, *high, with_unit);
+  if (recorded != nullptr) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double difference = values[k] - recorded->values[k];
+      sum += difference * difference;
+    }
+    const auto [least, most] = std::minmax_element(recorded->values.begin(), recorded->values.end());
+    const double rms = std::sqrt(sum / static_cast<double>(values.size()));
+    text += fmt::format("; RMSE against the record's column {:.4g}{}", rms, with_unit);
+    if (*most > *least) {
+      text += fmt::format(", {:.3g} % of its range", 100.0 * rms / (*most - *least));
+    }
+  }
+  return text + "\n";
+}
+
+std::string summary(const Program& program, const Drive& drive, const records::Record& record,
+                    const std::vector<Signal>& outputs) {
+  const Graph& graph = program.graph;
+  std::string text = fmt::format("{}: {} steps of {} s\ninputs\n", graph.name, drive.steps,
+                                 number_text(graph.sample_time_ns > 0 ? graph.sample_time() : drive.sample_time));
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    const Port& input = graph.inputs[i];
+    const bool recorded = record.find(input.name) != nullptr;
+    text += recorded ? column_summary(input.name, input.unit, drive.inputs[i], nullptr)
+                     : fmt::format("  {:<16} {}, its default\n", input.name, number_text(input.preset));
+  }
+  text += "outputs\n";
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    text +=
+        column_summary(graph.outputs[i].name, graph.outputs[i].unit, outputs[i], record.find(graph.outputs[i].name));
+  }
+  std::string unused;
+  for (const records::Column& column : record.columns()) {
+    const auto same = [&](const Port& port) { return equal_ignoring_case(port.name, column.name); };
+    if (std::none_of(graph.inputs.begin(), graph.inputs.end(), same) &&
+        std::none_of(graph.outputs.begin(), graph.outputs.end(), same)) {
+      unused += " " + column.name;
+    }
+  }
+  return unused.empty() ? text : text + "columns not used:" + unused + "\n";
+}
+
+int run(const Options& options, Console& console) {
+  refuse_to_overwrite(options.output == "-" ? "" : options.output,
+                      {options.input, options.diagram.file, options.diagram.parameters});
+  Diagnostics diagnostics;
+  Program program = load_diagram(options.diagram, diagnostics);
+  const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
+  console.sources().put(options.input, log);
+  const records::Record record = records::parse_csv(options.input, log);
+  settle_sample_time(record, program, diagnostics);
+  const Drive drive = drive_from(record, program, {}, diagnostics);
+
+  std::vector<std::string> names;
+  for (const Port& output : program.graph.outputs) {
+    names.push_back(output.name);
+  }
+  std::vector<Wire> watched = output_wires(program.graph);
+  for (const std::string& path : options.traces) {
+    watched.push_back(find_signal(program.graph, path));
+    names.push_back(in_capitals(path));
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+
+  Progress progress("Running");
+  const auto values =
+      interpret(program, drive, watched, options.diagram.float32, [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+  check_finite({.file = options.diagram.file}, record.time(), names, values, diagnostics);
+  const auto text = output_csv(record.time(), names, values, options.diagram.float32);
+  if (options.output == "-") {
+    console.print(text);
+  } else {
+    write_file_atomically(options.output, text);
+  }
+  console.report(diagnostics);
+  if (options.summary) {
+    console.print(summary(program, drive, record, values));
+  }
+  return diagnostics.has_errors() ? exit_findings : exit_ok;
+}
+
+}  // namespace
+
+Action add_run(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  add_diagram_options(app, options->diagram);
+  app.add_option("--in", options->input, "The record that drives the inputs; - for the standard input.")
+      ->required()
+      ->option_text("LOG.csv");
+  app.add_option("--out", options->output, "The record of the outputs; - for the standard output.")
+      ->required()
+      ->option_text("OUT.csv");
+  app.add_option("--trace", options->traces, "Writes the output of an instance too, as INSTANCE.PIN; may be repeated.")
+      ->option_text("PATH")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
+  app.footer(std::string(examples));
+  return [options](Console& console) { return run(*options, console); };
+}
+
+}  // namespace hysteron::tool

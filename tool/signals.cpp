@@ -1,0 +1,195 @@
+#include "tool/signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "codegen/interpreter/machine.hpp"
+#include "records/time_grid.hpp"
+#include "support/errors.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+/// Sample times that differ by less, relatively, are those of two clocks, not of two settings.
+constexpr double clock_tolerance = 1e-6;
+
+std::string number_of_values(std::size_t count) {
+  return count == 1 ? "1 value" : fmt::format("{} values", count);
+}
+
+void check_values(const Port& input, const Signal& values, const records::Record& record, Diagnostics& diagnostics) {
+  std::size_t outside = 0;
+  std::size_t first = 0;
+  double most_beyond = 0.0;
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (const auto fault = type_fault(input.type, values[k]); !fault.empty()) {
+      diagnostics.error(error::unfit_value, {.file = record.file()},
+                        fmt::format("The column {} is {} at t = {} s, but the input {}.", input.name,
+                                    number_text(values[k]), number_text(record.time()[k]), fault),
+                        "correct the record, or declare the input as LREAL.");
+      return;
+    }
+    const double beyond = std::max(input.minimum - values[k], values[k] - input.maximum);
+    if (beyond > 0.0) {
+      first = outside == 0 ? k : first;
+      ++outside;
+    }
+    if (beyond > most_beyond) {
+      most_beyond = beyond;
+      farthest = values[k];
+    }
+  }
+  if (outside > 0) {
+    diagnostics.warning(
+        error::input_out_of_range, {.file = record.file()},
+        fmt::format(
+            "The column {} leaves the range of the input, {} to {}: {}, the first at t = {} s, the farthest {}.",
+            input.name, number_text(input.minimum), number_text(input.maximum), number_of_values(outside),
+            number_text(record.time()[first]), number_text(farthest)),
+        "check the unit and the scale of the column, or widen @min and @max in the diagram.");
+  }
+}
+
+/// How far the times of a record stray from an even grid, first to last: what is left when it is laid on best.
+double span_of_deviations(const records::Record& record, double sample_time) {
+  const auto time = record.time();
+  double low = 0.0;
+  double high = 0.0;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    const double deviation = time[k] - time.front() - static_cast<double>(k) * sample_time;
+    low = std::min(low, deviation);
+    high = std::max(high, deviation);
+  }
+  return high - low;
+}
+
+template <class S>
+std::vector<Signal> run(const Program& program, const Drive& drive, const std::vector<Wire>& watched,
+                        const std::function<void(double)>& progress) {
+  Machine<S> machine(program, drive.sample_time);
+  std::vector<Signal> values(watched.size(), Signal(drive.steps));
+  for (std::size_t k = 0; k < drive.steps; ++k) {
+    for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
+      machine.set_input(i, static_cast<S>(at_step(drive.inputs[i], k)));
+    }
+    machine.step();
+    for (std::size_t i = 0; i < watched.size(); ++i) {
+      values[i][k] = static_cast<double>(machine.value(watched[i]));
+    }
+    if (progress && k % 4096 == 0) {
+      progress(static_cast<double>(k) / static_cast<double>(drive.steps));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+bool has_default(const Graph& graph, const Port& input) {
+  for (const language::FunctionBlock& block : graph.source->blocks) {
+    for (const language::Variable& variable : block.variables) {
+      if (variable.name.span.offset == input.span.offset) {
+        return variable.initial != language::no_expression;
+      }
+    }
+  }
+  return false;
+}
+
+std::string type_fault(Type type, double value) {
+  switch (type) {
+    case Type::Real:
+      return {};
+    case Type::Bool:
+      return value == 0.0 || value == 1.0 ? "" : "takes 0 or 1";
+    case Type::Int:
+      return value == std::floor(value) && std::abs(value) <= std::numeric_limits<std::int32_t>::max()
+                 ? ""
+                 : "takes whole numbers of 32 bits";
+    case Type::Word:
+      return value == std::floor(value) && value >= 0.0 && value <= std::numeric_limits<std::uint16_t>::max()
+                 ? ""
+                 : "takes whole numbers from 0 to 65535";
+  }
+  return {};
+}
+
+Drive drive_from(const records::Record& record, const Program& program, std::vector<Signal> given,
+                 Diagnostics& diagnostics) {
+  const Graph& graph = program.graph;
+  Drive drive{.inputs = std::move(given), .steps = record.size(), .sample_time = record.sample_time()};
+  drive.inputs.resize(graph.inputs.size());
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    const Port& input = graph.inputs[i];
+    if (!drive.inputs[i].empty()) {
+      continue;
+    }
+    if (const records::Column* const column = record.find(input.name)) {
+      drive.inputs[i] = column->values;
+      check_values(input, column->values, record, diagnostics);
+    } else if (has_default(graph, input)) {
+      drive.inputs[i] = {input.preset};
+    } else {
+      try {
+        (void)record.column(input.name);
+      } catch (const InputError& missing) {
+        Diagnostic diagnostic = missing.diagnostics().all().front();
+        diagnostic.notes.push_back({.place = graph.place(input.span),
+                                    .text = fmt::format("the input; {} := … would give it a default", input.name)});
+        diagnostics.add(std::move(diagnostic));
+      }
+    }
+  }
+  return drive;
+}
+
+void settle_sample_time(const records::Record& record, Program& program, Diagnostics& diagnostics) {
+  Graph& graph = program.graph;
+  const double recorded = record.sample_time();
+  if (graph.sample_time_ns == 0) {
+    // A whole number of nanoseconds is what a diagram would state; of another one the interpreter is told.
+    const double nanoseconds = recorded * 1e9;
+    if (std::abs(nanoseconds - std::round(nanoseconds)) <= clock_tolerance * nanoseconds && nanoseconds < 1e18) {
+      graph.sample_time_ns = std::llround(nanoseconds);
+    }
+    return;
+  }
+  const double stated = graph.sample_time();
+  if (std::abs(recorded - stated) <= clock_tolerance * stated) {
+    return;
+  }
+  records::PrintedResolution resolution;
+  double largest = 0.0;
+  for (const double time : record.time()) {
+    resolution.take(number_text(time));
+    largest = std::max(largest, std::abs(time));
+  }
+  if (span_of_deviations(record, stated) <= 1.25 * resolution.quantum(largest) + 0.02 * stated) {
+    return;
+  }
+  diagnostics.error(error::sample_time_mismatch, {.file = record.file()},
+                    fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded),
+                                graph.name, number_text(stated)),
+                    fmt::format("state @ts {}ns in the diagram, or resample the record to {} s.",
+                                std::llround(std::min(recorded * 1e9, 9e18)), number_text(stated)));
+}
+
+std::vector<Signal> interpret(const Program& program, const Drive& drive, const std::vector<Wire>& watched,
+                              bool float32, const std::function<void(double)>& progress) {
+  return float32 ? run<float>(program, drive, watched, progress) : run<double>(program, drive, watched, progress);
+}
+
+std::vector<Wire> output_wires(const Graph& graph) {
+  std::vector<Wire> wires;
+  for (const Port& output : graph.outputs) {
+    wires.push_back(output.wire);
+  }
+  return wires;
+}
+
+}  // namespace hysteron::tool

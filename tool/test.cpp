@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codegen/program_hash.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/progress.hpp"
+#include "support/text_file.hpp"
+#include "tool/commands.hpp"
+#include "tool/compiled.hpp"
+#include "tool/test_judge.hpp"
+#include "tool/test_plan.hpp"
+#include "tool/test_report.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron test feedforward.st              runs feedforward.test.toml
+  hysteron test src/*.st --junit tests.xml
+  hysteron test feedforward.st --filter dwell --no-generated
+  hysteron test feedforward.st --update     writes the golden records that cases name
+
+A test file:
+  [[case]]
+  name = "a step passes the gain"
+  steps = 10
+  params = {AMP = {K = 2.0}}                over those of the diagram, or a file: "tuned.toml"
+  inputs = {X = {0 = 0.0, 5 = 1.0}}         by step; or 1.0, [0.0, 1.0], {from = 0.0, to = 1.0}
+  expect = {Y = {4 = 0.0, 5 = 2.0}}         by step; or 2.0, [0.0, 2.0]
+  abs = 1e-12                               |got - expected| <= abs + rel*|expected|
+  rel = 1e-9
+Other keys: block = "NAME", csv = "log.csv" for inputs, golden = "NAME.csv", float32 = true, doc = "why".
+
+Each case is run by the interpreter and as generated C++ (compiler: CXX, else c++); their bits must be equal.
+Exit codes: 0 all cases passed; 1 some failed; 2 a diagram or test file has errors, or there is nothing to run.
+)";
+
+struct Options {
+  std::vector<std::string> diagrams;
+  std::string tests;
+  std::string junit;
+  std::string filter;
+  bool update = false;
+  bool no_generated = false;
+};
+
+std::string test_file_of(const std::string& diagram) {
+  return fs::path(diagram).replace_extension(".test.toml").string();
+}
+
+bool selected(const TestCase& test, const std::string& filter) {
+  return in_capitals(test.name).find(in_capitals(filter)) != std::string::npos;
+}
+
+/// Programs that several cases share are compiled once.
+class GeneratedPrograms {
+ public:
+  explicit GeneratedPrograms(const std::vector<PlannedCase>& cases) {
+    std::vector<GeneratedProgram> programs;
+    std::map<std::string, std::size_t> known;
+    for (const PlannedCase& planned : cases) {
+      const auto key = program_hash(planned.program) + (planned.test.float32 ? " float" : "");
+      const auto [found, fresh] = known.emplace(key, programs.size());
+      if (fresh) {
+        programs.push_back({.program = &planned.program, .float32 = planned.test.float32});
+      }
+      indexes_.push_back(found->second);
+    }
+    compiled_.emplace(programs);
+  }
+
+  [[nodiscard]] std::vector<Signal> run(std::size_t number, const PlannedCase& planned) const {
+    return compiled_->run(indexes_[number], planned.drive);
+  }
+
+ private:
+  std::vector<std::size_t> indexes_;
+  std::optional<CompiledPrograms> compiled_;
+};
+
+void append(std::vector<Failure>& failures, std::vector<Failure> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(failures));
+}
+
+/// One case by the interpreter and, where there is one, as a generated program.
+CaseResult run_case(std::size_t number, const PlannedCase& planned, const GeneratedPrograms* generated, bool update) {
+  const auto begun = std::chrono::steady_clock::now();
+  CaseResult result{.name = planned.test.name};
+  const auto outputs =
+      interpret(planned.program, planned.drive, output_wires(planned.program.graph), planned.test.float32);
+  append(result.failures, judge(planned, outputs));
+  if (generated != nullptr) {
+    append(result.failures, judge_bits(planned, outputs, generated->run(number, planned)));
+  }
+  if (!planned.golden.empty() && update && result.failures.empty()) {
+    const auto text = golden_text(planned, outputs);
+    std::error_code unknown;
+    if (!fs::exists(planned.golden, unknown) || read_text_file(planned.golden.string()) != text) {
+      write_file_atomically(planned.golden, text);
+      result.note = "wrote " + planned.golden.string();
+    }
+  } else if (!planned.golden.empty() && !update) {
+    append(result.failures, judge_golden(planned, outputs));
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return result;
+}
+
+/// The cases of one file that the filter selects.
+FileResult run_file(const std::string& diagram, const std::string& tests, const Options& options) {
+  FileResult result{.file = tests, .cases = {}};
+  TestFile file = read_test_file(tests);
+  TestPlanner planner(diagram, fs::path(tests).parent_path());
+  Diagnostics diagnostics;
+  std::vector<PlannedCase> cases;
+  for (const TestCase& test : file.cases) {
+    if (selected(test, options.filter)) {
+      cases.push_back(planner.plan(test, diagnostics));
+    }
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+  std::optional<GeneratedPrograms> generated;
+  Progress progress("Testing");
+  if (!options.no_generated && !cases.empty()) {
+    progress.update(0.0, "compiling " + tests);
+    generated.emplace(cases);
+  }
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    progress.update(static_cast<double>(i) / static_cast<double>(cases.size()), cases[i].test.name);
+    result.cases.push_back(run_case(i, cases[i], generated ? &*generated : nullptr, options.update));
+  }
+  return result;
+}
+
+std::string existing_test_file(const std::string& diagram, const Options& options) {
+  const auto tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
+  std::error_code unknown;
+  if (!fs::exists(tests, unknown)) {
+    throw InputError(error::missing_test_file, {.file = diagram},
+                     fmt::format("The test file {} does not exist.", tests),
+                     "write one: `hysteron test --help` shows its form; --tests names one that stands elsewhere.");
+  }
+  return tests;
+}
+
+int run_tests(const Options& options, Console& console) {
+  if (!options.tests.empty() && options.diagrams.size() > 1) {
+    throw InputError(error::bad_usage, {}, "--tests names the test file of one diagram, here are several.",
+                     "give one diagram, or leave --tests out.");
+  }
+  Diagnostics refused;
+  std::vector<FileResult> results;
+  std::size_t cases = 0;
+  for (const std::string& diagram : options.diagrams) {
+    try {
+      results.push_back(run_file(diagram, existing_test_file(diagram, options), options));
+      cases += results.back().cases.size();
+      if (!results.back().cases.empty()) {
+        console.print(report_text(results.back(), Console::colour()));
+      }
+    } catch (const InputError& error) {
+      for (const Diagnostic& one : error.diagnostics().all()) {
+        refused.add(one);
+      }
+    }
+  }
+  if (!options.junit.empty()) {
+    write_file_atomically(options.junit, junit_text(results));
+  }
+  console.print(closing_line(results));
+  if (refused.has_errors()) {
+    throw InputError(refused);
+  }
+  if (cases == 0) {
+    throw InputError(error::no_test_selected, {}, fmt::format("No case has \"{}\" in its name.", options.filter),
+                     "--filter takes a part of a name, without regard to case.");
+  }
+  return failed_cases(results) > 0 ? exit_findings : exit_ok;
+}
+
+}  // namespace
+
+Action add_test(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->diagrams, "Diagrams; the tests of NAME.st stand in NAME.test.toml beside it.")
+      ->required()
+      ->option_text("FILE.st...");
+  app.add_option("--tests", options->tests, "The test file, where it stands elsewhere.")->option_text("TESTS.toml");
+  app.add_flag("--update", options->update, "Writes golden records instead of holding outputs against them.");
+  app.add_option("--junit", options->junit, "Writes the results as JUnit XML, for a build server.")
+      ->option_text("FILE.xml");
+  app.add_flag("--no-generated", options->no_generated, "Runs the interpreter alone; needs no compiler.");
+  app.add_option("--filter", options->filter, "Runs only cases with this in their names.")->option_text("TEXT");
+  app.footer(std::string(examples));
+  return [options](Console& console) { return run_tests(*options, console); };
+}
+
+}  // namespace hysteron::tool

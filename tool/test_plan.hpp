@@ -1,0 +1,49 @@
+// A test case made ready to run: the diagram compiled, inputs and expectations laid out over the steps.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "support/diagnostic.hpp"
+#include "tool/signals.hpp"
+#include "tool/test_file.hpp"
+
+namespace hysteron::tool {
+
+struct ExpectedOutput {
+  std::size_t output = 0;
+  ValuesByStep values{};
+};
+
+struct PlannedCase {
+  TestCase test{};
+  Program program{};
+  Drive drive{};
+  std::vector<double> time{};
+  std::vector<ExpectedOutput> expected{};
+  std::filesystem::path golden{};  ///< empty: none
+};
+
+/// Plans the cases of one file. The diagram is compiled once for each top block. Files that a case names are looked for
+/// beside the test file.
+class TestPlanner {
+ public:
+  TestPlanner(std::string diagram, std::filesystem::path folder)
+      : diagram_(std::move(diagram)), folder_(std::move(folder)) {}
+
+  /// Reports what keeps a case from being run; it is then not to be used.
+  [[nodiscard]] PlannedCase plan(const TestCase& test, Diagnostics& diagnostics);
+
+ private:
+  const Program* program_of(const TestCase& test, Diagnostics& diagnostics);
+
+  std::string diagram_;
+  std::filesystem::path folder_;
+  std::map<std::string, Program> programs_;  ///< by top block, in capitals
+  bool broken_ = false;                      ///< the diagram has errors, which were reported
+};
+
+}  // namespace hysteron::tool

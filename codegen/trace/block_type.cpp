@@ -30,7 +30,7 @@ constexpr Type type_of<trace::Int> = Type::Int;
 template <>
 constexpr Type type_of<trace::Bool> = Type::Bool;
 template <>
-constexpr Type type_of<trace::Word> = Type::Word;
+[[maybe_unused]] constexpr Type type_of<trace::Word> = Type::Word;
 
 template <class T>
 void set_leaf(T& member, Op op, std::uint32_t index) {

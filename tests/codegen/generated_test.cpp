@@ -96,7 +96,8 @@ void hold_generated_against_interpreted() {
     calls += fmt::format("  run<p{0}::Params, p{0}::State, p{0}::In>(p{0}::reset, p{0}::step);\n", i);
   }
   main_text += inputs_text;
-  main_text += fmt::format("using Real = {};\nusing Bits = {};\n", sizeof(Real) == 4 ? "float" : "double", sizeof(Real) == 4 ? "std::uint32_t" : "std::uint64_t");
+  main_text += fmt::format("using Real = {};\nusing Bits = {};\n", sizeof(Real) == 4 ? "float" : "double",
+                           sizeof(Real) == 4 ? "std::uint32_t" : "std::uint64_t");
   main_text += R"(
 void mix(std::uint64_t& hash, Real value) {
   hash = (hash ^ (value == value ? std::uint64_t{std::bit_cast<Bits>(value)} : 0x7FF8U)) * 0x100000001B3ULL;
@@ -130,7 +131,9 @@ int main() {
 )" + calls + "}\n";
   std::ofstream(folder.path() / "main.cpp") << main_text;
   const auto at = [&](const char* name) { return (folder.path() / name).string(); };
-  const std::string compile = fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare {} {} -o {} 2> {}", cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
+  const std::string compile =
+      fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare {} {} -o {} 2> {}",
+                  cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
   ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
   ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("hashes")).c_str()), 0);
   std::ifstream hashes(at("hashes"));
@@ -142,8 +145,12 @@ int main() {
   }
 }
 
-TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) { hold_generated_against_interpreted<double>(); }
-TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) { hold_generated_against_interpreted<float>(); }
+TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) {
+  hold_generated_against_interpreted<double>();
+}
+TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) {
+  hold_generated_against_interpreted<float>();
+}
 
 }  // namespace
 }  // namespace hysteron::testing

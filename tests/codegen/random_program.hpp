@@ -17,7 +17,9 @@ namespace hysteron::testing {
 
 class RandomDiagram {
  public:
-  RandomDiagram(std::uint64_t seed, std::string name, int instances) : engine_(seed), name_(std::move(name)) { write(instances); }
+  RandomDiagram(std::uint64_t seed, std::string name, int instances) : engine_(seed), name_(std::move(name)) {
+    write(instances);
+  }
 
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -60,25 +62,38 @@ class RandomDiagram {
       const auto integer = [&] { return source(Type::Int, depth + 1); };
       switch (type) {
         case Type::Real: {
-          const std::vector<std::string> forms{fmt::format("({} + {})", real(), real()),        fmt::format("({} - {} * {})", real(), real(), real()),
-                                               fmt::format("({} / ({} - {}))", real(), real(), real()), fmt::format("(-({}))", real()),
-                                               fmt::format("SEL({}, {}, {})", truth(), real(), real()), fmt::format("MIN({}, {})", real(), real()),
-                                               fmt::format("LIMIT(-1.0, {}, 1.0)", real()),     fmt::format("ABS({})", real()),
-                                               fmt::format("SIN({})", real()),                   fmt::format("EXP(-(ABS({})))", real()),
-                                               fmt::format("(ABS({}) ** ({}))", real(), real()),     fmt::format("DINT_TO_LREAL({})", integer()),
-                                               fmt::format("({} - ({} - {}))", real(), real(), real()), fmt::format("({} / {} / {})", real(), real(), real())};
+          const std::vector<std::string> forms{fmt::format("({} + {})", real(), real()),
+                                               fmt::format("({} - {} * {})", real(), real(), real()),
+                                               fmt::format("({} / ({} - {}))", real(), real(), real()),
+                                               fmt::format("(-({}))", real()),
+                                               fmt::format("SEL({}, {}, {})", truth(), real(), real()),
+                                               fmt::format("MIN({}, {})", real(), real()),
+                                               fmt::format("LIMIT(-1.0, {}, 1.0)", real()),
+                                               fmt::format("ABS({})", real()),
+                                               fmt::format("SIN({})", real()),
+                                               fmt::format("EXP(-(ABS({})))", real()),
+                                               fmt::format("(ABS({}) ** ({}))", real(), real()),
+                                               fmt::format("DINT_TO_LREAL({})", integer()),
+                                               fmt::format("({} - ({} - {}))", real(), real(), real()),
+                                               fmt::format("({} / {} / {})", real(), real(), real())};
           return forms[pick(forms.size())];
         }
         case Type::Bool: {
-          const std::vector<std::string> forms{fmt::format("({} < {})", real(), real()), fmt::format("({} AND {} OR {})", truth(), truth(), truth()),
-                                               fmt::format("({} XOR {})", truth(), truth()), fmt::format("(NOT {})", truth()),
-                                               fmt::format("({} >= {})", integer(), integer()), fmt::format("({} = {})", truth(), truth())};
+          const std::vector<std::string> forms{fmt::format("({} < {})", real(), real()),
+                                               fmt::format("({} AND {} OR {})", truth(), truth(), truth()),
+                                               fmt::format("({} XOR {})", truth(), truth()),
+                                               fmt::format("(NOT {})", truth()),
+                                               fmt::format("({} >= {})", integer(), integer()),
+                                               fmt::format("({} = {})", truth(), truth())};
           return forms[pick(forms.size())];
         }
         case Type::Int: {
-          const std::vector<std::string> forms{fmt::format("({} + {})", integer(), integer()), fmt::format("({} * {} - {})", integer(), integer(), integer()),
-                                               fmt::format("({} MOD {})", integer(), integer()), fmt::format("({} / {})", integer(), integer()),
-                                               fmt::format("LREAL_TO_DINT({})", real()), fmt::format("TRUNC({})", real())};
+          const std::vector<std::string> forms{fmt::format("({} + {})", integer(), integer()),
+                                               fmt::format("({} * {} - {})", integer(), integer(), integer()),
+                                               fmt::format("({} MOD {})", integer(), integer()),
+                                               fmt::format("({} / {})", integer(), integer()),
+                                               fmt::format("LREAL_TO_DINT({})", real()),
+                                               fmt::format("TRUNC({})", real())};
           return forms[pick(forms.size())];
         }
         default:
@@ -121,7 +136,8 @@ class RandomDiagram {
           settings.push_back(fmt::format("{} := {}", param.name, setting(param)));
         }
       }
-      declarations += fmt::format("    I{} : {}{};\n", i, type.about.name, settings.empty() ? "" : fmt::format(" := ({})", fmt::join(settings, ", ")));
+      declarations += fmt::format("    I{} : {}{};\n", i, type.about.name,
+                                  settings.empty() ? "" : fmt::format(" := ({})", fmt::join(settings, ", ")));
       std::vector<std::string> arguments;
       for (const Field& input : type.inputs) {
         if (input.required || pick(3) != 0) {
@@ -144,8 +160,11 @@ class RandomDiagram {
       outputs += fmt::format("    Y{} : LREAL;\n", i);
       late += fmt::format("  Y{} := {};\n", i, source(Type::Real));
     }
-    text_ = fmt::format("FUNCTION_BLOCK {} (* @ts 1ms *)\n  VAR_INPUT\n    X1, X2, X3 : LREAL;\n    B1, B2 : BOOL;\n    N1 : DINT;\n  END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N := {};\nEND_FUNCTION_BLOCK\n",
-                        name_, outputs, declarations, statements, late, source(Type::Bool), source(Type::Int));
+    text_ = fmt::format(
+        "FUNCTION_BLOCK {} (* @ts 1ms *)\n  VAR_INPUT\n    X1, X2, X3 : LREAL;\n    B1, B2 : BOOL;\n    N1 : DINT;\n  "
+        "END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N := "
+        "{};\nEND_FUNCTION_BLOCK\n",
+        name_, outputs, declarations, statements, late, source(Type::Bool), source(Type::Int));
   }
 
   std::mt19937_64 engine_;

@@ -1,0 +1,221 @@
+// What the compiler makes of a diagram: its diagnostics with their places, its schedule, its rates.
+#include "codegen/compile.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "codegen/backends/cpp.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<Diagnostic> diagnose(const std::string& text) {
+  Diagnostics diagnostics;
+  auto parsed = language::parse("test.st", text, diagnostics);
+  if (!diagnostics.has_errors()) {
+    check(std::make_shared<const language::SourceFile>(std::move(parsed)), diagnostics);
+  }
+  return diagnostics.all();
+}
+
+std::string block(const std::string& declarations, const std::string& statements) {
+  return "FUNCTION_BLOCK T (* @ts 1ms *)\n" + declarations + "\n" + statements + "\nEND_FUNCTION_BLOCK\n";
+}
+const std::string io = "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR ";
+
+TEST(Compile, FindsSeveralFaultsAtOnceInTheOrderOfTheText) {
+  const auto found = diagnose(block(io + "VAR G : HY_GAIM; H : HY_GAIN; END_VAR", "H(XIM := U);\nY := W;"));
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_EQ(found[0].number, error::unknown_block);
+  EXPECT_THAT(found[0].mend, HasSubstr("HY_GAIN"));
+  EXPECT_EQ(found[1].number, error::unconnected_input);
+  EXPECT_EQ(found[2].number, error::unknown_pin);
+  EXPECT_EQ(found[2].place.line, 3U);
+  EXPECT_EQ(found[2].place.column, 3U);
+  EXPECT_EQ(found[3].number, error::unknown_name);
+}
+
+TEST(Compile, AnAlgebraicLoopIsAPathWithTheWiresWhereADelayWouldCutIt) {
+  const auto found = diagnose(block(io + "VAR A : HY_GAIN; B : HY_LAG; S : HY_SUM; END_VAR",
+                                    "S(IN1 := U, IN2 := B.XOUT);\nA(XIN := S.XOUT);\nB(XIN := A.XOUT);\nY := B.XOUT;"));
+  ASSERT_THAT(found, Contains(Field(&Diagnostic::number, error::algebraic_loop)));
+  const auto& loop = *std::ranges::find(found, error::algebraic_loop, &Diagnostic::number);
+  EXPECT_THAT(loop.cause, AllOf(HasSubstr("A → B"), HasSubstr("B → S"), HasSubstr("S → A")));
+  ASSERT_EQ(loop.notes.size(), 3U);
+  for (const Note& note : loop.notes) {
+    EXPECT_THAT(note.text, HasSubstr("a HY_DELAY here would cut the loop"));
+    EXPECT_GT(note.place.line, 1U);
+  }
+}
+
+TEST(Compile, ADelayClosesALoop) {
+  EXPECT_THAT(diagnose(block(io + "VAR A : HY_GAIN; Z : HY_DELAY; S : HY_SUM; END_VAR",
+                             "S(IN1 := U, IN2 := Z.XOUT);\nA(XIN := S.XOUT);\nZ(XIN := A.XOUT);\nY := A.XOUT;")),
+              IsEmpty());
+}
+
+TEST(Compile, TheFeedforwardOfThePaperClosesWithoutADelayBlock) {
+  EXPECT_THAT(diagnose(block(io + "VAR RATE : HY_DERIVATIVE; B : HY_BRANCH; P : HY_MOMENTUM; INV : HY_M_INVERSE; SUM : "
+                                  "HY_INTEGRAL; END_VAR",
+                             "RATE(XIN := U); B(XIN := U);\nINV(XIN := RATE.XOUT, P := P.XOUT, R1 := B.Q);\n"
+                             "P(XIN := INV.XOUT, R1 := B.Q); SUM(XIN := INV.XOUT); Y := SUM.XOUT;")),
+              IsEmpty());
+}
+
+TEST(Compile, AReadBeforeTheCallIsAHiddenDelayUnlessTheInstanceIsADelay) {
+  const auto hidden = diagnose(block(io + "VAR A : HY_GAIN; END_VAR", "Y := A.XOUT;\nA(XIN := U);"));
+  ASSERT_EQ(hidden.size(), 1U);
+  EXPECT_EQ(hidden[0].number, error::hidden_delay);
+  EXPECT_EQ(hidden[0].place.line, 3U);
+  EXPECT_THAT(diagnose(block(io + "VAR Z : HY_DELAY; END_VAR", "Y := Z.XOUT;\nZ(XIN := U);")), IsEmpty());
+  const auto late = diagnose(block(io + "VAR Z : HY_DELAY; END_VAR", "Z(XIN := U);\nY := Z.XOUT;"));
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_EQ(late[0].severity, Severity::Warning) << "here it is this step's value all the same";
+}
+
+TEST(Compile, FormattingMendsHiddenDelaysAndChangesNothingTwice) {
+  Diagnostics diagnostics;
+  const std::string text =
+      block(io + "VAR A : HY_GAIN; Z : HY_DELAY; END_VAR", "Y := A.XOUT + Z.XOUT;\nZ(XIN := A.XOUT);\nA(XIN := U);");
+  const std::string once = format_text("t", text, diagnostics);
+  EXPECT_THAT(diagnose(once), IsEmpty()) << once;
+  EXPECT_EQ(format_text("t", once, diagnostics), once);
+}
+
+TEST(Compile, ABlockWithADelayInsideClosesALoop) {
+  const std::string inner =
+      "FUNCTION_BLOCK PLANT VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR I : HY_INTEGRAL_FORWARD; "
+      "END_VAR\n"
+      "Y := I.XOUT; I(XIN := U);\nEND_FUNCTION_BLOCK\n";
+  const auto found = diagnose(
+      inner + block("VAR_INPUT R : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR P : PLANT; K : HY_GAIN; END_VAR",
+                    "K(XIN := R - P.Y); P(U := K.XOUT); Y := P.Y;"));
+  EXPECT_THAT(found, ::testing::Not(Contains(Field(&Diagnostic::severity, Severity::Error))));
+}
+
+TEST(Compile, HierarchyIsFlattenedAndParametersKeepTheirPaths) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK STAGE VAR_INPUT U : LREAL; K : LREAL := 2.0; (* @param @min 0 *) END_VAR VAR_OUTPUT Y : LREAL; "
+      "END_VAR "
+      "VAR L : HY_LAG := (T1 := 0.25); END_VAR L(XIN := U * K); Y := L.XOUT; END_FUNCTION_BLOCK\n"
+      "FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR A, B : STAGE; "
+      "END_VAR "
+      "A(U := U); B(U := A.Y, K := 3.0); Y := B.Y; END_FUNCTION_BLOCK");
+  std::vector<std::string> paths;
+  for (const Parameter& parameter : program.graph.parameters) {
+    paths.push_back(parameter.path);
+  }
+  EXPECT_THAT(paths, Contains("A.K"));
+  EXPECT_THAT(paths, Contains("B.K"));
+  EXPECT_THAT(paths, Contains("A.L.T1"));
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "b.k"))].value.front(),
+            3.0);
+}
+
+TEST(Compile, ABlockCannotContainItself) {
+  EXPECT_THAT(
+      diagnose("FUNCTION_BLOCK A VAR_OUTPUT Y : LREAL; END_VAR VAR X : B; END_VAR X(); Y := X.Y; END_FUNCTION_BLOCK\n"
+               "FUNCTION_BLOCK B VAR_OUTPUT Y : LREAL; END_VAR VAR X : A; END_VAR X(); Y := X.Y; END_FUNCTION_BLOCK"),
+      Contains(Field(&Diagnostic::number, error::recursive_block)));
+}
+
+TEST(Compile, UnitsAreCarriedThroughBlocksAndExpressions) {
+  const auto with = [&](const std::string& in, const std::string& out, const std::string& parts,
+                        const std::string& text) {
+    return diagnose(block("VAR_INPUT U : LREAL; (* @unit " + in + " *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit " + out +
+                              " *) END_VAR " + parts,
+                          text));
+  };
+  const std::string lag = "VAR L : HY_LAG; END_VAR";
+  EXPECT_THAT(with("um", "um", lag, "L(XIN := U); Y := L.XOUT;"), IsEmpty());
+  EXPECT_THAT(with("um", "m", lag, "L(XIN := U); Y := L.XOUT;"),
+              Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+  EXPECT_THAT(with("um", "um/s", "VAR D : HY_DERIVATIVE; END_VAR", "D(XIN := U); Y := D.XOUT;"), IsEmpty());
+  EXPECT_THAT(with("m/s", "m", "VAR I : HY_INTEGRAL; END_VAR", "I(XIN := U); Y := I.XOUT;"), IsEmpty());
+  EXPECT_THAT(with("N*m/s", "W", "", "Y := 2.0 * U;"), IsEmpty());
+  EXPECT_THAT(with("V", "A", "", "Y := 2.0 * U;"), Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+  EXPECT_THAT(with("m^2", "m", "", "Y := SQRT(U);"), IsEmpty());
+  EXPECT_THAT(with("V", "V", "", "Y := U + 1.0;"), IsEmpty()) << "a literal takes the unit of what it is added to";
+  EXPECT_THAT(with("V", "1", "", "Y := SIN(U);"), Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+  EXPECT_THAT(with("V", "um", "VAR G : HY_GAIN; END_VAR", "G(XIN := U); Y := G.XOUT;"), IsEmpty())
+      << "a gain changes the unit";
+  EXPECT_THAT(with("°C", "degC", "", "Y := U;"), IsEmpty());
+  EXPECT_THAT(with("µm", "um", "", "Y := U;"), IsEmpty());
+}
+
+TEST(Compile, ASlowerPartRunsInItsStepsAndIsHeldBetween) {
+  const std::string text = block(
+      "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR S : HY_SAMPLE; (* @every 4 @phase 1 *) "
+      "I : HY_INTEGRAL; (* @every 4 @phase 1 *) H : HY_HOLD; END_VAR",
+      "S(XIN := U); I(XIN := S.XOUT); H(XIN := I.XOUT); Y := H.XOUT;");
+  EXPECT_THAT(diagnose(text), IsEmpty());
+  Machine<double> machine(compile_text(text));
+  double sum = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    machine.set_input(0, k);
+    machine.step();
+    sum += k % 4 == 1 ? k * 4e-3 : 0.0;
+    ASSERT_NEAR(machine.output(0), sum, 1e-15) << "step " << k;
+  }
+}
+
+TEST(Compile, AWireBetweenTwoRatesNeedsASampleOrAHold) {
+  const auto found = diagnose(block(io + "VAR A : HY_GAIN; (* @every 2 *) END_VAR", "A(XIN := U); Y := A.XOUT;"));
+  EXPECT_THAT(found, Contains(Field(&Diagnostic::number, error::rate_mismatch)));
+}
+
+TEST(Compile, TheOrderOfTheTextDoesNotCount) {
+  std::vector<std::string> declarations;
+  std::vector<std::string> statements;
+  for (int i = 0; i < 30; ++i) {
+    const std::string n = std::to_string(i);
+    declarations.push_back("    G" + n + " : " + (i % 3 == 0 ? "HY_LAG" : i % 3 == 1 ? "HY_DELAY" : "HY_GAIN") + ";\n");
+    statements.push_back(
+        "  G" + n + "(XIN := " +
+        (i < 2 ? "U" : "G" + std::to_string((i * 7) % i) + ".XOUT * 0.5 + G" + std::to_string(i - 1) + ".XOUT") +
+        ");\n");
+  }
+  statements.emplace_back("  Y := G29.XOUT;\n");
+  std::mt19937 engine(1);
+  std::string first;
+  for (int round = 0; round < 100; ++round) {
+    std::string text =
+        "FUNCTION_BLOCK T (* @ts 1ms *)\n  VAR_INPUT\n    U : LREAL;\n  END_VAR\n  VAR_OUTPUT\n    Y : LREAL;\n  "
+        "END_VAR\n  VAR\n";
+    for (const auto& one : declarations) {
+      text += one;
+    }
+    text += "  END_VAR\n";
+    for (const auto& one : statements) {
+      text += one;
+    }
+    text += "END_FUNCTION_BLOCK\n";
+    const std::string generated = generate_cpp_header(compile_text(text, {.any_order = true})).text;
+    Diagnostics diagnostics;
+    const std::string formatted = format_text("t", text, diagnostics);
+    ASSERT_EQ(generate_cpp_header(compile_text(formatted)).text, generated)
+        << "formatting puts the statements in order";
+    if (round == 0) {
+      first = generated;
+    }
+    ASSERT_EQ(generated, first) << "round " << round;
+    std::ranges::shuffle(declarations, engine);
+    std::ranges::shuffle(statements, engine);
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::testing

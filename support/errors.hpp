@@ -96,6 +96,10 @@ inline constexpr int no_room_in_bounds = 712;
 inline constexpr int no_motion = 713;
 inline constexpr int unusable_point = 714;
 inline constexpr int nothing_above_c1 = 715;
+inline constexpr int nothing_to_fit = 716;
+inline constexpr int no_measured_output = 717;
+inline constexpr int nothing_to_train_on = 718;
+inline constexpr int no_influence = 719;
 inline constexpr int test_file_syntax = 720;
 inline constexpr int unknown_test_key = 721;
 inline constexpr int wrong_test_value = 722;
@@ -191,6 +195,10 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::no_motion, "No sample above the rate threshold"},
     ErrorTitle{error::unusable_point, "Point that a fit cannot use"},
     ErrorTitle{error::nothing_above_c1, "Nothing left for the logarithm of M - C1"},
+    ErrorTitle{error::nothing_to_fit, "Nothing to fit"},
+    ErrorTitle{error::no_measured_output, "No measured output in the record"},
+    ErrorTitle{error::nothing_to_train_on, "Record without a sample to train on"},
+    ErrorTitle{error::no_influence, "Parameter without influence"},
     ErrorTitle{error::test_file_syntax, "Test file is not TOML"},
     ErrorTitle{error::unknown_test_key, "Unknown key in a test file"},
     ErrorTitle{error::wrong_test_value, "Wrong value in a test file"},

@@ -1,53 +1,18 @@
-// Signals over the steps of a run: inputs taken from a record, outputs computed by the interpreter.
+// Signals over the steps of a run, as commands use them: tuning/simulation.hpp.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "codegen/compile.hpp"
-#include "records/record.hpp"
-#include "support/diagnostic.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 
-/// One value for each step, or one for all of them.
-using Signal = std::vector<double>;
-
-[[nodiscard]] inline double at_step(const Signal& signal, std::size_t step) {
-  return signal[signal.size() == 1 ? 0 : step];
-}
-
-/// What a run is driven by.
-struct Drive {
-  std::vector<Signal> inputs{};  ///< by input of the diagram
-  std::size_t steps = 0;
-  double sample_time = 0.0;  ///< in seconds; of use where the diagram states none
-};
-
-/// Whether the text gives an input a value for when nothing is connected.
-[[nodiscard]] bool has_default(const Graph& graph, const Port& input);
-
-/// The columns of a record as inputs, by name without regard to case; an input without a column keeps its default.
-/// Reports HY502 for an input with neither, HY707 for a value that its type cannot take, and, as a warning, HY705
-/// for values outside of its range. `given`, by input, are signals that stand for columns; empty ones do not.
-[[nodiscard]] Drive drive_from(const records::Record& record, const Program& program, std::vector<Signal> given,
-                               Diagnostics& diagnostics);
-
-/// Why an input cannot take a value, as `takes 0 or 1`; empty where it can.
-[[nodiscard]] std::string type_fault(Type type, double value);
-
-/// Holds the sample time of a record against that of a diagram, allowing for what printing took from the times.
-/// Where the diagram states none, it takes the record's. Reports HY704.
-void settle_sample_time(const records::Record& record, Program& program, Diagnostics& diagnostics);
-
-/// Runs a program by the interpreter; the values of the wires watched, each over all steps.
-[[nodiscard]] std::vector<Signal> interpret(const Program& program, const Drive& drive,
-                                            const std::vector<Wire>& watched, bool float32,
-                                            const std::function<void(double)>& progress = {});
-
-/// The wires of a diagram's outputs.
-[[nodiscard]] std::vector<Wire> output_wires(const Graph& graph);
+using hysteron::at_step;
+using hysteron::Drive;
+using hysteron::drive_from;
+using hysteron::has_default;
+using hysteron::interpret;
+using hysteron::output_wires;
+using hysteron::settle_sample_time;
+using hysteron::Signal;
+using hysteron::type_fault;
 
 }  // namespace hysteron::tool

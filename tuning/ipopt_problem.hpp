@@ -51,7 +51,7 @@ enum class Loss : std::uint8_t {
   Huber     ///< ρ(r) = r² up to the threshold δ, 2δ|r| − δ² beyond: outliers pull with constant force
 };
 
-struct Progress {
+struct FitProgress {
   int iteration = 0;
   double rms = 0.0;       ///< √(mean of ρ), in the unit of the residuals
   double gradient = 0.0;  ///< of the scaled problem, as Ipopt sees it
@@ -65,7 +65,7 @@ struct LeastSquaresOptions {
   int max_iterations = 300;
   double tolerance = 1e-9;  ///< of the gradient as a cosine, see above
   /// Called once an iteration; false stops the fit and leaves the best point so far.
-  std::function<bool(const Progress&)> progress{};
+  std::function<bool(const FitProgress&)> progress{};
 };
 
 enum class FitStatus : std::uint8_t {

@@ -193,7 +193,7 @@ TEST(LeastSquares, CancellingKeepsTheBestPointSoFar) {
   const auto complete = solve(relaxation(1.0, 1.0));
   int calls = 0;
   LeastSquaresOptions options;
-  options.progress = [&calls](const Progress& progress) {
+  options.progress = [&calls](const FitProgress& progress) {
     EXPECT_TRUE(std::isfinite(progress.rms));
     return ++calls < 3;
   };

@@ -1,4 +1,4 @@
-#include "tool/signals.hpp"
+#include "tuning/simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 
-namespace hysteron::tool {
+namespace hysteron {
 namespace {
 
 /// Sample times that differ by less, relatively, are those of two clocks, not of two settings.
@@ -192,4 +192,14 @@ std::vector<Wire> output_wires(const Graph& graph) {
   return wires;
 }
 
-}  // namespace hysteron::tool
+std::vector<Signal> simulate(Program program, const records::Record& record) {
+  Diagnostics diagnostics;
+  settle_sample_time(record, program, diagnostics);
+  const Drive drive = drive_from(record, program, {}, diagnostics);
+  if (diagnostics.has_errors()) {
+    throw InputError(std::move(diagnostics));
+  }
+  return interpret(program, drive, output_wires(program.graph), false);
+}
+
+}  // namespace hysteron

@@ -47,7 +47,8 @@ using Powers = std::array<Fraction, dimensions>;
 struct Unit {
   double factor = 1.0;
   Powers powers{};
-  std::vector<std::pair<std::uint32_t, Fraction>> variables{};  ///< sorted by variable
+  std::vector<std::pair<std::uint32_t, Fraction>> variables{};   ///< sorted by variable
+  std::vector<std::pair<std::string_view, Fraction>> symbols{};  ///< as it was written, for messages
 
   void multiply(const Unit& other, Fraction exponent) {
     factor *= std::pow(other.factor, exponent.number());
@@ -56,6 +57,20 @@ struct Unit {
     }
     for (const auto& [variable, power] : other.variables) {
       add_variable(variable, power * exponent);
+    }
+    for (const auto& [symbol, power] : other.symbols) {
+      add_symbol(symbol, power * exponent);
+    }
+  }
+  void add_symbol(std::string_view symbol, Fraction power) {
+    const auto place = std::ranges::find(symbols, symbol, [](const auto& one) { return one.first; });
+    if (place == symbols.end()) {
+      symbols.emplace_back(symbol, power);
+    } else {
+      place->second = place->second + power;
+      if (place->second.zero()) {
+        symbols.erase(place);
+      }
     }
   }
   void add_variable(std::uint32_t variable, Fraction power) {
@@ -134,8 +149,9 @@ constexpr std::array prefixes{Prefix{"f", 1e-15}, Prefix{"p", 1e-12}, Prefix{"n"
                               Prefix{"d", 1e-1},  Prefix{"h", 1e2},   Prefix{"k", 1e3},  Prefix{"M", 1e6},
                               Prefix{"G", 1e9},   Prefix{"T", 1e12}};
 
-Unit unit_of(const Symbol& symbol, double factor) {
+Unit unit_of(const Symbol& symbol, double factor, std::string_view written) {
   Unit unit;
+  unit.symbols.emplace_back(written, Fraction{1, 1});
   unit.factor = symbol.factor * factor;
   for (std::size_t i = 0; i < dimensions; ++i) {
     unit.powers[i] = {symbol.powers[i], 1};
@@ -146,14 +162,14 @@ Unit unit_of(const Symbol& symbol, double factor) {
 std::optional<Unit> find_symbol(std::string_view name) {
   for (const Symbol& symbol : symbols) {
     if (symbol.name == name) {
-      return unit_of(symbol, 1.0);
+      return unit_of(symbol, 1.0, name);
     }
   }
   for (const Prefix& prefix : prefixes) {
     if (name.starts_with(prefix.name)) {
       for (const Symbol& symbol : symbols) {
         if (symbol.prefixes && symbol.name == name.substr(prefix.name.size())) {
-          return unit_of(symbol, prefix.factor);
+          return unit_of(symbol, prefix.factor, name);
         }
       }
     }
@@ -323,22 +339,17 @@ std::optional<Unit> parse(std::string_view text, std::string& reason, const Pars
   return Parser(text, variable).parse(reason);
 }
 
-/// A unit in symbols again, for messages: its own text is kept where it was written, else built from the base.
+/// A unit in the symbols in which it was written: um/V, N*m/s^2, m^(1/2).
 std::string text_of(const Unit& unit) {
-  constexpr std::array<std::string_view, dimensions> names{"m", "kg", "s", "A", "K", "degC", "mol", "cd"};
   std::string over;
   std::string under;
-  for (std::size_t i = 0; i < dimensions; ++i) {
-    if (unit.powers[i].zero()) {
-      continue;
-    }
-    const bool below = unit.powers[i].over < 0;
-    const auto size = std::abs(unit.powers[i].over);
-    std::string& side = below ? under : over;
+  for (const auto& [symbol, power] : unit.symbols) {
+    std::string& side = power.over < 0 ? under : over;
+    const auto size = std::abs(power.over);
     side += side.empty() ? "" : "*";
-    side += names[i];
-    if (unit.powers[i].under != 1) {
-      side += fmt::format("^({}/{})", size, unit.powers[i].under);
+    side += symbol;
+    if (power.under != 1) {
+      side += fmt::format("^({}/{})", size, power.under);
     } else if (size != 1) {
       side += fmt::format("^{}", size);
     }
@@ -347,7 +358,7 @@ std::string text_of(const Unit& unit) {
   if (!under.empty()) {
     text += under.find('*') == std::string::npos ? "/" + under : "/(" + under + ")";
   }
-  return std::abs(unit.factor - 1.0) < 1e-12 ? text : fmt::format("{:.6g} {}", unit.factor, text);
+  return text;
 }
 
 /// The units of all wires, found by unification: unit variables are solved as wires are met.
@@ -380,6 +391,28 @@ class Checker {
     for (const Port& output : graph_.outputs) {
       agree(of_wire(output.wire), known(output.unit), output.span, output.name);
     }
+  }
+
+  /// The unit of each parameter, after run(): empty where it is not known.
+  std::vector<std::string> parameter_units() {
+    std::vector<std::string> texts;
+    for (const Parameter& parameter : graph_.parameters) {
+      texts.emplace_back(parameter.field.unit.find('\'') == std::string_view::npos ? parameter.field.unit
+                                                                                   : std::string_view{});
+    }
+    for (std::uint32_t index = 0; index < graph_.nodes.size(); ++index) {
+      const Node& node = graph_.nodes[index];
+      for (std::uint32_t pin = 0; node.block != nullptr && pin < node.wire_count; ++pin) {
+        const Wire& wire = graph_.wire(node, pin);
+        const MaybeUnit unit = wire.from == Wire::From::Parameter && texts[wire.index].empty()
+                                   ? of_field(index, node.block->pin(pin))
+                                   : std::nullopt;
+        if (unit && solved(*unit).variables.empty()) {
+          texts[wire.index] = text_of(solved(*unit));
+        }
+      }
+    }
+    return texts;
   }
 
  private:
@@ -564,6 +597,7 @@ class Checker {
     Unit result;
     result.factor = unit.factor;
     result.powers = unit.powers;
+    result.symbols = unit.symbols;
     for (const auto& [variable, power] : unit.variables) {
       if (solutions_[variable]) {
         solutions_[variable] = solved(*solutions_[variable]);
@@ -646,6 +680,13 @@ bool conversion(std::string_view from, std::string_view to, double& factor) {
 
 void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostics) {
   Checker(graph, diagnostics).run(schedule);
+}
+
+std::vector<std::string> of_parameters(const Graph& graph, const Schedule& schedule) {
+  Diagnostics ignored;  // whether units agree is for check to say
+  Checker checker(graph, ignored);
+  checker.run(schedule);
+  return checker.parameter_units();
 }
 
 }  // namespace hysteron::units

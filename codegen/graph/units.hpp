@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "codegen/graph/graph.hpp"
 #include "codegen/graph/schedule.hpp"
@@ -18,5 +19,9 @@ bool conversion(std::string_view from, std::string_view to, double& factor);
 /// Checks the units of all wires. Blocks are polymorphic in unit variables ('x): each instance takes the units that
 /// are wired. A port without a unit is not checked. Reports HY301 where two units cannot agree.
 void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostics);
+
+/// The unit of each parameter of a graph, as the wires give it: C1 of a slope between um and V is um/V. Empty where the
+/// diagram does not say enough.
+std::vector<std::string> of_parameters(const Graph& graph, const Schedule& schedule);
 
 }  // namespace hysteron::units

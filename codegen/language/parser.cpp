@@ -186,7 +186,7 @@ void Parser::advance() {
   last_ = window_[0];
   window_[0] = window_[1];
   window_[1] = window_[2];
-  window_[2] = lexer_.next();
+  window_[2] = reporter_.is_full() ? Token{.offset = static_cast<std::uint32_t>(text_.size())} : lexer_.next();
 }
 
 bool Parser::accept(Symbol symbol) {

@@ -21,6 +21,9 @@ class Reporter {
   /// Whether an error was found between two offsets.
   [[nodiscard]] bool has_error_within(std::uint32_t begin, std::uint32_t end) const;
 
+  /// More were found than are kept: reading on is of no use.
+  [[nodiscard]] bool is_full() const { return overflow_; }
+
   [[nodiscard]] bool empty() const { return found_.empty(); }
 
   /// Hands the errors over in the order of the text, one for each place.

@@ -1,0 +1,105 @@
+// The rooms of the house and the arrows between them: which folder may include which.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "tests/house/source_files.hpp"
+
+namespace hysteron::house {
+namespace {
+
+using Arrows = std::map<std::string, std::set<std::string>, std::less<>>;
+
+/// A room may include itself and these. blocks includes nothing of ours, and codegen and runtime never each other, so
+/// that a block stands alone and a target carries no compiler.
+const Arrows& allowed() {
+  static const Arrows arrows{
+      {"blocks", {}},
+      {"support", {}},
+      {"records", {"support"}},
+      {"codegen", {"blocks", "support"}},
+      {"runtime", {"blocks", "support"}},
+      {"tuning", {"blocks", "codegen", "support", "records"}},
+      {"diagnosis", {"tuning", "codegen", "blocks", "support", "records"}},
+      {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
+      {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
+      {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
+      {"tests",
+       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "examples", "bench"}},
+  };
+  return arrows;
+}
+
+/// The room that a line includes; empty where it includes none of ours.
+std::string included_room(std::string_view line) {
+  const auto hash = line.find_first_not_of(" \t");
+  if (hash == std::string_view::npos || line[hash] != '#') {
+    return "";
+  }
+  const auto word = line.find_first_not_of(" \t", hash + 1);
+  if (word == std::string_view::npos || !line.substr(word).starts_with("include")) {
+    return "";
+  }
+  const auto open = line.find_first_of("\"<", word);
+  const auto slash = line.find('/', word);
+  if (open == std::string_view::npos || slash == std::string_view::npos) {
+    return "";
+  }
+  std::string room(line.substr(open + 1, slash - open - 1));
+  return allowed().contains(room) ? room : "";
+}
+
+std::string forbidden_arrows(const SourceText& file) {
+  const auto& targets = allowed().at(file.room());
+  std::string found;
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    const std::string target = included_room(file.lines[i]);
+    if (!target.empty() && target != file.room() && !targets.contains(target)) {
+      found += file.path + ":" + std::to_string(i + 1) + ": " + file.room() + " may not include " + target + "\n";
+    }
+  }
+  return found;
+}
+
+TEST(Includes, FollowTheArrowsBetweenTheRooms) {
+  std::vector<std::string> rooms;
+  for (const auto& [room, targets] : allowed()) {
+    rooms.push_back(room);
+  }
+  const auto files = source_files(rooms);
+  ASSERT_GT(files.size(), 150U);
+  std::string found;
+  for (const SourceText& file : files) {
+    found += forbidden_arrows(file);
+  }
+  EXPECT_EQ(found, "");
+}
+
+TEST(Includes, AForbiddenArrowIsFoundHoweverItIsWritten) {
+  const std::string expected = "codegen/x.cpp:2: codegen may not include runtime\n";
+  for (const char* line :
+       {"#include \"runtime/task.hpp\"", "#include <runtime/task.hpp>", "  #  include \"runtime/t.hpp\""}) {
+    EXPECT_EQ(forbidden_arrows({.path = "codegen/x.cpp", .lines = {"#include <cmath>", line}}), expected);
+  }
+  EXPECT_EQ(forbidden_arrows({.path = "blocks/x.hpp", .lines = {"#include \"support/numbers.hpp\""}}),
+            "blocks/x.hpp:1: blocks may not include support\n");
+  EXPECT_EQ(forbidden_arrows({.path = "tuning/x.hpp", .lines = {"#include \"records/csv.hpp\""}}), "");
+}
+
+/// Every folder with sources is a room that the table knows.
+TEST(Includes, EveryFolderWithSourcesIsARoom) {
+  const std::filesystem::path root = HYSTERON_SOURCE_DIR;
+  for (const auto& entry : std::filesystem::directory_iterator(root)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name == "build" || name.starts_with(".") || allowed().contains(name)) {
+      continue;
+    }
+    EXPECT_TRUE(source_files({name}).empty()) << name << " has sources, and is not in the table of rooms";
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::house

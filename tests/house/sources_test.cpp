@@ -1,0 +1,92 @@
+// What every source file owes its reader: a header an opening comment and a guard, all a length that can be read and
+// nothing left undone.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "tests/house/source_files.hpp"
+
+namespace hysteron::house {
+namespace {
+
+constexpr std::size_t longest_file = 500;
+
+/// In two halves, so that this file does not find itself.
+constexpr std::array<std::string_view, 4> undone_words{
+    "TO"
+    "DO",
+    "FIX"
+    "ME",
+    "GTEST_"
+    "SKIP",
+    "DISABLED"
+    "_"};
+
+/// Where such a word may stand, and why.
+struct Allowed {
+  std::string_view path;
+  std::string_view word;
+  std::string_view reason;
+};
+constexpr std::array<Allowed, 2> allowed_words{{
+    {"tests/house/instructions_test.cpp", undone_words[2], "without valgrind, outside continuous integration"},
+    {"tests/records/measured_test.cpp", undone_words[2], "without the folder of measured records"},
+}};
+
+std::vector<SourceText> all_sources() {
+  return source_files({"bench", "blocks", "codegen", "diagnosis", "examples", "records", "runtime", "support", "tests",
+                       "tool", "tuning"});
+}
+
+TEST(Sources, AreShortEnoughToBeRead) {
+  for (const SourceText& file : all_sources()) {
+    EXPECT_LE(file.lines.size(), longest_file) << file.path << ": one concept a file; divide it";
+  }
+}
+
+TEST(Sources, HeadersOpenWithWhatTheyAreFor) {
+  for (const SourceText& file : all_sources()) {
+    if (file.is_header()) {
+      ASSERT_FALSE(file.lines.empty()) << file.path;
+      EXPECT_TRUE(file.lines.front().starts_with("// ")) << file.path << " opens without a comment";
+    }
+  }
+}
+
+TEST(Sources, HeadersAreIncludedOnce) {
+  for (const SourceText& file : all_sources()) {
+    if (file.is_header()) {
+      EXPECT_NE(std::ranges::find(file.lines, "#pragma once"), file.lines.end()) << file.path;
+    }
+  }
+}
+
+TEST(Sources, NothingIsLeftUndone) {
+  for (const SourceText& file : all_sources()) {
+    for (const std::string_view word : undone_words) {
+      const bool allowed = std::ranges::any_of(allowed_words, [&](const Allowed& one) {
+        return one.path == file.path && one.word == word && !one.reason.empty();
+      });
+      for (std::size_t i = 0; !allowed && i < file.lines.size(); ++i) {
+        EXPECT_EQ(file.lines[i].find(word), std::string::npos) << file.path << ":" << i + 1 << ": " << word;
+      }
+    }
+  }
+}
+
+TEST(Sources, EveryAllowanceIsNeeded) {
+  for (const SourceText& file : all_sources()) {
+    for (const Allowed& one : allowed_words) {
+      if (one.path == file.path) {
+        EXPECT_TRUE(std::ranges::any_of(
+            file.lines, [&](const std::string& line) { return line.find(one.word) != std::string::npos; }))
+            << one.path << " no longer has " << one.word;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::house

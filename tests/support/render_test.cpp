@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "support/errors.hpp"
 
@@ -20,6 +21,13 @@ Diagnostic at(std::uint32_t line, std::uint32_t column, std::uint32_t length) {
           .place = {.file = "plant.st", .line = line, .column = column, .length = length},
           .cause = "HY_GAIN has no pin XNI.",
           .mend = "did you mean XIN?"};
+}
+
+Note note(Place place, std::string text) {
+  Note result;
+  result.place = std::move(place);
+  result.text = std::move(text);
+  return result;
 }
 
 Sources with(std::string_view text) {
@@ -38,8 +46,7 @@ std::pair<std::string, std::string> lines_two_and_three(const std::string& text)
 TEST(Render, LineCaretMendAndNotes) {
   auto sources = with("first\n  AMP(XNI := U);\nlast\n");
   auto diagnostic = at(2, 7, 3);
-  diagnostic.notes.push_back(
-      {.place = {.file = "plant.st", .line = 1, .column = 1, .length = 5}, .text = "declared here"});
+  diagnostic.notes.push_back(note(Place{.file = "plant.st", .line = 1, .column = 1, .length = 5}, "declared here"));
   EXPECT_EQ(as_text(diagnostic, sources),
             "HY202 error: plant.st:2:7: HY_GAIN has no pin XNI.\n"
             "    2 |   AMP(XNI := U);\n"
@@ -84,7 +91,10 @@ TEST(Render, WithoutTextOrPlaceTheMessageStands) {
   Sources sources;
   EXPECT_EQ(as_text(at(3, 1, 1), sources),
             "HY202 error: plant.st:3:1: HY_GAIN has no pin XNI.\nmend: did you mean XIN?\n");
-  Diagnostic nowhere{.number = 700, .severity = Severity::Warning, .place = {}, .cause = "So.", .mend = ""};
+  Diagnostic nowhere;
+  nowhere.number = 700;
+  nowhere.severity = Severity::Warning;
+  nowhere.cause = "So.";
   EXPECT_EQ(as_text(nowhere, sources), "HY700 warning: So.\n");
   auto short_text = with("one line");
   EXPECT_THAT(as_text(at(9, 1, 1), short_text), Not(HasSubstr("|")));
@@ -125,7 +135,7 @@ TEST(Render, HostileTextIsMadeHarmless) {
 TEST(Render, JsonHasEveryField) {
   Diagnostics list;
   auto diagnostic = at(2, 7, 3);
-  diagnostic.notes.push_back({.place = {.file = "plant.st"}, .text = "declared here"});
+  diagnostic.notes.push_back(note(Place{.file = "plant.st"}, "declared here"));
   list.add(diagnostic);
   const auto json = nlohmann::json::parse(as_json(list).dump());
   EXPECT_EQ(json, nlohmann::json::parse(R"([{"number": "HY202", "title": "Unknown pin", "severity": "error",

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "support/atomic_file.hpp"
+#include "support/numbers.hpp"
 #include "support/render.hpp"
 
 namespace hysteron::examples {
@@ -99,6 +101,23 @@ double rms(std::span<const double> values) {
 double range(std::span<const double> values) {
   const auto [least, largest] = std::ranges::minmax(values);
   return largest - least;
+}
+
+void write_table(const std::filesystem::path& path, std::span<const records::Column> columns) {
+  std::string text;
+  const auto append = [&](std::size_t column, std::string_view cell) {
+    text += cell;
+    text += column + 1 < columns.size() ? ',' : '\n';
+  };
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    append(i, columns[i].name);
+  }
+  for (std::size_t row = 0; row < columns.front().values.size(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      append(i, number_text(columns[i].values[row]));
+    }
+  }
+  write_file_atomically(path, text);
 }
 
 bool draw(std::string_view script, const std::filesystem::path& folder) {

@@ -51,6 +51,9 @@ class Diagram {
 /// Largest minus smallest.
 [[nodiscard]] double range(std::span<const double> values);
 
+/// Writes columns that are no record over time, as CSV with one header row.
+void write_table(const std::filesystem::path& path, std::span<const records::Column> columns);
+
 /// Runs the gnuplot script of an example on the CSV files in a folder; the script finds the folder in ARG1 and leaves
 /// its pictures there. Says so on the terminal, and gives false, where gnuplot is missing or fails.
 bool draw(std::string_view script, const std::filesystem::path& folder);

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "examples/01_memory_element/memory_element.hpp"
 
 using namespace hysteron;
@@ -15,20 +17,14 @@ void print_row(const char* name, const Material& material, const LoopFigures& fi
              map.C1, map.C2, map.C3, figures.least * 1e6, figures.largest * 1e6, figures.opening * 100.0);
 }
 
-records::Record fig_5(const records::Record& loop) {
-  records::Record record = records::Record::even(0.0, 1e-3, loop.size() - 1);
-  std::vector<double> p;
-  std::vector<double> gradient;
-  std::vector<double> branch;
+void write_gradients(const std::filesystem::path& path, const records::Record& loop) {
+  std::array<records::Column, 3> columns{{{.name = "P"}, {.name = "GRADIENT"}, {.name = "BRANCH"}}};
   for (const Gradient& point : gradients_of(loop)) {
-    p.push_back(point.p);
-    gradient.push_back(point.gradient);
-    branch.push_back(point.branch);
+    columns[0].values.push_back(point.p);
+    columns[1].values.push_back(point.gradient);
+    columns[2].values.push_back(point.branch);
   }
-  record.add({.name = "P", .unit = "V", .values = std::move(p)});
-  record.add({.name = "GRADIENT", .unit = "m/V", .values = std::move(gradient)});
-  record.add({.name = "BRANCH", .unit = "", .values = std::move(branch)});
-  return record;
+  write_table(path, columns);
 }
 
 void example(const std::filesystem::path& folder) {
@@ -52,7 +48,7 @@ void example(const std::filesystem::path& folder) {
 
   records::write_csv(folder / "memory_element.csv", loop);
   records::write_csv(folder / "memory_element_as_printed.csv", straight);
-  records::write_csv(folder / "memory_element_gradient.csv", fig_5(loop));
+  write_gradients(folder / "memory_element_gradient.csv", loop);
   draw("01_memory_element/plot.gp", folder);
 }
 

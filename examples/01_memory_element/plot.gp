@@ -1,5 +1,5 @@
 # Figs. 2 to 6 of the paper. Called with the folder of the records: gnuplot -c plot.gp FOLDER
-set terminal pngcairo size 1260,760 font "DejaVu Sans,11" linewidth 1.1
+set terminal pngcairo size 1200,730 font "DejaVu Sans,11" linewidth 1.1
 set output ARG1."/memory_element.png"
 set datafile separator comma
 loop = ARG1."/memory_element.csv"
@@ -66,5 +66,5 @@ set ylabel "dy/du [nm/V]" offset 1
 set xrange [0:520]
 set yrange [0:12.5]
 set label 1 "Each branch is lifted by 0.25 nm/V;\nin truth all lie on C1 + C2·p." at graph 0.05, graph 0.93 textcolor "#555555"
-plot for [i=0:6] gradient using (on(i, column("P [V]"))):(column("GRADIENT [m/V]")*1e9 + 0.25*i) with lines lw 2 lc rgb colours[i+1]
+plot for [i=0:6] gradient using (on(i, column("P"))):(column("GRADIENT")*1e9 + 0.25*i) with lines lw 2 lc rgb colours[i+1]
 unset multiplot

@@ -4,6 +4,14 @@
 
 namespace hysteron::examples {
 
+RambergOsgoodActuator RambergOsgoodActuator::at_branching_point(const Material& material, double y) {
+  RambergOsgoodActuator actuator(material);
+  actuator.skeleton_ = false;
+  actuator.y_ = y;
+  actuator.branch_y_ = y;
+  return actuator;
+}
+
 double RambergOsgoodActuator::operator()(double u) {
   if (u == u_) {
     return y_;

@@ -8,9 +8,13 @@ namespace hysteron::examples {
 
 class RambergOsgoodActuator {
  public:
+  /// At rest, on the skeleton curve, at u = 0 and y = 0.
   explicit RambergOsgoodActuator(const Material& material) : material_(material) {}
 
-  /// The displacement in m after the input has moved to u, in V. Starts on the skeleton curve, at u = 0.
+  /// At a branching point with u = 0 and the displacement y, in m: the next branch begins there.
+  static RambergOsgoodActuator at_branching_point(const Material& material, double y);
+
+  /// The displacement in m after the input has moved to u, in V.
   double operator()(double u);
 
  private:

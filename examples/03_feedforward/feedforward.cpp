@@ -9,25 +9,39 @@ namespace hysteron::examples {
 namespace {
 
 constexpr double amplitude = 1.6e-6;  // m
-constexpr double first_time = -0.25;  // s
 
 }  // namespace
 
-records::Record reference(double sample_time) {
-  const auto rows = static_cast<std::size_t>(std::lround(2.25 / sample_time)) + 1;
+records::Record reference(Start start, double sample_time) {
+  const double first = start == Start::Rest ? -0.25 : 0.0;
+  const auto rows = static_cast<std::size_t>(std::lround((2.0 - first) / sample_time)) + 1;
   std::vector<double> wanted;
   for (std::size_t k = 0; k < rows; ++k) {
-    // (20); with s = t + 1/4, -cos(2πt) = -sin(2πs), which begins at 0 without rounding
-    wanted.push_back(-amplitude * std::sin(2.0 * std::numbers::pi * sample_time * static_cast<double>(k)));
+    const double angle = 2.0 * std::numbers::pi * sample_time * static_cast<double>(k);
+    // (20); a quarter of a period earlier it is a sine, which begins at 0 without rounding
+    wanted.push_back(-amplitude * (start == Start::Rest ? std::sin(angle) : std::cos(angle)));
   }
-  records::Record record = records::Record::even(first_time, sample_time, rows);
+  records::Record record = records::Record::even(first, sample_time, rows);
   record.add({.name = "Y_REF", .unit = "m", .values = std::move(wanted)});
   return record;
 }
 
-records::Record feed_forward(std::string_view diagram, double sample_time) {
-  records::Record run = Diagram(diagram, {}, sample_time).run(reference(sample_time));
-  RambergOsgoodActuator actuator(Material{}.reconciled());
+const std::array<Form, 4>& forms() {
+  static const std::array<Form, 4> all{{{"linear spring", "linear_spring", {{"Y0", 0.0}}},
+                                        {"ODE form, forward Euler", "ode_form", {{"AT_REST", 1.0}}},
+                                        {"ODE form, Heun", "heun_form", {{"AT_REST", 1.0}, {"BEFORE.X0", 0.0}}},
+                                        {"closed form", "closed_form", {{"INV.START", 0.0}, {"INV.Y0", 0.0}}}}};
+  return all;
+}
+
+records::Record feed_forward(const Form& form, Start start, double sample_time) {
+  const bool at_rest = start == Start::Rest;
+  const std::string file = std::string("03_feedforward/") + form.diagram + ".st";
+  Diagram diagram(file, at_rest ? form.at_rest : std::vector<Setting>{}, sample_time);
+  records::Record run = diagram.run(reference(start, sample_time));
+  const Material material = Material{}.reconciled();
+  RambergOsgoodActuator actuator =
+      at_rest ? RambergOsgoodActuator(material) : RambergOsgoodActuator::at_branching_point(material, -amplitude);
   std::vector<double> y;
   for (const double u : column(run, "U")) {
     y.push_back(actuator(u));
@@ -40,7 +54,7 @@ records::Record control(double K) {
   const std::array settings{Setting{"K", K}};
   Diagram servo("03_feedforward/servo.st", settings);
   RambergOsgoodActuator actuator(Material{}.reconciled());
-  records::Record run = reference(servo.sample_time());
+  records::Record run = reference(Start::Rest, servo.sample_time());
   std::vector<double> outputs;
   std::vector<double> inputs;
   std::vector<double> errors;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "examples/03_feedforward/feedforward.hpp"
-#include "support/atomic_file.hpp"
 
 using namespace hysteron;
 using namespace hysteron::examples;
@@ -10,45 +9,27 @@ using namespace hysteron::examples;
 namespace {
 
 void print_row(const char* name, const FollowingError& error) {
-  fmt::print("{:<44}  {:8.2g}  {:8.2g}\n", name, error.rms, error.worst);
+  fmt::print("{:<44}  {:8.1e}  {:8.1e}\n", name, error.rms, error.worst);
 }
 
 void run_feedforwards(const std::filesystem::path& folder) {
-  struct Kind {
-    const char* name;
-    const char* diagram;
-  };
-  constexpr Kind kinds[] = {{"linear spring", "linear_spring"},
-                            {"ODE form, forward Euler", "ode_form"},
-                            {"ODE form, Heun", "heun_form"},
-                            {"closed form", "closed_form"}};
   const std::vector<double> sample_times{4e-3, 2e-3, 1e-3, 0.5e-3, 0.25e-3};
-  std::vector<records::Column> errors;
-  for (const Kind& kind : kinds) {
-    errors.push_back({.name = kind.diagram});
+  std::vector<records::Column> table{{.name = "sample_time", .unit = "", .values = sample_times}};
+  for (const Form& form : forms()) {
+    table.push_back({.name = form.diagram});
     for (const double sample_time : sample_times) {
-      const auto run = feed_forward(fmt::format("03_feedforward/{}.st", kind.diagram), sample_time);
-      const FollowingError error = error_of(run);
-      errors.back().values.push_back(error.rms);
+      const auto run = feed_forward(form, Start::BranchingPoint, sample_time);
+      table.back().values.push_back(error_of(run).rms);
       if (sample_time == 1e-3) {
-        print_row(kind.name, error);
-        records::write_csv(folder / fmt::format("{}.csv", kind.diagram), run);
+        print_row(form.name, error_of(run));
+        records::write_csv(folder / fmt::format("{}.csv", form.diagram), run);
       } else if (sample_time == 0.5e-3) {
-        print_row("  at half the sample time", error);
+        print_row("  at half the sample time", error_of(run));
       }
     }
+    print_row("  from rest, on the skeleton curve", error_of(feed_forward(form, Start::Rest, 1e-3), -0.25));
   }
-  std::string table = "sample_time";  // not a record: its first column is no even time
-  for (const records::Column& column : errors) {
-    table += "," + column.name;
-  }
-  for (std::size_t i = 0; i < sample_times.size(); ++i) {
-    table += fmt::format("\n{}", sample_times[i]);
-    for (const records::Column& column : errors) {
-      table += fmt::format(",{}", column.values[i]);
-    }
-  }
-  write_file_atomically(folder / "order.csv", table + "\n");
+  write_table(folder / "order.csv", table);
 }
 
 void run_feedback(const std::filesystem::path& folder) {

@@ -1,0 +1,139 @@
+// The programs of the examples: each runs, leaves its records and its picture, and says so where it cannot draw.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "examples/example.hpp"
+#include "support/text_file.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::examples {
+namespace {
+
+using test::contents_of;
+using test::ScratchFolder;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string programs = HYSTERON_EXAMPLE_PROGRAMS;
+
+int run(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+struct Example {
+  const char* program;
+  const char* picture;
+  std::vector<std::string> records;
+};
+
+class ExampleProgram : public testing::TestWithParam<Example> {};
+
+TEST_P(ExampleProgram, LeavesRecordsAndPicture) {
+  const ScratchFolder folder;
+  const auto& [program, picture, records] = GetParam();
+  ASSERT_EQ(run(programs + "/" + program + " " + folder / "out" + " > " + folder / "printed"), 0);
+  for (const std::string& record : records) {
+    EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + record))) << record;
+  }
+  if (run("command -v gnuplot > " + folder / "where") == 0) {
+    EXPECT_THAT(contents_of(folder / (std::string("out/") + picture)), StartsWith("\x89PNG"));
+  } else {
+    EXPECT_THAT(contents_of(folder / "printed"), HasSubstr("No picture: gnuplot is not installed"));
+  }
+}
+
+TEST_P(ExampleProgram, SaysThatGnuplotIsMissing) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run("PATH=" + folder.path().string() + " " + programs + "/" + GetParam().program + " " + folder / "out" +
+                " > " + folder / "printed"),
+            0);
+  EXPECT_THAT(contents_of(folder / "printed"), HasSubstr("No picture: gnuplot is not installed"));
+  EXPECT_FALSE(std::filesystem::exists(folder / (std::string("out/") + GetParam().picture)));
+}
+
+TEST_P(ExampleProgram, ReadmeShowsWhatItPrints) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run("PATH=" + folder.path().string() + " " + programs + "/" + GetParam().program + " " + folder / "out" +
+                " > " + folder / "printed"),
+            0);
+  const std::string printed = contents_of(folder / "printed");
+  const std::string table = printed.substr(0, printed.find("No picture"));
+  const std::string name = std::string(GetParam().program).substr(std::string("example_").size());
+  EXPECT_THAT(read_text_file(path_of(name + "/README.md").string()), HasSubstr(table));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ExampleProgram,
+    testing::Values(
+        Example{"example_01_memory_element", "memory_element.png", {"memory_element.csv"}},
+        Example{"example_02_procedure_1", "procedure_1.png", {"map.csv", "rounds_weighted.csv"}},
+        Example{"example_03_feedforward", "feedforward.png", {"closed_form.csv", "servo_closed.csv", "order.csv"}},
+        Example{"example_05_simulated_actuator", "simulated_actuator.png", {"simulated_identify.csv"}}),
+    [](const auto& example) { return std::string(example.param.program).substr(8); });
+
+TEST(ExampleDiagrams, AreInTheLayoutOfTheHouse) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(HYSTERON_EXAMPLES)) {
+    if (entry.path().extension() == ".st") {
+      Diagnostics diagnostics;
+      const std::string text = read_text_file(entry.path().string());
+      EXPECT_EQ(format_text(entry.path().string(), text, diagnostics), text) << entry.path();
+      EXPECT_FALSE(diagnostics.has_errors());
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 6U);
+}
+
+class Simulate : public testing::Test {
+ protected:
+  [[nodiscard]] int simulate(const std::string& words) const {
+    return run(programs + "/simulate " + words + " > " + folder / "printed" + " 2>&1");
+  }
+  const ScratchFolder folder;
+};
+
+TEST_F(Simulate, IdentifiesAlikeEveryTime) {
+  ASSERT_EQ(simulate("identify " + folder / "one.csv"), 0);
+  ASSERT_EQ(simulate("identify " + folder / "two.csv"), 0);
+  EXPECT_EQ(contents_of(folder / "one.csv"), contents_of(folder / "two.csv"));
+  EXPECT_THAT(contents_of(folder / "one.csv"), StartsWith("t,u,y\n0,1.8,"));
+  const records::Record record = records::read_csv(folder / "one.csv");
+  EXPECT_EQ(record.size(), 8001U);
+  EXPECT_DOUBLE_EQ(record.sample_time(), 0.005);
+}
+
+TEST_F(Simulate, PlaysAnyVoltageAndKeepsTheOtherColumns) {
+  ASSERT_EQ(simulate("reference " + folder / "reference.csv"), 0);
+  ASSERT_EQ(simulate("play " + folder / "reference.csv" + " " + folder / "played.csv"), 0);
+  const records::Record played = records::read_csv(folder / "played.csv");
+  EXPECT_THAT(played.names(), testing::ElementsAre("ref", "u", "y"));
+  EXPECT_EQ(played.size(), 7200U);
+  EXPECT_GT(range(column(played, "y")), 30.0);
+}
+
+TEST_F(Simulate, RefusesAnotherSampleTimeAndWrongWords) {
+  std::string slow = "t,u\n";
+  for (int k = 0; k < 10; ++k) {
+    slow += std::to_string(0.01 * k) + ",1\n";
+  }
+  folder.write("slow.csv", slow);
+  EXPECT_EQ(simulate("play " + folder / "slow.csv" + " " + folder / "played.csv"), 1);
+  EXPECT_THAT(contents_of(folder / "printed"), HasSubstr("the sample time is 0.01 s"));
+  EXPECT_EQ(simulate("play " + folder / "missing.csv" + " " + folder / "played.csv"), 1);
+  EXPECT_THAT(contents_of(folder / "printed"), HasSubstr("HY100"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "played.csv"));
+  EXPECT_EQ(simulate("dance"), 2);
+  EXPECT_EQ(simulate("--help"), 0);
+}
+
+}  // namespace
+}  // namespace hysteron::examples

@@ -62,7 +62,7 @@ class RoutineBuilder {
         field.name = node.block != nullptr ? node.block->outputs[port].name : std::string_view("VALUE");
         field.type = output_type(node, port);
         field.meaning = "last value";
-        routine_.cells.push_back({.instance = node.path, .field = field, .node = index});
+        routine_.cells.push_back({.instance = node.path, .field = field, .node = index, .held = true});
       }
     }
     if (routine_.longest_period > 1) {
@@ -324,7 +324,7 @@ class RoutineBuilder {
       if (cell == routine_.counter && routine_.longest_period > 1) {
         routine_.reset.push_back(
             {.kind = Statement::Kind::SetCell, .target = cell, .value = routine_.tape.literal(Op::IntLiteral, 0)});
-      } else if (std::ranges::find(held_, cell) != held_.end()) {
+      } else if (routine_.cells[cell].held) {
         const Type type = routine_.cells[cell].field.type;
         const Op op = type == Type::Real   ? Op::RealLiteral
                       : type == Type::Bool ? Op::BoolLiteral

@@ -17,6 +17,7 @@ struct CellInfo {
   std::string instance{};  ///< path of the block; empty for the step counter
   Field field{};
   std::uint32_t node = 0;
+  bool held = false;  ///< the last output of a slower part
 };
 
 struct Statement {

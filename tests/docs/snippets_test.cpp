@@ -1,0 +1,194 @@
+// Every snippet of the documentation is run: commands in the order of their page, in a folder of their own, with the
+// tool that was just built; what they print is held against what the page shows.
+//
+//   ```st file=plant.st     a file, written to the folder (any kind)
+//   ```st                   a diagram, checked: no error and no warning
+//   ```toml                 a parameter file, read
+//   ```sh                   commands; ```sh exit=1 where they end so
+//   ```text expected        what the commands before it print; … stands for any text, alone on a line for any lines
+//   ```text ```console ```ebnf     shown only: formulas, commands that change the machine, grammar
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/language/syntax.hpp"
+#include "codegen/parameters/parameter_file.hpp"
+#include "tests/docs/page.hpp"
+
+namespace hysteron::test {
+namespace {
+
+constexpr std::string_view anything = "…";
+
+bool line_matches(std::string_view line, std::string_view pattern) {
+  const auto gap = pattern.find(anything);
+  if (gap == std::string_view::npos) {
+    return line == pattern;
+  }
+  if (!line.starts_with(pattern.substr(0, gap))) {
+    return false;
+  }
+  line.remove_prefix(gap);
+  pattern.remove_prefix(gap + anything.size());
+  for (std::size_t skipped = 0; skipped <= line.size(); ++skipped) {
+    if (line_matches(line.substr(skipped), pattern)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+bool lines_match(const std::vector<std::string>& lines, std::size_t at, const std::vector<std::string>& patterns,
+                 std::size_t next) {
+  if (next == patterns.size()) {
+    return at == lines.size();
+  }
+  if (patterns[next] == anything) {
+    for (std::size_t end = at; end <= lines.size(); ++end) {
+      if (lines_match(lines, end, patterns, next + 1)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  return at < lines.size() && line_matches(lines[at], patterns[next]) && lines_match(lines, at + 1, patterns, next + 1);
+}
+
+struct Outcome {
+  int exit_code = 0;
+  std::string output{};
+};
+
+/// Runs commands with the built programs first on the path; both streams, in their order.
+Outcome run_shell(const std::filesystem::path& folder, const std::string& commands) {
+  const auto tools = std::filesystem::path(HYSTERON_TOOL).parent_path();
+  const auto script = folder.string() + "/.commands";
+  std::ofstream(script) << "exec 2>&1\nset -e\ncd '" << folder.string() << "'\nPATH='" << tools.string() << "':'"
+                        << (tools / "examples").string() << "':$PATH\n"
+                        << commands;
+  const std::string shell = "/bin/sh '" + script + "'";
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(shell.c_str(), "r"), nullptr);
+  Outcome outcome;
+  std::array<char, 4096> buffer{};
+  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe.get())) > 0;) {
+    outcome.output.append(buffer.data(), count);
+  }
+  const int status = ::pclose(pipe.release());
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+/// What is wrong with a diagram, one line each; empty where nothing is.
+std::string faults_of_diagram(const std::string& text) {
+  Diagnostics diagnostics;
+  auto file = language::parse("snippet.st", text, diagnostics);
+  if (file.valid) {
+    check(std::make_shared<const language::SourceFile>(std::move(file)), diagnostics);
+  }
+  std::string faults;
+  for (const Diagnostic& one : diagnostics.all()) {
+    faults += "line " + std::to_string(one.place.line) + ": " + one.cause + "\n";
+  }
+  return faults;
+}
+
+class PageRunner {
+ public:
+  explicit PageRunner(const Page& page) : page_(page) {}
+
+  void run(const Snippet& snippet) {
+    SCOPED_TRACE(page_.path.string() + ":" + std::to_string(snippet.line));
+    if (snippet.has("file")) {
+      folder_.write(snippet.attributes.find("file")->second, snippet.text);
+    } else if (snippet.kind == "sh") {
+      const auto exit_code = snippet.attributes.find("exit");
+      last_ = run_shell(folder_.path(), snippet.text);
+      EXPECT_EQ(last_.exit_code, exit_code == snippet.attributes.end() ? 0 : std::stoi(exit_code->second))
+          << snippet.text << last_.output;
+    } else if (snippet.kind == "text" && snippet.has("expected")) {
+      EXPECT_TRUE(lines_match(lines_of(last_.output), 0, lines_of(snippet.text), 0)) << "expected\n"
+                                                                                     << snippet.text << "printed\n"
+                                                                                     << last_.output;
+    } else if (snippet.kind == "st") {
+      EXPECT_EQ(faults_of_diagram(snippet.text), "") << snippet.text;
+    } else if (snippet.kind == "toml") {
+      EXPECT_NO_THROW((void)parameters::parse_parameter_file("snippet.toml", snippet.text)) << snippet.text;
+    } else {
+      EXPECT_TRUE(snippet.kind == "text" || snippet.kind == "console" || snippet.kind == "ebnf")
+          << "nothing runs a snippet of the kind '" << snippet.kind << "'";
+    }
+  }
+
+ private:
+  const Page& page_;
+  ScratchFolder folder_;
+  Outcome last_;
+};
+
+/// Pages whose snippets are not run here: those of diagnostics by the tests of their rooms, those of blocks printed.
+bool has_runner_elsewhere(const std::filesystem::path& page) {
+  return is_below(page, "docs/errors/") || is_below(page, "docs/reference/blocks/");
+}
+
+std::vector<std::filesystem::path> pages_with_snippets() {
+  std::vector<std::filesystem::path> pages;
+  for (const auto& path : all_pages()) {
+    if (!has_runner_elsewhere(path) && !read_page(path).snippets.empty()) {
+      pages.push_back(path);
+    }
+  }
+  return pages;
+}
+
+std::string test_name(const testing::TestParamInfo<std::filesystem::path>& info) {
+  auto name = info.param.lexically_relative(source_folder()).replace_extension().string();
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+class Snippets : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Snippets, DoWhatThePageSays) {
+  const Page page = read_page(GetParam());
+  PageRunner runner(page);
+  for (const Snippet& snippet : page.snippets) {
+    runner.run(snippet);
+    if (HasFailure()) {
+      break;  // what follows builds on it
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Docs, Snippets, testing::ValuesIn(pages_with_snippets()), test_name);
+
+TEST(ExpectedText, GapsStandForAnyTextAndAnyLines) {
+  const auto matches = [](const std::string& text, const std::string& pattern) {
+    return lines_match(lines_of(text), 0, lines_of(pattern), 0);
+  };
+  EXPECT_TRUE(matches("a\nb 1.5 s\nc\n", "a\nb … s\n…\n"));
+  EXPECT_TRUE(matches("a\n", "…\na\n…\n"));
+  EXPECT_FALSE(matches("a\nb\n", "a\n"));
+  EXPECT_FALSE(matches("a\n", "a\nb\n"));
+  EXPECT_FALSE(matches("b 1.5 V\n", "b … s\n"));
+}
+
+}  // namespace
+}  // namespace hysteron::test

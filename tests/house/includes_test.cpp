@@ -25,6 +25,7 @@ const Arrows& allowed() {
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records"}},
       {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
+      {"docs", {"blocks", "codegen", "support"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"tests",

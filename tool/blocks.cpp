@@ -111,7 +111,7 @@ int show_blocks(const Options& options, Console& console) {
 
 Action add_blocks(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("NAME", options->name, "The block to describe, with or without its HY_.")->option_text("NAME");
+  app.add_option("NAME", options->name, "The block to describe, with or without its HY_.")->option_text(" ");
   auto* const json = app.add_flag("--json", options->json, "Prints JSON.");
   app.add_flag("--markdown", options->markdown, "Prints Markdown, as in the reference.")->excludes(json);
   app.footer(std::string(examples));

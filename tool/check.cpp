@@ -66,7 +66,7 @@ int check_files(const Options& options, Console& console) {
 
 Action add_check(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text("FILE.st...");
+  app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text(" ");
   app.add_flag("--json", options->json, "Prints the diagnostics as a list of JSON objects.");
   app.footer(std::string(examples));
   return [options](Console& console) { return check_files(*options, console); };

@@ -87,12 +87,14 @@ class CommandLine {
   CommandLine() {
     app_.name("hysteron");
     app_.set_help_flag("-h,--help", "Shows this help.");
-    app_.set_version_flag("--version", fmt::format("hysteron {}\n", version));
+    app_.set_version_flag("--version", fmt::format("hysteron {}\n", version), "Shows the version.");
     app_.footer(std::string(examples));
+    app_.get_formatter()->label("SUBCOMMAND", "COMMAND");
     for (const Command& command : commands()) {
       CLI::App* const options = app_.add_subcommand(std::string(command.name), std::string(command.summary));
       options->set_help_flag("-h,--help", "Shows this help.");
-      options->get_formatter()->column_width(34);
+      options->group("Commands");
+      options->get_formatter()->label("Positionals", "Arguments");
       actions_[options] = command.add(*options);
     }
   }

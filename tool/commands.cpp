@@ -10,8 +10,8 @@ std::span<const Command> commands() {
       Command{"fmt", "Formats diagrams, with statements in the order of the data flow.", add_fmt},
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"generate", "Generates code from a diagram.", add_generate},
-      // Command{"test", "Runs the tests that stand beside diagrams, interpreted and as generated code.", add_test},
-      // Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+      Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
+      Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
   };
   return list;
 }

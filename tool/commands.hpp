@@ -35,6 +35,7 @@ Action add_check(CLI::App& options);
 Action add_fmt(CLI::App& options);
 Action add_run(CLI::App& options);
 Action add_generate(CLI::App& options);
+Action add_tune(CLI::App& options);
 Action add_test(CLI::App& options);
 Action add_blocks(CLI::App& options);
 

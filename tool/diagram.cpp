@@ -12,10 +12,7 @@
 namespace hysteron::tool {
 
 void add_diagram_options(CLI::App& options, DiagramOptions& diagram) {
-  options.add_option("FILE", diagram.file, "The diagram, a file in Structured Text.")
-      ->required()
-      ->type_name("FILE.st")
-      ->option_text("FILE.st");
+  options.add_option("FILE", diagram.file, "The diagram, a file in Structured Text.")->required()->option_text(" ");
   options.add_option("--params", diagram.parameters, "Parameters, over those that the diagram gives.")
       ->option_text("P.toml");
   options.add_option("--top", diagram.top, "The block to take, where the file has several that no other contains.")

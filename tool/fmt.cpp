@@ -65,7 +65,7 @@ int format_files(const Options& options, Console& console) {
 
 Action add_fmt(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text("FILE.st...");
+  app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text(" ");
   auto* const check = app.add_flag("--check", options->check, "Changes nothing; lists the files that would change.");
   app.add_flag("--stdout", options->to_stdout, "Prints the formatted text instead of writing it.")->excludes(check);
   app.footer(std::string(examples));

@@ -199,7 +199,7 @@ Action add_test(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("FILE", options->diagrams, "Diagrams; the tests of NAME.st stand in NAME.test.toml beside it.")
       ->required()
-      ->option_text("FILE.st...");
+      ->option_text(" ");
   app.add_option("--tests", options->tests, "The test file, where it stands elsewhere.")->option_text("TESTS.toml");
   app.add_flag("--update", options->update, "Writes golden records instead of holding outputs against them.");
   app.add_option("--junit", options->junit, "Writes the results as JUnit XML, for a build server.")

@@ -1,0 +1,79 @@
+// hysteron blocks: the catalogue, printed from the descriptions.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "codegen/trace/block_type.hpp"
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Blocks, ListNamesEveryBlockOnce) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron blocks");
+  EXPECT_EQ(outcome.code, 0);
+  for (const BlockType& block : block_types()) {
+    const auto line = "\n  " + std::string(block.about.name) + " ";
+    const auto first = outcome.out.find(line);
+    ASSERT_NE(first, std::string::npos) << line;
+    EXPECT_EQ(outcome.out.find(line, first + 1), std::string::npos) << line;
+  }
+}
+
+TEST(Blocks, CardOfOneBlock) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron blocks hy_lag");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("HY_LAG: "), HasSubstr("\nparameters\n"), HasSubstr("  T1 "),
+                                 HasSubstr("must be connected"), HasSubstr("\nfeedthrough")));
+  EXPECT_EQ(outcome.out, bench.shell("hysteron blocks lag").out);
+}
+
+TEST(Blocks, FeedthroughIsByPairOfPins) {
+  const test::Workbench bench;
+  const auto integral = nlohmann::json::parse(bench.shell("hysteron blocks HY_INTEGRAL --json").out);
+  EXPECT_EQ(integral["feedthrough"]["XOUT"], nlohmann::json({"XIN", "RUN", "R1", "X0"}));
+  EXPECT_EQ(integral["feedthrough"]["Q"], nlohmann::json({"R1"}));
+  EXPECT_EQ(integral["inputs"][1]["default"], 1.0);
+  EXPECT_FALSE(integral["inputs"][0].contains("default"));
+  const auto delay = nlohmann::json::parse(bench.shell("hysteron blocks HY_DELAY --json").out);
+  EXPECT_FALSE(testing::Value(delay["feedthrough"]["XOUT"], testing::Contains("XIN")));
+}
+
+TEST(Blocks, JsonHoldsTheCatalogue) {
+  const test::Workbench bench;
+  const auto list = nlohmann::json::parse(bench.shell("hysteron blocks --json").out);
+  std::set<std::string> names;
+  for (const auto& block : list) {
+    names.insert(block["name"]);
+    EXPECT_NE(block["equation"], "");
+    EXPECT_NE(block["meaning"], "");
+  }
+  EXPECT_EQ(names.size(), block_types().size());
+}
+
+TEST(Blocks, MarkdownHasASectionForEach) {
+  const test::Workbench bench;
+  const auto text = bench.shell("hysteron blocks --markdown").out;
+  for (const BlockType& block : block_types()) {
+    EXPECT_THAT(text, HasSubstr("\n### " + std::string(block.about.name) + ": "));
+  }
+}
+
+TEST(Blocks, MistypedNames) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron blocks HY_GIAN");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "HY201 error: There is no block HY_GIAN in the library.\nmend: did you mean HY_GAIN?\n\n1 error\n");
+  EXPECT_THAT(bench.shell("hysteron blocks zzzzzzzz").err, HasSubstr("`hysteron blocks` lists them."));
+}
+
+}  // namespace
+}  // namespace hysteron

@@ -1,0 +1,85 @@
+// The command line as a whole: help, version, and what is said of slips.
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(CommandLine, VersionAndHelp) {
+  const test::Workbench bench;
+  const auto version = bench.shell("hysteron --version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, testing::MatchesRegex("hysteron [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  const auto help = bench.shell("hysteron help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_EQ(help.out, bench.shell("hysteron --help").out);
+  for (const char* const command : {"check", "fmt", "run", "generate", "test", "blocks"}) {
+    EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command + " "));
+    const auto own = bench.shell(std::string("hysteron ") + command + " --help");
+    EXPECT_EQ(own.code, 0);
+    EXPECT_THAT(own.out, HasSubstr("Examples:\n  hysteron " + std::string(command)));
+    EXPECT_EQ(own.err, "");
+    EXPECT_EQ(own.out, bench.shell(std::string("hysteron help ") + command).out);
+  }
+}
+
+TEST(CommandLine, SlipsAreExplained) {
+  const test::Workbench bench;
+  const auto refused = [&](const std::string& line) {
+    const auto outcome = bench.shell(line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_EQ(outcome.out, "") << line;
+    return outcome.err;
+  };
+  EXPECT_EQ(refused("hysteron chekc plant.st"),
+            "HY730 error: There is no command chekc.\nmend: did you mean check?\n\n1 error\n");
+  EXPECT_THAT(refused("hysteron"), HasSubstr("No command is given."));
+  EXPECT_THAT(refused("hysteron compile"), HasSubstr("the commands are check, fmt, run, generate, "));
+  EXPECT_EQ(refused("hysteron run plant.st --in a.csv --out b.csv --parms p.toml"),
+            "HY730 error: hysteron run has no option --parms.\nmend: did you mean --params?\n\n1 error\n");
+  EXPECT_THAT(refused("hysteron run plant.st --in a.csv"), AllOf(HasSubstr("--out"), HasSubstr("hysteron run --help")));
+  EXPECT_THAT(refused("hysteron run --in a.csv --out"), HasSubstr("--out"));
+  EXPECT_THAT(refused("hysteron generate plant.st --target ada --out g"), HasSubstr("There is no target ada."));
+  EXPECT_THAT(refused("hysteron check"), HasSubstr("FILE"));
+  EXPECT_THAT(refused("hysteron blocks HY_LAG HY_GAIN"), HasSubstr("does not take the argument HY_GAIN"));
+}
+
+TEST(CommandLine, FilesThatAreNotThere) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  const auto outcome = bench.shell("hysteron check plnat.st");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("HY100 error: plnat.st: "), HasSubstr("did you mean plant.st?")));
+}
+
+TEST(CommandLine, AClosedPipeIsNoCrash) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("(hysteron blocks --markdown; echo $? > code) | head -n 1; cat code");
+  EXPECT_EQ(outcome.out, "# The blocks\n0\n");
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST(CommandLine, AFullDiskIsAnError) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron blocks > /dev/full");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("HY700 error: The results cannot be written: No space left on device."));
+}
+
+TEST(CommandLine, NoColourWithoutATerminal) {
+  const test::Workbench bench;
+  bench.write("plant.st", "FUNCTION_BLOCK P END_FUNCTION_BLOK");
+  const auto outcome = bench.shell("TERM=xterm-256color hysteron check plant.st");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out.find('\033'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hysteron

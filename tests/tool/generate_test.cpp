@@ -1,0 +1,165 @@
+// hysteron generate: what it writes compiles, has the bits of `hysteron run`, and overwrites nothing of the user's.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include "codegen/compile.hpp"
+#include "records/csv.hpp"
+#include "tests/tool/workbench.hpp"
+#include "tool/compiled.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::string_view feedforward = R"(FUNCTION_BLOCK FEEDFORWARD  (* @ts 1ms *)
+  VAR_INPUT
+    Y_REF : LREAL;          (* @unit um *)
+    RESET : BOOL := FALSE;
+    COUNT : DINT := 3;
+  END_VAR
+  VAR_OUTPUT
+    U    : LREAL;
+    TURN : BOOL;
+    N    : DINT;
+  END_VAR
+  VAR
+    RATE   : HY_DERIVATIVE;
+    SMOOTH : HY_LAG := (T1 := 0.003);
+    SUM    : HY_INTEGRAL;
+  END_VAR
+
+  RATE(XIN := Y_REF);
+  SMOOTH(XIN := RATE.XOUT);
+  SUM(XIN := SMOOTH.XOUT ** 3.0 + SIN(Y_REF) * EXP(0.3 * SMOOTH.XOUT), R1 := RESET);
+  U := SUM.XOUT / (1.0 + ABS(SMOOTH.XOUT));
+  TURN := SMOOTH.XOUT > 0.0;
+  N := COUNT * 3 - 1;
+END_FUNCTION_BLOCK
+)";
+
+/// A reference with reversals, as CSV; plain enough for the reader of the generated main.
+std::string reference_log() {
+  std::string text = "t,y_ref,reset\n";
+  for (int k = 0; k < 300; ++k) {
+    text += fmt::format("{},{},{}\n", 0.001 * k, std::sin(0.05 * k) * 3.0 + 0.01 * k, k == 150 ? 1 : 0);
+  }
+  return text;
+}
+
+TEST(Generate, WritesAllFilesAndListsThem) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  const auto outcome = bench.shell("hysteron generate plant.st --target cpp --out made/here");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "made/here/plant.hpp\nmade/here/main.cpp\nmade/here/CMakeLists.txt\n");
+  for (const char* const name : {"plant.hpp", "main.cpp", "CMakeLists.txt"}) {
+    EXPECT_THAT(bench.read(std::string("made/here/") + name), HasSubstr("enerated by Hysteron"));
+  }
+}
+
+TEST(Generate, ParametersAreInTheText) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  bench.write("p.toml", "[parameters.AMP]\nK = 123.25\n");
+  ASSERT_EQ(bench.shell("hysteron generate plant.st --target cpp --out g --params p.toml").code, 0);
+  EXPECT_THAT(bench.read("g/plant.hpp"), HasSubstr("123.25"));
+}
+
+TEST(Generate, CompiledItHasTheBitsOfRun) {
+  const test::Workbench bench;
+  bench.write("ff.st", feedforward);
+  bench.write("log.csv", reference_log());
+  for (const std::string option : {"", " --float32"}) {
+    ASSERT_EQ(bench.shell("hysteron generate ff.st --target cpp --out g" + option).code, 0);
+    ASSERT_EQ(bench.shell("hysteron run ff.st --in log.csv --out run.csv" + option).code, 0);
+    const auto built = bench.shell(
+        "c++ -std=c++20 -O2 -ffp-contract=off -frounding-math g/main.cpp -o program && "
+        "./program < log.csv > generated.csv");
+    ASSERT_EQ(built.code, 0) << built.err;
+    const auto run = records::read_csv((bench.path() / "run.csv").string());
+    const auto generated = records::read_csv((bench.path() / "generated.csv").string());
+    for (const char* const name : {"U", "TURN", "N"}) {
+      EXPECT_EQ(run.column(name).values, generated.column(name).values) << name << option;
+    }
+  }
+}
+
+TEST(Generate, BuildsAloneWithCMake) {
+  const test::Workbench bench;
+  bench.write("ff.st", feedforward);
+  bench.write("log.csv", "t,y_ref\n0,1\n0.001,1\n");
+  ASSERT_EQ(bench.shell("hysteron generate ff.st --target cpp --out g").code, 0);
+  const auto built = bench.shell("cmake -S g -B b && cmake --build b && b/feedforward_run < log.csv");
+  EXPECT_EQ(built.code, 0) << built.err;
+  EXPECT_THAT(built.out, HasSubstr("\nt,U,TURN,N\n"));
+}
+
+TEST(Generate, ForeignFilesAreNotOverwritten) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  const std::string own = "cmake_minimum_required(VERSION 3.16)\nproject(mine)\n";
+  bench.write("CMakeLists.txt", own);
+  const auto before = bench.names();
+  const auto refused = bench.shell("hysteron generate plant.st --target cpp --out .");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("HY731"), HasSubstr("CMakeLists.txt"), HasSubstr("--force")));
+  EXPECT_EQ(bench.names(), before);
+  EXPECT_EQ(bench.read("CMakeLists.txt"), own);
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target cpp --out . --force").code, 0);
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target cpp --out .").code, 0);
+}
+
+TEST(Generate, NothingIsWrittenWhereSomethingFails) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  bench.write("g/main.cpp/in_the_way", "");
+  const auto before = bench.names();
+  const auto refused = bench.shell("hysteron generate plant.st --target cpp --out g");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("HY700"));
+  EXPECT_EQ(bench.names(), before);
+}
+
+TEST(Generate, NeedsASampleTime) {
+  const test::Workbench bench;
+  bench.write("plant.st",
+              "FUNCTION_BLOCK P VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\nY := X;\n"
+              "END_FUNCTION_BLOCK\n");
+  const auto refused = bench.shell("hysteron generate plant.st --target cpp --out g");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("HY404"), HasSubstr("@ts")));
+  EXPECT_FALSE(bench.has("g"));
+}
+
+TEST(Compiled, SeveralProgramsInOneExecutable) {
+  const Program plain = compile_text(std::string(feedforward));
+  Program other = plain;
+  other.graph.parameters[static_cast<std::size_t>(find_parameter(other.graph, "SMOOTH.T1"))].value = {0.02};
+  const tool::CompiledPrograms compiled({{&plain, false}, {&other, false}, {&plain, true}});
+  tool::Drive drive{.inputs = {{}, {0.0}, {7.0}}, .steps = 500};
+  for (std::size_t k = 0; k < drive.steps; ++k) {
+    drive.inputs[0].push_back(std::cos(0.02 * static_cast<double>(k)) * 4.0);
+  }
+  const auto wires = tool::output_wires(plain.graph);
+  const auto interpreted = tool::interpret(plain, drive, wires, false);
+  EXPECT_EQ(compiled.run(0, drive), interpreted);
+  EXPECT_EQ(compiled.run(1, drive), tool::interpret(other, drive, wires, false));
+  EXPECT_EQ(compiled.run(2, drive), tool::interpret(plain, drive, wires, true));
+  EXPECT_NE(compiled.run(1, drive)[0], interpreted[0]);
+  EXPECT_EQ(interpreted[2], tool::Signal(drive.steps, 20.0));
+}
+
+TEST(Compiled, FirstDifferenceCountsBits) {
+  EXPECT_EQ(tool::first_difference({1.0, 2.0}, {1.0, 2.0}), tool::same_bits);
+  EXPECT_EQ(tool::first_difference({1.0, 0.0}, {1.0, -0.0}), 1U);
+  EXPECT_EQ(tool::first_difference({NAN}, {-NAN}), tool::same_bits);
+  EXPECT_EQ(tool::first_difference({1.0, 2.0}, {1.0}), 1U);
+}
+
+}  // namespace
+}  // namespace hysteron

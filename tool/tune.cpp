@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "records/csv.hpp"
+#include "support/progress.hpp"
+#include "tool/commands.hpp"
+#include "tool/diagram.hpp"
+#include "tool/tune_report.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml
+  hysteron tune plant.st --log sine.csv --log steps.csv --params plant.toml --out tuned.toml --report report
+  hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml --start 10 --json
+
+The parameter file says what may change, and on which part of the records:
+  [parameters.HYST]
+  C1 = 8.0
+  [fit.HYST]
+  C1 = {min = 0.1}            min, max, start and scale may be given; {} takes the block's own range
+  [tune]
+  train = [1.0, 21.0]         seconds; several as [[1.0, 5.0], [9.0, 21.0]]
+  test = [21.0, 40.0]
+  loss = "huber"              outliers pull with constant force
+  initial_states = ["LAG.Y"]  fitted too, for each record
+The diagram is run from its reset over each whole record: columns are its inputs, and the outputs of the same name are
+what it is to meet. TUNED.toml is P.toml with the fitted values; run, generate and tune take it. Ctrl-C ends the fit and
+writes the best so far.
+Exit codes: 0 fitted; 1 the fit did not converge, the best is written; 2 an error in diagram, parameters or records, and
+nothing is written; 130 ended by Ctrl-C, the best is written.
+)";
+
+/// As shells give it for a program that an interrupt has ended.
+constexpr int exit_interrupted = 130;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// Takes Ctrl-C as a wish to end the fit, for as long as it lives.
+class InterruptWatch {
+ public:
+  InterruptWatch() : before_(std::signal(SIGINT, [](int /*signal*/) { interrupted = 1; })) { interrupted = 0; }
+  ~InterruptWatch() { (void)std::signal(SIGINT, before_); }
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+  InterruptWatch(InterruptWatch&&) = delete;
+  InterruptWatch& operator=(InterruptWatch&&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+struct Options {
+  DiagramOptions diagram;
+  std::vector<std::string> logs;
+  std::string output;
+  std::string report;
+  int starts = 1;
+  bool json = false;
+};
+
+/// Which output the progress line speaks of: the only one, with its unit; else the share of the ranges.
+std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOptions& options, int start,
+                          const FitProgress& progress) {
+  return fmt::format("{}iteration {}, RMSE {:.3g} % of the range{}",
+                     options.starts > 1 ? fmt::format("start {} of {}, ", start + 1, options.starts) : std::string(),
+                     progress.iteration, 100.0 * progress.rms, problem.outputs.size() > 1 ? "s" : "");
+}
+
+int tune(const Options& options, Console& console) {
+  std::vector<std::string> inputs = options.logs;
+  inputs.push_back(options.diagram.file);
+  inputs.push_back(options.diagram.parameters);
+  for (const std::string& input : inputs) {
+    refuse_to_overwrite(options.output, {input});
+  }
+  Diagnostics warnings;
+  const Program program = compile_file(options.diagram.file,
+                                       {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
+  const auto file = parameters::read_parameter_file(options.diagram.parameters);
+  std::vector<records::Record> records;
+  records.reserve(options.logs.size());
+  for (const std::string& log : options.logs) {
+    records.push_back(records::read_csv(log));
+  }
+  const OutputErrorProblem problem = output_error_problem(program, file, records);
+
+  OutputErrorFit fit;
+  {
+    const InterruptWatch watch;
+    Progress line("Fitting");
+    OutputErrorOptions fitting{.starts = options.starts};
+    fitting.progress = [&](int start, const FitProgress& progress) {
+      // How many iterations are left nobody knows; most fits take some thirty.
+      const double within = std::min(0.95, static_cast<double>(progress.iteration) / 30.0);
+      line.update((start + within) / std::max(1, options.starts), progress_text(problem, fitting, start, progress));
+      return interrupted == 0;
+    };
+    fit = fit_output_error(problem, fitting);
+    line.finish();
+  }
+
+  const auto heading =
+      fmt::format("Fitted by hysteron tune to {}.\n{}", fmt::join(options.logs, ", "), fit.solution.message);
+  parameters::write_parameter_file(options.output, tuned_file(file, problem, fit), tuned_remarks(problem, fit),
+                                   heading);
+  const TuneReport report{.problem = problem, .fit = fit};
+  if (!options.report.empty()) {
+    write_report(options.report, report);
+  }
+  console.print(options.json ? as_json(report).dump(2) + "\n" : as_text(report));
+  console.report(warnings);
+  if (fit.solution.status == FitStatus::Cancelled) {
+    return exit_interrupted;
+  }
+  return fit.solution.converged() ? exit_ok : exit_findings;
+}
+
+}  // namespace
+
+Action add_tune(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->diagram.file, "The diagram, a file in Structured Text.")
+      ->required()
+      ->option_text("FILE.st");
+  app.add_option("--log", options->logs, "A measured record; may be repeated.")
+      ->required()
+      ->option_text("LOG.csv")
+      ->allow_extra_args(false);
+  app.add_option("--params", options->diagram.parameters, "Parameters, with those to be fitted in tables [fit].")
+      ->required()
+      ->option_text("P.toml");
+  app.add_option("--out", options->output, "The same with fitted values.")->required()->option_text("TUNED.toml");
+  app.add_option("--report", options->report, "A folder for report.html, report.json and residuals.csv.")
+      ->option_text("DIR");
+  app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
+      ->option_text("NAME");
+  app.add_option("--start", options->starts, "Fits from N points spread over the bounds, and keeps the best.")
+      ->check(CLI::Range(1, 1000000))
+      ->option_text("N");
+  app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
+  app.add_flag("--json", options->json, "Prints JSON.");
+  app.footer(std::string(examples));
+  return [options](Console& console) { return tune(*options, console); };
+}
+
+}  // namespace hysteron::tool

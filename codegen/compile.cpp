@@ -105,7 +105,8 @@ std::int64_t find_top(const Definitions& definitions, const std::string& wanted,
   if (wanted.empty() && names.size() == 1) {
     return top;
   }
-  if (!definitions.list.empty()) {
+  const bool recursive = std::ranges::any_of(definitions.list, [](const Definition& one) { return !one.usable; });
+  if (!definitions.list.empty() && !recursive) {
     diagnostics.error(error::ambiguous_top, {.file = source.path},
                       wanted.empty() ? fmt::format("the file has several top blocks: {}", fmt::join(names, ", "))
                                      : fmt::format("there is no block '{}'", wanted),

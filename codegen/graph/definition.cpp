@@ -142,7 +142,7 @@ class Reader {
       declared.definition = found->second;
     } else {
       unknown_type(variable);
-      declared.has_preset = true;  // one fault, one message: it is not "never assigned" as well
+      declared.kind = Declared::Kind::Unknown;  // one fault, one message: whatever names it is passed over
     }
     const bool instance = declared.kind == Declared::Kind::LibraryBlock || declared.kind == Declared::Kind::UserBlock;
     if (instance && variable.section != language::Section::Local) {

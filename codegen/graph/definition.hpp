@@ -14,7 +14,7 @@ namespace hysteron {
 
 /// What a declared name is.
 struct Declared {
-  enum class Kind : std::uint8_t { Input, Parameter, Output, Local, Constant, LibraryBlock, UserBlock };
+  enum class Kind : std::uint8_t { Input, Parameter, Output, Local, Constant, LibraryBlock, UserBlock, Unknown };
   Kind kind = Kind::Local;
   Field field{};                     ///< name, type, unit, range, default of an elementary variable
   bool has_preset = false;           ///< a default or initial value was written

@@ -338,6 +338,9 @@ class Elaborator {
     }
     const Declared& declared = definition.variables[found->second];
     Part& part = parts[found->second];
+    if (declared.kind == Declared::Kind::Unknown) {
+      return;
+    }
     if (declared.kind != Declared::Kind::LibraryBlock && declared.kind != Declared::Kind::UserBlock) {
       error(error::type_mismatch, call.instance.span,
             fmt::format("'{}' is not an instance and cannot be called", call.instance.text),
@@ -404,7 +407,9 @@ class Elaborator {
       return;
     }
     const Declared& declared = definition.variables[found->second];
-    Slot& slot = slots_[instance.first_slot + found->second];
+    if (declared.kind == Declared::Kind::Unknown) {
+      return;
+    }
     if (declared.kind != Declared::Kind::Output && declared.kind != Declared::Kind::Local) {
       error(declared.kind == Declared::Kind::LibraryBlock || declared.kind == Declared::Kind::UserBlock
                 ? error::type_mismatch
@@ -415,7 +420,6 @@ class Elaborator {
     }
     const Wire wire = lower(instance, parts, assignment.value, instance.path + std::string(declared.field.name));
     Slot& target = slots_[instance.first_slot + found->second];
-    (void)slot;
     if (target.driven) {
       error(error::double_drive, assignment.target.span, fmt::format("'{}' is assigned twice", assignment.target.text),
             "Keep one of the two; to switch between signals use SEL or HY_SWITCH.",
@@ -456,6 +460,9 @@ class Elaborator {
       return {};
     }
     const Declared& declared = definition.variables[found->second];
+    if (declared.kind == Declared::Kind::Unknown) {
+      return {};
+    }
     const bool is_instance =
         declared.kind == Declared::Kind::LibraryBlock || declared.kind == Declared::Kind::UserBlock;
     if (reference.pin.text.empty()) {

@@ -126,10 +126,8 @@ Wire Lowering::expression(language::ExpressionId id) {
     return builder_.literal(Type::Real, real->value);
   }
   if (const auto* integer = std::get_if<language::IntLiteral>(&written.node)) {
-    if (integer->value > 2147483647 || integer->value < -2147483648LL) {
-      report_(error::type_mismatch, span, fmt::format("{} does not fit a DINT", integer->value),
-              "DINT holds −2147483648 to 2147483647; write an LREAL with a decimal point.");
-      return {};
+    if (integer->is_word) {
+      return builder_.literal(Type::Word, static_cast<double>(integer->value));
     }
     return builder_.literal(Type::Int, static_cast<double>(integer->value));
   }

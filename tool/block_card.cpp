@@ -5,23 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
+#include "codegen/backends/block_page.hpp"
 #include "codegen/graph/definition.hpp"
-#include "support/numbers.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::tool {
 namespace {
 
 constexpr std::size_t page_width = 100;
-
-std::string value_text(Type type, double value) {
-  return type == Type::Bool ? (value != 0.0 ? "TRUE" : "FALSE") : number_text(value);
-}
 
 std::string type_text(const Field& field) {
   return field.length > 1 ? fmt::format("ARRAY [0..{}] OF {}", field.length - 1, type_name(field.type))
@@ -57,11 +52,12 @@ std::string limits_text(const Field& field, bool is_output) {
     parts.push_back(range);
   }
   if (!is_output) {
-    const auto preset = preset_text(field);
-    parts.push_back(preset.empty() ? "must be connected" : "default " + preset);
+    parts.push_back(!field.required    ? "default " + value_text(field, field.preset)
+                    : field.length > 1 ? "must be set"
+                                       : "must be connected");
   }
   if (field.has_neutral()) {
-    parts.push_back("neutral at " + value_text(field.type, field.neutral));
+    parts.push_back("neutral at " + value_text(field, field.neutral));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -103,27 +99,6 @@ std::string feedthrough_line(const BlockType& block, std::size_t output) {
       inputs.empty() ? std::string("no input, so it can close a loop") : fmt::format("{}", fmt::join(inputs, ", ")));
 }
 
-std::string markdown_cell(std::string text) {
-  for (auto at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
-    text.insert(at, "\\");
-  }
-  return text;
-}
-
-std::string markdown_table(std::string_view title, std::span<const Field> fields, bool are_outputs) {
-  if (fields.empty()) {
-    return {};
-  }
-  std::string text = fmt::format("\n| {} | type | unit | meaning | {} |\n| --- | --- | --- | --- | --- |\n", title,
-                                 are_outputs ? "range" : "range, default");
-  for (const Field& field : fields) {
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.name, type_text(field),
-                        field.unit.empty() ? "" : fmt::format("`{}`", field.unit),
-                        markdown_cell(std::string(field.meaning)), limits_text(field, are_outputs));
-  }
-  return text;
-}
-
 nlohmann::json field_json(const Field& field, bool is_output) {
   nlohmann::json json = {{"name", field.name},
                          {"type", type_name(field.type)},
@@ -155,45 +130,6 @@ nlohmann::json fields_json(std::span<const Field> fields, bool are_outputs) {
 
 }  // namespace
 
-std::string_view group_name(Group group) {
-  switch (group) {
-    case Group::Memory:
-      return "memory";
-    case Group::Arithmetic:
-      return "arithmetic";
-    case Group::Function:
-      return "function";
-    case Group::Shaping:
-      return "shaping";
-    case Group::Dynamics:
-      return "dynamics";
-    case Group::Control:
-      return "control";
-    case Group::Logic:
-      return "logic";
-    case Group::Time:
-      return "time";
-    case Group::Rate:
-      return "rate";
-  }
-  return {};
-}
-
-std::string range_text(const Field& field) {
-  const bool low = std::isfinite(field.minimum);
-  const bool high = std::isfinite(field.maximum);
-  if (low && high && !field.above_minimum) {
-    return fmt::format("{} to {}", number_text(field.minimum), number_text(field.maximum));
-  }
-  return fmt::format("{}{}{}{}{}", low ? (field.above_minimum ? "above " : "at least ") : "",
-                     low ? number_text(field.minimum) : "", low && high ? " and " : "", high ? "at most " : "",
-                     high ? number_text(field.maximum) : "");
-}
-
-std::string preset_text(const Field& field) {
-  return field.required ? std::string() : value_text(field.type, field.preset);
-}
-
 std::vector<std::string_view> feedthrough_inputs(const BlockType& block, std::size_t output) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < block.inputs.size(); ++i) {
@@ -223,29 +159,6 @@ std::string card_text(const BlockType& block) {
   }
   if (!about.source.empty()) {
     text += "\nsource\n" + wrapped(about.source, 2);
-  }
-  return text;
-}
-
-std::string card_markdown(const BlockType& block) {
-  const About& about = block.about;
-  std::string text = fmt::format("### {}: {}\n\n", about.name, about.title);
-  text += fmt::format("`{}`\n\n{}", about.equation, wrapped(about.meaning, 0));
-  text += markdown_table("input", block.inputs, false);
-  text += markdown_table("parameter", block.params, false);
-  text += markdown_table("output", block.outputs, true);
-  text += "\nFeedthrough, the inputs that an output depends on within the same step:\n\n";
-  for (std::size_t i = 0; i < block.outputs.size(); ++i) {
-    text += fmt::format("- {}\n", feedthrough_line(block, i));
-  }
-  if (!about.delay.empty()) {
-    text += "\nDelay and gain: " + std::string(about.delay) + "\n";
-  }
-  if (!about.effect.empty()) {
-    text += fmt::format("\nEffect: `{}`, between `XIN` and `XOUT`.\n", about.effect);
-  }
-  if (!about.source.empty()) {
-    text += "\nSource: " + std::string(about.source) + "\n";
   }
   return text;
 }

@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "codegen/backends/block_page.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "tool/block_card.hpp"
@@ -83,7 +85,7 @@ std::string reference() {
     title.front() = static_cast<char>(title.front() - 'a' + 'A');
     text += fmt::format("\n## {}\n", title);
     for (const BlockType* const block : blocks_of(group)) {
-      text += "\n" + card_markdown(*block);
+      text += "\n" + block_page(*block, {.heading = 3});
     }
   }
   return text;
@@ -93,7 +95,7 @@ int show_blocks(const Options& options, Console& console) {
   if (!options.name.empty()) {
     const BlockType& block = find_block(options.name);
     console.print(options.json       ? card_json(block).dump(2) + "\n"
-                  : options.markdown ? card_markdown(block)
+                  : options.markdown ? block_page(block)
                                      : card_text(block));
   } else if (options.json) {
     auto list = nlohmann::json::array();

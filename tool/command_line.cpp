@@ -79,7 +79,11 @@ InputError translated(const CLI::App& app, const CLI::ParseError& said) {
     }
     return bad_usage(fmt::format("{} does not take the argument {}.", full_name, app.remaining(true).front()), see);
   }
-  return bad_usage(fmt::format("{}: {}.", full_name, said.what()), see);
+  const std::string text = said.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&said) != nullptr && text.starts_with('-')) {
+    return bad_usage(fmt::format("{}: {} needs a value.", full_name, text.substr(0, text.find(':'))), see);
+  }
+  return bad_usage(fmt::format("{}: {}.", full_name, text), see);
 }
 
 class CommandLine {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "codegen/backends/block_page.hpp"
-#include "codegen/graph/definition.hpp"
+#include "codegen/graph/names.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::tool {

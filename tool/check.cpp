@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "support/errors.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 
@@ -26,29 +27,30 @@ struct Options {
   bool json = false;
 };
 
-/// All diagnostics of one file. Throws InputError where it cannot be read.
-void check_file(const std::string& path, Diagnostics& found) {
+/// All diagnostics of one file; whether it could be read at all.
+bool check_file(const std::string& path, Diagnostics& found) {
   Diagnostics own;
   auto parsed = language::parse_file(path, own);
-  if (own.has_errors() && parsed.text == nullptr) {
-    throw InputError(own);
-  }
   const bool valid = parsed.valid && !own.has_errors();
   const auto source = std::make_shared<const language::SourceFile>(std::move(parsed));
   if (valid) {
     check(source, own);
   }
+  bool readable = true;
   for (const Diagnostic& one : own.all()) {
     found.add(one);
+    readable = readable && one.number != error::unreadable_file;
   }
+  return readable;
 }
 
 int check_files(const Options& options, Console& console) {
   Diagnostics found;
+  bool readable = true;
   Progress progress("Checking");
   for (std::size_t i = 0; i < options.files.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(options.files.size()), options.files[i]);
-    check_file(options.files[i], found);
+    readable = check_file(options.files[i], found) && readable;
   }
   progress.finish();
   if (options.json) {
@@ -58,6 +60,9 @@ int check_files(const Options& options, Console& console) {
   } else {
     console.print(options.files.size() == 1 ? fmt::format("{}: no errors\n", options.files.front())
                                             : fmt::format("{} files: no errors\n", options.files.size()));
+  }
+  if (!readable) {
+    return exit_bad_input;
   }
   return found.has_errors() ? exit_findings : exit_ok;
 }

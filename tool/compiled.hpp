@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codegen/compile.hpp"
-#include "tool/signals.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 

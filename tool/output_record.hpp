@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "support/diagnostic.hpp"
-#include "tool/signals.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 

@@ -17,7 +17,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/output_record.hpp"
-#include "tool/signals.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 namespace {

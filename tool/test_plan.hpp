@@ -8,8 +8,8 @@
 
 #include "codegen/compile.hpp"
 #include "support/diagnostic.hpp"
-#include "tool/signals.hpp"
 #include "tool/test_file.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "tool/signals.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
 

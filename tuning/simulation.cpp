@@ -164,12 +164,11 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
     return;
   }
   records::PrintedResolution resolution;
-  double largest = 0.0;
   for (const double time : record.time()) {
     resolution.take(number_text(time));
-    largest = std::max(largest, std::abs(time));
   }
-  if (span_of_deviations(record, stated) <= 1.25 * resolution.quantum(largest) + 0.02 * stated) {
+  const double last_decimal = resolution.quantum(0.0);
+  if (span_of_deviations(record, stated) <= 1.25 * last_decimal + 0.02 * stated) {
     return;
   }
   diagnostics.error(error::sample_time_mismatch, {.file = record.file()},

@@ -56,7 +56,10 @@ TEST(CommandLine, FilesThatAreNotThere) {
   bench.write("plant.st", test::plant);
   const auto outcome = bench.shell("hysteron check plnat.st");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, AllOf(StartsWith("HY100 error: plnat.st: "), HasSubstr("did you mean plant.st?")));
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("HY100 error: plnat.st: "), HasSubstr("did you mean plant.st?")));
+  const auto run = bench.shell("hysteron run plnat.st --in log.csv --out out.csv");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err, outcome.out);
 }
 
 TEST(CommandLine, AClosedPipeIsNoCrash) {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr std::string_view feedforward = R"(FUNCTION_BLOCK FEEDFORWARD  (* @ts 1ms *)
   VAR_INPUT
-    Y_REF : LREAL;          (* @unit um *)
+    Y_REF : LREAL;
     RESET : BOOL := FALSE;
     COUNT : DINT := 3;
   END_VAR
@@ -141,17 +141,17 @@ TEST(Compiled, SeveralProgramsInOneExecutable) {
   Program other = plain;
   other.graph.parameters[static_cast<std::size_t>(find_parameter(other.graph, "SMOOTH.T1"))].value = {0.02};
   const tool::CompiledPrograms compiled({{&plain, false}, {&other, false}, {&plain, true}});
-  tool::Drive drive{.inputs = {{}, {0.0}, {7.0}}, .steps = 500};
+  Drive drive{.inputs = {{}, {0.0}, {7.0}}, .steps = 500};
   for (std::size_t k = 0; k < drive.steps; ++k) {
     drive.inputs[0].push_back(std::cos(0.02 * static_cast<double>(k)) * 4.0);
   }
-  const auto wires = tool::output_wires(plain.graph);
-  const auto interpreted = tool::interpret(plain, drive, wires, false);
+  const auto wires = output_wires(plain.graph);
+  const auto interpreted = interpret(plain, drive, wires, false);
   EXPECT_EQ(compiled.run(0, drive), interpreted);
-  EXPECT_EQ(compiled.run(1, drive), tool::interpret(other, drive, wires, false));
-  EXPECT_EQ(compiled.run(2, drive), tool::interpret(plain, drive, wires, true));
+  EXPECT_EQ(compiled.run(1, drive), interpret(other, drive, wires, false));
+  EXPECT_EQ(compiled.run(2, drive), interpret(plain, drive, wires, true));
   EXPECT_NE(compiled.run(1, drive)[0], interpreted[0]);
-  EXPECT_EQ(interpreted[2], tool::Signal(drive.steps, 20.0));
+  EXPECT_EQ(interpreted[2], Signal(drive.steps, 20.0));
 }
 
 TEST(Compiled, FirstDifferenceCountsBits) {

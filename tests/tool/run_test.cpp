@@ -117,7 +117,7 @@ TEST_F(Run, DamagedRecordsAreRefused) {
   for (const auto& [csv, said] : {
            Case{"t,x\n0,1\n0.001,nan\n", "HY506 error: log.csv:3:7: "},
            Case{"t,x\n0,1\n0.001,one\n", "HY505 error: log.csv:3:7: "},
-           Case{"t,x\n0,1\n0.001,1\n0.0035,1\n", "HY507 error: log.csv:4:1: "},
+           Case{"t,x\n0,1\n0.001,1\n0.002,1\n0.003,1\n0.0055,1\n", "HY507 error: log.csv:6:1: "},
            Case{"t,x\n0,1\n0.002,1\n0.001,1\n", "HY508 error: log.csv:4:1: "},
            Case{"t,x\n", "HY501 error: log.csv:1:1: "},
            Case{"", "HY501 error: log.csv: "},

@@ -1,5 +1,7 @@
 #include "records/csv_line.hpp"
 
+#include <algorithm>
+
 namespace hysteron::records {
 namespace {
 
@@ -69,12 +71,7 @@ char separator_of(std::string_view header) {
 }
 
 bool is_blank(std::string_view line, char separator) {
-  for (const char c : line) {
-    if (!is_space(c) && c != separator && c != '"') {
-      return false;
-    }
-  }
-  return true;
+  return std::all_of(line.begin(), line.end(), [&](char c) { return is_space(c) || c == separator || c == '"'; });
 }
 
 HeaderName split_header(std::string_view cell) {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <set>
@@ -105,9 +106,7 @@ class Staging {
       }
     }
     if (!committed_) {
-      for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
-        ::rmdir(folder->c_str());
-      }
+      std::for_each(made_.rbegin(), made_.rend(), [](const fs::path& folder) { ::rmdir(folder.c_str()); });
     }
   }
 
@@ -186,9 +185,10 @@ class Staging {
         break;
       }
     }
-    for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
-      if (::mkdir(at->c_str(), 0777) == 0) {
-        made_.push_back(*at);
+    std::reverse(missing.begin(), missing.end());
+    for (const fs::path& at : missing) {
+      if (::mkdir(at.c_str(), 0777) == 0) {
+        made_.push_back(at);
       } else if (errno != EEXIST) {
         refuse(path, errno);
       }

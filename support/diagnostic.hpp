@@ -4,6 +4,7 @@
 // prints or exits where an error is found.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -49,12 +50,8 @@ class Diagnostics {
     add({number, Severity::Warning, std::move(place), std::move(cause), std::move(mend), std::move(notes)});
   }
   [[nodiscard]] bool has_errors() const {
-    for (const auto& diagnostic : list_) {
-      if (diagnostic.severity == Severity::Error) {
-        return true;
-      }
-    }
-    return false;
+    return std::any_of(list_.begin(), list_.end(),
+                       [](const Diagnostic& one) { return one.severity == Severity::Error; });
   }
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return list_; }
 

@@ -223,7 +223,7 @@ class Reader {
   }
 
   std::optional<PlacedNumber> finite(const toml::key& key, const toml::node& node) {
-    const auto number = number_of(key, node);
+    auto number = number_of(key, node);
     if (number && !std::isfinite(number->value)) {
       not_finite(key, *number, "write a finite number.");
       return std::nullopt;
@@ -326,9 +326,9 @@ class Reader {
         continue;
       }
       if (key.str() == "outputs") {
-        result_.tune.outputs = names_of(key, node, "outputs = [\"Y\"]");
+        result_.tune.outputs = names_of(key, node, R"(outputs = ["Y"])");
       } else if (key.str() == "initial_states") {
-        result_.tune.initial_states = names_of(key, node, "initial_states = [\"LAG.XOUT\"]");
+        result_.tune.initial_states = names_of(key, node, R"(initial_states = ["LAG.XOUT"])");
       } else if (key.str() == "loss") {
         read_loss(key, node);
       } else {

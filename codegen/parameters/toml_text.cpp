@@ -74,9 +74,9 @@ InputError translated(const std::string& file, std::string_view text, const toml
   const auto reason = prefixed
                           ? fmt::format("{} ({})", description.substr(colon + 2), description.substr(20, colon - 20))
                           : description;
-  const auto known = std::find_if(known_mistakes.begin(), known_mistakes.end(), [&](const KnownMistake& mistake) {
-    return description.find(mistake.said) != std::string::npos;
-  });
+  const auto* const known =
+      std::find_if(known_mistakes.begin(), known_mistakes.end(),
+                   [&](const KnownMistake& mistake) { return description.find(mistake.said) != std::string::npos; });
   return {error::parameter_file_syntax, place, fmt::format("This is no TOML: {}.", reason),
           known != known_mistakes.end()
               ? std::string(known->mend)

@@ -46,12 +46,12 @@ struct Generated {
 
 struct HandWritten {
   hand_written::Params params;
+  hand_written::State state;
+  bool reset = false;
 
   template <class Take>
   void run(Take take) {
-    hand_written::State state;
-    bool reset = false;
-    benchmark::DoNotOptimize(reset);
+    state = {};
     for (const double reference : signal()) {
       take(hand_written::step(params, state, reference, reset));
     }

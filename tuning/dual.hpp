@@ -34,71 +34,83 @@ class Dual {
 
   constexpr Dual() = default;
   /// A constant: its gradient is 0.
-  constexpr explicit Dual(double value) : value_(value) {}
-  constexpr Dual(double value, const Gradient& gradient) : value_(value), gradient_(gradient) {}
+  constexpr explicit Dual(double value) : pairs_{Pair{value, 0.0}} {}
+  Dual(double value, const Gradient& gradient) : Dual(value) {
+    for (std::size_t i = 0; i < gradient.size(); ++i) {
+      set(i + 1, gradient[i]);
+    }
+  }
   /// The parameter with this index: the gradient is 1 there and 0 elsewhere.
-  static constexpr Dual variable(double value, int index) {
+  static Dual variable(double value, int index) {
     Dual result(value);
-    result.gradient_[static_cast<std::size_t>(index)] = 1.0;
+    result.set(static_cast<std::size_t>(index) + 1, 1.0);
     return result;
   }
 
-  [[nodiscard]] constexpr double value() const { return value_; }
-  [[nodiscard]] constexpr const Gradient& gradient() const { return gradient_; }
-  [[nodiscard]] constexpr double derivative(int index) const { return gradient_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] double value() const { return pairs_[0][0]; }
+  [[nodiscard]] Gradient gradient() const {
+    Gradient result;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i] = get(i + 1);
+    }
+    return result;
+  }
+  [[nodiscard]] double derivative(int index) const { return get(static_cast<std::size_t>(index) + 1); }
 
-  friend Dual operator-(const Dual& a) { return chain(-a.value_, -1.0, a); }
+  friend Dual operator-(const Dual& a) { return chain(-a.value(), -1.0, a); }
   friend Dual operator+(const Dual& a, const Dual& b) {
-    Dual result(a.value_ + b.value_);
+    Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.gradient_[i] = a.gradient_[i] + b.gradient_[i];
+      result.pairs_[i] = a.pairs_[i] + b.pairs_[i];
     }
     return result;
   }
   friend Dual operator-(const Dual& a, const Dual& b) {
-    Dual result(a.value_ - b.value_);
+    Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.gradient_[i] = a.gradient_[i] - b.gradient_[i];
+      result.pairs_[i] = a.pairs_[i] - b.pairs_[i];
     }
     return result;
   }
-  friend Dual operator*(const Dual& a, const Dual& b) { return chain(a.value_ * b.value_, b.value_, a, a.value_, b); }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return chain(a.value() * b.value(), b.value(), a, a.value(), b);
+  }
   friend Dual operator/(const Dual& a, const Dual& b) {
     // d(a/b) = (da − (a/b)·db) / b
-    const double quotient = a.value_ / b.value_;
-    const double inverse = 1.0 / b.value_;
+    const double quotient = a.value() / b.value();
+    const double inverse = 1.0 / b.value();
     return chain(quotient, inverse, a, -quotient * inverse, b);
   }
 
-  friend bool operator<(const Dual& a, const Dual& b) { return a.value_ < b.value_; }
-  friend bool operator<=(const Dual& a, const Dual& b) { return a.value_ <= b.value_; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.value_ > b.value_; }
-  friend bool operator>=(const Dual& a, const Dual& b) { return a.value_ >= b.value_; }
-  friend bool operator==(const Dual& a, const Dual& b) { return a.value_ == b.value_; }
-  friend bool operator!=(const Dual& a, const Dual& b) { return a.value_ != b.value_; }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.value() < b.value(); }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.value() <= b.value(); }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.value() > b.value(); }
+  friend bool operator>=(const Dual& a, const Dual& b) { return a.value() >= b.value(); }
+  friend bool operator==(const Dual& a, const Dual& b) { return a.value() == b.value(); }
+  friend bool operator!=(const Dual& a, const Dual& b) { return a.value() != b.value(); }
 
   friend Dual abs(const Dual& x) {
-    const double sign = static_cast<double>(x.value_ > 0.0) - static_cast<double>(x.value_ < 0.0);
-    return chain(std::fabs(x.value_), sign, x);
+    const double sign = static_cast<double>(x.value() > 0.0) - static_cast<double>(x.value() < 0.0);
+    return chain(std::fabs(x.value()), sign, x);
   }
   friend Dual sqrt(const Dual& x) {
-    const double root = std::sqrt(x.value_);
-    return chain(root, x.value_ == 0.0 ? 0.0 : 0.5 / root, x);
+    const double root = std::sqrt(x.value());
+    return chain(root, x.value() == 0.0 ? 0.0 : 0.5 / root, x);
   }
   friend Dual exp(const Dual& x) {
-    const double result = std::exp(x.value_);
+    const double result = std::exp(x.value());
     return chain(result, result, x);
   }
-  friend Dual log(const Dual& x) { return chain(std::log(x.value_), 1.0 / x.value_, x); }
-  friend Dual sin(const Dual& x) { return chain(std::sin(x.value_), std::cos(x.value_), x); }
-  friend Dual cos(const Dual& x) { return chain(std::cos(x.value_), -std::sin(x.value_), x); }
+  friend Dual log(const Dual& x) { return chain(std::log(x.value()), 1.0 / x.value(), x); }
+  friend Dual sin(const Dual& x) { return chain(std::sin(x.value()), std::cos(x.value()), x); }
+  friend Dual cos(const Dual& x) { return chain(std::cos(x.value()), -std::sin(x.value()), x); }
   friend Dual tan(const Dual& x) {
-    const double tangent = std::tan(x.value_);
+    const double tangent = std::tan(x.value());
     return chain(tangent, 1.0 + tangent * tangent, x);
   }
-  friend Dual asin(const Dual& x) { return chain(std::asin(x.value_), arc_slope(x.value_), x); }
-  friend Dual acos(const Dual& x) { return chain(std::acos(x.value_), -arc_slope(x.value_), x); }
-  friend Dual atan(const Dual& x) { return chain(std::atan(x.value_), 1.0 / (1.0 + x.value_ * x.value_), x); }
+  friend Dual asin(const Dual& x) { return chain(std::asin(x.value()), arc_slope(x.value()), x); }
+  friend Dual acos(const Dual& x) { return chain(std::acos(x.value()), -arc_slope(x.value()), x); }
+  friend Dual atan(const Dual& x) { return chain(std::atan(x.value()), 1.0 / (1.0 + x.value() * x.value()), x); }
 
   /// base^exponent, with the value of power(double, double) to the bit.
   ///
@@ -112,8 +124,8 @@ class Dual {
   /// At a negative base a real power exists for whole exponents alone, so that there is no derivative with respect
   /// to the exponent; it is taken as 0.
   friend Dual power(const Dual& base, const Dual& exponent) {
-    const double b = base.value_;
-    const double e = exponent.value_;
+    const double b = base.value();
+    const double e = exponent.value();
     const double result = power(b, e);
     double by_base = 0.0;
     if (e == 1.0) {
@@ -129,29 +141,37 @@ class Dual {
     return chain(result, by_base, base);
   }
 
-  friend Dual min(const Dual& a, const Dual& b) { return b.value_ < a.value_ ? b : a; }
-  friend Dual max(const Dual& a, const Dual& b) { return b.value_ > a.value_ ? b : a; }
+  friend Dual min(const Dual& a, const Dual& b) { return b.value() < a.value() ? b : a; }
+  friend Dual max(const Dual& a, const Dual& b) { return b.value() > a.value() ? b : a; }
 
-  friend std::int32_t to_int(const Dual& x) { return to_int(x.value_); }
-  friend double value_of(const Dual& x) { return x.value_; }
+  friend std::int32_t to_int(const Dual& x) { return to_int(x.value()); }
+  friend double value_of(const Dual& x) { return x.value(); }
 
  private:
-  static constexpr std::size_t size = static_cast<std::size_t>(N);
+  /// Value and gradient in one row of pairs, the value first. Every operation then writes whole pairs, as the compiler
+  /// reads them when it copies a Dual; with a lone value, each copy waited for its stores.
+  using Pair [[gnu::vector_size(16)]] = double;
+  static constexpr std::size_t size = (static_cast<std::size_t>(N) + 2) / 2;
+
+  [[nodiscard]] double get(std::size_t place) const { return pairs_[place / 2][place % 2]; }
+  void set(std::size_t place, double number) { pairs_[place / 2][place % 2] = number; }
 
   /// f(a) with df = slope·da.
   static Dual chain(double value, double slope, const Dual& a) {
-    Dual result(value);
+    Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.gradient_[i] = slope * a.gradient_[i];
+      result.pairs_[i] = slope * a.pairs_[i];
     }
+    result.pairs_[0][0] = value;
     return result;
   }
   /// f(a, b) with df = by_a·da + by_b·db.
   static Dual chain(double value, double by_a, const Dual& a, double by_b, const Dual& b) {
-    Dual result(value);
+    Dual result;
     for (std::size_t i = 0; i < size; ++i) {
-      result.gradient_[i] = by_a * a.gradient_[i] + by_b * b.gradient_[i];
+      result.pairs_[i] = by_a * a.pairs_[i] + by_b * b.pairs_[i];
     }
+    result.pairs_[0][0] = value;
     return result;
   }
   /// d asin(x)/dx; 0 at the ends, where it is infinite.
@@ -161,14 +181,13 @@ class Dual {
   }
   [[nodiscard]] bool is_constant() const {
     bool constant = true;
-    for (std::size_t i = 0; i < size; ++i) {
-      constant = constant && gradient_[i] == 0.0;
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(N); ++i) {
+      constant = constant && get(i) == 0.0;
     }
     return constant;
   }
 
-  double value_ = 0.0;
-  Gradient gradient_{};
+  std::array<Pair, size> pairs_{};
 };
 
 }  // namespace hysteron

@@ -28,6 +28,7 @@ const Arrows& allowed() {
       {"docs", {"blocks", "codegen", "support"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
+      {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records"}},
       {"tests",
        {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "examples", "bench"}},
   };

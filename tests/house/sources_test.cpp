@@ -36,8 +36,8 @@ constexpr std::array<Allowed, 2> allowed_words{{
 }};
 
 std::vector<SourceText> all_sources() {
-  return source_files({"bench", "blocks", "codegen", "diagnosis", "examples", "records", "runtime", "support", "tests",
-                       "tool", "tuning"});
+  return source_files({"bench", "blocks", "codegen", "diagnosis", "docs", "examples", "records", "runtime", "support",
+                       "tests", "tool", "tuning"});
 }
 
 TEST(Sources, AreShortEnoughToBeRead) {

@@ -46,11 +46,15 @@ bool line_matches(std::string_view line, std::string_view pattern) {
   return false;
 }
 
+/// The lines of a text, without empty ones at its end.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
     lines.push_back(line);
+  }
+  while (!lines.empty() && lines.back().empty()) {
+    lines.pop_back();
   }
   return lines;
 }

@@ -47,14 +47,4 @@ Definitions define(std::shared_ptr<const language::SourceFile> source, Diagnosti
 /// The value of an expression without names: a literal, an operation on literals. False where it is not constant.
 bool constant_value(const language::SourceFile& source, language::ExpressionId id, double& value, Type& type);
 
-/// Names that the portable subset keeps for itself.
-bool is_reserved(std::string_view name);
-
-/// Whether a name is given to a type: LREAL, BOOL, DINT, WORD.
-bool elementary_type(std::string_view name, Type& type);
-std::string_view type_name(Type type);
-
-/// A literal of the language, as text: 1.5, TRUE, 3, WORD#16#1.
-std::string literal_text(Type type, double value);
-
 }  // namespace hysteron

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codegen/graph/definition.hpp"
+#include "codegen/graph/names.hpp"
 #include "codegen/trace/evaluate.hpp"
 #include "support/errors.hpp"
 

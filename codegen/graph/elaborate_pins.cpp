@@ -1,0 +1,195 @@
+// Pins of instances: which there are, what they are given, and what stays unconnected.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "codegen/graph/elaborator.hpp"
+#include "support/names.hpp"
+
+namespace hysteron {
+
+void Elaborator::apply_settings(const Instance& instance, const Declared& declared, Part& part) {
+  for (const language::Argument& setting : declared.variable->settings) {
+    const Pin pin = find_pin(declared, setting.pin);
+    if (!pin.found || !claim(declared, part, pin, setting)) {
+      continue;
+    }
+    std::vector<double> values;
+    if (constant_array(setting.value, pin.field, values)) {
+      set_constant(instance, declared, part, pin, values, setting);
+    }
+  }
+}
+
+bool Elaborator::constant_array(ExpressionId id, const Field& field, std::vector<double>& values) {
+  std::vector<ExpressionId> elements{id};
+  const Span span = source_.expressions[id].span;
+  if (const auto* array = std::get_if<language::ArrayLiteral>(&source_.expressions[id].node)) {
+    elements = array->elements;
+    if (elements.size() > field.length || field.length == 1) {
+      error(error::type_mismatch, span,
+            fmt::format("{} takes {} value{}, here are {}", field.name, field.length,
+                        field.length == 1 ? "" : "s at most", elements.size()),
+            field.length == 1 ? "Write one value without brackets." : "Leave some out.");
+      return false;
+    }
+  } else if (field.length > 1) {
+    error(error::type_mismatch, span, fmt::format("{} is an array", field.name),
+          "Write the values in brackets: [0.0, 1.0].");
+    return false;
+  }
+  for (const ExpressionId element : elements) {
+    double value = 0.0;
+    Type type = Type::Real;
+    const Span place = source_.expressions[element].span;
+    if (!constant_value(source_, element, value, type)) {
+      error(error::type_mismatch, place, fmt::format("the value of {} is not a constant", field.name),
+            "Write a literal here; connect signals in the call of the instance.");
+      return false;
+    }
+    if (type != field.type) {
+      error(error::type_mismatch, place,
+            fmt::format("{} is {}, its value is {}", field.name, type_name(field.type), type_name(type)),
+            fmt::format("Write {}.", literal_text(field.type, value)));
+      return false;
+    }
+    values.push_back(value);
+  }
+  return true;
+}
+
+Pin Elaborator::find_pin(const Declared& declared, const language::Name& name) {
+  if (declared.kind == Declared::Kind::LibraryBlock) {
+    for (std::uint32_t i = 0; i < declared.block->pin_count(); ++i) {
+      if (language::same_name(declared.block->pin(i).name, name.text)) {
+        return {true, i >= declared.block->inputs.size(), i, declared.block->pin(i)};
+      }
+    }
+  } else {
+    const Definition& inner = definitions_.list[declared.definition];
+    const auto found = inner.by_name.find(upper(name.text));
+    if (found != inner.by_name.end()) {
+      const Declared& variable = inner.variables[found->second];
+      if (variable.kind == Declared::Kind::Input || variable.kind == Declared::Kind::Parameter) {
+        return {true, variable.kind == Declared::Kind::Parameter, found->second, variable.field};
+      }
+    }
+  }
+  std::vector<std::string> names = pin_names(declared, true);
+  error(error::unknown_pin, name.span, fmt::format("{} has no input '{}'", declared.variable->type.text, name.text),
+        fmt::format("Its inputs are {}.", fmt::join(names, ", ")));
+  return {};
+}
+
+std::vector<std::string> Elaborator::pin_names(const Declared& declared, bool inputs) {
+  std::vector<std::string> names;
+  if (declared.kind == Declared::Kind::LibraryBlock) {
+    if (inputs) {
+      for (std::size_t i = 0; i < declared.block->pin_count(); ++i) {
+        names.emplace_back(declared.block->pin(i).name);
+      }
+    } else {
+      for (const Field& field : declared.block->outputs) {
+        names.emplace_back(field.name);
+      }
+    }
+  } else {
+    for (const Declared& variable : definitions_.list[declared.definition].variables) {
+      const bool is_input = variable.kind == Declared::Kind::Input || variable.kind == Declared::Kind::Parameter;
+      if (inputs ? is_input : variable.kind == Declared::Kind::Output) {
+        names.emplace_back(variable.field.name);
+      }
+    }
+  }
+  return names;
+}
+
+Wire& Elaborator::pin_wire(const Declared& declared, const Part& part, const Pin& pin) {
+  return declared.kind == Declared::Kind::LibraryBlock ? graph_.wires[graph_.nodes[part.node].first_wire + pin.index]
+                                                       : slots_[part.first_slot + pin.index].wire;
+}
+
+void Elaborator::set_span(const Declared& declared, const Part& part, const Pin& pin, Span span) {
+  if (declared.kind == Declared::Kind::LibraryBlock) {
+    graph_.wire_spans[graph_.nodes[part.node].first_wire + pin.index] = span;
+  } else {
+    slots_[part.first_slot + pin.index].span = span;
+    slots_[part.first_slot + pin.index].driven = true;
+  }
+}
+
+bool Elaborator::claim(const Declared& declared, const Part& part, const Pin& pin, const language::Argument& argument) {
+  if (pin_wire(declared, part, pin).from == Wire::From::Nothing) {
+    return true;
+  }
+  const Span earlier = declared.kind == Declared::Kind::LibraryBlock
+                           ? graph_.wire_spans[graph_.nodes[part.node].first_wire + pin.index]
+                           : slots_[part.first_slot + pin.index].span;
+  error(error::double_drive, argument.pin.span,
+        fmt::format("{}.{} is given a value twice", declared.variable->name.text, argument.pin.text),
+        "Keep one of the two; to switch between signals use SEL or HY_SWITCH.",
+        {{source_.place(earlier), "the other is here"}});
+  return false;
+}
+
+void Elaborator::set_constant(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin,
+                              const std::vector<double>& values, const language::Argument& argument) {
+  const Span span = source_.expressions[argument.value].span;
+  for (const double value : values) {
+    check_range(pin.field, value, span);
+  }
+  Wire wire;
+  if (pin.parameter) {
+    std::vector<double> all = values;
+    all.resize(pin.field.length, 0.0);
+    open_parameters_.push_back(
+        {.path = upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name),
+         .field = pin.field,
+         .value = std::move(all),
+         .span = span});
+    wire = {Wire::From::Parameter, pin.field.type, 0, static_cast<std::uint32_t>(open_parameters_.size() - 1)};
+  } else {
+    wire = builder_.literal(pin.field.type, values.front());
+  }
+  pin_wire(declared, part, pin) = wire;
+  set_span(declared, part, pin, span);
+}
+
+void Elaborator::check_range(const Field& field, double value, Span span) {
+  const bool low = field.above_minimum ? !(value > field.minimum) : value < field.minimum;
+  if (low || value > field.maximum) {
+    error(error::parameter_out_of_range, span, fmt::format("{} = {} lies outside its range", field.name, value),
+          fmt::format("{} must be {} {}{}.", field.name, field.above_minimum ? "above" : "at least", field.minimum,
+                      field.maximum < std::numeric_limits<double>::infinity()
+                          ? fmt::format(" and at most {}", field.maximum)
+                          : ""));
+  }
+}
+
+void Elaborator::wrong_type(Span span, const std::string& target, Type wanted, Type given) {
+  const bool number = (wanted == Type::Real && given == Type::Int) || (wanted == Type::Int && given == Type::Real);
+  error(
+      error::type_mismatch, span, fmt::format("{} is {}, the value is {}", target, type_name(wanted), type_name(given)),
+      number
+          ? (wanted == Type::Real ? "Write literals with a decimal point (1.0), or convert by DINT_TO_LREAL."
+                                  : "Write literals without a decimal point (1), or convert by LREAL_TO_DINT or TRUNC.")
+          : "A comparison turns a number into a BOOL; SEL turns a BOOL into a number.");
+}
+
+Wire Elaborator::unconnected(const std::string& path, const Declared& declared, const Field& field, bool parameter,
+                             const Part& part) {
+  if (parameter) {
+    open_parameters_.push_back({.path = upper(path) + "." + upper(field.name),
+                                .field = field,
+                                .value = std::vector<double>(field.length, field.preset),
+                                .span = declared.variable->name.span});
+    return {Wire::From::Parameter, field.type, 0, static_cast<std::uint32_t>(open_parameters_.size() - 1)};
+  }
+  if (field.required && part.called) {
+    error(error::unconnected_input, part.call, fmt::format("{}.{} is not connected", declared.field.name, field.name),
+          fmt::format("Connect it: {}({} := …). {}", declared.field.name, field.name, field.meaning));
+  }
+  return builder_.literal(field.type, field.preset);
+}
+
+}  // namespace hysteron

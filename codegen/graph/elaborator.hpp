@@ -1,0 +1,94 @@
+// The elaborator: what elaborate.cpp and elaborate_pins.cpp share. Not for others; see elaborate.hpp.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/finish.hpp"
+#include "codegen/graph/lowering.hpp"
+#include "codegen/graph/names.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron {
+
+using language::ExpressionId;
+using language::Span;
+using language::upper;
+
+/// A definition being instantiated: its variables stand in a row of slots.
+struct Instance {
+  const Definition* definition = nullptr;
+  std::string path{};  ///< "" at the top, else ending in a dot
+  std::uint32_t first_slot = 0;
+  Rate rate{};
+  bool top = false;
+};
+
+/// What an instance variable became: a node, or the slots of a nested definition.
+struct Part {
+  std::uint32_t node = 0;
+  std::uint32_t first_slot = 0;
+  bool called = false;
+  Span call{};
+};
+
+struct Pin {
+  bool found = false;
+  bool parameter = false;
+  std::uint32_t index = 0;  ///< pin of a library block, variable of a definition
+  Field field{};
+};
+
+class Elaborator {
+ public:
+  Elaborator(const Definitions& definitions, Diagnostics& diagnostics)
+      : definitions_(definitions), source_(*definitions.source), diagnostics_(diagnostics), builder_(graph_) {
+    graph_.source = definitions.source;
+  }
+  Graph run(std::uint32_t top);
+
+ private:
+  void error(int number, Span span, std::string cause, std::string mend, std::vector<Note> notes = {});
+  static Wire alias(std::uint32_t slot, Type type) { return {Wire::From::Alias, type, 0, slot}; }
+  std::uint32_t add_slots(const Definition& definition);
+  Port port_of(const Declared& declared) const;
+  void declare_top(const Instance& instance, std::size_t variable);
+  /// A parameter that nothing in the text drives: it may be set from outside.
+  Wire open_parameter(const std::string& path, const Declared& declared, double value);
+  void elaborate(const Instance& instance);
+  void instantiate(const Instance& instance, std::size_t variable, Part& part);
+  // `INV : HY_M_INVERSE := (C1 := 0.05)`: constants, given once.
+  void apply_settings(const Instance& instance, const Declared& declared, Part& part);
+  bool constant_array(ExpressionId id, const Field& field, std::vector<double>& values);
+  Pin find_pin(const Declared& declared, const language::Name& name);
+  std::vector<std::string> pin_names(const Declared& declared, bool inputs);
+  Wire& pin_wire(const Declared& declared, const Part& part, const Pin& pin);
+  void set_span(const Declared& declared, const Part& part, const Pin& pin, Span span);
+  /// Refuses a second value for a pin.
+  bool claim(const Declared& declared, const Part& part, const Pin& pin, const language::Argument& argument);
+  void set_constant(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin,
+                    const std::vector<double>& values, const language::Argument& argument);
+  void check_range(const Field& field, double value, Span span);
+  void elaborate_call(const Instance& instance, std::vector<Part>& parts, const language::Call& call);
+  void wrong_type(Span span, const std::string& target, Type wanted, Type given);
+  void elaborate_assignment(const Instance& instance, std::vector<Part>& parts, const language::Assignment& assignment);
+  Wire lower(const Instance& instance, const std::vector<Part>& parts, ExpressionId id, const std::string& path);
+  Wire resolve(const Instance& instance, const std::vector<Part>& parts, const language::Reference& reference);
+  void unknown_name(const Definition& definition, const language::Name& name);
+  void close(const Instance& instance, std::size_t variable, const Part& part);
+  void check_called(const Declared& declared, const Part& part);
+  Wire unconnected(const std::string& path, const Declared& declared, const Field& field, bool parameter,
+                   const Part& part);
+
+  const Definitions& definitions_;
+  const language::SourceFile& source_;
+  Diagnostics& diagnostics_;
+  Graph graph_;
+  GraphBuilder builder_;
+  std::vector<Slot> slots_;
+  std::vector<Parameter> open_parameters_;
+};
+
+}  // namespace hysteron

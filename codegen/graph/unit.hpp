@@ -1,0 +1,103 @@
+// A unit as a number to compute with: a factor to the SI, powers of the base dimensions, and a block's unit variables.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace hysteron::units {
+
+/// An exponent: a fraction in lowest terms.
+struct Fraction {
+  std::int32_t over = 0;
+  std::int32_t under = 1;
+
+  static Fraction of(std::int64_t numerator, std::int64_t denominator) {
+    const std::int64_t divisor = std::gcd(numerator, denominator) * (denominator < 0 ? -1 : 1);
+    return {static_cast<std::int32_t>(numerator / divisor), static_cast<std::int32_t>(denominator / divisor)};
+  }
+  friend Fraction operator+(Fraction a, Fraction b) {
+    return of(std::int64_t{a.over} * b.under + std::int64_t{b.over} * a.under, std::int64_t{a.under} * b.under);
+  }
+  friend Fraction operator*(Fraction a, Fraction b) {
+    return of(std::int64_t{a.over} * b.over, std::int64_t{a.under} * b.under);
+  }
+  [[nodiscard]] bool zero() const { return over == 0; }
+  [[nodiscard]] Fraction inverse() const { return of(under, over); }
+  [[nodiscard]] double number() const { return static_cast<double>(over) / under; }
+};
+
+// The base dimensions: those of the SI without the mole and the candela's kin, and a temperature scale of its own for
+// °C, whose zero is elsewhere.
+constexpr std::size_t dimensions = 8;  // m kg s A K degC mol cd
+using Powers = std::array<Fraction, dimensions>;
+
+/// A unit: a factor to the SI, powers of the base dimensions and, in a block, of its unit variables.
+struct Unit {
+  double factor = 1.0;
+  Powers powers{};
+  std::vector<std::pair<std::uint32_t, Fraction>> variables{};   ///< sorted by variable
+  std::vector<std::pair<std::string_view, Fraction>> symbols{};  ///< as it was written, for messages
+
+  void multiply(const Unit& other, Fraction exponent) {
+    factor *= std::pow(other.factor, exponent.number());
+    for (std::size_t i = 0; i < dimensions; ++i) {
+      powers[i] = powers[i] + other.powers[i] * exponent;
+    }
+    for (const auto& [variable, power] : other.variables) {
+      add_variable(variable, power * exponent);
+    }
+    for (const auto& [symbol, power] : other.symbols) {
+      add_symbol(symbol, power * exponent);
+    }
+  }
+  void add_symbol(std::string_view symbol, Fraction power) {
+    const auto place = std::ranges::find(symbols, symbol, [](const auto& one) { return one.first; });
+    if (place == symbols.end()) {
+      symbols.emplace_back(symbol, power);
+    } else {
+      place->second = place->second + power;
+      if (place->second.zero()) {
+        symbols.erase(place);
+      }
+    }
+  }
+  void add_variable(std::uint32_t variable, Fraction power) {
+    const auto place = std::ranges::lower_bound(variables, variable, {}, [](const auto& one) { return one.first; });
+    if (place == variables.end() || place->first != variable) {
+      variables.insert(place, {variable, power});
+    } else {
+      place->second = place->second + power;
+      if (place->second.zero()) {
+        variables.erase(place);
+      }
+    }
+  }
+  [[nodiscard]] bool same_dimension(const Unit& other) const {
+    for (std::size_t i = 0; i < dimensions; ++i) {
+      if (!(powers[i] + other.powers[i] * Fraction{-1, 1}).zero()) {
+        return false;
+      }
+    }
+    return true;
+  }
+};
+
+/// Gives the number of a unit variable ('x) by its name.
+using UnitVariable = std::function<std::uint32_t(std::string_view)>;
+
+/// Reads `um/V`, `'y/'x`, `kg*m^2/s^2`, `'x^(1/2)`, `1/(m*K)`. Nothing and a reason where it is none.
+std::optional<Unit> parse_unit(std::string_view text, std::string& reason, const UnitVariable& variable = {});
+
+/// A unit in the symbols in which it was written: um/V, N*m/s^2, m^(1/2).
+std::string unit_text(const Unit& unit);
+
+}  // namespace hysteron::units

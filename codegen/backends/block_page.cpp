@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "codegen/backends/block_response.hpp"
-#include "codegen/graph/definition.hpp"
+#include "codegen/graph/names.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron {

@@ -8,7 +8,7 @@
 
 #include "codegen/backends/block_stimuli.hpp"
 #include "codegen/compile.hpp"
-#include "codegen/graph/definition.hpp"
+#include "codegen/graph/names.hpp"
 #include "codegen/interpreter/machine.hpp"
 
 namespace hysteron {

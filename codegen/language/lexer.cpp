@@ -19,13 +19,13 @@ constexpr std::array<Class, 256> classes = [] {
   for (const char c : std::string_view(" \t\r\n\f\v")) {
     table[static_cast<unsigned char>(c)] = Blank;
   }
-  for (int c = 'a'; c <= 'z'; ++c) {
-    table[static_cast<std::size_t>(c)] = Letter;
-    table[static_cast<std::size_t>(c - 'a' + 'A')] = Letter;
+  for (unsigned char c = 'a'; c <= 'z'; ++c) {
+    table[c] = Letter;
+    table[static_cast<unsigned char>(c - 'a' + 'A')] = Letter;
   }
   table['_'] = Letter;
-  for (int c = '0'; c <= '9'; ++c) {
-    table[static_cast<std::size_t>(c)] = Digit;
+  for (unsigned char c = '0'; c <= '9'; ++c) {
+    table[c] = Digit;
   }
   for (const char c : std::string_view("()[],;:.=+-*/<>&'\"{%")) {
     table[static_cast<unsigned char>(c)] = Sign;

@@ -39,7 +39,7 @@ OPTIONS = {
 }
 
 
-def time_fit(p, m, options, seconds=2.0, at_least=5):
+def time_fit(p, m, options, seconds=0.5, at_least=3):
     """The least processor time in seconds of one fit, and its solution."""
     best, spent, runs = float("inf"), 0.0, 0
     while runs < at_least or (spent < seconds and runs < 2000):

@@ -9,6 +9,7 @@ std::span<const Command> commands() {
       Command{"check", "Checks diagrams: syntax, names, types, wires, units, loops.", add_check},
       Command{"fmt", "Formats diagrams, with statements in the order of the data flow.", add_fmt},
       Command{"run", "Runs a diagram over a record.", add_run},
+      Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"generate", "Generates code from a diagram.", add_generate},
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},

@@ -1,0 +1,318 @@
+// See output_error.hpp.
+#include "tuning/output_error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "tuning/rollout.hpp"
+
+namespace hysteron {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// A fraction in 0 … 1 that depends on the two numbers alone (S. Vigna's SplitMix64).
+double fraction(std::uint64_t start, std::uint64_t unknown) {
+  std::uint64_t z = (start * 1024 + unknown + 1) * 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-53;
+}
+
+class Fitter {
+ public:
+  Fitter(const OutputErrorProblem& problem, const OutputErrorOptions& options)
+      : problem_(problem), options_(options), rollout_(problem) {}
+
+  OutputErrorFit run() {
+    const auto begun = std::chrono::steady_clock::now();
+    name_unknowns();
+    scale_by_range();
+    check_influence();
+    fit_.scores.resize(problem_.outputs.size());
+    score(least_squares_.start, &OutputScore::before);
+    for (int start = 0; start < std::max(1, options_.starts); ++start) {
+      fit_from(start);
+      if (fit_.solution.status == FitStatus::Cancelled) {
+        break;
+      }
+    }
+    const bool finished =
+        fit_.solution.status != FitStatus::Cancelled && fit_.solution.status != FitStatus::ModelFailed;
+    if (finished && problem_.outputs.size() > 1) {
+      weight_by_noise();
+    }
+    fit_.covariance = covariance_of(fit_.solution, fit_.names);
+    for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+      fit_.model.push_back(rollout_.outputs(fit_.solution.x, e));
+    }
+    score(fit_.solution.x, &OutputScore::train);
+    fit_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    return std::move(fit_);
+  }
+
+ private:
+  void name_unknowns() {
+    const Index n = rollout_.unknowns();
+    least_squares_.start.resize(n);
+    least_squares_.lower.resize(n);
+    least_squares_.upper.resize(n);
+    least_squares_.typical.resize(n);
+    Index j = 0;
+    for (const FreeParameter& free : problem_.parameters) {
+      fit_.names.push_back(free.name);
+      least_squares_.start[j] = free.start;
+      least_squares_.lower[j] = free.lower;
+      least_squares_.upper[j] = free.upper;
+      least_squares_.typical[j++] = free.typical;
+    }
+    const std::vector<double> states = rollout_.states_after_reset(least_squares_.start);
+    for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        const FreeState& state = problem_.initial_states[i];
+        const bool several = problem_.experiments.size() > 1;
+        fit_.names.push_back(several ? fmt::format("{} at the start of record {}", state.path, e + 1)
+                                     : fmt::format("{} at the start", state.path));
+        least_squares_.start[j] = states[i];
+        least_squares_.lower[j] = state.lower;
+        least_squares_.upper[j] = state.upper;
+        least_squares_.typical[j++] = states[i] != 0.0 ? std::fabs(states[i]) : 1.0;
+      }
+    }
+    least_squares_.names = fit_.names;
+    least_squares_.residual_count = rollout_.residual_count();
+    least_squares_.evaluate = [this](const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
+      return rollout_.residuals(x, residuals, jacobian);
+    };
+  }
+
+  void scale_by_range() {
+    std::vector<double> scales;
+    for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
+      double low = std::numeric_limits<double>::infinity();
+      double high = -low;
+      for (const Experiment& experiment : problem_.experiments) {
+        for (const records::RowRange& range : experiment.train) {
+          for (std::size_t row = range.first; row < range.last; ++row) {
+            low = std::min(low, experiment.measured[output][row]);
+            high = std::max(high, experiment.measured[output][row]);
+          }
+        }
+      }
+      ranges_.push_back(std::max(high - low, 0.0));
+      scales.push_back(high > low ? high - low : std::max(std::fabs(high), std::numeric_limits<double>::min()));
+    }
+    rollout_.set_scales(scales);
+  }
+
+  /// A column of zeros at the start may come from the start itself (C3 where C2 = 0): a second point decides.
+  void check_influence() {
+    VectorXd residuals(rollout_.residual_count());
+    MatrixXd jacobian(rollout_.residual_count(), rollout_.unknowns());
+    if (!rollout_.residuals(least_squares_.start, residuals, &jacobian)) {
+      return;  // solve() says so
+    }
+    Eigen::ArrayXd influence = jacobian.cwiseAbs().colwise().maxCoeff().transpose().array();
+    if ((influence > 0.0).all()) {
+      return;
+    }
+    VectorXd beside = least_squares_.start;
+    for (Index j = 0; j < beside.size(); ++j) {
+      const double step = 0.1 * least_squares_.typical[j];
+      const double room = least_squares_.upper[j] - beside[j];
+      beside[j] =
+          room > step ? beside[j] + step : std::max(beside[j] - step, 0.5 * (least_squares_.lower[j] + beside[j]));
+    }
+    if (!beside.allFinite() || !rollout_.residuals(beside, residuals, &jacobian)) {
+      return;
+    }
+    influence += jacobian.cwiseAbs().colwise().maxCoeff().transpose().array();
+    Diagnostics diagnostics;
+    for (Index j = 0; j < influence.size(); ++j) {
+      if (influence[j] > 0.0) {
+        continue;
+      }
+      const auto parameters = std::ssize(problem_.parameters);
+      const auto states = std::max<Index>(std::ssize(problem_.initial_states), 1);
+      const Place& place = j < parameters
+                               ? problem_.parameters[static_cast<std::size_t>(j)].place
+                               : problem_.initial_states[static_cast<std::size_t>((j - parameters) % states)].place;
+      diagnostics.error(
+          error::no_influence, place,
+          fmt::format("{} has no influence on any measured sample in train.", fit_.names[static_cast<std::size_t>(j)]),
+          "take it out of the fit, or record what makes it act.");
+    }
+    if (diagnostics.has_errors()) {
+      throw InputError(std::move(diagnostics));
+    }
+  }
+
+  [[nodiscard]] VectorXd start_point(int start) const {
+    VectorXd x = least_squares_.start;
+    for (Index j = 0; start > 0 && j < x.size(); ++j) {
+      const double low = least_squares_.lower[j];
+      const double high = least_squares_.upper[j];
+      const double share = fraction(static_cast<std::uint64_t>(start), static_cast<std::uint64_t>(j));
+      if (std::isfinite(low) && std::isfinite(high)) {
+        x[j] = low + share * (high - low);
+      } else if (low >= 0.0 && x[j] > 0.0) {
+        x[j] = std::clamp(x[j] * std::pow(10.0, 2.0 * share - 1.0), low, high);
+      } else {
+        x[j] = std::clamp(x[j] + (4.0 * share - 2.0) * least_squares_.typical[j], low, high);
+      }
+    }
+    return x;
+  }
+
+  [[nodiscard]] LeastSquaresOptions solver_options(int start) const {
+    LeastSquaresOptions options{.loss = problem_.loss, .max_iterations = options_.max_iterations};
+    if (options_.progress) {
+      options.progress = [this, start](const FitProgress& progress) { return options_.progress(start, progress); };
+    }
+    return options;
+  }
+
+  /// What starts are compared by: with a threshold that follows the residuals, the threshold itself is their size.
+  static double merit(const LeastSquaresResult& result) {
+    return result.huber_threshold > 0.0 ? result.huber_threshold : result.cost;
+  }
+
+  void fit_from(int start) {
+    LeastSquaresProblem problem = least_squares_;
+    problem.start = start_point(start);
+    LeastSquaresResult result;
+    try {
+      result = solve(problem, solver_options(start));
+    } catch (const InputError&) {
+      if (start == 0) {
+        throw;
+      }
+      fit_.start_costs.push_back(not_a_number);  // no value there: the other starts go on
+      return;
+    }
+    fit_.start_costs.push_back(result.cost);
+    const bool usable = result.status != FitStatus::ModelFailed;
+    if (start == 0 || (usable && merit(result) < merit(fit_.solution))) {
+      fit_.solution = std::move(result);
+      fit_.best_start = start;
+    } else if (result.status == FitStatus::Cancelled) {
+      fit_.solution.status = FitStatus::Cancelled;
+      fit_.solution.message = std::string(plain_words(FitStatus::Cancelled));
+    }
+  }
+
+  /// Again, with each output in units of the error that it was left with.
+  void weight_by_noise() {
+    std::vector<double> scales = rollout_.scales();
+    const auto rows = fit_.solution.residuals.size() / std::ssize(scales);
+    for (std::size_t output = 0; output < scales.size(); ++output) {
+      const double rms =
+          std::sqrt(fit_.solution.residuals.segment(static_cast<Index>(output) * rows, rows).squaredNorm() /
+                    static_cast<double>(rows));
+      scales[output] *= std::max(rms, 1e-9);
+    }
+    rollout_.set_scales(scales);
+    LeastSquaresProblem problem = least_squares_;
+    problem.start = fit_.solution.x;
+    const int iterations = fit_.solution.iterations;
+    fit_.solution = solve(problem, solver_options(fit_.best_start));
+    fit_.solution.iterations += iterations;
+  }
+
+  void score(const VectorXd& x, double OutputScore::*target) {
+    const bool final_scores = target == &OutputScore::train;
+    for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
+      OutputScore& result = fit_.scores[output];
+      const Port& port = problem_.program.graph.outputs[problem_.outputs[output]];
+      result.output = port.name;
+      result.unit = port.unit;
+      result.range = ranges_[output];
+      double train = 0.0;
+      double test = 0.0;
+      result.train_samples = 0;
+      result.test_samples = 0;
+      for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+        const Experiment& experiment = problem_.experiments[e];
+        const Signal model = final_scores ? fit_.model[e][output] : rollout_.outputs(x, e)[output];
+        const auto sum = [&](const std::vector<records::RowRange>& ranges, std::size_t& count) {
+          double squares = 0.0;
+          for (const records::RowRange& range : ranges) {
+            for (std::size_t row = range.first; row < range.last; ++row) {
+              const double residual = model[row] - experiment.measured[output][row];
+              squares += residual * residual;
+            }
+            count += range.size();
+          }
+          return squares;
+        };
+        train += sum(experiment.train, result.train_samples);
+        test += sum(experiment.test, result.test_samples);
+      }
+      result.*target = std::sqrt(train / static_cast<double>(result.train_samples));
+      result.test =
+          result.test_samples == 0 ? not_a_number : std::sqrt(test / static_cast<double>(result.test_samples));
+    }
+  }
+
+  const OutputErrorProblem& problem_;
+  const OutputErrorOptions& options_;
+  detail::Rollout rollout_;
+  LeastSquaresProblem least_squares_{};
+  std::vector<double> ranges_{};
+  OutputErrorFit fit_{};
+};
+
+}  // namespace
+
+OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputErrorOptions& options) {
+  return Fitter(problem, options).run();
+}
+
+parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
+                                     const OutputErrorFit& fit) {
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const FreeParameter& free = problem.parameters[j];
+    const Parameter& parameter = problem.program.graph.parameters[free.parameter];
+    const double value = fit.solution.x[static_cast<Index>(j)];
+    auto found = std::ranges::find_if(file.values, [&](const parameters::ParameterValue& given) {
+      return equal_ignoring_case(given.path, parameter.path);
+    });
+    if (found == file.values.end()) {
+      file.values.push_back({.path = parameter.path, .value = parameter.value});
+      found = file.values.end() - 1;
+    }
+    if (parameter.value.size() == 1) {
+      found->value = value;
+    } else {
+      std::get<std::vector<double>>(found->value)[free.element] = value;
+    }
+  }
+  return file;
+}
+
+parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
+  parameters::Remarks remarks;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const FreeParameter& free = problem.parameters[j];
+    const Parameter& parameter = problem.program.graph.parameters[free.parameter];
+    parameters::Remark remark{.unit = free.unit, .meaning = std::string(parameter.field.meaning)};
+    if (parameter.value.size() == 1 && std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
+      remark.standard_error = fit.covariance.standard_errors[static_cast<Index>(j)];
+    }
+    remarks[in_capitals(parameter.path)] = std::move(remark);
+  }
+  return remarks;
+}
+
+}  // namespace hysteron

@@ -1,0 +1,273 @@
+// From a diagram, a parameter file and records to the problem of output_error.hpp.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "codegen/graph/units.hpp"
+#include "codegen/parameters/apply.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "tuning/output_error.hpp"
+
+namespace hysteron {
+namespace {
+
+using parameters::FitSetting;
+using parameters::ParameterFile;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+class Builder {
+ public:
+  Builder(const Program& program, const ParameterFile& file, std::span<const records::Record> records)
+      : file_(file), records_(records) {
+    problem_.program = program;
+    problem_.loss = file.tune.loss == parameters::Loss::Huber ? Loss::Huber : Loss::Squares;
+    parameters::apply(file, problem_.program.graph, diagnostics_);
+  }
+
+  OutputErrorProblem build() {
+    units_ = units::of_parameters(graph(), problem_.program.schedule);
+    for (const FitSetting& fit : file_.fits) {
+      add_parameter(fit);
+    }
+    for (const parameters::PlacedText& state : file_.tune.initial_states) {
+      add_state(state);
+    }
+    if (problem_.parameters.empty() && problem_.initial_states.empty() && !diagnostics_.has_errors()) {
+      diagnostics_.error(error::nothing_to_fit, {.file = file_.file},
+                         fmt::format("{} marks no parameter for fitting.", name_of_file()),
+                         "name those that may change in a table [fit.INSTANCE], as in C1 = {min = 0.0}.");
+    }
+    find_outputs();
+    for (const records::Record& record : records_) {
+      records::Record copy = record;
+      settle_sample_time(copy, problem_.program, diagnostics_);
+      check_same_sample_time(record);
+      add_experiment(record);
+    }
+    if (diagnostics_.has_errors()) {
+      throw InputError(std::move(diagnostics_));
+    }
+    return std::move(problem_);
+  }
+
+ private:
+  [[nodiscard]] const Graph& graph() const { return problem_.program.graph; }
+  [[nodiscard]] std::string name_of_file() const { return file_.file.empty() ? "the parameter file" : file_.file; }
+
+  // ---- unknowns ---------------------------------------------------------------------------------------------------
+
+  void add_parameter(const FitSetting& fit) {
+    const std::int64_t found = find_parameter(graph(), fit.path);
+    if (found < 0) {
+      parameters::report_unknown_parameter(graph(), fit.path, fit.place, diagnostics_);
+      return;
+    }
+    const Parameter& parameter = graph().parameters[static_cast<std::size_t>(found)];
+    const Field& field = parameter.field;
+    if (field.type != Type::Real) {
+      diagnostics_.error(error::wrong_value_type, fit.place,
+                         fmt::format("{} is no real number and cannot be fitted.", parameter.path),
+                         "try its few values one by one, each with a fit of the others.");
+      return;
+    }
+    if (field.length > 1 && fit.start) {
+      diagnostics_.error(error::wrong_value_type, fit.start->place,
+                         fmt::format("{} is a list, and a start is a single number.", parameter.path),
+                         "leave the start out and give the list under [parameters].");
+      return;
+    }
+    for (std::size_t element = 0; element < elements_of(fit, parameter); ++element) {
+      FreeParameter free{.parameter = static_cast<std::size_t>(found),
+                         .element = element,
+                         .name = field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
+                         .unit = units_[static_cast<std::size_t>(found)],
+                         .place = fit.place,
+                         .start = fit.start ? fit.start->value : parameter.value[element]};
+      set_bounds(free, fit, field);
+      problem_.parameters.push_back(std::move(free));
+    }
+  }
+
+  /// Of a list, the elements that the file gives; all where it gives none.
+  [[nodiscard]] std::size_t elements_of(const FitSetting& fit, const Parameter& parameter) const {
+    const auto* const given = file_.find(fit.path);
+    const auto* const list = given == nullptr ? nullptr : std::get_if<std::vector<double>>(&given->value);
+    return list == nullptr ? parameter.value.size() : std::min(list->size(), parameter.value.size());
+  }
+
+  void set_bounds(FreeParameter& free, const FitSetting& fit, const Field& field) {
+    free.lower = std::max(fit.minimum ? fit.minimum->value : -infinity, field.minimum);
+    free.upper = std::min(fit.maximum ? fit.maximum->value : infinity, field.maximum);
+    if (!(free.lower <= free.start && free.start <= free.upper) ||
+        !parameters::range_fault(field, free.start).empty()) {
+      diagnostics_.error(error::contradicting_range, fit.start ? fit.start->place : fit.place,
+                         fmt::format("The fit of {} would start at {}, outside of {} to {}.", free.name,
+                                     number_text(free.start), number_text(free.lower), number_text(free.upper)),
+                         "start inside of its range, or widen the range of the fit.");
+      return;
+    }
+    if (field.above_minimum && free.lower <= field.minimum) {
+      free.lower = field.minimum + 1e-6 * (free.start - field.minimum);  // the minimum itself is out of range
+    }
+    const double width = free.upper - free.lower;
+    if (fit.scale) {
+      free.typical = fit.scale->value;
+    } else if (free.start != 0.0) {
+      free.typical = std::fabs(free.start);
+    } else if (std::isfinite(width) && width > 0.0) {
+      free.typical = 0.5 * width;
+    }
+  }
+
+  void add_state(const parameters::PlacedText& wanted) {
+    std::vector<std::string> known;
+    for (const Node& node : graph().nodes) {
+      for (std::size_t i = 0; node.block != nullptr && i < node.block->states.size(); ++i) {
+        const Field& field = node.block->states[i];
+        if (field.type != Type::Real || field.length > 1) {
+          continue;
+        }
+        known.push_back(fmt::format("{}.{}", node.path, field.name));
+        if (equal_ignoring_case(known.back(), wanted.text)) {
+          problem_.initial_states.push_back(
+              {.path = known.back(), .place = wanted.place, .lower = field.minimum, .upper = field.maximum});
+          return;
+        }
+      }
+    }
+    const auto near = nearest_name(wanted.text, known);
+    std::string mend = "remove it; no block of the diagram has a state that is a real number.";
+    if (!near.empty()) {
+      mend = fmt::format("did you mean {}?", near);
+    } else if (!known.empty()) {
+      constexpr std::ptrdiff_t most = 8;
+      mend = fmt::format("the states are {}{}.",
+                         fmt::join(known.begin(), known.begin() + std::min(std::ssize(known), most), ", "),
+                         std::ssize(known) > most ? ", …" : "");
+    }
+    diagnostics_.error(error::unknown_key, wanted.place,
+                       fmt::format("{} has no state {} that is a real number.", graph().name, wanted.text),
+                       std::move(mend));
+  }
+
+  // ---- records ----------------------------------------------------------------------------------------------------
+
+  void find_outputs() {
+    const auto& outputs = graph().outputs;
+    for (const parameters::PlacedText& wanted : file_.tune.outputs) {
+      const auto found =
+          std::ranges::find_if(outputs, [&](const Port& port) { return equal_ignoring_case(port.name, wanted.text); });
+      if (found == outputs.end()) {
+        std::vector<std::string> names;
+        for (const Port& port : outputs) {
+          names.push_back(port.name);
+        }
+        const auto near = nearest_name(wanted.text, names);
+        diagnostics_.error(error::unknown_key, wanted.place,
+                           fmt::format("{} has no output {}.", graph().name, wanted.text),
+                           near.empty() ? fmt::format("the outputs are {}.", fmt::join(names, ", "))
+                                        : fmt::format("did you mean {}?", near));
+      } else {
+        problem_.outputs.push_back(static_cast<std::size_t>(found - outputs.begin()));
+      }
+    }
+    if (!file_.tune.outputs.empty()) {
+      return;
+    }
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      const auto measured = [&](const records::Record& record) { return record.find(outputs[i].name) != nullptr; };
+      if (std::ranges::any_of(records_, measured)) {
+        problem_.outputs.push_back(i);
+      }
+    }
+    if (problem_.outputs.empty()) {
+      std::vector<std::string> names;
+      for (const Port& port : outputs) {
+        names.push_back(port.name);
+      }
+      diagnostics_.error(
+          error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},
+          fmt::format("No column bears the name of an output of {}: {}.", graph().name, fmt::join(names, ", ")),
+          records_.empty() ? "give a record."
+                           : fmt::format("name the output in the diagram as the record does; its columns are {}.",
+                                         fmt::join(records_.front().names(), ", ")));
+    }
+  }
+
+  /// A sample time that is no whole number of nanoseconds is not kept in the program; records must agree all the same.
+  void check_same_sample_time(const records::Record& record) {
+    const double first = records_.front().sample_time();
+    if (graph().sample_time_ns == 0 && std::fabs(record.sample_time() - first) > 1e-6 * first) {
+      diagnostics_.error(error::sample_time_mismatch, {.file = record.file()},
+                         fmt::format("The record has a sample time of {} s, the first one {} s.",
+                                     number_text(record.sample_time()), number_text(first)),
+                         "resample one of them.");
+    }
+  }
+
+  void add_experiment(const records::Record& record) {
+    Experiment experiment{.name = record.file(),
+                          .time = std::vector<double>(record.time().begin(), record.time().end()),
+                          .drive = drive_from(record, problem_.program, {}, diagnostics_)};
+    for (const std::size_t output : problem_.outputs) {
+      try {
+        experiment.measured.push_back(record.column(graph().outputs[output].name).values);
+      } catch (const InputError& missing) {
+        diagnostics_.add(missing.diagnostics().all().front());
+      }
+    }
+    experiment.train = rows_of(record, file_.tune.train);
+    experiment.test = rows_of(record, file_.tune.test);
+    if (file_.tune.train.empty()) {
+      experiment.train = {{.first = 0, .last = record.size()}};
+    }
+    if (experiment.train.empty()) {
+      diagnostics_.error(error::nothing_to_train_on, {.file = record.file()},
+                         fmt::format("The record, {} to {} s, has no sample in the intervals of train.",
+                                     number_text(record.time().front()), number_text(record.time().back())),
+                         "widen train in [tune], or leave the record out.");
+    }
+    problem_.experiments.push_back(std::move(experiment));
+  }
+
+  /// Sorted, without overlap: a sample counts once.
+  static std::vector<records::RowRange> rows_of(const records::Record& record,
+                                                const std::vector<parameters::Interval>& intervals) {
+    std::vector<records::RowRange> ranges;
+    for (const parameters::Interval& interval : intervals) {
+      ranges.push_back(record.rows_between(interval.begin, interval.end));
+    }
+    std::ranges::sort(ranges, {}, &records::RowRange::first);
+    std::vector<records::RowRange> result;
+    for (records::RowRange range : ranges) {
+      range.first = result.empty() ? range.first : std::max(range.first, result.back().last);
+      if (range.first < range.last) {
+        result.push_back(range);
+      }
+    }
+    return result;
+  }
+
+  const ParameterFile& file_;
+  std::span<const records::Record> records_;
+  std::vector<std::string> units_{};  ///< by parameter
+  Diagnostics diagnostics_{};
+  OutputErrorProblem problem_{};
+};
+
+}  // namespace
+
+OutputErrorProblem output_error_problem(const Program& program, const ParameterFile& file,
+                                        std::span<const records::Record> records) {
+  return Builder(program, file, records).build();
+}
+
+}  // namespace hysteron

@@ -1,0 +1,199 @@
+// See rollout.hpp.
+#include "tuning/rollout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace hysteron::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double sample_time_of(const OutputErrorProblem& problem) {
+  return problem.experiments.empty() ? 0.0 : problem.experiments.front().drive.sample_time;
+}
+
+template <class S>
+struct Width {
+  static constexpr std::size_t value = 0;
+};
+template <int N>
+struct Width<Dual<N>> {
+  static constexpr std::size_t value = static_cast<std::size_t>(N);
+};
+
+/// An unknown: a variable where it is among the columns of the pass, else a constant.
+template <class S>
+S seeded(double value, Index column, std::span<const Index> columns) {
+  if constexpr (Width<S>::value > 0) {
+    const auto found = std::ranges::find(columns, column);
+    if (found != columns.end()) {
+      return S::variable(value, static_cast<int>(found - columns.begin()));
+    }
+  }
+  return S(value);
+}
+
+double plain_value(double value) {
+  return value;
+}
+template <int N>
+double plain_value(const Dual<N>& value) {
+  return value.value();
+}
+
+}  // namespace
+
+Rollout::Rollout(const OutputErrorProblem& problem)
+    : problem_(problem),
+      scales_(problem.outputs.size(), 1.0),
+      first_row_(problem.experiments.size(), std::vector<Index>(problem.outputs.size())),
+      plain_(problem.program, sample_time_of(problem)) {
+  for (std::size_t output = 0; output < problem.outputs.size(); ++output) {
+    for (std::size_t e = 0; e < problem.experiments.size(); ++e) {
+      first_row_[e][output] = rows_;
+      for (const records::RowRange& range : problem.experiments[e].train) {
+        rows_ += static_cast<Index>(range.size());
+      }
+    }
+  }
+}
+
+Index Rollout::unknowns() const {
+  return std::ssize(problem_.parameters) + std::ssize(problem_.initial_states) * std::ssize(problem_.experiments);
+}
+
+Index Rollout::state_column(std::size_t experiment, std::size_t state) const {
+  return static_cast<Index>(problem_.parameters.size() + experiment * problem_.initial_states.size() + state);
+}
+
+template <class S>
+void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
+  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
+    const FreeParameter& free = problem_.parameters[j];
+    const auto column = static_cast<Index>(j);
+    machine.set_parameter(free.parameter, seeded<S>(x[column], column, columns), free.element);
+  }
+  machine.reset();
+  for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
+    const Index column = state_column(experiment, state);
+    *machine.real_state(problem_.initial_states[state].path) = seeded<S>(x[column], column, columns);
+  }
+}
+
+template <class S>
+void Rollout::drive(Machine<S>& machine, const Drive& drive, std::size_t step) {
+  for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
+    if (step == 0 || drive.inputs[i].size() > 1) {
+      machine.set_input(i, S(at_step(drive.inputs[i], step)));
+    }
+  }
+}
+
+template <class S>
+bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
+                   VectorXd& residuals, MatrixXd* jacobian) {
+  prepare(machine, x, experiment, columns);
+  const Experiment& record = problem_.experiments[experiment];
+  std::size_t step = 0;
+  Index row = 0;
+  for (const records::RowRange& range : record.train) {
+    for (; step < range.last; ++step) {
+      drive(machine, record.drive, step);
+      machine.step();
+      if (step < range.first) {
+        continue;
+      }
+      for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
+        const S y = machine.output(problem_.outputs[output]);
+        const double value = plain_value(y);
+        if (!std::isfinite(value)) {
+          return false;
+        }
+        const Index at = first_row_[experiment][output] + row;
+        const double scale = scales_[output];
+        residuals[at] = (value - record.measured[output][step]) / scale;
+        if constexpr (Width<S>::value > 0) {
+          for (std::size_t k = 0; k < columns.size(); ++k) {
+            (*jacobian)(at, columns[k]) = y.derivative(static_cast<int>(k)) / scale;
+          }
+        }
+      }
+      ++row;
+    }
+  }
+  return true;
+}
+
+bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
+  if (jacobian != nullptr) {
+    jacobian->setZero();
+  }
+  for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+    if (jacobian == nullptr) {
+      if (!pass<double>(plain_, x, e, {}, residuals, nullptr)) {
+        return false;
+      }
+      continue;
+    }
+    std::vector<Index> columns;
+    for (Index j = 0; j < std::ssize(problem_.parameters); ++j) {
+      columns.push_back(j);
+    }
+    for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
+      columns.push_back(state_column(e, state));
+    }
+    const std::span<const Index> all(columns);
+    for (std::size_t begin = 0; begin < all.size();) {
+      const std::size_t left = all.size() - begin;
+      bool finite = false;
+      if (left <= 4) {
+        if (!four_) {
+          four_.emplace(problem_.program, sample_time_of(problem_));
+        }
+        finite = pass<Dual<4>>(*four_, x, e, all.subspan(begin), residuals, jacobian);
+      } else {
+        if (!eight_) {
+          eight_.emplace(problem_.program, sample_time_of(problem_));
+        }
+        finite = pass<Dual<8>>(*eight_, x, e, all.subspan(begin, std::min<std::size_t>(left, 8)), residuals, jacobian);
+      }
+      if (!finite) {
+        return false;
+      }
+      begin += left <= 4 ? left : std::min<std::size_t>(left, 8);
+    }
+  }
+  return true;
+}
+
+std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) {
+  prepare<double>(plain_, x, experiment, {});
+  const Drive& inputs = problem_.experiments[experiment].drive;
+  std::vector<Signal> result(problem_.outputs.size(), Signal(inputs.steps));
+  for (std::size_t step = 0; step < inputs.steps; ++step) {
+    drive(plain_, inputs, step);
+    plain_.step();
+    for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {
+      result[i][step] = plain_.output(problem_.outputs[i]);
+    }
+  }
+  return result;
+}
+
+std::vector<double> Rollout::states_after_reset(const VectorXd& x) {
+  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
+    plain_.set_parameter(problem_.parameters[j].parameter, x[static_cast<Index>(j)], problem_.parameters[j].element);
+  }
+  plain_.reset();
+  std::vector<double> values;
+  for (const FreeState& state : problem_.initial_states) {
+    values.push_back(*plain_.real_state(state.path));
+  }
+  return values;
+}
+
+}  // namespace hysteron::detail

@@ -10,19 +10,14 @@ using namespace hysteron::examples;
 
 namespace {
 
-void print_map(const char* name, const StaticMap& map) {
-  fmt::print("  {:<22}  {:<11.5g}  {:<11.5g}  {:<9.6g}", name, map.C1, map.C2, map.C3);
-}
-
 std::array<NamedFit, 4> run_fits(const char* title, const MapPoints& points, const StaticMap& truth) {
   fmt::print("{}, {} points\n", title, points.p.size());
   fmt::print("  {:<22}  {:<11}  {:<11}  {:<9}  {:<8}  rounds\n", "", "C1", "C2", "C3", "rms");
-  print_map("truth", truth);
-  fmt::print("\n");
+  fmt::print("  {:<22}  {:<11.5g}  {:<11.5g}  {:.6g}\n", "truth", truth.C1, truth.C2, truth.C3);
   auto fits = four_fits(points, truth);
   for (const auto& [name, fit] : fits) {
-    print_map(name, fit.map);
-    fmt::print("  {:<8.2g}  {}\n", fit.rms, fit.iterations);
+    fmt::print("  {:<22}  {:<11.5g}  {:<11.5g}  {:<9.6g}  {:<8.2g}  {}\n", name, fit.map.C1, fit.map.C2, fit.map.C3,
+               fit.rms, fit.iterations);
   }
   fmt::print("\n");
   return fits;

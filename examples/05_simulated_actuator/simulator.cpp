@@ -34,6 +34,7 @@ double Noise::operator()() {
 
 Actuator::Actuator(const Settings& settings)
     : settings_(settings), hysteresis_(thresholds, density), noise_(settings.seed) {
+  rest_ = settings.irreversible * hysteresis_(0.0);
   const double step = settings.sample_time / settings.substeps;
   amplifier_keep_ = std::exp(-step / settings.amplifier_lag);
   for (std::size_t i = 0; i < creep_terms; ++i) {
@@ -45,7 +46,7 @@ Actuator::Actuator(const Settings& settings)
 void Actuator::advance(double u) {
   amplifier_ = u + (amplifier_ - u) * amplifier_keep_;
   prompt_ = settings_.elastic * amplifier_ * (1.0 + settings_.stiffening * amplifier_) +
-            settings_.irreversible * hysteresis_(amplifier_);
+            settings_.irreversible * hysteresis_(amplifier_) - rest_;
   for (std::size_t i = 0; i < creep_terms; ++i) {
     crept_[i] = prompt_ + (crept_[i] - prompt_) * creep_keep_[i];
   }

@@ -55,7 +55,7 @@ class Actuator {
   [[nodiscard]] const Settings& settings() const { return settings_; }
 
  private:
-  static constexpr std::size_t creep_terms = 8;  ///< two to a decade of time, from 0.1 s to 316 s
+  static constexpr std::size_t creep_terms = 10;  ///< two to a decade of time, from 0.1 s to 3162 s
 
   void advance(double u);
 
@@ -63,6 +63,7 @@ class Actuator {
   Preisach hysteresis_;
   Noise noise_;
   double amplifier_ = 0.0;                        ///< voltage at the stack, in volts of the control input
+  double rest_ = 0.0;                             ///< displacement of the relays that are up at 0 V
   double prompt_ = 0.0;                           ///< displacement without creep
   std::array<double, creep_terms> crept_{};       ///< displacement that each term has taken up
   std::array<double, creep_terms> creep_keep_{};  ///< exp(−dt/τ)

@@ -34,17 +34,19 @@ TEST(Procedure1, OnTheExactLoopAllButThePrintedFormFindTheMap) {
   EXPECT_GT(std::fabs(fits[0].fit.map.C3 - 1.0), 0.3);
 }
 
-TEST(Procedure1, OnTheNoisyLoopTheyAgreeWithinTheirStandardErrors) {
+TEST(Procedure1, OnTheNoisyLoopTheLogarithmIsBiased) {
   const auto fits = four_fits(points_from_loop(1e-9), loop_map());
-  for (std::size_t i = 1; i < fits.size(); ++i) {
-    expect_map(fits[i], loop_map(), 0.03);
-  }
+  expect_map(fits[2], loop_map(), 0.03);
+  expect_map(fits[3], loop_map(), 0.03);
+  // noise above M - C1 counts more in the logarithm than noise below it: the weighted form converges, but elsewhere
+  EXPECT_TRUE(fits[1].fit.converged());
+  EXPECT_LT(fits[1].fit.map.C3, 0.9);
+  EXPECT_GT(fits[1].fit.rms, 1.1 * fits[2].fit.rms);
   // variable projection and Ipopt solve the same least-squares problem
   EXPECT_NEAR(fits[2].fit.map.C3, fits[3].fit.map.C3, 1e-6);
   EXPECT_NEAR(fits[2].fit.rms, fits[3].fit.rms, 1e-9 * fits[2].fit.rms);
   // and no other map of the family lies nearer to the points
   EXPECT_LE(fits[2].fit.rms, fits[0].fit.rms);
-  EXPECT_LE(fits[2].fit.rms, fits[1].fit.rms * (1.0 + 1e-12));
 }
 
 TEST(Procedure1, AsPrintedLeavesTheTruthOnExactPoints) {

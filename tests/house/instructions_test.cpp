@@ -1,0 +1,79 @@
+// Speed, held in continuous integration by counting instructions: a time would not repeat, a count does.
+//
+// Each piece of work of tests/counted runs once under callgrind. Its count per unit may exceed the budget by a margin;
+// far below the budget fails too, so that the table stays true. After a change that makes something faster or, for a
+// good reason, slower, write the printed count into the table.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::house {
+namespace {
+
+struct Budget {
+  const char* work;
+  double units;    ///< steps, instances or fits in the work
+  double counted;  ///< instructions a unit
+};
+
+constexpr double margin = 0.15;
+constexpr double stale = 0.40;
+
+constexpr Budget budgets[] = {
+    {"generated_step", 1e4, 302},    // a step of bench/feedforward.st, most of it pow
+    {"interpreted_step", 1e4, 518},  // the same
+    {"check", 1e4, 54'600},          // an instance: read, check and schedule
+    {"generate", 1e4, 189'000},      // an instance: write its C++
+    {"static_fit", 1, 547'000},      // a fit of 200 points
+};
+
+bool has_valgrind() {
+  return std::system("valgrind --version > /dev/null 2>&1") == 0;
+}
+
+/// The instructions inside counted_region. The mathematical library chooses its code by the processor; it is held to
+/// the code that every x86-64 has, so that counts repeat from machine to machine.
+double count_instructions(const std::string& work) {
+  const test::ScratchFolder folder;
+  const std::string file = folder / "callgrind.out";
+  const std::string command =
+      "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-AVX512F valgrind --tool=callgrind --collect-atstart=no "
+      "--toggle-collect=counted_region --callgrind-out-file=" +
+      file + " " + HYSTERON_COUNTED + " " + work + " > " + (folder / "log") + " 2>&1";
+  if (std::system(command.c_str()) != 0) {
+    ADD_FAILURE() << command << "\n" << test::contents_of(folder / "log");
+    return 0.0;
+  }
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("totals: ")) {
+      return std::stod(line.substr(8));
+    }
+  }
+  ADD_FAILURE() << "callgrind wrote no totals";
+  return 0.0;
+}
+
+class Instructions : public ::testing::TestWithParam<Budget> {};
+
+TEST_P(Instructions, StayWithinTheBudget) {
+  if (!has_valgrind()) {
+    ASSERT_EQ(std::getenv("CI"), nullptr) << "continuous integration needs valgrind: scripts/install-dependencies test";
+    GTEST_SKIP() << "valgrind is not installed: scripts/install-dependencies test";
+  }
+  const Budget& budget = GetParam();
+  const double counted = count_instructions(budget.work) / budget.units;
+  RecordProperty("instructions", std::to_string(counted));
+  EXPECT_LE(counted, budget.counted * (1.0 + margin)) << budget.work << " costs more than its budget";
+  EXPECT_GE(counted, budget.counted * (1.0 - stale)) << budget.work << " costs much less: lower its budget";
+}
+
+INSTANTIATE_TEST_SUITE_P(Budgets, Instructions, ::testing::ValuesIn(budgets),
+                         [](const auto& one) { return std::string(one.param.work); });
+
+}  // namespace
+}  // namespace hysteron::house

@@ -347,7 +347,7 @@ class Reader {
     } else {
       const auto near = nearest_name(*text, losses);
       diagnostics_.error(error::wrong_value_type, at(node), fmt::format("There is no loss \"{}\".", *text),
-                         near.empty() ? "write \"squares\", or \"huber\" where single samples are far off."
+                         near.empty() ? R"(write "squares", or "huber" where single samples are far off.)"
                                       : fmt::format("did you mean \"{}\"?", near));
     }
   }

@@ -97,7 +97,7 @@ TEST(CsvReader, RefusesWhatIsNoRecord) {
       {"t,u\n0,1\n1,\n", "HY505 error: log.csv:3:3: Column u has no number in this row", "measured"},
       {"t,u\n0,1\n1,0x10\n", "HY505 error: log.csv:3:3: \"0x10\"", "such as"},
       {"t,u\n0,1\n1,1 2\n", "HY505 error: log.csv:3:3: \"1 2\"", "such as"},
-      {"t,u\n0,1\n1,\"2\n", "HY505 error: log.csv:3:3: \"\"2\"", "such as"},
+      {"t,u\n0,1\n1,\"2\n", R"(HY505 error: log.csv:3:3: ""2")", "such as"},
       {"t;u\n0;1\n1;a,b\n", "HY505 error: log.csv:3:3: \"a,b\"", "such as"},
       {"t,u\n0,1\n1,-Inf\n", "HY506 error: log.csv:3:3: Column u holds -Inf", "cut the record"},
       {"t,u\n0,1\n1,1e999\n", "HY506 error: log.csv:3:3: 1e999 in column u is beyond the range", "scale"},

@@ -34,8 +34,7 @@ int number_of_error(Action action) {
 /// No file may grow beyond a size: a disk that fills up while a file is written.
 class FileSizeLimit {
  public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
     getrlimit(RLIMIT_FSIZE, &before_);
     rlimit limit = before_;
     limit.rlim_cur = bytes;
@@ -52,7 +51,7 @@ class FileSizeLimit {
 
  private:
   rlimit before_{};
-  void (*handler_)(int) = nullptr;
+  void (*handler_)(int);
 };
 
 TEST(AtomicFile, WritesAndReplaces) {

@@ -34,7 +34,7 @@ class ScratchFolder {
   [[nodiscard]] std::string operator/(std::string_view name) const { return (path_ / name).string(); }
 
   std::string write(std::string_view name, std::string_view text) const {
-    const auto path = *this / name;
+    auto path = *this / name;
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }

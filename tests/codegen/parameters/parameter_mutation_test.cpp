@@ -27,7 +27,7 @@ TEST(ParameterReader, DamagedFilesAreReadOrRefused) {
                                         ",",
                                         "\"",
                                         "'",
-                                        "\"\"\"",
+                                        R"(""")",
                                         "nan",
                                         "inf",
                                         "-inf",

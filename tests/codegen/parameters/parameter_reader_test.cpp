@@ -42,6 +42,7 @@ initial_states = ["HYST.P"]
 
 std::vector<std::string> paths(const auto& items) {
   std::vector<std::string> result;
+  result.reserve(items.size());
   for (const auto& item : items) {
     result.push_back(item.path);
   }
@@ -228,8 +229,9 @@ TEST(ParameterReader, NestingWithoutEndIsRefused) {
   EXPECT_THAT(refusal_of("[parameters]\nx = " + std::string(100000, '[')), StartsWith("HY601"));
   std::string inner = "1";
   const std::string dotted = "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a";
+  const std::string opening = "{" + dotted + " = ";
   for (int i = 0; i < 250; ++i) {
-    inner = "{" + dotted + " = " + inner + "}";
+    inner.insert(0, opening).append("}");
   }
   EXPECT_THAT(refusal_of("[parameters]\nx = " + inner), StartsWith("HY601"));
 }

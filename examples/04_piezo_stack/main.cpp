@@ -11,7 +11,7 @@ using namespace hysteron::examples;
 
 namespace {
 
-constexpr std::size_t shown = 200;  ///< samples of a cycle
+constexpr std::size_t shown = 201;  ///< samples of a cycle, closed
 
 void print_model(const char* what, const TunedDiagram& model) {
   fmt::print("  {:<48} {:6.2f} %  {:6.2f} %   {:3} iterations, {:.2f} s\n", what, 100.0 * model.train_share(),

@@ -14,6 +14,7 @@ set multiplot layout 1,3 margins 0.055,0.985,0.15,0.88 spacing 0.07,0
 set title "A held-out cycle"
 set xlabel "u [V]"
 set ylabel "y [um]" offset 1
+set xrange [0:3.7]
 set key bottom right reverse Left samplen 2
 plot loop using "u":"y" with lines lw 4 lc "#bbbbbb" title "measured", \
      loop using "u":"line" with lines lw 1.5 lc "#0072b2" title "straight line", \
@@ -28,9 +29,10 @@ plot loop using "u":(column("line")-column("y")) with lines lw 1.5 lc "#0072b2" 
      loop using "u":(column("bent")-column("y")) with lines lw 1.5 lc "#009e73" title "and a bend"
 
 set title "Tracking error"
+set xrange [0:5]
 set xlabel "t [s]"
 set ylabel "y - ref [um]" offset 1
-set yrange [-4:6]
+set yrange [-4:8]
 plot tracking using "t":"without" with lines lw 1.2 lc "#bbbbbb" title "measured: no inverse", \
      tracking using "t":"published" with lines lw 1.2 lc "#0072b2" title "measured: published inverse", \
      tracking using "t":"ours" with lines lw 1.2 lc "#d55e00" title "predicted: ours, with the bend"

@@ -1,0 +1,170 @@
+// hysteron tune, as a user runs it.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/numbers.hpp"
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::string_view lagged = R"(FUNCTION_BLOCK LAGGED  (* @ts 10ms *)
+  VAR_INPUT
+    U : LREAL;  (* @unit V *)
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;  (* @unit mm *)
+  END_VAR
+  VAR
+    AMP : HY_GAIN;
+    BODY : HY_LAG := (T1 := 0.2);
+  END_VAR
+
+  AMP(XIN := U);
+  BODY(XIN := AMP.XOUT);
+  Y := BODY.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+constexpr std::string_view settings = R"([parameters.AMP]
+K = 1.0
+
+[parameters.BODY]
+SETTLED = true
+T1 = 0.2
+
+[fit.AMP]
+K = {min = 0.0}
+
+[fit.BODY]
+T1 = {max = 10.0}
+
+[tune]
+train = [0.0, 3.0]
+test = [3.0, 4.0]
+)";
+
+/// A square wave, and what a lag of first order (1/(1 + s·T1), T1 = 0.5 s) with a gain of 3 gives for it, by hand:
+/// exact where the input stands.
+void write_log(const test::Workbench& bench, const std::string& name = "log.csv") {
+  std::string text = "t,u\n";
+  for (int k = 0; k < 400; ++k) {
+    text += number_text(0.01 * k) + "," + (k / 50 % 2 == 0 ? "0" : "2") + "\n";
+  }
+  bench.write("inputs.csv", text);
+  bench.write("truth.toml", "[parameters.AMP]\nK = 3.0\n[parameters.BODY]\nT1 = 0.5\n");
+  ASSERT_EQ(bench.shell("hysteron run plant.st --in inputs.csv --out outputs.csv --params truth.toml").code, 0);
+  // t,u from the one and y from the other, with a disturbance that no parameter explains
+  ASSERT_EQ(bench
+                .shell("paste -d, inputs.csv outputs.csv | awk -F, 'NR == 1 { print \"t,u,y\"; next } "
+                       "{ printf \"%s,%s,%.12g\\n\", $1, $2, $4 + 0.01 * sin(12.9898 * NR * NR) }' > " +
+                       name)
+                .code,
+            0);
+}
+
+class Tune : public testing::Test {
+ protected:
+  void SetUp() override {
+    bench.write("plant.st", lagged);
+    bench.write("p.toml", settings);
+    write_log(bench);
+  }
+  test::Workbench bench;
+};
+
+TEST_F(Tune, PrintsAndWritesWhatItFound) {
+  const auto outcome =
+      bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --report report");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("AMP.K"), HasSubstr("mm/V"), HasSubstr("standard error"),
+                                 HasSubstr("RMSE in train"), HasSubstr("RMSE in test"), HasSubstr("% of the range"),
+                                 HasSubstr("The fit converged"), HasSubstr("iterations")));
+  EXPECT_EQ(outcome.err, "");  // no progress line where there is no terminal
+  const auto json = nlohmann::json::parse(bench.read("report/report.json"));
+  for (const auto& parameter : json["parameters"]) {
+    const double truth = parameter["name"] == "AMP.K" ? 3.0 : 0.5;
+    const double error = parameter["standard_error"];
+    EXPECT_NEAR(parameter["value"].get<double>(), truth, 5.0 * error);
+    EXPECT_LT(error, 0.01 * truth);
+  }
+  EXPECT_NEAR(json["outputs"][0]["rmse_test"].get<double>(), 0.00707, 0.001);  // of the disturbance
+  EXPECT_THAT(bench.read("tuned.toml"), AllOf(HasSubstr("SETTLED = true"), HasSubstr("train = [0.0, 3.0]"),
+                                              HasSubstr("K = {min = 0.0}"), HasSubstr("standard error")));
+}
+
+TEST_F(Tune, ReportStandsAlone) {
+  ASSERT_EQ(bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --report report").code,
+            0);
+  const auto page = bench.read("report/report.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("<svg"), HasSubstr("Y over time"), HasSubstr("Residual of Y"),
+                          HasSubstr("Y over U"), HasSubstr("AMP.K")));
+  EXPECT_THAT(page, AllOf(Not(HasSubstr("http")), Not(HasSubstr("src=")), Not(HasSubstr("nan"))));
+  EXPECT_THAT(bench.read("report/residuals.csv"), HasSubstr("t,Y [mm],Y_MODEL [mm],Y_RESIDUAL [mm]\n"));
+}
+
+TEST_F(Tune, FittedValuesRunAndTuneAgain) {
+  ASSERT_EQ(bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --report report").code,
+            0);
+  const auto run = bench.shell(
+      "hysteron run plant.st --in log.csv --out out.csv --params tuned.toml && "
+      "tail -n +2 out.csv | cut -d, -f2 > a && "
+      "tail -n +2 report/residuals.csv | cut -d, -f3 > b && cmp a b");
+  EXPECT_EQ(run.code, 0) << run.out << run.err;  // the same bits in text
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target cpp --out generated --params tuned.toml").code, 0);
+  EXPECT_EQ(bench.shell("hysteron tune plant.st --log log.csv --params tuned.toml --out again.toml").code, 0);
+  const auto first = nlohmann::json::parse(bench.read("report/report.json"));
+  const auto again = nlohmann::json::parse(
+      bench.shell("hysteron tune plant.st --log log.csv --params tuned.toml --out again.toml --json").out);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double value = first["parameters"][i]["value"];
+    EXPECT_NEAR(again["parameters"][i]["value"].get<double>() / value, 1.0, 1e-8);
+  }
+}
+
+TEST_F(Tune, InterruptLeavesTheBestSoFar) {
+  // Thousands of starts take minutes. The signal goes once the tool catches it: bit 1 of SigCgt is SIGINT.
+  const auto outcome = bench.shell(
+      "hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --start 100000 & pid=$!; "
+      "while kill -0 $pid && ! awk '/SigCgt/ { exit !(substr($2, 16, 1) ~ /[2367abef]/) }' /proc/$pid/status; "
+      "do sleep 0.02; done; kill -INT $pid; wait $pid");
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("The fit was cancelled; the best point so far is kept."));
+  EXPECT_EQ(bench.shell("hysteron run plant.st --in log.csv --out out.csv --params tuned.toml").code, 0);
+}
+
+TEST_F(Tune, BadInputIsRefusedAndNothingIsWritten) {
+  const auto refuse = [&](const std::string& arguments) {
+    const auto outcome = bench.shell("hysteron tune " + arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_FALSE(bench.has("tuned.toml"));
+    return outcome.err;
+  };
+  bench.write("none.toml", "[parameters.AMP]\nK = 1.0\n");
+  bench.write("wrong.toml", "[fit.AMP]\nG = {}\n");
+  bench.write("late.toml", "[fit.AMP]\nK = {}\n[tune]\ntrain = [100.0, 200.0]\n");
+  const std::string rest = " --log log.csv --out tuned.toml";
+  EXPECT_THAT(refuse("plant.st --params none.toml" + rest), HasSubstr("HY716"));
+  EXPECT_THAT(refuse("plant.st --params wrong.toml" + rest), AllOf(HasSubstr("HY603"), HasSubstr("wrong.toml:2")));
+  EXPECT_THAT(refuse("plant.st --params late.toml" + rest), HasSubstr("HY718"));
+  EXPECT_THAT(refuse("plant.st --params p.toml --log inputs.csv --out tuned.toml"), HasSubstr("HY717"));
+  EXPECT_THAT(refuse("plant.st --params p.toml --log none.csv --out tuned.toml"), HasSubstr("HY100"));
+  EXPECT_THAT(refuse("plant.st --params p.toml --log log.csv --out p.toml"), HasSubstr("HY709"));
+  EXPECT_THAT(refuse("plant.st --params p.toml --log log.csv --out tuned.toml --start 0"), HasSubstr("HY730"));
+}
+
+TEST_F(Tune, HelpHasExamples) {
+  const auto outcome = bench.shell("hysteron tune --help");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Examples:"), HasSubstr("--report"), HasSubstr("130")));
+}
+
+}  // namespace
+}  // namespace hysteron

@@ -284,14 +284,15 @@ class CppHeader {
       return body.find(prefix) != std::string::npos;
     };
     std::string text = "/// Puts the state to its beginning.\n";
-    text += fmt::format("inline void reset(const Params&{}, State&{}) noexcept {{\n{}}}\n\n",
-                        used(reset_body, "params.") ? " params" : "", used(reset_body, "state.") ? " state" : "",
-                        reset_body);
-    text += "/// One step: outputs from inputs and state, and the state moved on.\n";
-    text += fmt::format(
-        "inline Out step(const Params&{}, State&{}, const In&{}) noexcept {{\n  Out out;\n{}  return out;\n}}\n\n",
-        used(step_body, "params.") ? " params" : "", used(step_body, "state.") ? " state" : "",
-        used(step_body, "in.") ? " in" : "", step_body);
+    text += fmt::format("inline void reset(const Params&{}, State&{}) noexcept {{\n",
+                        used(reset_body, "params.") ? " params" : "", used(reset_body, "state.") ? " state" : "");
+    text += reset_body;
+    text += "}\n\n/// One step: outputs from inputs and state, and the state moved on.\n";
+    text += fmt::format("inline Out step(const Params&{}, State&{}, const In&{}) noexcept {{\n  Out out;\n",
+                        used(step_body, "params.") ? " params" : "", used(step_body, "state.") ? " state" : "",
+                        used(step_body, "in.") ? " in" : "");
+    text += step_body;
+    text += "  return out;\n}\n\n";
     return text;
   }
 

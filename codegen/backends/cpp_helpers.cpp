@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 
 namespace hysteron {
@@ -83,15 +84,21 @@ inline std::int32_t wrap(std::int64_t x) noexcept { return static_cast<std::int3
 }  // namespace
 
 std::string cpp_helper_functions(const std::string& body) {
+  // One pass: the body of a long diagram is long.
+  std::set<std::string_view> called;
+  constexpr std::string_view scope = "detail::";
+  for (auto at = body.find(scope); at != std::string::npos; at = body.find(scope, at + scope.size())) {
+    called.insert(std::string_view(body).substr(at, body.find('(', at) + 1 - at));
+  }
+  const bool wraps = std::ranges::any_of(helpers, [&](const Helper& one) {
+    return one.text.find(" wrap(") != std::string_view::npos && called.contains(one.name);
+  });
+  if (wraps) {
+    called.insert("detail::wrap(");
+  }
   std::string text;
-  const bool wraps = std::ranges::any_of(helpers,
-                                         [&](const Helper& one) {
-                                           return one.text.find("return wrap(") != std::string_view::npos &&
-                                                  body.find(one.name) != std::string::npos;
-                                         }) ||
-                     body.find("detail::wrap(") != std::string::npos;
   for (const Helper& helper : helpers) {
-    if (body.find(helper.name) != std::string::npos || (helper.name == "detail::wrap(" && wraps)) {
+    if (called.contains(helper.name)) {
       text += std::string(helper.text) + "\n";
     }
   }

@@ -20,12 +20,17 @@ std::string lower_identifier(std::string_view name) {
 }
 
 std::string Identifiers::make(std::string_view name) {
-  const std::string base = lower_identifier(name);
-  std::string candidate = base;
-  for (int number = 2; !taken_.insert(candidate).second; ++number) {
-    candidate = base + "_" + std::to_string(number);
+  std::string base = lower_identifier(name);
+  if (taken_.insert(base).second) {
+    return base;
   }
-  return candidate;
+  int& number = next_number_.try_emplace(base, 2).first->second;
+  for (;;) {
+    std::string candidate = base + "_" + std::to_string(number++);
+    if (taken_.insert(candidate).second) {
+      return candidate;
+    }
+  }
 }
 
 }  // namespace hysteron

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace hysteron {
@@ -22,6 +23,7 @@ class Identifiers {
 
  private:
   std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> next_number_;  ///< by name: below it all are taken
 };
 
 /// A name in lower case, with anything but letters and digits made an underscore.

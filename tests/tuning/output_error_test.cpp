@@ -15,77 +15,18 @@
 #include "records/csv.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/tuning/output_error_diagrams.hpp"
 #include "tuning/rollout.hpp"
 
 namespace hysteron {
 namespace {
 
 using Eigen::Index;
+using namespace output_error_diagrams;
 using records::Record;
 using testing::HasSubstr;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-
-constexpr std::string_view hysteresis = R"(FUNCTION_BLOCK STACK (* @ts 10ms *)
-  VAR_INPUT U : LREAL; (* @unit V *) END_VAR
-  VAR_OUTPUT Y : LREAL; (* @unit um *) END_VAR
-  VAR HYST : HY_HYSTERESIS_RO := (C1 := 1.0, START := 1); END_VAR
-  HYST(XIN := U);
-  Y := HYST.XOUT;
-END_FUNCTION_BLOCK
-)";
-constexpr std::string_view hysteresis_truth = "[parameters.HYST]\nC1 = 5.0\nC2 = 4.5\nC3 = 0.8\nY0 = -118.0\n";
-constexpr std::string_view hysteresis_start =
-    "[parameters.HYST]\nC1 = 8.0\nC2 = 2.0\nC3 = 1.2\nY0 = -110.0\n"
-    "[fit.HYST]\nC1 = {}\nC2 = {}\nC3 = {}\nY0 = {}\n";
-
-/// A body that is heated: first order towards the ambient temperature.
-constexpr std::string_view thermal = R"(FUNCTION_BLOCK OVEN (* @ts 1s *)
-  VAR_INPUT
-    HEAT : LREAL; (* @unit W *)
-    AMBIENT : LREAL := 20.0; (* @param @unit K *)
-  END_VAR
-  VAR_OUTPUT TEMP : LREAL; (* @unit K *) END_VAR
-  VAR
-    RISE : HY_GAIN;
-    BODY : HY_LAG := (T1 := 10.0);
-  END_VAR
-  RISE(XIN := HEAT);
-  BODY(XIN := RISE.XOUT);
-  TEMP := BODY.XOUT + AMBIENT;
-END_FUNCTION_BLOCK
-)";
-constexpr std::string_view thermal_truth =
-    "[parameters]\nAMBIENT = 21.5\n[parameters.RISE]\nK = 0.6\n[parameters.BODY]\nT1 = 35.0\n";
-constexpr std::string_view thermal_start =
-    "[parameters]\nAMBIENT = 25.0\n[parameters.RISE]\nK = 1.0\n[parameters.BODY]\nT1 = 10.0\n"
-    "[fit]\nAMBIENT = {}\n[fit.RISE]\nK = {}\n[fit.BODY]\nT1 = {min = 1.0, max = 300.0}\n";
-
-/// A motor with an axis: torque less Coulomb friction, a lag to the speed, its integral, two measured outputs.
-constexpr std::string_view servo = R"(FUNCTION_BLOCK AXIS (* @ts 2ms *)
-  VAR_INPUT
-    I : LREAL; (* @unit A *)
-    LOAD : LREAL := 0.0; (* @param @unit A *)
-  END_VAR
-  VAR_OUTPUT
-    SPEED : LREAL; (* @unit mm/s *)
-    POS : LREAL; (* @unit mm *)
-  END_VAR
-  VAR
-    MOTOR : HY_SECOND_ORDER := (T := 0.02, ZETA := 1.0);
-    PATH : HY_INTEGRAL;
-  END_VAR
-  MOTOR(XIN := I - LOAD);
-  PATH(XIN := MOTOR.XOUT);
-  SPEED := MOTOR.XOUT;
-  POS := PATH.XOUT;
-END_FUNCTION_BLOCK
-)";
-constexpr std::string_view servo_truth =
-    "[parameters]\nLOAD = 0.2\n[parameters.MOTOR]\nK = 40.0\nT = 0.03\nZETA = 0.6\n";
-constexpr std::string_view servo_start =
-    "[parameters]\nLOAD = 0.0\n[parameters.MOTOR]\nK = 20.0\nT = 0.015\nZETA = 1.0\n"
-    "[fit]\nLOAD = {}\n[fit.MOTOR]\nK = {}\nT = {}\nZETA = {}\n";
 
 Program program_of(std::string_view text, std::string_view settings = {}) {
   Program program = compile_text(std::string(text));

@@ -20,7 +20,7 @@ TEST(CommandLine, VersionAndHelp) {
   const auto help = bench.shell("hysteron help");
   EXPECT_EQ(help.code, 0);
   EXPECT_EQ(help.out, bench.shell("hysteron --help").out);
-  for (const char* const command : {"check", "fmt", "run", "generate", "test", "blocks"}) {
+  for (const char* const command : {"check", "fmt", "run", "tune", "generate", "test", "blocks"}) {
     EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command + " "));
     const auto own = bench.shell(std::string("hysteron ") + command + " --help");
     EXPECT_EQ(own.code, 0);
@@ -41,7 +41,7 @@ TEST(CommandLine, SlipsAreExplained) {
   EXPECT_EQ(refused("hysteron chekc plant.st"),
             "HY730 error: There is no command chekc.\nmend: did you mean check?\n\n1 error\n");
   EXPECT_THAT(refused("hysteron"), HasSubstr("No command is given."));
-  EXPECT_THAT(refused("hysteron compile"), HasSubstr("the commands are check, fmt, run, generate, "));
+  EXPECT_THAT(refused("hysteron compile"), HasSubstr("the commands are check, fmt, run, "));
   EXPECT_EQ(refused("hysteron run plant.st --in a.csv --out b.csv --parms p.toml"),
             "HY730 error: hysteron run has no option --parms.\nmend: did you mean --params?\n\n1 error\n");
   EXPECT_THAT(refused("hysteron run plant.st --in a.csv"), AllOf(HasSubstr("--out"), HasSubstr("hysteron run --help")));

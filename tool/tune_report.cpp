@@ -129,14 +129,13 @@ std::string page(const TuneReport& report) {
   }
   html += "</table>\n<table><tr><th>output</th><th>RMSE in train</th><th>RMSE in test</th><th>range</th></tr>\n";
   for (const OutputScore& score : report.fit.scores) {
-    const auto cell = [&](double error) {
-      return std::isnan(error)
-                 ? std::string("no samples")
-                 : fmt::format("{:.4g}{}{}", error, unit_behind(score.unit), share_of(error, score.range));
+    const auto cell = [&](double error, double range) {
+      return std::isnan(error) ? std::string("no samples")
+                               : fmt::format("{:.4g}{}{}", error, unit_behind(score.unit), share_of(error, range));
     };
     html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}{}</td></tr>\n", escaped(score.output),
-                        escaped(cell(score.train)), escaped(cell(score.test)), score.range,
-                        escaped(unit_behind(score.unit)));
+                        escaped(cell(score.train, score.range)), escaped(cell(score.test, score.test_range)),
+                        score.range, escaped(unit_behind(score.unit)));
   }
   html += "</table>\n<ul>\n";
   for (const std::string& warning : report.fit.covariance.warnings) {
@@ -171,7 +170,7 @@ std::string as_text(const TuneReport& report) {
                         score.train_samples, score.before, unit);
     text += score.test_samples == 0 ? "  RMSE in test   no test intervals are given in [tune]\n"
                                     : fmt::format("  RMSE in test   {:.4g}{}{} ({} samples)\n", score.test, unit,
-                                                  share_of(score.test, score.range), score.test_samples);
+                                                  share_of(score.test, score.test_range), score.test_samples);
   }
   text += '\n';
   for (const std::string& warning : fit.covariance.warnings) {
@@ -219,6 +218,7 @@ nlohmann::json as_json(const TuneReport& report) {
     json["outputs"].push_back({{"name", score.output},
                                {"unit", score.unit},
                                {"range", score.range},
+                               {"range_test", score.test_range},
                                {"rmse_train", number(score.train)},
                                {"rmse_test", number(score.test)},
                                {"rmse_before", number(score.before)},

@@ -97,21 +97,29 @@ class Fitter {
     };
   }
 
+  /// Of what was measured of an output in a part of the records: 0 where there is none.
+  [[nodiscard]] double range_in(std::vector<records::RowRange> Experiment::*part, std::size_t output) const {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Experiment& experiment : problem_.experiments) {
+      for (const records::RowRange& range : experiment.*part) {
+        for (std::size_t row = range.first; row < range.last; ++row) {
+          low = std::min(low, experiment.measured[output][row]);
+          high = std::max(high, experiment.measured[output][row]);
+        }
+      }
+    }
+    return std::max(high - low, 0.0);
+  }
+
+  /// An output that stands still is measured by its size.
   void scale_by_range() {
     std::vector<double> scales;
     for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
-      double low = std::numeric_limits<double>::infinity();
-      double high = -low;
-      for (const Experiment& experiment : problem_.experiments) {
-        for (const records::RowRange& range : experiment.train) {
-          for (std::size_t row = range.first; row < range.last; ++row) {
-            low = std::min(low, experiment.measured[output][row]);
-            high = std::max(high, experiment.measured[output][row]);
-          }
-        }
-      }
-      ranges_.push_back(std::max(high - low, 0.0));
-      scales.push_back(high > low ? high - low : std::max(std::fabs(high), std::numeric_limits<double>::min()));
+      const Experiment& first = problem_.experiments.front();
+      const double range = range_in(&Experiment::train, output);
+      const double size = std::fabs(first.measured[output][first.train.front().first]);
+      scales.push_back(range > 0.0 ? range : size > 0.0 ? size : 1.0);
     }
     rollout_.set_scales(scales);
   }
@@ -237,7 +245,8 @@ class Fitter {
       const Port& port = problem_.program.graph.outputs[problem_.outputs[output]];
       result.output = port.name;
       result.unit = port.unit;
-      result.range = ranges_[output];
+      result.range = range_in(&Experiment::train, output);
+      result.test_range = range_in(&Experiment::test, output);
       double train = 0.0;
       double test = 0.0;
       result.train_samples = 0;
@@ -269,7 +278,6 @@ class Fitter {
   const OutputErrorOptions& options_;
   detail::Rollout rollout_;
   LeastSquaresProblem least_squares_{};
-  std::vector<double> ranges_{};
   OutputErrorFit fit_{};
 };
 

@@ -92,7 +92,8 @@ struct OutputErrorOptions {
 struct OutputScore {
   std::string output{};
   std::string unit{};
-  double range = 0.0;  ///< of what was measured in train
+  double range = 0.0;       ///< of what was measured in train
+  double test_range = 0.0;  ///< in test
   double train = 0.0;
   double test = 0.0;
   double before = 0.0;  ///< in train, at the start of the fit

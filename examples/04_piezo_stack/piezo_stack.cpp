@@ -28,15 +28,6 @@ double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double range_in(const Signal& values, const std::vector<records::RowRange>& rows) {
-  std::vector<double> chosen;
-  for (const records::RowRange& range : rows) {
-    chosen.insert(chosen.end(), values.begin() + static_cast<std::ptrdiff_t>(range.first),
-                  values.begin() + static_cast<std::ptrdiff_t>(range.last));
-  }
-  return range(chosen);
-}
-
 void set(Graph& graph, std::string_view path, double value) {
   const std::int64_t found = find_parameter(graph, path);
   if (found >= 0) {
@@ -52,13 +43,11 @@ std::optional<records::Record> stack_record(std::string_view file) {
 }
 
 double TunedDiagram::train_share() const {
-  return fit.scores.front().train /
-         range_in(problem.experiments.front().measured.front(), problem.experiments.front().train);
+  return fit.scores.front().train / fit.scores.front().range;
 }
 
 double TunedDiagram::test_share() const {
-  return fit.scores.front().test /
-         range_in(problem.experiments.front().measured.front(), problem.experiments.front().test);
+  return fit.scores.front().test / fit.scores.front().test_range;
 }
 
 double TunedDiagram::parameter(std::string_view path) const {

@@ -6,7 +6,10 @@
 //   ```toml                 a parameter file, read
 //   ```sh                   commands; ```sh exit=1 where they end so
 //   ```text expected        what the commands before it print; … stands for any text, alone on a line for any lines
+//   ```cpp                 an excerpt of what is generated from the diagram before it
 //   ```text ```console ```ebnf     shown only: formulas, commands that change the machine, grammar
+//
+// The commands of the README install and build; they are shown only.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -14,10 +17,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "codegen/backends/cpp.hpp"
 #include "codegen/compile.hpp"
 #include "codegen/language/syntax.hpp"
 #include "codegen/parameters/parameter_file.hpp"
@@ -113,6 +118,22 @@ std::string faults_of_diagram(const std::string& text) {
   return faults;
 }
 
+/// The lines of an excerpt that the C++ generated from a diagram does not have, wherever it stands there.
+std::string lines_not_generated(const std::string& diagram, const std::string& excerpt) {
+  const auto without_indent = [](const std::string& line) {
+    return line.substr(std::min(line.find_first_not_of(' '), line.size()));
+  };
+  std::set<std::string> generated;
+  for (const std::string& line : lines_of(generate_cpp_header(compile_text(diagram)).text)) {
+    generated.insert(without_indent(line));
+  }
+  std::string missing;
+  for (const std::string& line : lines_of(excerpt)) {
+    missing += generated.contains(without_indent(line)) ? "" : line + "\n";
+  }
+  return missing;
+}
+
 class PageRunner {
  public:
   explicit PageRunner(const Page& page) : page_(page) {}
@@ -121,7 +142,7 @@ class PageRunner {
     SCOPED_TRACE(page_.path.string() + ":" + std::to_string(snippet.line));
     if (snippet.has("file")) {
       folder_.write(snippet.attributes.find("file")->second, snippet.text);
-    } else if (snippet.kind == "sh") {
+    } else if (snippet.kind == "sh" && is_below(page_.path, "docs/")) {
       const auto exit_code = snippet.attributes.find("exit");
       last_ = run_shell(folder_.path(), snippet.text);
       EXPECT_EQ(last_.exit_code, exit_code == snippet.attributes.end() ? 0 : std::stoi(exit_code->second))
@@ -132,10 +153,13 @@ class PageRunner {
                                                                                      << last_.output;
     } else if (snippet.kind == "st") {
       EXPECT_EQ(faults_of_diagram(snippet.text), "") << snippet.text;
+      diagram_ = snippet.text;
+    } else if (snippet.kind == "cpp") {
+      EXPECT_EQ(lines_not_generated(diagram_, snippet.text), "");
     } else if (snippet.kind == "toml") {
       EXPECT_NO_THROW((void)parameters::parse_parameter_file("snippet.toml", snippet.text)) << snippet.text;
     } else {
-      EXPECT_TRUE(snippet.kind == "text" || snippet.kind == "console" || snippet.kind == "ebnf")
+      EXPECT_TRUE(snippet.kind == "text" || snippet.kind == "console" || snippet.kind == "ebnf" || snippet.kind == "sh")
           << "nothing runs a snippet of the kind '" << snippet.kind << "'";
     }
   }
@@ -144,6 +168,7 @@ class PageRunner {
   const Page& page_;
   ScratchFolder folder_;
   Outcome last_;
+  std::string diagram_;  ///< the last one of the page
 };
 
 /// Pages whose snippets are not run here: those of diagnostics by the tests of their rooms, those of blocks printed.

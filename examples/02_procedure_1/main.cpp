@@ -19,7 +19,6 @@ std::array<NamedFit, 4> run_fits(const char* title, const MapPoints& points, con
     fmt::print("  {:<22}  {:<11.5g}  {:<11.5g}  {:<9.6g}  {:<8.2g}  {}\n", name, fit.map.C1, fit.map.C2, fit.map.C3,
                fit.rms, fit.iterations);
   }
-  fmt::print("\n");
   return fits;
 }
 
@@ -49,7 +48,9 @@ void write_rounds(const std::filesystem::path& path, const StaticMapFit& fit) {
 void example(const std::filesystem::path& folder) {
   const MapPoints noisy = points_from_loop(1e-9);
   run_fits("Loop of Example 1, exact", points_from_loop(0.0), loop_map());
+  fmt::print("\n");
   const auto fits = run_fits("Loop of Example 1, 1 nm of noise on y", noisy, loop_map());
+  fmt::print("\n");
   const auto exact = run_fits("M = 0.05 + 1.3 p^1.7, exact", counterexample(), counterexample_map);
   write_points(folder / "map.csv", noisy, fits[2].fit.map);
   write_rounds(folder / "rounds_as_printed.csv", exact[0].fit);

@@ -46,7 +46,7 @@ BuildCache::BuildCache() {
 }
 
 fs::path BuildCache::find_or_build(const std::string& key, const std::function<void(const fs::path&)>& build) {
-  const auto program = folder_ / key;
+  auto program = folder_ / key;
   std::error_code ignored;
   if (fs::exists(program, ignored)) {
     fs::last_write_time(program, fs::file_time_type::clock::now(), ignored);

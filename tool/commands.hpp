@@ -25,18 +25,18 @@ using Action = std::function<int(Console&)>;
 struct Command {
   std::string_view name;
   std::string_view summary;
-  Action (*add)(CLI::App& options);  ///< adds the options of the command
+  Action (*add)(CLI::App& app);  ///< adds the options of the command
 };
 
 /// All commands, in the order in which the help lists them.
 [[nodiscard]] std::span<const Command> commands();
 
-Action add_check(CLI::App& options);
-Action add_fmt(CLI::App& options);
-Action add_run(CLI::App& options);
-Action add_generate(CLI::App& options);
-Action add_tune(CLI::App& options);
-Action add_test(CLI::App& options);
-Action add_blocks(CLI::App& options);
+Action add_check(CLI::App& app);
+Action add_fmt(CLI::App& app);
+Action add_run(CLI::App& app);
+Action add_generate(CLI::App& app);
+Action add_tune(CLI::App& app);
+Action add_test(CLI::App& app);
+Action add_blocks(CLI::App& app);
 
 }  // namespace hysteron::tool

@@ -162,7 +162,7 @@ void compile_sources(const Sources& sources, std::vector<std::string> command, c
 
 std::vector<std::string> compiler_command() {
   if (const char* const set = std::getenv("CXX"); set != nullptr && *set != '\0') {
-    const auto command = words_of(set);
+    auto command = words_of(set);
     if (!command.empty() && find_program(command.front())) {
       return command;
     }

@@ -120,7 +120,7 @@ CaseResult run_case(std::size_t number, const PlannedCase& planned, const Genera
 }
 
 /// The cases of one file that the filter selects.
-FileResult run_file(const std::string& diagram, const std::string& tests, const Options& options) {
+FileResult run_file(const std::string& diagram, const std::string& tests, const Options& options, Console& console) {
   FileResult result{.file = tests, .cases = {}};
   TestFile file = read_test_file(tests);
   TestPlanner planner(diagram, fs::path(tests).parent_path());
@@ -134,6 +134,7 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
   }
+  console.report(diagnostics);
   std::optional<GeneratedPrograms> generated;
   Progress progress("Testing");
   if (!options.no_generated && !cases.empty()) {
@@ -148,7 +149,7 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
 }
 
 std::string existing_test_file(const std::string& diagram, const Options& options) {
-  const auto tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
+  auto tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
   std::error_code unknown;
   if (!fs::exists(tests, unknown)) {
     throw InputError(error::missing_test_file, {.file = diagram},
@@ -168,7 +169,7 @@ int run_tests(const Options& options, Console& console) {
   std::size_t cases = 0;
   for (const std::string& diagram : options.diagrams) {
     try {
-      results.push_back(run_file(diagram, existing_test_file(diagram, options), options));
+      results.push_back(run_file(diagram, existing_test_file(diagram, options), options, console));
       cases += results.back().cases.size();
       if (!results.back().cases.empty()) {
         console.print(report_text(results.back(), Console::colour()));
@@ -182,7 +183,9 @@ int run_tests(const Options& options, Console& console) {
   if (!options.junit.empty()) {
     write_file_atomically(options.junit, junit_text(results));
   }
-  console.print(closing_line(results));
+  if (cases > 0) {
+    console.print(closing_line(results));
+  }
   if (refused.has_errors()) {
     throw InputError(refused);
   }

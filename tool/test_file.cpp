@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "codegen/parameters/toml_text.hpp"
@@ -46,6 +47,19 @@ InputError renumbered(const Diagnostics& found) {
   return InputError(std::move(result));
 }
 
+/// In the order of the file; the library gives keys in that of their names.
+Diagnostics sorted(const Diagnostics& found) {
+  auto list = found.all();
+  std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  });
+  Diagnostics result;
+  for (Diagnostic& one : list) {
+    result.add(std::move(one));
+  }
+  return result;
+}
+
 toml::table parsed(const std::string& file, std::string_view text) {
   try {
     return parameters::parse_toml(file, text);
@@ -78,7 +92,7 @@ class Reader {
     }
     refuse_doubles();
     if (diagnostics_.has_errors()) {
-      throw InputError(diagnostics_);
+      throw InputError(sorted(diagnostics_));
     }
     return std::move(result_);
   }
@@ -264,7 +278,7 @@ class Reader {
     }
   }
 
-  bool read_steps_of(const toml::table& table, bool ramps, TestSignal& signal) {
+  static bool read_steps_of(const toml::table& table, bool ramps, TestSignal& signal) {
     if (ramps && table.size() == 2 && table.contains("from") && table.contains("to")) {
       const auto from = finite(*table.get("from"));
       const auto to = finite(*table.get("to"));

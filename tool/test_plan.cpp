@@ -50,6 +50,21 @@ void check_types(const TestSignal& signal, const Port& port, const Signal& value
   }
 }
 
+/// Reads a file that a case names; what is wrong with it is said with the place of its name.
+template <class Read>
+auto read_named(const TestText& name, const std::filesystem::path& folder, Read read) {
+  try {
+    return read((folder / name.text).string());
+  } catch (const InputError& refused) {
+    Diagnostics diagnostics;
+    for (Diagnostic one : refused.diagnostics().all()) {
+      one.notes.push_back({.place = name.place, .text = "named here; files are looked for beside the test file"});
+      diagnostics.add(std::move(one));
+    }
+    throw InputError(std::move(diagnostics));
+  }
+}
+
 /// Planning of one case.
 class CasePlan {
  public:
@@ -65,6 +80,7 @@ class CasePlan {
     for (const TestSignal& signal : planned_.test.expected) {
       lay_out_expected(signal);
     }
+    std::ranges::sort(planned_.expected, {}, &ExpectedOutput::output);
     if (const TestText& golden = planned_.test.golden; !golden.text.empty()) {
       planned_.golden = folder_ / golden.text;
       if (planned_.drive.steps < 2) {
@@ -81,7 +97,7 @@ class CasePlan {
 
   void set_parameters() {
     if (!test().parameter_file.text.empty()) {
-      parameters::apply(parameters::read_parameter_file((folder_ / test().parameter_file.text).string()), graph(),
+      parameters::apply(read_named(test().parameter_file, folder_, parameters::read_parameter_file), graph(),
                         diagnostics_);
     }
     parameters::ParameterFile inside;
@@ -93,7 +109,7 @@ class CasePlan {
   void settle_steps() {
     Drive& drive = planned_.drive;
     if (!test().csv.text.empty()) {
-      record_ = records::read_csv((folder_ / test().csv.text).string());
+      record_ = read_named(test().csv, folder_, records::read_csv);
       settle_sample_time(*record_, planned_.program, diagnostics_);
       const auto rows = record_->size();
       if (test().steps.value_or(0) > rows) {

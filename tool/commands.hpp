@@ -7,7 +7,7 @@
 
 #include "tool/console.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library is so named
 class App;
 }
 

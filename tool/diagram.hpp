@@ -6,7 +6,7 @@
 #include "codegen/compile.hpp"
 #include "support/diagnostic.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library is so named
 class App;
 }
 

@@ -153,7 +153,8 @@ class CasePlan {
 
   bool fits(const TestSignal& signal) {
     const auto steps = planned_.drive.steps;
-    if (const auto* const list = std::get_if<std::vector<double>>(&signal.values); list && list->size() != steps) {
+    if (const auto* const list = std::get_if<std::vector<double>>(&signal.values);
+        list != nullptr && list->size() != steps) {
       diagnostics_.error(
           error::unusable_test, signal.value_place,
           fmt::format("{} has {} values for {} steps.", signal.name, list->size(), steps),
@@ -161,7 +162,7 @@ class CasePlan {
       return false;
     }
     if (const auto* const by_step = std::get_if<ValuesByStep>(&signal.values);
-        by_step && by_step->rbegin()->first >= steps) {
+        by_step != nullptr && by_step->rbegin()->first >= steps) {
       diagnostics_.error(error::unusable_test, signal.value_place,
                          fmt::format("{} has a value for step {}, but the last of {} steps is {}.", signal.name,
                                      by_step->rbegin()->first, steps, steps == 0 ? 0 : steps - 1),

@@ -110,7 +110,7 @@ std::string junit_text(const std::vector<FileResult>& results) {
     text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n",
                         escaped(result.file), result.cases.size(), failed_in(result), seconds);
     for (const CaseResult& one : result.cases) {
-      text += fmt::format("    <testcase name=\"{}\" classname=\"{}\" time=\"{:.3f}\"", escaped(one.name),
+      text += fmt::format(R"(    <testcase name="{}" classname="{}" time="{:.3f}")", escaped(one.name),
                           escaped(result.file), one.seconds);
       if (one.failures.empty()) {
         text += "/>\n";

@@ -81,7 +81,7 @@ std::vector<Signal> run(const Program& program, const Drive& drive, const std::v
     for (std::size_t i = 0; i < watched.size(); ++i) {
       values[i][k] = static_cast<double>(machine.value(watched[i]));
     }
-    if (progress && k % 4096 == 0) {
+    if (progress && k % 64 == 0) {
       progress(static_cast<double>(k) / static_cast<double>(drive.steps));
     }
   }

@@ -22,7 +22,7 @@ using language::Variable;
 
 constexpr std::array<std::string_view, 8> variable_keys{"unit",    "min", "max",   "param",
                                                         "neutral", "doc", "every", "phase"};
-constexpr std::array<std::string_view, 4> block_keys{"ts", "effect", "doc", "top"};
+constexpr std::array<std::string_view, 3> block_keys{"ts", "effect", "doc"};
 
 std::string known_keys(std::span<const std::string_view> keys) {
   std::string text;
@@ -110,7 +110,7 @@ class Reader {
         }
       } else if (key == "EFFECT") {
         definition.effect = annotation.value;
-      } else if (key != "DOC" && key != "TOP") {
+      } else if (key != "DOC") {
         unknown_key(annotation, block_keys);
       }
     }

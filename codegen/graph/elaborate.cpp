@@ -89,6 +89,19 @@ void Elaborator::elaborate(const Instance& instance) {
   }
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     close(instance, i, parts[i]);
+    note_unit(instance, i);
+  }
+}
+
+// A variable of the text leaves no trace in the graph but its unit.
+void Elaborator::note_unit(const Instance& instance, std::size_t variable) {
+  const Declared& declared = instance.definition->variables[variable];
+  // What is inside a nested block is checked where the block is elaborated by itself; here, what crosses its border.
+  const bool checked_here =
+      instance.top ? declared.kind == Declared::Kind::Local : declared.kind == Declared::Kind::Input;
+  if (!declared.field.unit.empty() && checked_here) {
+    graph_.inner.push_back(port_of(declared));
+    graph_.inner.back().wire = alias(instance.first_slot + static_cast<std::uint32_t>(variable), declared.field.type);
   }
 }
 

@@ -58,6 +58,7 @@ class Elaborator {
   /// A parameter that nothing in the text drives: it may be set from outside.
   Wire open_parameter(const std::string& path, const Declared& declared, double value);
   void elaborate(const Instance& instance);
+  void note_unit(const Instance& instance, std::size_t variable);
   void instantiate(const Instance& instance, std::size_t variable, Part& part);
   // `INV : HY_M_INVERSE := (C1 := 0.05)`: constants, given once.
   void apply_settings(const Instance& instance, const Declared& declared, Part& part);

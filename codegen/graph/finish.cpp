@@ -52,6 +52,12 @@ class Finisher {
     for (Port& output : graph_.outputs) {
       output.wire = follow(output.wire);
     }
+    for (Port& inner : graph_.inner) {
+      const language::Span driven = slots_[inner.wire.index].span;
+      inner.span = driven.length > 0 ? driven : inner.span;
+      inner.wire = follow(inner.wire);
+    }
+    std::erase_if(graph_.inner, [](const Port& inner) { return inner.wire.from == Wire::From::Literal; });
     sort_nodes();
     sort_parameters();
     settle_rates();
@@ -102,6 +108,9 @@ class Finisher {
     for (Port& output : graph_.outputs) {
       remap(output.wire);
     }
+    for (Port& inner : graph_.inner) {
+      remap(inner.wire);
+    }
     graph_.nodes = std::move(nodes);
     graph_.wires = std::move(wires);
     graph_.wire_spans = std::move(spans);
@@ -145,6 +154,9 @@ class Finisher {
     for (const Port& output : graph_.outputs) {
       take(output.wire);
     }
+    for (const Port& inner : graph_.inner) {
+      take(inner.wire);
+    }
     std::vector<std::uint32_t> moved_to(parameters_.size());
     for (const std::uint32_t old : order) {
       moved_to[old] = static_cast<std::uint32_t>(graph_.parameters.size());
@@ -158,6 +170,9 @@ class Finisher {
     std::ranges::for_each(graph_.wires, remap);
     for (Port& output : graph_.outputs) {
       remap(output.wire);
+    }
+    for (Port& inner : graph_.inner) {
+      remap(inner.wire);
     }
   }
 

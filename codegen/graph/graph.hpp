@@ -83,6 +83,7 @@ struct Graph {
   std::vector<Port> inputs{};
   std::vector<Port> outputs{};
   std::vector<Parameter> parameters{};
+  std::vector<Port> inner{};  ///< variables and inner ports that state a unit: checked, else nothing
   std::vector<Node> nodes{};
   std::vector<Wire> wires{};
   std::vector<language::Span> wire_spans{};  ///< beside wires: where each was written

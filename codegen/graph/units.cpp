@@ -41,6 +41,9 @@ class Checker {
         connect(index);
       }
     }
+    for (const Port& inner : graph_.inner) {
+      agree(of_wire(inner.wire), known(inner.unit), inner.span, inner.name);
+    }
     for (const Port& output : graph_.outputs) {
       agree(of_wire(output.wire), known(output.unit), output.span, output.name);
     }

@@ -156,6 +156,25 @@ TEST(Compile, UnitsAreCarriedThroughBlocksAndExpressions) {
   EXPECT_THAT(with("µm", "um", "", "Y := U;"), IsEmpty());
 }
 
+TEST(Compile, UnitsAreCheckedAtVariablesAndAtTheBordersOfBlocks) {
+  const auto unit_errors = [](const std::string& text) {
+    const auto found = diagnose(text);
+    return std::ranges::count(found, error::unit_mismatch, &Diagnostic::number);
+  };
+  const std::string ports = "VAR_INPUT U : LREAL; (* @unit V *) END_VAR VAR_OUTPUT Y : LREAL; END_VAR ";
+  EXPECT_EQ(unit_errors(block(ports + "VAR W : LREAL; (* @unit V *) END_VAR", "W := U; Y := W;")), 0);
+  EXPECT_EQ(unit_errors(block(ports + "VAR W : LREAL; (* @unit um *) END_VAR", "W := U; Y := W;")), 1);
+  const std::string inner =
+      "FUNCTION_BLOCK STAGE VAR_INPUT X : LREAL; (* @unit um *) END_VAR VAR_OUTPUT Z : LREAL; (* @unit um *) END_VAR "
+      "Z := X; END_FUNCTION_BLOCK\n";
+  EXPECT_EQ(unit_errors(inner + block(ports + "VAR S : STAGE; END_VAR", "S(X := U); Y := S.Z;")), 1);
+  EXPECT_EQ(
+      unit_errors(inner + block("VAR_INPUT U : LREAL; (* @unit um *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit um *) "
+                                "END_VAR VAR S : STAGE; END_VAR",
+                                "S(X := U); Y := S.Z;")),
+      0);
+}
+
 TEST(Compile, ASlowerPartRunsInItsStepsAndIsHeldBetween) {
   const std::string text = block(
       "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR S : HY_SAMPLE; (* @every 4 @phase 1 *) "

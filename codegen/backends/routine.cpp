@@ -9,6 +9,19 @@
 namespace hysteron {
 namespace {
 
+Op literal_op(Type type) {
+  switch (type) {
+    case Type::Real:
+      return Op::RealLiteral;
+    case Type::Bool:
+      return Op::BoolLiteral;
+    case Type::Int:
+      return Op::IntLiteral;
+    default:
+      return Op::WordLiteral;
+  }
+}
+
 class RoutineBuilder {
  public:
   explicit RoutineBuilder(const Program& program) : program_(program), graph_(program.graph) {}
@@ -81,10 +94,7 @@ class RoutineBuilder {
     Tape& tape = routine_.tape;
     switch (wire.from) {
       case Wire::From::Literal: {
-        const Op op = wire.type == Type::Real   ? Op::RealLiteral
-                      : wire.type == Type::Bool ? Op::BoolLiteral
-                      : wire.type == Type::Int  ? Op::IntLiteral
-                                                : Op::WordLiteral;
+        const Op op = literal_op(wire.type);
         return tape.literal(op, graph_.literals[wire.index]);
       }
       case Wire::From::Parameter:
@@ -326,10 +336,7 @@ class RoutineBuilder {
             {.kind = Statement::Kind::SetCell, .target = cell, .value = routine_.tape.literal(Op::IntLiteral, 0)});
       } else if (routine_.cells[cell].held) {
         const Type type = routine_.cells[cell].field.type;
-        const Op op = type == Type::Real   ? Op::RealLiteral
-                      : type == Type::Bool ? Op::BoolLiteral
-                      : type == Type::Int  ? Op::IntLiteral
-                                           : Op::WordLiteral;
+        const Op op = literal_op(type);
         routine_.reset.push_back(
             {.kind = Statement::Kind::SetCell, .target = cell, .value = routine_.tape.literal(op, 0)});
       }
@@ -345,10 +352,7 @@ class RoutineBuilder {
       }
       const auto from = graph_.wire(node, value.index).from;
       if (from == Wire::From::Node || from == Wire::From::Input) {
-        const Op op = value.type == Type::Real   ? Op::RealLiteral
-                      : value.type == Type::Bool ? Op::BoolLiteral
-                      : value.type == Type::Int  ? Op::IntLiteral
-                                                 : Op::WordLiteral;
+        const Op op = literal_op(value.type);
         laid[id] = routine_.tape.literal(op, 0);
       }
     }

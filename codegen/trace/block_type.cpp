@@ -1,12 +1,11 @@
 #include "codegen/trace/block_type.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <unordered_map>
 
 #include "blocks/catalogue.hpp"
 #include "codegen/trace/traced.hpp"
+#include "support/names.hpp"
 
 namespace hysteron {
 namespace {
@@ -149,13 +148,6 @@ BlockType describe_block() {
           .trace = trace_block<B>()};
 }
 
-std::string upper_case(std::string_view name) {
-  std::string result(name);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
-  return result;
-}
-
 }  // namespace
 
 std::span<const BlockType> block_types() {
@@ -176,7 +168,7 @@ const BlockType* find_block_type(std::string_view name) {
     }
     return map;
   }();
-  const auto found = by_name.find(upper_case(name));
+  const auto found = by_name.find(in_capitals(name));
   return found == by_name.end() ? nullptr : found->second;
 }
 

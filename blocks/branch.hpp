@@ -26,8 +26,13 @@ struct Branch {
     S EPS;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(EPS).in("'x").at_least(0.0).otherwise(0.0).means("dead band: a return up to this is no reversal")};
+      return std::tuple{HY_FIELD(EPS)
+                            .in("'x")
+                            .at_least(0.0)
+                            .otherwise(0.0)
+                            .neutral_at(0.0)
+                            .effect("branch_chatter")
+                            .means("dead band: a return up to this is no reversal")};
     }
   };
   template <class S>

@@ -29,6 +29,7 @@ struct Field {
   std::string_view name;
   std::string_view unit;
   std::string_view meaning;
+  std::string_view effect;  ///< the physical effect that this parameter switches on by itself; empty for none
   double preset = 0.0;
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
@@ -80,10 +81,17 @@ struct BoundField : Field {
     copy.above_minimum = true;
     return copy;
   }
-  /// The setting at which an effect passes its input through unchanged.
+  /// The setting at which an effect passes its input through unchanged, or at which an enriching block is the block
+  /// that it can replace.
   [[nodiscard]] constexpr BoundField neutral_at(double value) const {
     auto copy = *this;
     copy.neutral = value;
+    return copy;
+  }
+  /// The effect that the parameter switches on by itself, away from its neutral setting.
+  [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
+    auto copy = *this;
+    copy.Field::effect = identifier;
     return copy;
   }
 };
@@ -149,6 +157,9 @@ struct About {
   std::string_view delay{};     ///< delay and gain curve over frequency, where they matter
   std::string_view source{};    ///< standard, paper or book that defines it
   std::string_view effect{};    ///< identifier of the physical effect that it adds between XIN and XOUT; empty for none
+  /// The block that this one can replace: it has the same ports and parameters of the same meaning and more, and gives
+  /// equal bits while every further parameter that has an effect is at its neutral setting. Empty for none.
+  std::string_view enriches{};
   bool rate_transition = false;  ///< may stand between two rates (@every)
 };
 

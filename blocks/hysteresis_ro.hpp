@@ -41,7 +41,13 @@ struct HysteresisRo {
           HY_FIELD(C2).at_least(0.0).otherwise(0.0).means(
               "growth of the slope; C1's unit over XIN's unit to the power C3"),
           HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
-          HY_FIELD(EPS).in("'x").at_least(0.0).otherwise(0.0).means("dead band of the branching detector"),
+          HY_FIELD(EPS)
+              .in("'x")
+              .at_least(0.0)
+              .otherwise(0.0)
+              .neutral_at(0.0)
+              .effect("branch_chatter")
+              .means("dead band of the branching detector"),
           HY_FIELD(START).within(-1.0, 1.0).otherwise(0.0).means(
               "0: on the skeleton; 1, -1: on a rising, falling branch"),
           HY_FIELD(U0).in("'x").otherwise(0.0).means("input at the origin of the skeleton or of the first branch"),

@@ -59,6 +59,9 @@ std::string limits_text(const Field& field, bool is_output) {
   if (field.has_neutral()) {
     parts.push_back("neutral at " + value_text(field, field.neutral));
   }
+  if (!field.effect.empty()) {
+    parts.push_back(fmt::format("effect {}", field.effect));
+  }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -114,6 +117,9 @@ nlohmann::json field_json(const Field& field, bool is_output) {
   if (field.has_neutral()) {
     json["neutral"] = field.neutral;
   }
+  if (!field.effect.empty()) {
+    json["effect"] = field.effect;
+  }
   if (!is_output && !field.required) {
     json["default"] = field.preset;
   }
@@ -157,6 +163,9 @@ std::string card_text(const BlockType& block) {
   if (!about.effect.empty()) {
     text += fmt::format("\neffect\n  {}, between XIN and XOUT\n", about.effect);
   }
+  if (!about.enriches.empty()) {
+    text += fmt::format("\ncan replace\n  {}, to the bit while every further effect is neutral\n", about.enriches);
+  }
   if (!about.source.empty()) {
     text += "\nsource\n" + wrapped(about.source, 2);
   }
@@ -176,6 +185,7 @@ nlohmann::json card_json(const BlockType& block) {
           {"meaning", about.meaning},
           {"delay", about.delay},
           {"effect", about.effect},
+          {"enriches", about.enriches},
           {"source", about.source},
           {"rate_transition", about.rate_transition},
           {"inputs", fields_json(block.inputs, false)},

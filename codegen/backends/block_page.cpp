@@ -64,6 +64,10 @@ bool any_neutral(std::span<const Field> fields) {
   return std::ranges::any_of(fields, [](const Field& field) { return field.has_neutral(); });
 }
 
+bool any_effect(std::span<const Field> fields) {
+  return std::ranges::any_of(fields, [](const Field& field) { return !field.effect.empty(); });
+}
+
 bool any_range(std::span<const Field> fields) {
   return std::ranges::any_of(fields, [](const Field& field) { return !range_text(field).empty(); });
 }
@@ -75,15 +79,18 @@ std::string table(std::span<const Field> fields, Kind kind) {
   const bool has_default = kind == Kind::Input || kind == Kind::Parameter;
   const bool has_range = any_range(fields);
   const bool has_neutral = any_neutral(fields);
-  std::string text = fmt::format("| name | type | unit |{}{}{} meaning |\n", has_range ? " range |" : "",
-                                 has_default ? " default |" : "", has_neutral ? " neutral |" : "");
-  text += fmt::format("| --- | --- | --- |{}{}{} --- |\n", has_range ? " --- |" : "", has_default ? " --- |" : "",
-                      has_neutral ? " --- |" : "");
+  const bool has_effect = any_effect(fields);
+  std::string text =
+      fmt::format("| name | type | unit |{}{}{}{} meaning |\n", has_range ? " range |" : "",
+                  has_default ? " default |" : "", has_neutral ? " neutral |" : "", has_effect ? " effect |" : "");
+  text += fmt::format("| --- | --- | --- |{}{}{}{} --- |\n", has_range ? " --- |" : "", has_default ? " --- |" : "",
+                      has_neutral ? " --- |" : "", has_effect ? " --- |" : "");
   for (const Field& field : fields) {
     text += fmt::format("| `{}` | {} | {} |", field.name, type_text(field), unit_text(field));
     text += has_range ? fmt::format(" {} |", range_text(field)) : "";
     text += has_default ? fmt::format(" {} |", default_text(field)) : "";
     text += has_neutral ? fmt::format(" {} |", field.has_neutral() ? value_text(field, field.neutral) : "") : "";
+    text += !has_effect ? "" : field.effect.empty() ? " |" : fmt::format(" `{}` |", field.effect);
     text += fmt::format(" {} |\n", escaped(field.meaning));
   }
   return text;
@@ -181,6 +188,12 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
     part("Effect", fmt::format("`{}`, between `XIN` and `XOUT`. With every parameter at its neutral setting the block "
                                "passes its input through unchanged.\n",
                                about.effect));
+  }
+  if (!about.enriches.empty()) {
+    part("Replaces",
+         fmt::format("`{}`, of which it has every port and parameter. With every further effect at its neutral "
+                     "setting both give the same bits.\n",
+                     about.enriches));
   }
   part("Example", fmt::format("```st\n{}```\n", response_diagram(block)));
   if (!about.source.empty()) {

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <new>
 #include <set>
 #include <string>
@@ -150,6 +151,11 @@ void expect_described(std::set<std::string_view>& names, bool has_presets) {
     if (has_presets && !field.required) {
       EXPECT_TRUE(in_range(field, field.preset)) << "preset " << field.preset;
     }
+    if (!field.effect.empty()) {
+      EXPECT_TRUE(field.has_neutral()) << "an effect can be switched off";
+      EXPECT_TRUE(std::ranges::all_of(field.effect, [](unsigned char c) { return std::islower(c) != 0 || c == '_'; }))
+          << field.effect;
+    }
     if (field.has_neutral()) {
       EXPECT_TRUE(in_range(field, field.neutral)) << "neutral " << field.neutral;
     }
@@ -274,9 +280,94 @@ TEST(Contract, OnlyEffectsHaveANeutralSetting) {
   for_each_block([]<class B> {
     if (B::about.effect.empty()) {
       for (const Field& field : fields_of<DoubleParams<B>>()) {
-        EXPECT_FALSE(field.has_neutral()) << field.name;
+        EXPECT_EQ(field.has_neutral(), !field.effect.empty()) << field.name;
       }
     }
+  });
+}
+
+/// The fields of a structure by their names.
+template <class Struct>
+std::map<std::string_view, Field> by_name() {
+  std::map<std::string_view, Field> fields;
+  for (const Field& field : fields_of<Struct>()) {
+    fields.emplace(field.name, field);
+  }
+  return fields;
+}
+
+template <class Rich, class Plain>
+void expect_fields_of_both() {
+  const auto rich = by_name<Rich>();
+  for (const Field& plain : fields_of<Plain>()) {
+    SCOPED_TRACE(std::string(plain.name));
+    ASSERT_TRUE(rich.contains(plain.name));
+    const Field& field = rich.at(plain.name);
+    EXPECT_EQ(field.type, plain.type);
+    EXPECT_EQ(field.length, plain.length);
+    EXPECT_EQ(field.unit, plain.unit);
+    EXPECT_EQ(field.required, plain.required);
+    EXPECT_EQ(field.preset, plain.preset);
+    EXPECT_EQ(field.minimum, plain.minimum);
+    EXPECT_EQ(field.maximum, plain.maximum);
+  }
+}
+
+/// Writes the members of one structure into those of the same name in another.
+template <class To, class From>
+void copy_by_name(To& to, const From& from) {
+  const auto set = [&](const auto& target, const auto& source) {
+    using Member = std::remove_reference_t<decltype(to.*(target.member))>;
+    if constexpr (std::is_same_v<Member, std::remove_cvref_t<decltype(from.*(source.member))>>) {
+      if (target.name == source.name) {
+        to.*(target.member) = from.*(source.member);
+      }
+    }
+  };
+  std::apply(
+      [&](const auto&... target) {
+        const auto each = [&](const auto& one) {
+          std::apply([&](const auto&... source) { (set(one, source), ...); }, From::fields());
+        };
+        (each(target), ...);
+      },
+      To::fields());
+}
+
+/// A block that enriches another, beside that one, on the same random inputs and parameters.
+template <class Rich, class Plain>
+void expect_enriched(std::uint64_t seed, double ts) {
+  RandomIo random(seed, ts);
+  auto rich_params = random.make<DoubleParams<Rich>>();
+  EXPECT_GT(neutralise(rich_params), 0);
+  const auto plain_params = random.make<DoubleParams<Plain>>();
+  copy_by_name(rich_params, plain_params);
+  Stepper<Rich> rich(ts, rich_params);
+  Stepper<Plain> plain(ts, plain_params);
+  for (int k = 0; k < steps; ++k) {
+    auto rich_in = random.make<DoubleIn<Rich>>();
+    const auto plain_in = random.make<DoubleIn<Plain>>();
+    copy_by_name(rich_in, plain_in);
+    const auto expected = plain(plain_in);
+    auto common = expected;
+    copy_by_name(common, rich(rich_in));
+    ASSERT_EQ(bits(common), bits(expected)) << "step " << k;
+  }
+}
+
+TEST(Contract, AnEnrichingBlockIsTheBlockItReplacesWhereNeutral) {
+  for_each_run([]<class Rich>(std::uint64_t seed, double ts) {
+    int found = 0;
+    Catalogue::for_each([&]<class Plain> {
+      if constexpr (Plain::about.name == Rich::about.enriches) {
+        ++found;
+        expect_fields_of_both<DoubleIn<Rich>, DoubleIn<Plain>>();
+        expect_fields_of_both<DoubleParams<Rich>, DoubleParams<Plain>>();
+        expect_fields_of_both<typename Rich::template Out<double>, typename Plain::template Out<double>>();
+        expect_enriched<Rich, Plain>(seed, ts);
+      }
+    });
+    EXPECT_EQ(found, Rich::about.enriches.empty() ? 0 : 1) << Rich::about.enriches << " is no block";
   });
 }
 

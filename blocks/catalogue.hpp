@@ -6,8 +6,13 @@
 #include "blocks/backlash.hpp"
 #include "blocks/blink.hpp"
 #include "blocks/branch.hpp"
+#include "blocks/clock.hpp"
+#include "blocks/cogging.hpp"
 #include "blocks/constant.hpp"
 #include "blocks/cosine.hpp"
+#include "blocks/coulomb_friction.hpp"
+#include "blocks/creep.hpp"
+#include "blocks/cross_coupling.hpp"
 #include "blocks/dead_band.hpp"
 #include "blocks/dead_time.hpp"
 #include "blocks/delay.hpp"
@@ -15,10 +20,13 @@
 #include "blocks/derivative4.hpp"
 #include "blocks/derivative_filtered.hpp"
 #include "blocks/down_counter.hpp"
+#include "blocks/drift.hpp"
 #include "blocks/equal.hpp"
+#include "blocks/even_nonlinearity.hpp"
 #include "blocks/exponential.hpp"
 #include "blocks/falling_edge.hpp"
 #include "blocks/gain.hpp"
+#include "blocks/gain_drift.hpp"
 #include "blocks/greater.hpp"
 #include "blocks/greater_equal.hpp"
 #include "blocks/hold.hpp"
@@ -33,6 +41,7 @@
 #include "blocks/less.hpp"
 #include "blocks/less_equal.hpp"
 #include "blocks/limit.hpp"
+#include "blocks/load.hpp"
 #include "blocks/logarithm.hpp"
 #include "blocks/logic_and.hpp"
 #include "blocks/logic_not.hpp"
@@ -48,8 +57,12 @@
 #include "blocks/minimum.hpp"
 #include "blocks/momentum.hpp"
 #include "blocks/not_equal.hpp"
+#include "blocks/odd_nonlinearity.hpp"
 #include "blocks/off_delay.hpp"
+#include "blocks/offset.hpp"
 #include "blocks/on_delay.hpp"
+#include "blocks/periodic_disturbance.hpp"
+#include "blocks/periodic_error.hpp"
 #include "blocks/pid.hpp"
 #include "blocks/power_function.hpp"
 #include "blocks/product.hpp"
@@ -58,6 +71,7 @@
 #include "blocks/quotient.hpp"
 #include "blocks/ramp.hpp"
 #include "blocks/rate_limit.hpp"
+#include "blocks/relaxation.hpp"
 #include "blocks/reset_dominant_latch.hpp"
 #include "blocks/rising_edge.hpp"
 #include "blocks/sample.hpp"
@@ -69,14 +83,17 @@
 #include "blocks/sine_wave.hpp"
 #include "blocks/square_root.hpp"
 #include "blocks/step_reference.hpp"
+#include "blocks/stribeck_friction.hpp"
 #include "blocks/subtract.hpp"
 #include "blocks/sum.hpp"
 #include "blocks/switch.hpp"
 #include "blocks/table.hpp"
 #include "blocks/tangent.hpp"
+#include "blocks/thermal_drift.hpp"
 #include "blocks/triangle_wave.hpp"
 #include "blocks/up_counter.hpp"
 #include "blocks/up_down_counter.hpp"
+#include "blocks/viscous_friction.hpp"
 
 namespace hysteron {
 
@@ -111,6 +128,9 @@ using Catalogue = BlockList<
     OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
     // dynamics
     Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, Delay, DeadTime, Lag, LeadLag, SecondOrder,
+    // effects: what a machine does and its model does not
+    Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, ViscousFriction,
+    Cogging, PeriodicError, EvenNonlinearity, OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock,
     // borders between rates
     Sample, Hold>;
 

@@ -1,11 +1,11 @@
 // HY_DEAD_TIME: XOUT(t) = XIN(t − DEAD_TIME)
 #pragma once
 
-#include "blocks/ports.hpp"
+#include "blocks/past_signal.hpp"
 
 namespace hysteron {
 
-struct DeadTime {
+struct DeadTime : PastSignal {
   static constexpr About about{
       .name = "HY_DEAD_TIME",
       .title = "Dead time",
@@ -20,8 +20,6 @@ struct DeadTime {
           "½, cos(w/2) at w = ωTS.",
       .source = "linear interpolation of the sampled signal",
       .effect = "delay"};
-
-  static constexpr std::size_t capacity = 1024;
 
   template <class S>
   struct Params {
@@ -63,73 +61,30 @@ struct DeadTime {
                         HY_FIELD(R1).otherwise(0.0).means("reset: the past becomes X0")};
     }
   };
-  template <class S>
-  struct Out {
-    S XOUT;
-    Bool<S> ERROR;
-    Word<S> ERRORID;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("delayed signal"),
-                        HY_FIELD(ERROR).means("the dead time is longer than 1024 samples, or below 0"),
-                        HY_FIELD(ERRORID).means("0 no error, 5 dead time too long or below 0")};
-    }
-  };
 
-  /// The signal before all samples that count.
+  /// The past as a reset leaves it.
   template <class S>
-  static S before(const Params<S>& params, const State<S>& state, const In<S>& in) {
+  static View<S> view(const Params<S>& params, const State<S>& state, const In<S>& in) {
     const S start = select(params.SETTLED, in.XIN, params.X0);
-    return select(in.R1, params.X0, select(state.STARTED, state.BEFORE, start));
-  }
-  template <class S>
-  static Int<S> held(const State<S>& state, const In<S>& in) {
-    return select(in.R1, Int<S>(0), state.HELD);
-  }
-  /// The sample `age` steps ago, for an age of at least 1.
-  template <class S>
-  static S past(const State<S>& state, const Int<S>& age, const Int<S>& count, const S& earlier) {
-    const Int<S> place = state.HEAD - age;
-    const Int<S> wrapped = select(place < Int<S>(0), place + Int<S>(std::int32_t{capacity}), place);
-    return select(age <= count, at(state.PAST, wrapped), earlier);
+    return {.present = in.XIN,
+            .earlier = select(in.R1, params.X0, select(state.STARTED, state.BEFORE, start)),
+            .count = select(in.R1, Int<S>(0), state.HELD)};
   }
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
     State<S> state{};
-    fill(state.PAST, S(0.0));
-    state.HEAD = Int<S>(0);
-    state.HELD = Int<S>(0);
-    state.BEFORE = S(0.0);
-    state.STARTED = Bool<S>(false);
+    forget(state);
     return state;
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    constexpr auto longest = static_cast<double>(capacity);
-    const S wanted = params.DEAD_TIME / ts;
-    const S steps = max(min(S(longest), wanted), S(0.0));
-    const Int<S> whole = to_int(steps);
-    const S fraction = steps - to_real<S>(whole);
-    const S earlier = before(params, state, in);
-    const Int<S> count = held(state, in);
-    const S newer = select(whole < Int<S>(1), in.XIN, past<S>(state, whole, count, earlier));
-    const S older = past<S>(state, whole + Int<S>(1), count, earlier);
-    const Bool<S> held_back = !(wanted >= S(0.0) && wanted <= S(longest));
-    return {.XOUT = newer + fraction * (older - newer),
-            .ERROR = held_back,
-            .ERRORID = select(held_back, Word<S>(fault::dead_time_too_long), Word<S>(std::uint16_t{0}))};
+    return ago<S>(state, view(params, state, in), params.DEAD_TIME / ts);
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
                      const S& /*ts*/) {
-    constexpr std::int32_t size{capacity};
-    state.BEFORE = before(params, state, in);
-    state.HELD = min(held(state, in) + Int<S>(1), Int<S>(size));
-    store(state.PAST, state.HEAD, in.XIN);
-    const Int<S> next = state.HEAD + Int<S>(1);
-    state.HEAD = select(next < Int<S>(size), next, Int<S>(0));
-    state.STARTED = Bool<S>(true);
+    keep<S>(state, view(params, state, in));
   }
 };
 

@@ -37,4 +37,22 @@ S filtered_rate(const S& rate, const S& x, const S& x_before, const S& time_cons
   return without_denormals(rate + forgotten_part(time_constant, ts) * ((x - x_before) / ts - rate));
 }
 
+/// What a filtered rate starts from: at the start either the first sample has stood for ever, or 0 has.
+template <class S>
+struct RateBefore {
+  Bool<S> start;
+  Bool<S> settled;
+  S rate;  ///< D(k−1)
+  S x;     ///< x(k−1)
+};
+
+/// D(k), also at the start: 0 where settled, else what leaves the lag x − T·D at 0.
+template <class S>
+S started_rate(const RateBefore<S>& before, const S& x, const S& time_constant, const S& ts) {
+  const Bool<S> lags = time_constant > S(0.0);
+  const S from_zero = select(lags, x / select(lags, time_constant, S(1.0)), S(0.0));
+  const S going_on = filtered_rate(before.rate, x, select(before.start, x, before.x), time_constant, ts);
+  return select(before.start && !before.settled, from_zero, going_on);
+}
+
 }  // namespace hysteron

@@ -1,0 +1,71 @@
+// HY_COULOMB_FRICTION: XOUT = XIN − LEVEL·z, z the stop operator of ∫V dt
+#pragma once
+
+#include "blocks/effect_term.hpp"
+#include "blocks/friction.hpp"
+#include "blocks/ports.hpp"
+
+namespace hysteron {
+
+struct CoulombFriction {
+  static constexpr About about{
+      .name = "HY_COULOMB_FRICTION",
+      .title = "Coulomb friction",
+      .group = Group::Dynamics,
+      .equation = "XOUT = XIN − LEVEL·z, z(k+1) = max(−1, min(1, z(k) + TS·V(k)/PRESLIDE))",
+      .meaning =
+          "Dry friction, taken off a driving force: LEVEL against the motion once the travel after a reversal exceeds "
+          "2·PRESLIDE, and elastic before that, so that it holds at rest without chatter. V is that of the step "
+          "before, so that the block closes the loop of force and velocity; it begins with 0. A PRESLIDE of less than "
+          "some steps of travel lets the friction jump.",
+
+      .source = "L. Prandtl, ZAMM 8 (1928) 85: Ein Gedankenmodell zur kinetischen Theorie der festen Körper",
+      .effect = "coulomb_friction"};
+
+  template <class S>
+  struct Params {
+    S LEVEL;
+    S PRESLIDE;
+    using Self = Params;
+    static constexpr auto fields() {
+      return std::tuple{
+          HY_FIELD(LEVEL).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction while sliding"),
+          HY_FIELD(PRESLIDE).in("'v*s").above(0.0).otherwise(0.001).means("travel from rest to the whole friction")};
+    }
+  };
+  template <class S>
+  struct State {
+    S STOP;
+    using Self = State;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1")};
+    }
+  };
+  template <class S>
+  struct In {
+    S XIN;
+    S V;
+    using Self = In;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
+                        HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; counts in the step after")};
+    }
+  };
+  template <class S>
+  using Out = Xout<S, "'x", "force that is left for the motion">;
+
+  template <class S>
+  static State<S> initial(const Params<S>& /*params*/) {
+    return {.STOP = S(0.0)};
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
+    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * state.STOP))};
+  }
+  template <class S>
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
+    state.STOP = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
+  }
+};
+
+}  // namespace hysteron

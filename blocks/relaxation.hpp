@@ -1,0 +1,80 @@
+// HY_RELAXATION: XOUT = XIN + GAIN·(XIN behind a lag T1)
+#pragma once
+
+#include "blocks/effect_term.hpp"
+#include "blocks/filtered_rate.hpp"
+#include "blocks/ports.hpp"
+
+namespace hysteron {
+
+struct Relaxation {
+  static constexpr About about{
+      .name = "HY_RELAXATION",
+      .title = "Relaxation",
+      .group = Group::Dynamics,
+      .equation = "XOUT = XIN + GAIN·x, T1·x' + x = XIN",
+      .meaning =
+          "After a step of s the output is s at once and approaches s·(1 + GAIN) with the time constant T1: s·(1 + "
+          "GAIN·(1 − exp(−t/T1))). One exponential, of a viscoelastic mount or of an amplifier's thermal tail; "
+          "HY_CREEP has all time scales. Exact for an input that runs straight between its samples.",
+
+      .effect = "relaxation"};
+
+  template <class S>
+  struct Params {
+    S GAIN;
+    S T1;
+    Bool<S> SETTLED;
+    using Self = Params;
+    static constexpr auto fields() {
+      return std::tuple{
+          HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).means("share of a step that follows slowly"),
+          HY_FIELD(T1).in("s").at_least(0.0).otherwise(1.0).means("time constant"),
+          HY_FIELD(SETTLED).otherwise(1.0).means(
+              "starts as if the first input had stood for ever; FALSE: as if 0 had")};
+    }
+  };
+  template <class S>
+  struct State {
+    S X1;
+    S RATE1;
+    Bool<S> STARTED;
+    using Self = State;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
+                        HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate of the lagged input one sample ago"),
+                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+    }
+  };
+  template <class S>
+  struct In {
+    S XIN;
+    using Self = In;
+    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal")}; }
+  };
+  template <class S>
+  using Out = Xout<S, "'x", "signal with what follows slowly">;
+
+  /// The rate of the lagged input at the present sample.
+  template <class S>
+  static S rate(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    return started_rate<S>({.start = !state.STARTED, .settled = params.SETTLED, .rate = state.RATE1, .x = state.X1},
+                           in.XIN, params.T1, ts);
+  }
+
+  template <class S>
+  static State<S> initial(const Params<S>& /*params*/) {
+    return {.X1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    const S lagged = in.XIN - params.T1 * rate(params, state, in, ts);
+    return {.XOUT = with_term<S>(in.XIN, params.GAIN * lagged)};
+  }
+  template <class S>
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
+    state = {.X1 = in.XIN, .RATE1 = rate(params, state, in, ts), .STARTED = Bool<S>(true)};
+  }
+};
+
+}  // namespace hysteron

@@ -1,0 +1,66 @@
+// HY_VISCOUS_FRICTION: XOUT = XIN − COEFFICIENT·V
+#pragma once
+
+#include "blocks/effect_term.hpp"
+#include "blocks/ports.hpp"
+
+namespace hysteron {
+
+struct ViscousFriction {
+  static constexpr About about{
+      .name = "HY_VISCOUS_FRICTION",
+      .title = "Viscous friction",
+      .group = Group::Dynamics,
+      .equation = "XOUT(k) = XIN(k) − COEFFICIENT·V(k−1)",
+      .meaning =
+          "Friction in proportion to the velocity, taken off a driving force. V is that of the step before, so that "
+          "the block closes the loop of force and velocity; it begins with 0.",
+
+      .effect = "viscous_friction"};
+
+  template <class S>
+  struct Params {
+    S COEFFICIENT;
+    using Self = Params;
+    static constexpr auto fields() {
+      return std::tuple{
+          HY_FIELD(COEFFICIENT).in("'x/'v").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("force over velocity")};
+    }
+  };
+  template <class S>
+  struct State {
+    S V1;
+    using Self = State;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one step ago")};
+    }
+  };
+  template <class S>
+  struct In {
+    S XIN;
+    S V;
+    using Self = In;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
+                        HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; counts in the step after")};
+    }
+  };
+  template <class S>
+  using Out = Xout<S, "'x", "force that is left for the motion">;
+
+  template <class S>
+  static State<S> initial(const Params<S>& /*params*/) {
+    return {.V1 = S(0.0)};
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
+    return {.XOUT = with_term<S>(in.XIN, -(params.COEFFICIENT * state.V1))};
+  }
+  template <class S>
+  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
+                     const S& /*ts*/) {
+    state.V1 = in.V;
+  }
+};
+
+}  // namespace hysteron

@@ -1,0 +1,251 @@
+#include "diagnosis/candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "codegen/compile.hpp"
+#include "diagnosis/insertion.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// An instance of a FUNCTION_BLOCK of the file.
+struct Place {
+  std::uint32_t definition = 0;
+  std::string prefix{};
+};
+
+void add_places(const Definitions& definitions, std::uint32_t index, const std::string& prefix, std::vector<Place>& places) {
+  places.push_back({.definition = index, .prefix = prefix});
+  for (const Declared& declared : definitions.list[index].variables) {
+    if (declared.kind == Declared::Kind::UserBlock) {
+      add_places(definitions, declared.definition, prefix + language::upper(declared.field.name) + ".", places);
+    }
+  }
+}
+
+const Node* find_node(const Graph& graph, std::string_view path) {
+  const auto found = std::ranges::find_if(graph.nodes, [&](const Node& node) {
+    return node.block != nullptr && language::same_name(node.path, path);
+  });
+  return found == graph.nodes.end() ? nullptr : &*found;
+}
+
+Wire wire_of(const Graph& graph, const Node& node, std::string_view pin) {
+  for (std::size_t i = 0; i < node.block->inputs.size(); ++i) {
+    if (node.block->inputs[i].name == pin) {
+      return graph.wire(node, i);
+    }
+  }
+  return {};
+}
+
+class Enumeration {
+ public:
+  Enumeration(const Variant& base, const std::string& top, const CandidateOptions& options)
+      : base_(base), top_(top), options_(options) {
+    Diagnostics diagnostics;
+    source_ = std::make_shared<const language::SourceFile>(language::parse("text", base.text, diagnostics));
+    definitions_ = define(source_, diagnostics);
+    index_ = top_definition(definitions_, base.program->graph.name);
+    edges_ = edges_of(definitions_, index_);
+    add_places(definitions_, index_, {}, places_);
+  }
+
+  std::vector<Candidate> list() {
+    for (const EffectKind& kind : effect_kinds(definitions_)) {
+      if (!options_.effects.empty() && std::ranges::find(options_.effects, kind.id) == options_.effects.end()) {
+        continue;
+      }
+      if (kind.change == Change::Insert) {
+        for (const Edge& edge : edges_) {
+          insert(kind, edge);
+        }
+      } else {
+        change_instances(kind);
+      }
+    }
+    return std::move(candidates_);
+  }
+
+ private:
+  /// Whether the effect is there already, by the same block on the same edge.
+  [[nodiscard]] bool present(const std::string& effect, const std::string& edge) const {
+    return std::ranges::any_of(base_.effects, [&](const Applied& applied) {
+      return applied.effect == effect && (applied.edge == edge || applied.instance + ".XOUT" == edge);
+    });
+  }
+
+  /// What may drive a further input: signals of the same block that come from a block with memory, another input of
+  /// the diagram, a column of the records that nothing uses.
+  [[nodiscard]] std::vector<std::string> drivers(const EffectKind& kind, const Edge& edge) const {
+    std::vector<std::string> result;
+    if (kind.id == "cross_coupling") {
+      if (!edge.prefix.empty()) {
+        return result;
+      }
+      for (const Declared& declared : definitions_.list[index_].variables) {
+        if (declared.kind == Declared::Kind::Input && declared.field.type == Type::Real && declared.field.name != edge.local) {
+          result.push_back(language::upper(declared.field.name));
+        }
+      }
+      result.insert(result.end(), options_.columns.begin(), options_.columns.end());
+      return result;
+    }
+    for (const Declared& declared : definitions_.list[edge.definition].variables) {
+      if (declared.kind != Declared::Kind::LibraryBlock || declared.block->states.empty() ||
+          declared.block->about.group != Group::Dynamics) {
+        continue;
+      }
+      for (const Field& output : declared.block->outputs) {
+        if (output.type == Type::Real) {
+          result.push_back(language::upper(declared.field.name) + "." + std::string(output.name));
+        }
+      }
+    }
+    return result;
+  }
+
+  void insert(const EffectKind& kind, const Edge& edge) {
+    if (present(kind.id, edge.name)) {
+      return;
+    }
+    if (kind.auxiliaries.empty()) {
+      insert(kind, edge, {});
+      return;
+    }
+    for (const std::string& driver : drivers(kind, edge)) {
+      insert(kind, edge, {{kind.auxiliaries.front(), driver}});
+    }
+  }
+
+  void insert(const EffectKind& kind, const Edge& edge, const std::vector<std::pair<std::string, std::string>>& wires) {
+    std::string base_name = edge.local;
+    std::ranges::replace(base_name, '.', '_');
+    if (base_name.ends_with("_XOUT")) {
+      base_name.resize(base_name.size() - 5);
+    }
+    const std::string instance =
+        free_name(source_->blocks[edge.definition], fmt::format("{}_{}", base_name, language::upper(kind.id)));
+    Candidate candidate{.kind = kind, .variant = base_};
+    Applied applied{.effect = kind.id,
+                    .block = kind.block,
+                    .edge = edge.name,
+                    .instance = edge.prefix + instance,
+                    .wires = wires};
+    const auto* text = source_.get();
+    language::SourceFile widened;
+    Edge here = edge;
+    if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
+      Diagnostics diagnostics;
+      widened = language::parse("text", with_input(*source_, index_, wires.front().second, {}), diagnostics);
+      const std::uint32_t shift = static_cast<std::uint32_t>(widened.text->size() - source_->text->size());
+      for (language::Span& read : here.reads) {
+        read.offset += shift;  // the declaration stands before all statements
+      }
+      text = &widened;
+    }
+    candidate.variant.text = with_effect(*text, here,
+                                         {.block = kind.block,
+                                          .instance = instance,
+                                          .input = kind.input,
+                                          .output = kind.output,
+                                          .wires = wires});
+    candidate.family = edge.name;
+    for (const auto& [pin, driver] : wires) {
+      candidate.family += "|" + driver;
+    }
+    add(std::move(candidate), std::move(applied));
+  }
+
+  void change_instances(const EffectKind& kind) {
+    for (const Place& place : places_) {
+      for (const Declared& declared : definitions_.list[place.definition].variables) {
+        if (declared.kind != Declared::Kind::LibraryBlock) {
+          continue;
+        }
+        const bool enriched = kind.change == Change::Enrich && declared.block->about.name == kind.block;
+        if (declared.block->about.name != kind.enriches && !enriched) {
+          continue;
+        }
+        const std::string instance = place.prefix + language::upper(declared.field.name);
+        if (present(kind.id, instance + ".XOUT") || !is_neutral(kind, instance)) {
+          continue;
+        }
+        Candidate candidate{.kind = kind, .variant = base_};
+        if (kind.change == Change::Enrich && !enriched) {
+          candidate.variant.text = with_block(*source_, *declared.variable, kind.block);
+        }
+        candidate.family = instance;
+        add(std::move(candidate),
+            {.effect = kind.id, .block = kind.block, .edge = instance + ".XOUT", .instance = instance});
+      }
+    }
+  }
+
+  /// Whether an effect that an instance may have already is switched off there.
+  [[nodiscard]] bool is_neutral(const EffectKind& kind, const std::string& instance) const {
+    return std::ranges::all_of(kind.parameters, [&](const EffectParameter& one) {
+      const auto found = find_parameter(base_.program->graph, instance + "." + std::string(one.field.name));
+      return !one.strength || found < 0 ||
+             base_.program->graph.parameters[static_cast<std::size_t>(found)].value.front() == one.field.neutral;
+    });
+  }
+
+  void add(Candidate candidate, Applied applied) {
+    for (const EffectParameter& parameter : candidate.kind.parameters) {
+      applied.parameters.push_back(parameter);
+      applied.paths.push_back(applied.instance + "." + std::string(parameter.field.name));
+    }
+    const std::string instance = applied.instance;
+    candidate.variant.effects.push_back(std::move(applied));
+    try {
+      candidate.variant.program = compiled(candidate.variant.text, top_, candidate.variant.effects);
+    } catch (const InputError&) {
+      return;  // the effect does not fit there: a loop without delay, units that do not agree
+    }
+    const Graph& graph = candidate.variant.program->graph;
+    const Node* const node = find_node(graph, instance);
+    if (node != nullptr) {
+      candidate.input = wire_of(graph, *node, candidate.kind.input);
+      for (const std::string& pin : candidate.kind.auxiliaries) {
+        candidate.auxiliary.push_back(wire_of(graph, *node, pin));
+      }
+    }
+    candidates_.push_back(std::move(candidate));
+  }
+
+  const Variant& base_;
+  const std::string& top_;
+  const CandidateOptions& options_;
+  std::shared_ptr<const language::SourceFile> source_{};
+  Definitions definitions_{};
+  std::uint32_t index_ = 0;
+  std::vector<Edge> edges_{};
+  std::vector<Place> places_{};
+  std::vector<Candidate> candidates_{};
+};
+
+}  // namespace
+
+std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,
+                                        const std::vector<Applied>& effects) {
+  auto program = std::make_shared<Program>(compile_text(text, {.top = top, .any_order = true}));
+  for (const Applied& applied : effects) {
+    for (const auto& [path, value] : applied.settings) {
+      const std::int64_t found = find_parameter(program->graph, path);
+      if (found >= 0) {
+        program->graph.parameters[static_cast<std::size_t>(found)].value.front() = value;
+      }
+    }
+  }
+  return program;
+}
+
+std::vector<Candidate> candidates_of(const Variant& base, const std::string& top, const CandidateOptions& options) {
+  return Enumeration(base, top, options).list();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,60 @@
+// Candidates: the diagram as it stands, changed by one effect more.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/edges.hpp"
+#include "diagnosis/effects.hpp"
+#include "diagnosis/model.hpp"
+
+namespace hysteron::diagnosis {
+
+/// An effect that is part of a diagram.
+struct Applied {
+  std::string effect{};    ///< creep
+  std::string block{};     ///< HY_CREEP
+  std::string edge{};      ///< HYST.XOUT; of a richer block, its output
+  std::string instance{};  ///< path of the block that carries it
+  std::vector<EffectParameter> parameters{};
+  std::vector<std::string> paths{};                             ///< of the parameters, beside them
+  std::vector<std::pair<std::string, double>> settings{};       ///< of parameters that are not fitted, by path
+  std::vector<std::pair<std::string, std::string>> wires{};     ///< auxiliary pins and what drives them
+};
+
+/// A diagram with the effects added so far.
+struct Variant {
+  std::string text{};
+  std::shared_ptr<const Program> program{};
+  std::vector<Applied> effects{};
+  std::vector<Unknown> further{};  ///< the parameters of the effects, in their order
+};
+
+/// A variant and the candidate's own part of it: the last effect.
+struct Candidate {
+  EffectKind kind{};
+  Variant variant{};
+  Wire input{};                  ///< what drives the effect's XIN
+  std::vector<Wire> auxiliary{};  ///< what drives its further inputs
+  std::string family{};           ///< candidates with the same signals: name of edge and wires
+
+  [[nodiscard]] const Applied& own() const { return variant.effects.back(); }
+};
+
+struct CandidateOptions {
+  std::vector<std::string> effects{};  ///< identifiers; empty: all
+  std::vector<std::string> columns{};  ///< of the records that the diagram does not use, for cross-coupling
+};
+
+/// Every effect on every edge, every richer block, every parameter that switches an effect on.
+/// `base` compiles; candidates that do not are left out.
+[[nodiscard]] std::vector<Candidate> candidates_of(const Variant& base, const std::string& top,
+                                                   const CandidateOptions& options);
+
+/// The program of a text, statements in any order, with the settings of its effects.
+[[nodiscard]] std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,
+                                                      const std::vector<Applied>& effects);
+
+}  // namespace hysteron::diagnosis

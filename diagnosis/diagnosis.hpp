@@ -1,0 +1,158 @@
+// The diagnosis of the sim-to-real gap: where model and machine differ, which effect causes it, how far it shrinks.
+//
+//   const Diagnosis found = diagnose({.program = …, .text = …, .file = …, .records = …}, {});
+//
+// The method, step by step, with its figures: docs/diagnosis.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/parameters/parameter_file.hpp"
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/noise_floor.hpp"
+#include "records/record.hpp"
+
+namespace hysteron::diagnosis {
+
+struct DiagnosisInput {
+  Program program{};
+  std::string text{};  ///< of the diagram
+  parameters::ParameterFile file{};
+  std::vector<records::Record> records{};
+};
+
+struct DiagnosisOptions {
+  double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; a quarter of the floor counts at least
+  std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
+  int most_effects = 3;
+  double budget = 60.0;  ///< seconds after which no further effect is added
+  std::uint64_t seed = 1;
+  unsigned threads = 2;
+  std::function<void(double fraction, std::string_view text)> progress{};
+  /// Called with each limit of the next experiment: largest |value| and rate of an input; ±∞ where there is none.
+  std::vector<std::pair<std::string, double>> limits{};
+};
+
+enum class Verdict : std::uint8_t { None, Calibration, Named, Group, Partial, Unknown };
+
+[[nodiscard]] std::string_view name_of(Verdict verdict);
+
+/// A parameter of an effect, with its 95 % interval.
+struct ParameterFinding {
+  std::string name{};
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  std::string unit{};
+};
+
+/// Whether a feedforward can take an effect back.
+enum class Inverse : std::uint8_t { Exact, Avoidable, None };
+
+struct EffectFinding {
+  std::string id{};
+  std::string edge{};
+  std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
+  double share = 0.0;                     ///< of the gap that the effects close
+  Inverse inverse = Inverse::None;
+  std::vector<ParameterFinding> parameters{};
+};
+
+/// A set of effects that the data do not rule out.
+struct Rival {
+  std::vector<std::string> effects{};
+  std::vector<std::string> edges{};
+  double improved_rms = 0.0;
+  double support = 0.0;  ///< log likelihood less that of the best, 0 or below
+  double probability = 0.0;
+};
+
+/// The gap of one output, RMS in its unit.
+struct GapFinding {
+  std::string signal{};
+  std::string unit{};
+  double nominal = 0.0;
+  double calibrated = 0.0;
+  double improved = 0.0;
+  NoiseFloor floor{};
+  double closed = 0.0;  ///< of the gap between nominal and floor, on held-out blocks
+  double closed_low = 0.0;
+  double closed_high = 0.0;
+};
+
+struct EdgeFinding {
+  std::string edge{};
+  double share = 0.0;                 ///< of the gap that a change on this edge could explain at most
+  std::vector<std::string> group{};  ///< edges that the record cannot tell from it
+};
+
+/// Where a residual depends on something: its mean or size in bins of it.
+struct MapFinding {
+  std::string over{};  ///< "amplitude", "rate", "depth", …
+  std::string unit{};
+  std::vector<double> places{};  ///< of the bins
+  std::vector<double> before{};  ///< RMS of the calibrated residual there
+  std::vector<double> after{};   ///< of the improved one
+  std::vector<double> mean{};    ///< mean of the calibrated residual
+  double share = 0.0;            ///< of the residual's variance that its mean over the bins explains
+};
+
+/// One signal over one record, for plots.
+struct Trace {
+  std::string record{};
+  std::string signal{};
+  std::string unit{};
+  std::vector<double> time{};
+  std::vector<double> measured{};
+  std::vector<double> nominal{};
+  std::vector<double> calibrated{};
+  std::vector<double> improved{};
+};
+
+/// What would tell the rivals apart best.
+struct NextExperiment {
+  std::string title{};
+  std::string reason{};
+  std::string input{};
+  std::string unit{};
+  double separation = 0.0;  ///< RMS between the rivals' outputs over the noise
+  std::vector<double> time{};
+  std::vector<double> values{};
+  std::vector<std::pair<std::string, std::string>> steps{};  ///< the command table: what, how long
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::Unknown;
+  std::string summary{};  ///< the verdict in plain words
+  std::vector<std::string> refusals{};  ///< why the record could not be diagnosed; empty where it could
+  std::vector<std::string> warnings{};
+  std::vector<EffectFinding> effects{};
+  std::vector<ParameterFinding> calibration{};  ///< known parameters, as refitted
+  std::vector<ParameterFinding> nominal{};      ///< as they were given
+  std::vector<Rival> rivals{};
+  double confidence = 0.0;
+  double unknown_score = 0.0;
+  GapFinding gap{};                     ///< of the output with the largest gap over its floor
+  std::vector<GapFinding> gaps{};       ///< of all outputs
+  std::vector<EdgeFinding> edges{};
+  std::vector<MapFinding> maps{};
+  std::vector<std::string> cannot_tell{};
+  NextExperiment next{};
+  std::vector<Trace> traces{};
+  std::string improved_text{};               ///< the diagram with the effects, formatted
+  parameters::ParameterFile improved_file{};  ///< its parameters
+  std::size_t tried = 0;
+  double seconds = 0.0;
+};
+
+/// Deterministic for a seed, but for `seconds` and for a budget that runs out.
+/// @throws InputError where the diagram, the parameters and the records do not fit together.
+[[nodiscard]] Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options);
+
+}  // namespace hysteron::diagnosis

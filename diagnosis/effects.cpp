@@ -1,0 +1,156 @@
+#include "diagnosis/effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+namespace hysteron::diagnosis {
+namespace {
+
+Role role_of(const Field& field, std::string_view unit, bool strength) {
+  const std::string_view name = field.name;
+  if (!strength && (name.ends_with("REFERENCE") || name.ends_with("CENTRE"))) {
+    return Role::Reference;
+  }
+  if (unit == "s") {
+    return !strength && field.preset == 0.0 && name.starts_with("T_") ? Role::Instant : Role::Duration;
+  }
+  if (unit == "Hz") {
+    return Role::Frequency;
+  }
+  if (unit == "1/s") {
+    return Role::PerSecond;
+  }
+  if (unit == "1") {
+    return Role::Share;
+  }
+  if (unit == "'x" || unit == "'y") {
+    return Role::Level;
+  }
+  if (unit == "'x/s") {
+    return Role::Rate;
+  }
+  if (!strength && unit == "'p") {
+    return Role::Period;
+  }
+  return Role::Other;
+}
+
+/// Parameters that the search may move: real, single, finite or neutral at infinity.
+std::vector<EffectParameter> searched(std::span<const Field> fields) {
+  std::vector<EffectParameter> result;
+  for (const Field& field : fields) {
+    if (field.type != Type::Real || field.length > 1) {
+      continue;
+    }
+    const bool strength = field.has_neutral();
+    if (!strength && !std::isfinite(field.preset)) {
+      continue;  // an end that need not come
+    }
+    result.push_back(
+        {.field = field, .unit = std::string(field.unit), .role = role_of(field, field.unit, strength), .strength = strength});
+  }
+  return result;
+}
+
+bool has_strength(const EffectKind& kind) {
+  return std::ranges::any_of(kind.parameters, [](const EffectParameter& one) { return one.strength; });
+}
+
+/// A gain beside other strengths belongs to HY_GAIN: a resonance of gain 1 is a resonance, one of gain 2 two effects.
+void drop_gains(std::vector<EffectParameter>& parameters) {
+  const auto is_gain = [](const EffectParameter& one) { return one.strength && one.field.neutral == 1.0; };
+  const auto is_other = [&](const EffectParameter& one) { return one.strength && !is_gain(one); };
+  if (std::ranges::any_of(parameters, is_other)) {
+    std::erase_if(parameters, is_gain);
+  }
+}
+
+void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
+  if (!block.about.effect.empty()) {
+    EffectKind kind{.id = std::string(block.about.effect), .block = std::string(block.about.name)};
+    bool has_input = false;
+    for (const Field& input : block.inputs) {
+      has_input = has_input || input.name == kind.input;
+      if (input.type == Type::Real && input.name != kind.input && input.unit != "'x") {
+        kind.auxiliaries.emplace_back(input.name);
+      }
+    }
+    kind.parameters = searched(block.params);
+    // A level at which something starts or stands, which the search leaves alone: X0, say.
+    std::erase_if(kind.parameters, [](const EffectParameter& one) {
+      return !one.strength && one.role == Role::Level && one.field.preset == 0.0;
+    });
+    drop_gains(kind.parameters);
+    if (has_input && has_strength(kind)) {
+      kinds.push_back(std::move(kind));
+    }
+  }
+  for (const Field& field : block.params) {
+    if (field.effect.empty()) {
+      continue;
+    }
+    EffectKind kind{.id = std::string(field.effect),
+                    .block = std::string(block.about.name),
+                    .change = block.about.enriches.empty() ? Change::Free : Change::Enrich,
+                    .enriches = std::string(block.about.enriches.empty() ? block.about.name : block.about.enriches)};
+    const auto all = searched(block.params);
+    for (const EffectParameter& one : all) {
+      const bool own_reference = one.role == Role::Reference && one.field.name.starts_with(field.name);
+      if (one.field.name == field.name || own_reference) {
+        kind.parameters.push_back(one);
+      }
+    }
+    if (has_strength(kind)) {
+      kinds.push_back(std::move(kind));
+    }
+  }
+}
+
+/// A FUNCTION_BLOCK of the user with (* @effect … *), one LREAL input, one LREAL output and parameters with @neutral.
+void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
+  if (definition.effect.empty() || !definition.usable) {
+    return;
+  }
+  EffectKind kind{.id = definition.effect, .block = std::string(definition.block->name.text)};
+  std::vector<std::string> inputs;
+  std::vector<std::string> outputs;
+  std::vector<Field> parameters;
+  for (const Declared& declared : definition.variables) {
+    const bool real = declared.field.type == Type::Real;
+    if (declared.kind == Declared::Kind::Input && real) {
+      inputs.emplace_back(declared.field.name);
+    } else if (declared.kind == Declared::Kind::Output && real) {
+      outputs.emplace_back(declared.field.name);
+    } else if (declared.kind == Declared::Kind::Parameter) {
+      parameters.push_back(declared.field);
+    }
+  }
+  if (inputs.empty() || outputs.empty()) {
+    return;
+  }
+  kind.input = inputs.front();
+  kind.output = outputs.front();
+  kind.auxiliaries.assign(inputs.begin() + 1, inputs.end());
+  kind.parameters = searched(parameters);
+  if (has_strength(kind)) {
+    kinds.push_back(std::move(kind));
+  }
+}
+
+}  // namespace
+
+std::vector<EffectKind> effect_kinds(const Definitions& definitions) {
+  std::vector<EffectKind> kinds;
+  for (const BlockType& block : block_types()) {
+    add_library(block, kinds);
+  }
+  for (const Definition& definition : definitions.list) {
+    add_own(definition, kinds);
+  }
+  std::ranges::stable_sort(kinds, {}, &EffectKind::id);
+  return kinds;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,58 @@
+// The effects that are tried: every block with an effect and a neutral setting, from the catalogue and from the user's
+// own file, and what the search needs to know of their parameters.
+//
+// Nothing here names a block. What a parameter is follows from its description: neutral or not, and its unit relative
+// to the signal ('x), which says what a sensible size is.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/trace/block_type.hpp"
+
+namespace hysteron::diagnosis {
+
+/// What a parameter measures, and so on which grid it is searched.
+enum class Role : std::uint8_t {
+  Level,      ///< in the unit of the signal
+  Rate,       ///< in that unit a second
+  Duration,   ///< seconds
+  Instant,    ///< seconds since the start: a default of 0 that is not neutral
+  Frequency,  ///< of an oscillation, Hz
+  Period,     ///< in the unit of an auxiliary input
+  Share,      ///< dimensionless
+  PerSecond,  ///< share a second
+  Reference,  ///< a size that others are relative to: set from the signal, not fitted
+  Other
+};
+
+struct EffectParameter {
+  Field field{};
+  std::string unit{};    ///< as declared
+  Role role = Role::Other;
+  bool strength = false;  ///< neutral at field.neutral; else a shape, without meaning while all strengths are neutral
+};
+
+/// How the diagram is changed.
+enum class Change : std::uint8_t {
+  Insert,  ///< the block goes onto an edge
+  Enrich,  ///< an instance gets a richer block
+  Free     ///< a parameter that the diagram has is moved from its neutral setting
+};
+
+struct EffectKind {
+  std::string id{};     ///< creep
+  std::string block{};  ///< HY_CREEP
+  Change change = Change::Insert;
+  std::string input = "XIN";
+  std::string output = "XOUT";
+  std::string enriches{};                    ///< Enrich: the block that it can stand for; Free: the block itself
+  std::vector<EffectParameter> parameters{};  ///< those that are searched
+  std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
+};
+
+/// Those of the catalogue and of the definitions of a file, each with at least one strength, sorted by identifier.
+[[nodiscard]] std::vector<EffectKind> effect_kinds(const Definitions& definitions);
+
+}  // namespace hysteron::diagnosis

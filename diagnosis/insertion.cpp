@@ -1,0 +1,114 @@
+#include "diagnosis/insertion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <variant>
+
+#include "codegen/language/lexer.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using language::Span;
+
+/// One replacement of a stretch of text.
+struct Edit {
+  Span span{};
+  std::string text{};
+};
+
+std::string edited(std::string text, std::vector<Edit> edits) {
+  std::ranges::stable_sort(edits, [](const Edit& a, const Edit& b) { return a.span.offset > b.span.offset; });
+  for (const Edit& edit : edits) {
+    text.replace(edit.span.offset, edit.span.length, edit.text);
+  }
+  return text;
+}
+
+/// Where the last section of declarations of a block ends, and where the block itself does.
+struct Ends {
+  std::uint32_t last_section = 0;  ///< offset of its VAR
+  std::uint32_t declarations = 0;  ///< offset of its END_VAR
+  std::uint32_t behind = 0;        ///< behind that END_VAR
+  std::uint32_t block = 0;         ///< offset of END_FUNCTION_BLOCK
+};
+
+Ends ends_of(const language::SourceFile& source, const language::FunctionBlock& block) {
+  Ends ends;
+  language::Lexer lexer(*source.text, language::Comments::All, nullptr);
+  for (language::Token token = lexer.next(); token.symbol != language::Symbol::End; token = lexer.next()) {
+    if (token.offset < block.span.offset) {
+      continue;
+    }
+    switch (token.keyword) {
+      case language::Keyword::Var:
+      case language::Keyword::VarInput:
+      case language::Keyword::VarOutput:
+        ends.last_section = token.offset;
+        break;
+      case language::Keyword::EndVar:
+        ends.declarations = token.offset;
+        ends.behind = token.offset + token.length;
+        break;
+      case language::Keyword::EndFunctionBlock:
+        ends.block = token.offset;
+        return ends;
+      default:
+        break;
+    }
+  }
+  return ends;
+}
+
+Edit declaration(const language::FunctionBlock& block, const Ends& ends, std::string_view text) {
+  const bool local = !block.variables.empty() && block.variables.back().section == language::Section::Local;
+  return local ? Edit{.span = {ends.declarations, 0}, .text = fmt::format("  {}\n  ", text)}
+               : Edit{.span = {ends.behind, 0}, .text = fmt::format("\n  VAR\n    {}\n  END_VAR", text)};
+}
+
+}  // namespace
+
+std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion) {
+  const language::FunctionBlock& block = source.blocks[edge.definition];
+  const Ends ends = ends_of(source, block);
+  std::vector<Edit> edits{declaration(block, ends, fmt::format("{} : {};", insertion.instance, insertion.block))};
+  for (const Span& read : edge.reads) {
+    edits.push_back({.span = read, .text = fmt::format("{}.{}", insertion.instance, insertion.output)});
+  }
+  std::string call = fmt::format("  {}({} := {}", insertion.instance, insertion.input, edge.source);
+  for (const auto& [pin, driver] : insertion.wires) {
+    call += fmt::format(", {} := {}", pin, driver);
+  }
+  edits.push_back({.span = {ends.block, 0}, .text = call + ");\n"});
+  return edited(*source.text, std::move(edits));
+}
+
+std::string with_block(const language::SourceFile& source, const language::Variable& instance, std::string_view block) {
+  return edited(*source.text, {{.span = instance.type.span, .text = std::string(block)}});
+}
+
+std::string with_input(const language::SourceFile& source, std::uint32_t block, std::string_view name,
+                       std::string_view unit) {
+  const Ends ends = ends_of(source, source.blocks[block]);
+  const std::string annotation = unit.empty() ? std::string() : fmt::format("  (* @unit {} *)", unit);
+  return edited(*source.text,
+                {{.span = {ends.behind, 0},
+                  .text = fmt::format("\n  VAR_INPUT\n    {} : LREAL := 0.0;{}\n  END_VAR", name, annotation)}});
+}
+
+std::string free_name(const language::FunctionBlock& block, std::string_view wish) {
+  std::string name(wish);
+  const auto taken = [&] {
+    return std::ranges::any_of(block.variables, [&](const language::Variable& variable) {
+      return language::same_name(variable.name.text, name);
+    });
+  };
+  for (int number = 2; taken(); ++number) {
+    name = fmt::format("{}{}", wish, number);
+  }
+  return name;
+}
+
+}  // namespace hysteron::diagnosis

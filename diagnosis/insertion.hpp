@@ -1,0 +1,40 @@
+// Changes to the text of a diagram: an effect put on an edge, a block replaced by a richer one.
+//
+// The text is what is changed, not the graph, so that what was fitted is what the user gets as improved.st, and a
+// candidate is checked like anything that a user writes. Statements may then stand in any order; format_text puts them
+// right.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "codegen/language/syntax.hpp"
+#include "diagnosis/edges.hpp"
+
+namespace hysteron::diagnosis {
+
+/// A block to be put on an edge: XIN is the signal, whatever read it reads XOUT instead.
+struct Insertion {
+  std::string block{};     ///< HY_CREEP, or a FUNCTION_BLOCK of the file
+  std::string instance{};  ///< its name: no other declared one of the block
+  std::string input = "XIN";
+  std::string output = "XOUT";
+  std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
+};
+
+[[nodiscard]] std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion);
+
+/// With the type of an instance replaced. All instances declared in the same breath, X, Y : TYPE, change.
+[[nodiscard]] std::string with_block(const language::SourceFile& source, const language::Variable& instance,
+                                     std::string_view block);
+
+/// With a further input of a block, `LREAL` with the default 0.
+[[nodiscard]] std::string with_input(const language::SourceFile& source, std::uint32_t block, std::string_view name,
+                                     std::string_view unit);
+
+/// A name that a block does not declare yet: the wish, or the wish with a number behind it.
+[[nodiscard]] std::string free_name(const language::FunctionBlock& block, std::string_view wish);
+
+}  // namespace hysteron::diagnosis

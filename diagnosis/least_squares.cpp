@@ -1,0 +1,114 @@
+#include "diagnosis/least_squares.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+VectorXd within_bounds(const Model& model, const VectorXd& x) {
+  return x.cwiseMax(model.lower()).cwiseMin(model.upper());
+}
+
+/// JᵀWJ + Λ and JᵀWr + Λ(x − x⁰).
+struct Normal {
+  MatrixXd matrix{};
+  VectorXd gradient{};
+};
+
+Normal normal_equations(const Model& model, const Fit& at, const VectorXd* weights) {
+  Normal normal;
+  const VectorXd precision = model.prior().cwiseAbs2();
+  if (weights != nullptr) {
+    const MatrixXd weighted = weights->asDiagonal() * at.jacobian;
+    normal.matrix = at.jacobian.transpose() * weighted;
+    normal.gradient = weighted.transpose() * at.residuals;
+  } else {
+    normal.matrix = at.jacobian.transpose() * at.jacobian;
+    normal.gradient = at.jacobian.transpose() * at.residuals;
+  }
+  normal.matrix.diagonal() += precision;
+  normal.gradient += precision.cwiseProduct(at.x - model.start());
+  return normal;
+}
+
+/// The damped step, with those unknowns held that a bound keeps from descending.
+VectorXd step_of(const Model& model, const Normal& normal, const VectorXd& x, double damping) {
+  MatrixXd matrix = normal.matrix;
+  VectorXd gradient = normal.gradient;
+  for (Index j = 0; j < x.size(); ++j) {
+    const bool held = (x[j] <= model.lower()[j] && gradient[j] > 0.0) || (x[j] >= model.upper()[j] && gradient[j] < 0.0);
+    const double size = matrix(j, j);
+    if (held || !(size > 0.0)) {
+      matrix.row(j).setZero();
+      matrix.col(j).setZero();
+      matrix(j, j) = 1.0;
+      gradient[j] = 0.0;
+      continue;
+    }
+  }
+  const VectorXd scale = matrix.diagonal().cwiseSqrt();
+  for (Index j = 0; j < x.size(); ++j) {  // in units of one over the length of each column
+    matrix.row(j) /= scale[j];
+    matrix.col(j) /= scale[j];
+    gradient[j] /= scale[j];
+  }
+  matrix.diagonal().array() += damping;
+  return -matrix.ldlt().solve(gradient).cwiseQuotient(scale);
+}
+
+}  // namespace
+
+double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals, const VectorXd* weights) {
+  const double data = weights == nullptr ? residuals.squaredNorm() : residuals.cwiseAbs2().dot(*weights);
+  const double prior = (x - model.start()).cwiseProduct(model.prior()).squaredNorm();
+  const double cost = 0.5 * (data + prior);
+  return std::isfinite(cost) ? cost : infinity;
+}
+
+Fit fit(Model& model, VectorXd start, const FitOptions& options) {
+  Fit best{.x = within_bounds(model, start), .cost = infinity};
+  best.evaluations = 1;
+  if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
+    return best;
+  }
+  best.cost = cost_of(model, best.x, best.residuals, options.weights);
+  double damping = 1e-3;
+  int without_gain = 0;
+  VectorXd residuals;
+  for (int iteration = 0; iteration < options.iterations && best.x.size() > 0; ++iteration) {
+    const Normal normal = normal_equations(model, best, options.weights);
+    bool descended = false;
+    for (int attempt = 0; attempt < 6 && !descended; ++attempt) {
+      const VectorXd x = within_bounds(model, best.x + step_of(model, normal, best.x, damping));
+      ++best.evaluations;
+      const bool valued = model.residuals(x, residuals, nullptr);
+      const double cost = valued ? cost_of(model, x, residuals, options.weights) : infinity;
+      if (cost < best.cost) {
+        without_gain = best.cost - cost < options.tolerance * best.cost ? without_gain + 1 : 0;
+        best.cost = cost;
+        best.x = x;
+        damping = std::max(damping * 0.1, 1e-9);
+        descended = true;
+      } else {
+        damping *= 8.0;
+      }
+    }
+    ++best.evaluations;
+    if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
+      best.cost = infinity;
+      return best;
+    }
+    if (!descended || without_gain >= 2) {
+      best.converged = true;
+      break;
+    }
+  }
+  return best;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,85 @@
+#include "diagnosis/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hysteron::diagnosis {
+namespace {
+
+parameters::FitSetting fit_of(const Unknown& unknown) {
+  parameters::FitSetting fit{.path = unknown.path};
+  fit.start = parameters::PlacedNumber{.value = unknown.start};
+  if (std::isfinite(unknown.lower)) {
+    fit.minimum = parameters::PlacedNumber{.value = unknown.lower};
+  }
+  if (std::isfinite(unknown.upper)) {
+    fit.maximum = parameters::PlacedNumber{.value = unknown.upper};
+  }
+  fit.scale = parameters::PlacedNumber{.value = unknown.typical};
+  return fit;
+}
+
+}  // namespace
+
+Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
+    : first_further_(std::ssize(task.known)), further_count_(std::ssize(further)) {
+  parameters::ParameterFile file{.file = task.file.file, .values = task.file.values};
+  for (const Unknown& unknown : task.known) {
+    file.fits.push_back(fit_of(unknown));
+  }
+  for (const Unknown& unknown : further) {
+    file.fits.push_back(fit_of(unknown));
+  }
+  for (const std::string& output : task.outputs) {
+    file.tune.outputs.push_back({.text = output});
+  }
+  for (const std::string& state : task.initial_states) {
+    file.tune.initial_states.push_back({.text = state});
+  }
+  problem_ = std::make_unique<OutputErrorProblem>(output_error_problem(program, file, task.records));
+  rollout_ = std::make_unique<hysteron::detail::Rollout>(*problem_);
+  if (!task.scales.empty()) {
+    rollout_->set_scales(task.scales);
+  }
+
+  const Index count = rollout_->unknowns();
+  start_.resize(count);
+  lower_.resize(count);
+  upper_.resize(count);
+  typical_.setOnes(count);
+  prior_.setZero(count);
+  for (std::size_t j = 0; j < problem_->parameters.size(); ++j) {
+    const FreeParameter& free = problem_->parameters[j];
+    const auto at = static_cast<Index>(j);
+    const Unknown& unknown = j < task.known.size() ? task.known[j] : further[j - task.known.size()];
+    names_.push_back(free.name);
+    start_[at] = free.start;
+    lower_[at] = free.lower;
+    upper_[at] = free.upper;
+    typical_[at] = free.typical;
+    prior_[at] = unknown.deviation > 0.0 && std::isfinite(unknown.deviation) ? 1.0 / unknown.deviation : 0.0;
+  }
+  const std::vector<double> states = rollout_->states_after_reset(start_.head(std::ssize(problem_->parameters)));
+  auto at = std::ssize(problem_->parameters);
+  for (const Experiment& experiment : problem_->experiments) {
+    for (std::size_t state = 0; state < states.size(); ++state, ++at) {
+      names_.push_back(problem_->initial_states[state].path + " at the start of " + experiment.name);
+      start_[at] = states[state];
+      lower_[at] = problem_->initial_states[state].lower;
+      upper_[at] = problem_->initial_states[state].upper;
+      typical_[at] = std::max(std::abs(states[state]), 1e-3);
+    }
+  }
+}
+
+bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
+  residuals.resize(rows());
+  if (jacobian != nullptr) {
+    jacobian->resize(rows(), unknowns());
+  }
+  return rollout_->residuals(x, residuals, jacobian) && residuals.allFinite() &&
+         (jacobian == nullptr || jacobian->allFinite());
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,87 @@
+// A diagram with free parameters against its records, as the diagnosis fits it.
+//
+// Rows are the samples of the measured outputs, output by output, record by record; each residual is divided by the
+// scale of its output, so that 1 is one standard deviation of what counts as noise. The unknowns are the known
+// parameters of the diagram, each with a prior about its tuned value, then the parameters of effects, then the initial
+// states that the parameter file asks for.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/parameters/parameter_file.hpp"
+#include "records/record.hpp"
+#include "tuning/output_error.hpp"
+#include "tuning/rollout.hpp"
+
+namespace hysteron::diagnosis {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A parameter of the diagram that the diagnosis may change.
+struct Unknown {
+  std::string path{};  ///< HYST.C1, as in a parameter file
+  std::string unit{};
+  double start = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  double typical = 1.0;   ///< size of a notable change
+  double deviation = 0.0;  ///< of the prior about `start`; ∞: none
+};
+
+/// What stays the same while candidates come and go.
+struct Task {
+  parameters::ParameterFile file{};       ///< values only
+  std::vector<records::Record> records{};
+  std::vector<std::string> outputs{};      ///< the measured ones, by name
+  std::vector<Unknown> known{};            ///< calibration parameters
+  std::vector<std::string> initial_states{};
+  std::vector<double> scales{};            ///< of the residuals, by output
+};
+
+class Model {
+ public:
+  /// The program with the task's known parameters and further unknowns. Throws InputError where the diagram and the
+  /// records do not fit together.
+  Model(const Task& task, const Program& program, std::span<const Unknown> further = {});
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  [[nodiscard]] Index rows() const { return rollout_->residual_count(); }
+  [[nodiscard]] Index unknowns() const { return start_.size(); }
+  /// The first of the unknowns that were given as `further`, and how many they are.
+  [[nodiscard]] Index first_further() const { return first_further_; }
+  [[nodiscard]] Index further_count() const { return further_count_; }
+
+  [[nodiscard]] const VectorXd& start() const { return start_; }
+  [[nodiscard]] const VectorXd& lower() const { return lower_; }
+  [[nodiscard]] const VectorXd& upper() const { return upper_; }
+  [[nodiscard]] const VectorXd& typical() const { return typical_; }
+  /// 1/deviation of the prior, 0 where there is none.
+  [[nodiscard]] const VectorXd& prior() const { return prior_; }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] const OutputErrorProblem& problem() const { return *problem_; }
+
+  /// (model − measured)/scale, and its derivatives; false where one is not finite.
+  bool residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian = nullptr);
+
+ private:
+  std::unique_ptr<OutputErrorProblem> problem_;  ///< the rollout keeps a reference to it
+  std::unique_ptr<hysteron::detail::Rollout> rollout_;
+  VectorXd start_{};
+  VectorXd lower_{};
+  VectorXd upper_{};
+  VectorXd typical_{};
+  VectorXd prior_{};
+  std::vector<std::string> names_{};
+  Index first_further_ = 0;
+  Index further_count_ = 0;
+};
+
+}  // namespace hysteron::diagnosis

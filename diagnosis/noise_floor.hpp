@@ -1,0 +1,34 @@
+// The noise floor of a measured output, from the measurement alone: the model's residual would count the gap as noise.
+//
+// Three estimates, of which the largest that the record allows counts:
+// - differences: the n-th difference of a slow signal is that of its noise, σ² = E(∆ⁿy)²/C(2n, n); by the median, over
+//   several orders, the smallest. It sees what is fast only: a lower bound where noise is coloured.
+// - dwells: while all inputs stand still, what is left of y after a slow course is taken off.
+// - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tuning/output_error.hpp"
+
+namespace hysteron::diagnosis {
+
+struct NoiseFloor {
+  double differences = 0.0;  ///< standard deviations in the unit of the output; 0 where there is no such evidence
+  double dwells = 0.0;
+  double repeats = 0.0;
+  double value = 0.0;        ///< the one that counts, above 0
+  std::string evidence{};    ///< "repeats", "dwells" or "differences"
+};
+
+/// For one measured output over all records.
+[[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output);
+
+/// The period of the inputs in samples, 0 where they do not repeat themselves at least twice.
+[[nodiscard]] std::size_t input_period(const Experiment& experiment);
+
+/// The standard deviation of white noise on a slow signal, by its differences.
+[[nodiscard]] double noise_by_differences(const std::vector<double>& values);
+
+}  // namespace hysteron::diagnosis

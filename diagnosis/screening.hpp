@@ -1,0 +1,57 @@
+// Screening: how much of the residual each candidate could explain, from a few rollouts each.
+//
+// With the residual r, the sensitivities J of the known parameters and the change D that the effect makes to the
+// outputs at one setting, the explained part is
+//
+//   ½‖P r‖² − min over α of ½‖P (r + α D)‖²,   P = projection off J (with the prior of the known parameters),
+//
+// so that what a calibration closes does not count. An effect in whose strengths the output is linear needs one
+// setting of its strengths for each of its shapes, and α is free; another one is tried on its whole grid with α = 1.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/starts.hpp"
+
+namespace hysteron::diagnosis {
+
+/// The residual that candidates are screened against, with the known part projected off.
+class Background {
+ public:
+  Background(const Model& model, const Fit& at);
+
+  /// ½‖P r‖²
+  [[nodiscard]] double unexplained() const { return unexplained_; }
+  [[nodiscard]] const VectorXd& residuals() const { return residuals_; }
+  /// P v
+  [[nodiscard]] VectorXd projected(const VectorXd& v) const;
+  /// What is gained by the best r + D α with low ≤ α ≤ high; D as columns.
+  [[nodiscard]] double gain(const MatrixXd& changes, const VectorXd& low, const VectorXd& high, VectorXd& alpha) const;
+
+ private:
+  VectorXd residuals_{};
+  MatrixXd jacobian_{};
+  Eigen::LDLT<MatrixXd> normal_{};
+  double unexplained_ = 0.0;
+};
+
+struct Start {
+  VectorXd values{};  ///< of the effect's parameters
+  double gain = 0.0;
+};
+
+struct Screened {
+  Candidate candidate{};
+  std::vector<Unknown> unknowns{};  ///< of the effect, beside candidate.own().paths without settings
+  std::vector<Start> starts{};      ///< best first; empty where the effect changes nothing
+  [[nodiscard]] double gain() const { return starts.empty() ? 0.0 : starts.front().gain; }
+};
+
+/// `at` is the fit of the base; `base` its unknowns are the first ones of the candidate's model.
+[[nodiscard]] Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,
+                                const Background& background, std::size_t keep);
+
+}  // namespace hysteron::diagnosis

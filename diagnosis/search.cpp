@@ -1,0 +1,288 @@
+#include "diagnosis/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "diagnosis/parallel.hpp"
+#include "diagnosis/spectrum.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// The extents of the signals at the candidates' inputs; those of one edge once.
+class Extents {
+ public:
+  Extents(const Task& task, const VectorXd& at) : task_(task), known_(at.head(std::ssize(task.known))) {}
+
+  void measure(const std::vector<Candidate>& candidates, unsigned threads) {
+    std::map<std::string, const Candidate*> first;
+    for (const Candidate& candidate : candidates) {
+      if (candidate.input.from != Wire::From::Nothing) {
+        first.emplace(candidate.family, &candidate);
+      }
+    }
+    const std::vector<std::pair<std::string, const Candidate*>> list(first.begin(), first.end());
+    std::vector<Signals> found(list.size());
+    in_parallel(list.size(), threads, [&](std::size_t i) {
+      const Candidate& candidate = *list[i].second;
+      Task task = task_;
+      task.initial_states.clear();
+      const Program& program = *candidate.variant.program;
+      found[i].input_values = wire_values(task, program, candidate.input, known_);
+      found[i].input = extent_of(found[i].input_values, task_.records.front().sample_time());
+      if (!candidate.auxiliary.empty()) {
+        found[i].auxiliary_values = wire_values(task, program, candidate.auxiliary.front(), known_);
+        found[i].auxiliary = extent_of(*found[i].auxiliary_values, task_.records.front().sample_time());
+      }
+    });
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      signals_.emplace(list[i].first, std::move(found[i]));
+    }
+  }
+
+  struct Signals {
+    std::vector<std::vector<double>> input_values{};
+    Extent input{};
+    std::optional<std::vector<std::vector<double>>> auxiliary_values{};
+    std::optional<Extent> auxiliary{};
+  };
+
+  [[nodiscard]] const Signals* find(const Candidate& candidate) const {
+    const auto found = signals_.find(candidate.family);
+    return found == signals_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  const Task& task_;
+  VectorXd known_;
+  std::map<std::string, Signals> signals_{};
+};
+
+class Searcher {
+ public:
+  Searcher(const Task& task, const std::string& top, double floor_cost, const SearchOptions& options)
+      : task_(task), top_(top), floor_cost_(floor_cost), options_(options) {}
+
+  Search run(Variant base) {
+    Search result;
+    say(0.0, "calibration");
+    result.calibrated.variant = std::move(base);
+    Model model(task_, *result.calibrated.variant.program);
+    result.calibrated.fit = fit(model, model.start(), {.iterations = 40, .tolerance = 1e-7});
+    std::vector<Explanation> beam{result.calibrated};
+    for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
+      begin_ = static_cast<double>(round) / options_.most_effects;
+      width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
+      std::vector<Explanation> found;
+      for (const Explanation& one : beam) {
+        if (round > 0 && out_of_time()) {
+          break;
+        }
+        expand(one, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
+        begin_ += width_;
+      }
+      beam = next_beam(found, result);
+      std::ranges::move(found, std::back_inserter(result.explanations));
+    }
+    std::ranges::stable_sort(result.explanations, [](const Explanation& a, const Explanation& b) {
+      return a.fit.cost < b.fit.cost;
+    });
+    return result;
+  }
+
+ private:
+  void say(double fraction, std::string_view text) {
+    if (options_.progress) {
+      const std::lock_guard lock(mutex_);
+      options_.progress(begin_ + width_ * fraction, text);
+    }
+  }
+  [[nodiscard]] bool out_of_time() const { return options_.out_of_time && options_.out_of_time(); }
+
+  /// Lines of the residual's spectrum, and periods over a signal, for what oscillates.
+  [[nodiscard]] Hints hints_of(const Explanation& from) const {
+    Hints hints{.sample_time = task_.records.front().sample_time()};
+    for (const records::Record& record : task_.records) {
+      hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
+    }
+    const Index rows = std::min<Index>(from.fit.residuals.size(), std::ssize(task_.records.front().time()));
+    hints.frequencies = strongest_lines(from.fit.residuals.head(rows), hints.sample_time, 6);
+    return hints;
+  }
+
+  void expand(const Explanation& from, std::size_t fitted, Search& result, std::vector<Explanation>& found) {
+    std::vector<Candidate> candidates = candidates_of(from.variant, top_, options_.candidates);
+    result.tried += candidates.size();
+    Extents extents(task_, from.fit.x);
+    extents.measure(candidates, options_.threads);
+    const Hints hints = hints_of(from);
+    Model model(task_, *from.variant.program, from.variant.further);
+    const Background background(model, from.fit);
+
+    std::vector<Screened> list(candidates.size());
+    std::atomic<std::size_t> done{0};
+    in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
+      const Extents::Signals* const signals = extents.find(candidates[i]);
+      if (signals == nullptr || !(signals->input.range() >= 0.0)) {
+        return;
+      }
+      std::vector<double> periods;
+      if (signals->auxiliary_values) {
+        periods = strongest_periods(from.fit.residuals, *signals->auxiliary_values, 5);
+      }
+      const Grids grids = grids_of(candidates[i].own(), signals->input,
+                                   signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);
+      list[i] = screened(task_, std::move(candidates[i]), grids, from.fit.x, background, 4);
+      say(0.6 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
+          list[i].starts.empty() ? "" : list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
+    });
+    std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
+    std::ranges::stable_sort(list, [](const Screened& a, const Screened& b) { return a.gain() > b.gain(); });
+    if (from.variant.effects.empty()) {
+      for (const Screened& one : list) {
+        result.attempts.push_back(
+            {.effect = one.candidate.own().effect, .edge = one.candidate.own().edge, .gain = one.gain()});
+      }
+    }
+    keep_best(list, fitted);
+    std::vector<Explanation> fits(list.size());
+    done = 0;
+    in_parallel(list.size(), options_.threads, [&](std::size_t i) {
+      fits[i] = fitted_from(list[i], from.fit.x);
+      say(0.6 + 0.4 * static_cast<double>(++done) / static_cast<double>(list.size()),
+          list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
+    });
+    for (Explanation& one : fits) {
+      if (std::isfinite(one.fit.cost)) {
+        found.push_back(std::move(one));
+      }
+    }
+  }
+
+  /// The best ones, but of no effect so many that others do not get their turn.
+  static void keep_best(std::vector<Screened>& list, std::size_t count) {
+    std::map<std::string, int> taken;
+    std::vector<Screened> kept;
+    for (Screened& one : list) {
+      int& times = taken[one.candidate.own().effect];
+      if (times < 3 && kept.size() < count) {
+        ++times;
+        kept.push_back(std::move(one));
+      }
+    }
+    list = std::move(kept);
+  }
+
+  /// From its best starts: a few steps each, then the best of them to the end.
+  [[nodiscard]] Explanation fitted_from(const Screened& one, const VectorXd& at) const {
+    Explanation best{.variant = one.candidate.variant};
+    best.fit.cost = std::numeric_limits<double>::infinity();
+    std::vector<Unknown> further = one.candidate.variant.further;
+    const std::size_t inherited = further.size();
+    further.insert(further.end(), one.unknowns.begin(), one.unknowns.end());
+    Model model(task_, *one.candidate.variant.program, further);
+    const Index first = model.first_further() + static_cast<Index>(inherited);
+    VectorXd x(model.unknowns());
+    x.head(first) = at.head(first);
+    x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = at.tail(at.size() - first);
+    for (const Start& start : one.starts) {
+      x.segment(first, std::ssize(one.unknowns)) = start.values;
+      Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
+      if (here.cost < best.fit.cost) {
+        best.fit = std::move(here);
+      }
+    }
+    if (!std::isfinite(best.fit.cost)) {
+      return best;
+    }
+    best.fit = fit(model, best.fit.x, {.iterations = 20});
+    pattern_search(model, best.fit, first, std::ssize(one.unknowns));
+    for (std::size_t j = 0; j < further.size(); ++j) {
+      further[j].start = best.fit.x[model.first_further() + static_cast<Index>(j)];
+      further[j].unit = model.problem().parameters[task_.known.size() + j].unit;
+    }
+    best.variant.further = std::move(further);
+    return best;
+  }
+
+  /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
+  static void pattern_search(Model& model, Fit& best, Index first, Index count) {
+    VectorXd residuals;
+    bool moved = false;
+    for (const double share : {0.08, 0.03, 0.01, 0.003}) {
+      for (Index j = first; j < first + count; ++j) {
+        for (const double sign : {1.0, -1.0}) {
+          VectorXd x = best.x;
+          x[j] = std::clamp(x[j] * (1.0 + sign * share), model.lower()[j], model.upper()[j]);
+          if (!model.residuals(x, residuals)) {
+            continue;
+          }
+          const double cost = cost_of(model, x, residuals, nullptr);
+          if (cost < best.cost * (1.0 - 1e-6)) {
+            best.x = x;
+            best.cost = cost;
+            moved = true;
+          }
+        }
+      }
+    }
+    if (moved) {
+      Fit again = fit(model, best.x, {.iterations = 12});
+      if (again.cost <= best.cost) {
+        best = std::move(again);
+      } else {
+        (void)model.residuals(best.x, best.residuals, &best.jacobian);
+      }
+    }
+  }
+
+  /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
+  [[nodiscard]] std::vector<Explanation> next_beam(std::vector<Explanation>& found, const Search& result) const {
+    std::ranges::stable_sort(found, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
+    std::vector<Explanation> beam;
+    std::set<std::vector<std::string>> taken;
+    const double gap = result.calibrated.fit.cost - floor_cost_;
+    for (const Explanation& one : found) {
+      const double left = one.fit.cost - floor_cost_;
+      if (found.front().fit.cost - floor_cost_ < options_.least_share * gap) {
+        break;  // nothing notable is left for another effect
+      }
+      if (beam.size() < options_.beam && left < gap && taken.insert(one.names()).second) {
+        beam.push_back(one);
+      }
+    }
+    return beam;
+  }
+
+  const Task& task_;
+  const std::string& top_;
+  double floor_cost_;
+  const SearchOptions& options_;
+  std::mutex mutex_{};
+  double begin_ = 0.0;
+  double width_ = 1.0;
+};
+
+}  // namespace
+
+std::vector<std::string> Explanation::names() const {
+  std::vector<std::string> names;
+  for (const Applied& applied : variant.effects) {
+    names.push_back(applied.effect);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+Search search(const Task& task, Variant base, const std::string& top, double floor_cost, const SearchOptions& options) {
+  return Searcher(task, top, floor_cost, options).run(std::move(base));
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,58 @@
+// The search for the effects that close the gap: screening, fits, sets of several effects.
+//
+// 1. The known parameters alone are fitted: what that closes is calibration.
+// 2. Every candidate is screened against what is left; the best are fitted together with the known parameters.
+// 3. To the best sets, in a beam, one effect more is added in the same way, while it closes a notable part of the gap.
+// Every set that was fitted is kept: the verdict weighs them against each other.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/screening.hpp"
+
+namespace hysteron::diagnosis {
+
+struct SearchOptions {
+  CandidateOptions candidates{};
+  unsigned threads = 2;
+  int most_effects = 3;
+  std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
+  std::size_t fitted_later = 10;  ///< and after each further one
+  std::size_t beam = 3;
+  double least_share = 0.05;      ///< of the gap that a further effect has to close
+  std::function<void(double fraction, std::string_view text)> progress{};
+  std::function<bool()> out_of_time{};
+};
+
+/// A set of effects, fitted.
+struct Explanation {
+  Variant variant{};
+  Fit fit{};
+  [[nodiscard]] std::vector<std::string> names() const;  ///< identifiers, sorted
+  [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
+};
+
+/// How one candidate did, fitted or not.
+struct Attempt {
+  std::string effect{};
+  std::string edge{};
+  double gain = 0.0;  ///< of ½Σr², by screening
+};
+
+struct Search {
+  Explanation calibrated{};               ///< no effect, known parameters fitted
+  std::vector<Explanation> explanations{};  ///< with effects, best first
+  std::vector<Attempt> attempts{};        ///< of the first round, best first
+  std::size_t tried = 0;                  ///< candidates over all rounds
+};
+
+/// `floor_cost` is ½Σr² of noise alone: what no effect can close.
+[[nodiscard]] Search search(const Task& task, Variant base, const std::string& top, double floor_cost,
+                            const SearchOptions& options);
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,105 @@
+#include "diagnosis/spectrum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+namespace hysteron::diagnosis {
+namespace {
+
+struct Peak {
+  double place = 0.0;
+  double height = 0.0;
+};
+
+std::vector<double> places_of(std::vector<Peak> peaks, std::size_t count) {
+  std::ranges::stable_sort(peaks, [](const Peak& a, const Peak& b) { return a.height > b.height; });
+  std::vector<double> places;
+  for (const Peak& peak : peaks) {
+    if (places.size() < count) {
+      places.push_back(peak.place);
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
+  const auto size = static_cast<std::size_t>(values.size());
+  if (size < 32) {
+    return {};
+  }
+  std::size_t length = 1;
+  while (length < 2 * size) {
+    length *= 2;
+  }
+  const double mean = values.mean();
+  std::vector<double> windowed(length, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double window =
+        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(size - 1));
+    windowed[k] = window * (values[static_cast<Eigen::Index>(k)] - mean);
+  }
+  std::vector<std::complex<double>> transform;
+  Eigen::FFT<double> fft;
+  fft.fwd(transform, windowed);
+  const auto power = [&](std::size_t k) { return std::norm(transform[k]) + 1e-300; };
+  std::vector<Peak> peaks;
+  for (std::size_t k = 6; k + 1 < length / 2; ++k) {
+    if (power(k) > power(k - 1) && power(k) >= power(k + 1)) {
+      const double left = std::log(power(k - 1));
+      const double middle = std::log(power(k));
+      const double right = std::log(power(k + 1));
+      const double bend = left - 2.0 * middle + right;
+      const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
+      peaks.push_back({.place = (static_cast<double>(k) + shift) / (static_cast<double>(length) * sample_time),
+                       .height = power(k)});
+    }
+  }
+  return places_of(std::move(peaks), count);
+}
+
+std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,
+                                      std::size_t count) {
+  std::vector<double> places;
+  for (const std::vector<double>& record : signal) {
+    places.insert(places.end(), record.begin(), record.end());
+  }
+  const std::size_t size = std::min<std::size_t>(places.size(), static_cast<std::size_t>(residuals.size()));
+  if (size < 32) {
+    return {};
+  }
+  const auto [low, high] = std::ranges::minmax(places);
+  const double range = high - low;
+  if (!(range > 0.0)) {
+    return {};
+  }
+  const std::size_t stride = std::max<std::size_t>(1, size / 3000);
+  std::vector<double> heights;
+  constexpr int steps = 600;  // of a quarter of a turn over the range: up to 150 turns
+  for (int step = 4; step < steps; ++step) {
+    const double turn = 2.0 * std::numbers::pi * 0.25 * step / range;
+    double a = 0.0;
+    double b = 0.0;
+    for (std::size_t k = 0; k < size; k += stride) {
+      const double r = residuals[static_cast<Eigen::Index>(k)];
+      const double phase = turn * (places[k] - low);
+      a += r * std::sin(phase);
+      b += r * std::cos(phase);
+    }
+    heights.push_back(a * a + b * b);
+  }
+  std::vector<Peak> peaks;
+  for (std::size_t k = 1; k + 1 < heights.size(); ++k) {
+    if (heights[k] > heights[k - 1] && heights[k] >= heights[k + 1]) {
+      peaks.push_back({.place = range / (0.25 * static_cast<double>(k + 4)), .height = heights[k]});
+    }
+  }
+  return places_of(std::move(peaks), count);
+}
+
+}  // namespace hysteron::diagnosis

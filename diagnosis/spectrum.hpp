@@ -1,0 +1,18 @@
+// Lines in a residual: over time, for disturbances that the clock drives, and over a position, for ripple.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace hysteron::diagnosis {
+
+/// The frequencies of the strongest lines, Hz, strongest first: peaks of the periodogram with a Hann window, refined by
+/// a parabola through the logarithms of three bins.
+[[nodiscard]] std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count);
+
+/// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least
+/// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.
+[[nodiscard]] std::vector<double> strongest_periods(const Eigen::VectorXd& residuals,
+                                                    const std::vector<std::vector<double>>& signal, std::size_t count);
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,171 @@
+#include "diagnosis/starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hysteron::diagnosis {
+namespace {
+
+std::vector<double> scaled(double size, std::initializer_list<double> shares) {
+  std::vector<double> values;
+  for (const double share : shares) {
+    values.push_back(share * size);
+  }
+  return values;
+}
+
+std::vector<double> geometric(double low, double high, double ratio) {
+  std::vector<double> values;
+  for (double value = low; value <= high * (1.0 + 1e-9) && values.size() < 40; value *= ratio) {
+    values.push_back(value);
+  }
+  return values;
+}
+
+/// Levels that cut a signal more and more: the share of the range that is cut off.
+std::vector<double> levels_above(const Extent& extent, double direction) {
+  std::vector<double> values;
+  for (const double cut : {0.01, 0.03, 0.06, 0.1, 0.16, 0.25, 0.4}) {
+    values.push_back(direction > 0.0 ? extent.high - cut * extent.range() : extent.low + cut * extent.range());
+  }
+  return values;
+}
+
+double size_or(double size, double otherwise) {
+  return std::isfinite(size) && size > 0.0 ? size : otherwise;
+}
+
+std::vector<double> strength_grid(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
+                                  const Hints& hints) {
+  const Field& field = parameter.field;
+  const double range = size_or(input.range(), 1.0);
+  const double fastest = size_or(input.rates.empty() ? 0.0 : input.rates[99], range / hints.duration);
+  switch (parameter.role) {
+    case Role::Level:
+      if (std::isinf(field.neutral)) {
+        return levels_above(input, field.neutral);
+      }
+      return scaled(range, {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3});
+    case Role::Rate:
+      return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
+                                       : scaled(range / hints.duration, {0.05});
+    case Role::Duration:
+      return geometric(0.5 * hints.sample_time, std::min(0.2 * hints.duration, 4000.0 * hints.sample_time), 2.0);
+    case Role::PerSecond:
+      return {0.05 / hints.duration};
+    case Role::Share:
+      return {1e-4, 1e-3, 0.01, 0.05, 0.15, 0.4, 0.9};
+    case Role::Instant:
+    case Role::Frequency:
+    case Role::Period:
+    case Role::Reference:
+    case Role::Other:
+      break;
+  }
+  if (field.neutral != 0.0) {
+    return {1.05 * field.neutral};
+  }
+  const double against = auxiliary == nullptr ? 1.0 : size_or(auxiliary->range(), 1.0);
+  return {0.05 * range / against};
+}
+
+std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
+                               const Hints& hints, const std::vector<double>& periods) {
+  const double range = size_or(input.range(), 1.0);
+  const double across = auxiliary == nullptr ? range : size_or(auxiliary->range(), 1.0);
+  switch (parameter.role) {
+    case Role::Duration: {
+      std::vector<double> values = geometric(2.0 * hints.sample_time, hints.duration, 4.0);
+      if (parameter.field.preset == 0.0) {
+        values.insert(values.begin(), 0.0);
+      }
+      return values;
+    }
+    case Role::Instant: {
+      std::vector<double> values;
+      for (int k = 1; k < 10; ++k) {
+        values.push_back(0.1 * k * hints.duration);
+      }
+      return values;
+    }
+    case Role::Frequency:
+      return hints.frequencies;
+    case Role::Period:
+      return periods;
+    case Role::Share:
+      return {0.02, 0.1, 0.4};
+    case Role::Level:
+      return scaled(range, {0.01, 0.05, 0.2});
+    case Role::Rate:
+    case Role::PerSecond:
+    case Role::Reference:
+    case Role::Other:
+      break;
+  }
+  if (parameter.unit == "'v") {
+    return scaled(across, {0.01, 0.05, 0.2});
+  }
+  if (parameter.unit == "'v*s") {  // a travel: what the fastest motion covers in so many samples
+    return scaled(across * hints.sample_time, {0.5, 5.0, 50.0});
+  }
+  return {parameter.field.preset};
+}
+
+/// What a reference is set to: about the middle or half the width of what it refers to.
+double reference(const EffectParameter& parameter, const Extent& input) {
+  const std::string_view name = parameter.field.name;
+  if (name.ends_with("CENTRE")) {
+    return 0.5 * (input.low + input.high);
+  }
+  if (parameter.unit == "'x/s") {
+    return size_or(input.rates.empty() ? 0.0 : input.rates[50], 1.0);
+  }
+  return size_or(0.5 * input.range(), 1.0);
+}
+
+bool in_range(const Field& field, double value) {
+  return value >= field.minimum && value <= field.maximum && !(field.above_minimum && value <= field.minimum);
+}
+
+}  // namespace
+
+Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxiliary, const Hints& hints,
+               const std::vector<double>& periods) {
+  Grids grids;
+  for (const EffectParameter& parameter : effect.parameters) {
+    Grid grid;
+    double setting = std::numeric_limits<double>::quiet_NaN();
+    if (parameter.role == Role::Reference) {
+      setting = reference(parameter, input);
+    } else {
+      grid.values = parameter.strength ? strength_grid(parameter, input, auxiliary, hints)
+                                       : shape_grid(parameter, input, auxiliary, hints, periods);
+      std::erase_if(grid.values, [&](double value) { return !in_range(parameter.field, value); });
+    }
+    grids.parameters.push_back(std::move(grid));
+    grids.settings.push_back(setting);
+  }
+  return grids;
+}
+
+Unknown unknown_of(const EffectParameter& parameter, const std::string& path, const Grid& grid) {
+  const Field& field = parameter.field;
+  Unknown unknown{.path = path,
+                  .unit = parameter.unit,
+                  .start = parameter.strength && std::isfinite(field.neutral) ? field.neutral : field.preset,
+                  .lower = field.minimum,
+                  .upper = field.maximum};
+  if (!std::isfinite(unknown.start)) {
+    unknown.start = grid.values.empty() ? 0.0 : grid.values.front();
+  }
+  if (!grid.values.empty()) {
+    unknown.typical = std::abs(grid.values[grid.values.size() / 2]);
+  }
+  if (!(unknown.typical > 0.0)) {
+    unknown.typical = 1.0;
+  }
+  return unknown;
+}
+
+}  // namespace hysteron::diagnosis

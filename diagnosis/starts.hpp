@@ -1,0 +1,36 @@
+// Where the fit of a candidate begins: a grid over the parameters in which the output is not smooth or has many
+// minima, laid by what each parameter measures and how large the signal is.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/signals.hpp"
+
+namespace hysteron::diagnosis {
+
+/// What the residual of the diagram says beforehand.
+struct Hints {
+  double sample_time = 0.0;
+  double duration = 0.0;               ///< of the longest record, s
+  std::vector<double> frequencies{};   ///< of lines in the residual, Hz
+};
+
+/// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.
+struct Grid {
+  std::vector<double> values{};
+};
+
+struct Grids {
+  std::vector<Grid> parameters{};          ///< beside the effect's parameters
+  std::vector<double> settings{};          ///< of references, NaN elsewhere
+};
+
+/// `input` is the signal that the effect changes, `auxiliary` what drives its first further input.
+[[nodiscard]] Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxiliary, const Hints& hints,
+                             const std::vector<double>& periods);
+
+/// The unknown that a parameter of an effect becomes in a fit, at its neutral or default value.
+[[nodiscard]] Unknown unknown_of(const EffectParameter& parameter, const std::string& path, const Grid& grid);
+
+}  // namespace hysteron::diagnosis

@@ -31,6 +31,7 @@
 #include "blocks/greater_equal.hpp"
 #include "blocks/hold.hpp"
 #include "blocks/hyperbolic_tangent.hpp"
+#include "blocks/hysteresis_general.hpp"
 #include "blocks/hysteresis_ro.hpp"
 #include "blocks/hysteresis_ro_inverse.hpp"
 #include "blocks/hysteresis_switch.hpp"
@@ -48,6 +49,7 @@
 #include "blocks/logic_or.hpp"
 #include "blocks/logic_xor.hpp"
 #include "blocks/m.hpp"
+#include "blocks/m_general.hpp"
 #include "blocks/m_inverse.hpp"
 #include "blocks/m_table.hpp"
 #include "blocks/m_table_inverse.hpp"
@@ -111,7 +113,7 @@ struct BlockList {
 using Catalogue = BlockList<
     // memory: hysteresis and MEM elements
     Branch, Momentum, SlopeM, SlopeMInverse, SlopeMTable, SlopeMTableInverse, Mem, MemInverse, HysteresisRo,
-    HysteresisRoInverse,
+    HysteresisRoInverse, HysteresisGeneral, SlopeMGeneral,
     // arithmetic
     Constant, Gain, Sum, Subtract, Product, Quotient,
     // functions

@@ -1,0 +1,64 @@
+"""Makes whole sets of cases: the cases in one tree, their labels in one key file outside of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from trials.generator.case import Specification, build, write
+from trials.generator.strata import plan, seed_of
+from trials.progress import Progress
+
+
+def case_name(seed: str, number: int) -> str:
+    """A name that tells nothing: twelve digits of a hash."""
+    return f"{seed_of(f'name of case {number} of {seed}'):016x}"[:12]
+
+
+def make_one(specification: Specification, folder: str, label_file: str) -> None:
+    """Builds and writes one case; its label appears only once the case is whole."""
+    warnings.simplefilter("error", RuntimeWarning)
+    case = build(specification)
+    scratch = Path(folder + ".part")
+    if scratch.exists():
+        for file in scratch.iterdir():
+            file.unlink()
+        scratch.rmdir()
+    write(case, scratch)
+    scratch.rename(folder)
+    Path(label_file + ".part").write_text(json.dumps(case.label))
+    os.replace(label_file + ".part", label_file)
+
+
+def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int, quiet: bool = False) -> int:
+    """Makes what is missing of a set, then joins the labels into the key. Returns the number of cases."""
+    specifications = plan(seed, sizes)
+    names = [case_name(seed, number) for number in range(len(specifications))]
+    labels = key.with_suffix(".labels")
+    labels.mkdir(parents=True, exist_ok=True, mode=0o700)
+    cases.mkdir(parents=True, exist_ok=True)
+    missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
+    progress = Progress("generate", len(names), len(names) - len(missing), quiet)
+    with ProcessPoolExecutor(jobs) as pool:
+        futures = [
+            pool.submit(make_one, specifications[i], str(cases / names[i]), str(labels / f"{names[i]}.json")) for i in missing
+        ]
+        for i, future in zip(missing, futures):
+            try:
+                future.result()
+            except Exception as error:
+                print(f"{names[i]}: {specifications[i]}: {error!r}", file=sys.stderr)
+                raise
+            progress.step()
+    merged = {name: json.loads((labels / f"{name}.json").read_text()) for name in sorted(names)}
+    text = json.dumps({"schema": "hysteron-trial-key/1", "seed": seed, "cases": merged}, indent=1)
+    key.touch(mode=0o600)
+    key.write_text(text)
+    for file in labels.iterdir():
+        file.unlink()
+    labels.rmdir()
+    return len(names)

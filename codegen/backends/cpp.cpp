@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <map>
-#include <set>
+#include <future>
+#include <unordered_map>
 
 #include "codegen/backends/cpp_expression.hpp"
 #include "codegen/backends/cpp_helpers.hpp"
@@ -15,17 +14,25 @@
 #include "codegen/backends/routine.hpp"
 #include "codegen/program_hash.hpp"
 #include "support/errors.hpp"
+#include "support/name_table.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron {
 namespace {
 
-std::string comment_of(const Field& field) {
-  std::string text(field.meaning);
-  if (!field.unit.empty() && field.unit.find('\'') == std::string_view::npos) {
-    text = fmt::format("[{}]{}{}", field.unit, text.empty() ? "" : " ", text);
+/// Appends all parts. Text is written once, where it stays: a long diagram has some hundred megabytes of it.
+template <class... Parts>
+void append(std::string& text, const Parts&... parts) {
+  (text.append(parts), ...);
+}
+
+void append_comment(std::string& text, std::string_view unit, std::string_view meaning) {
+  const bool has_unit = !unit.empty() && unit.find('\'') == std::string_view::npos;
+  if (has_unit) {
+    append(text, "  // [", unit, "]", meaning.empty() ? "" : " ", meaning);
+  } else if (!meaning.empty()) {
+    append(text, "  // ", meaning);
   }
-  return text.empty() ? "" : "  // " + text;
 }
 
 class CppHeader {
@@ -34,83 +41,94 @@ class CppHeader {
       : program_(program),
         graph_(program.graph),
         routine_(make_routine(program)),
-        expressions_(routine_, options.float32),
+        expressions_(routine_, graph_.sample_time_ns, options.float32),
         options_(options),
+        members_(cpp_words),
         locals_(cpp_words),
         input_names_(cpp_port_names(program.graph.inputs)),
         output_names_(cpp_port_names(program.graph.outputs)) {
-    expressions_.base_ns = graph_.sample_time_ns;
     name_everything();
+    own_definition_.assign(routine_.tape.size(), none);
+    for (std::uint32_t i = 0; i < routine_.step.size(); ++i) {
+      const Statement& one = routine_.step[i];
+      if (one.kind == Statement::Kind::Define && one.always && own_definition_[one.value] == none) {
+        own_definition_[one.value] = i;
+      }
+    }
   }
 
   GeneratedFile run() {
-    const std::string body = functions();
-    std::string text = banner();
-    text += includes(body);
-    text += fmt::format("namespace {} {{\n\nusing Real = {};\n\n", lower_identifier(graph_.name),
-                        options_.float32 ? "float" : "double");
-    text += fmt::format("inline constexpr Real sample_time = {};  // s\n\n",
-                        expressions_.literal(Type::Real, graph_.sample_time()));
-    text += structs();
-    text += cpp_helper_functions(body);
-    text += body;
-    text += fmt::format("}}  // namespace {}\n", lower_identifier(graph_.name));
+    // What stands before the functions is written while they are: both only read what they share.
+    auto before = std::async(std::launch::async, [this] { return declarations(); });
+    std::string text = functions();
+    text.insert(0, before.get());
     return {lower_identifier(graph_.name) + ".hpp", std::move(text)};
   }
 
  private:
+  static constexpr std::uint32_t none = no_value;
+
   // --- names ---
 
-  /// A member `instance.field` of Params or State; fields of the diagram itself stand alone.
-  struct Member {
-    std::string group{};
-    std::string name{};
-  };
-
   void name_everything() {
-    Identifiers groups(cpp_words);
-    std::map<std::string, std::string> group_of;
-    const auto group = [&](const std::string& instance) {
-      const auto [place, is_new] = group_of.try_emplace(language::upper(instance));
+    NameTable instances;
+    std::vector<std::string_view> groups;  // by instance
+    const auto group = [&](std::string_view instance) {
+      const auto [number, is_new] = instances.add(language::upper(instance));
       if (is_new) {
-        place->second = groups.make(instance);
+        groups.push_back(members_.make({instance}));
       }
-      return place->second;
+      return groups[number];
     };
+    const auto field_name = [&](std::string_view name) { return fields_[fields_.add(lower_identifier(name)).number]; };
     for (const Parameter& parameter : graph_.parameters) {
       const auto dot = parameter.path.rfind('.');
       if (dot == std::string::npos) {
-        parameter_members_.push_back({.name = groups.make(parameter.path)});
+        expressions_.parameters.push_back({.name = members_.make({parameter.path})});
       } else {
-        parameter_members_.push_back(
-            {.group = group(parameter.path.substr(0, dot)), .name = lower_identifier(parameter.field.name)});
+        expressions_.parameters.push_back({.group = group(std::string_view(parameter.path).substr(0, dot)),
+                                           .name = field_name(parameter.field.name)});
       }
-      expressions_.parameters.push_back("params." + joined(parameter_members_.back()));
     }
-    std::set<std::string> taken;
+    NameTable taken;
+    std::string joined;
     for (const CellInfo& cell : routine_.cells) {
-      Member member{.name = lower_identifier(cell.field.name)};
+      CppMember member{.name = field_name(cell.field.name)};
       if (cell.instance.empty()) {
-        member.name = groups.make(member.name);
+        member.name = members_.make({member.name});
       } else {
         member.group = group(cell.instance);
       }
-      while (!taken.insert(joined(member)).second) {
-        member.name = "last_" + member.name;
+      for (;;) {
+        joined.assign(member.group).append(".").append(member.name);
+        if (taken.add(joined).is_new) {
+          break;
+        }
+        member.name = field_name("last_" + std::string(member.name));
       }
-      expressions_.cells.push_back("state." + joined(member));
-      cell_members_.push_back(std::move(member));
+      expressions_.cells.push_back(member);
     }
-    for (const std::string& input : input_names_) {
-      expressions_.inputs.push_back("in." + input);
-    }
-  }
-
-  static std::string joined(const Member& member) {
-    return member.group.empty() ? member.name : member.group + "." + member.name;
+    expressions_.inputs.assign(input_names_.begin(), input_names_.end());
   }
 
   // --- declarations ---
+
+  std::string declarations() const {
+    std::string text = banner();
+    append(text, includes(), "namespace ", lower_identifier(graph_.name),
+           " {\n\nusing Real = ", options_.float32 ? "float" : "double",
+           ";\n\ninline constexpr Real sample_time = ", expressions_.literal(Type::Real, graph_.sample_time()),
+           ";  // s\n\n");
+    append_structs(text);
+    const bool stores = sets_elements(routine_.reset) || sets_elements(routine_.step);
+    append(text, cpp_helper_functions(routine_.used_by_reset | routine_.used_by_step, stores));
+    return text;
+  }
+
+  static bool sets_elements(const std::vector<Statement>& list) {
+    return std::ranges::any_of(
+        list, [](const Statement& one) { return one.kind == Statement::Kind::StoreCell && one.index != no_value; });
+  }
 
   std::string banner() const {
     std::string text;
@@ -169,7 +187,7 @@ class CppHeader {
     return text + "\n";
   }
 
-  std::string includes(const std::string& body) const {
+  std::string includes() const {
     std::string text;
     const bool arrays =
         std::ranges::any_of(routine_.cells, [](const CellInfo& cell) { return cell.field.length > 1; }) ||
@@ -178,13 +196,16 @@ class CppHeader {
       text += "#include <array>\n";
     }
     text += "#include <cmath>\n#include <cstddef>\n#include <cstdint>\n";
-    if (body.find("numeric_limits") != std::string::npos || body.find("to_int") != std::string::npos ||
-        has_infinite_parameter()) {
+    if (routine_.infinite_literals || uses(Op::ToInt) || has_infinite_parameter()) {
       text += "#include <limits>\n";
     }
     return text +
            "\n#if defined(__FAST_MATH__)\n#error \"compile without -ffast-math: it changes what a step "
            "computes\"\n#endif\n\n";
+  }
+
+  [[nodiscard]] bool uses(Op op) const {
+    return (routine_.used_by_reset | routine_.used_by_step).test(static_cast<std::size_t>(op));
   }
 
   [[nodiscard]] bool has_infinite_parameter() const {
@@ -193,185 +214,201 @@ class CppHeader {
     });
   }
 
-  std::string member_line(const Field& field, const std::string& name, const std::vector<double>& value,
-                          std::string_view indent, bool with_value) const {
-    std::string initial;
+  /// A member with the values that it begins with: none for the members of the state, which reset gives theirs.
+  void append_member(std::string& text, const Field& field, const CppMember& member,
+                     const std::vector<double>* values) const {
+    append(text, member.group.empty() ? "  " : "    ");
     if (field.length > 1) {
-      if (with_value) {
-        std::vector<std::string> elements;
-        for (const double element : value) {
-          elements.push_back(expressions_.literal(field.type, element));
-        }
-        initial = fmt::format("{{{}}}", fmt::join(elements, ", "));
+      append(text, "std::array<", cpp_type(field.type), ", ", std::to_string(field.length), "> ");
+    } else {
+      append(text, cpp_type(field.type), " ");
+    }
+    append(text, member.name);
+    if (values == nullptr) {
+      append(text, "{}");
+    } else if (field.length > 1) {
+      for (std::size_t i = 0; i < values->size(); ++i) {
+        append(text, i == 0 ? "{" : ", ", expressions_.literal(field.type, (*values)[i]));
       }
-      return fmt::format("{}std::array<{}, {}> {}{};{}\n", indent, cpp_type(field.type), field.length, name,
-                         with_value ? initial : "{}", comment_of(field));
+      append(text, "}");
+    } else {
+      append(text, " = ", expressions_.literal(field.type, values->front()));
     }
-    if (with_value) {
-      initial = " = " + expressions_.literal(field.type, value.front());
-    }
-    return fmt::format("{}{} {}{};{}\n", indent, cpp_type(field.type), name, with_value ? initial : "{}",
-                       comment_of(field));
+    append(text, ";");
+    append_comment(text, field.unit, field.meaning);
+    append(text, "\n");
   }
 
   /// Members in the order of their first mention, those of one instance together.
   template <class Line>
-  static std::string grouped(const std::vector<Member>& members, Line line) {
-    std::string text;
-    std::vector<bool> printed(members.size(), false);
-    std::multimap<std::string, std::size_t> by_group;
+  static void append_grouped(std::string& text, const std::vector<CppMember>& members, Line line) {
+    // By identifier of a group, which stands but once in memory: its members so far.
+    std::unordered_map<const char*, std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < members.size(); ++i) {
-      by_group.emplace(members[i].group, i);
+      if (!members[i].group.empty()) {
+        groups[members[i].group.data()].push_back(i);
+      }
     }
     for (std::size_t i = 0; i < members.size(); ++i) {
-      if (printed[i]) {
-        continue;
-      }
       if (members[i].group.empty()) {
-        text += line(i, "  ");
+        line(i);
         continue;
       }
-      text += "  struct {\n";
-      const auto [first, last] = by_group.equal_range(members[i].group);
-      for (auto one = first; one != last; ++one) {
-        printed[one->second] = true;
-        text += line(one->second, "    ");
+      const std::vector<std::size_t>& group = groups[members[i].group.data()];
+      if (group.front() == i) {
+        append(text, "  struct {\n");
+        std::ranges::for_each(group, line);
+        append(text, "  } ", members[i].group, ";\n");
       }
-      text += fmt::format("  }} {};\n", members[i].group);
     }
-    return text;
   }
 
-  std::string structs() const {
-    std::string text = "struct Params {\n";
-    text += grouped(parameter_members_, [&](std::size_t i, std::string_view indent) {
-      return member_line(graph_.parameters[i].field, parameter_members_[i].name, graph_.parameters[i].value, indent,
-                         true);
+  void append_structs(std::string& text) const {
+    text.reserve(text.size() + 100 * (graph_.parameters.size() + routine_.cells.size()));
+    append(text, "struct Params {\n");
+    append_grouped(text, expressions_.parameters, [&](std::size_t i) {
+      append_member(text, graph_.parameters[i].field, expressions_.parameters[i], &graph_.parameters[i].value);
     });
     text += "};\n\nstruct State {\n";
-    text += grouped(cell_members_, [&](std::size_t i, std::string_view indent) {
-      return member_line(routine_.cells[i].field, cell_members_[i].name, {}, indent, false);
+    append_grouped(text, expressions_.cells, [&](std::size_t i) {
+      append_member(text, routine_.cells[i].field, expressions_.cells[i], nullptr);
     });
     text += "};\n\n";
-    text += port_struct("In", graph_.inputs, input_names_);
-    text += port_struct("Out", graph_.outputs, output_names_);
-    return text;
+    append_ports(text, "In", graph_.inputs, input_names_);
+    append_ports(text, "Out", graph_.outputs, output_names_);
   }
 
-  std::string port_struct(std::string_view name, const std::vector<Port>& ports,
-                          const std::vector<std::string>& names) const {
-    std::string text = fmt::format("struct {} {{\n", name);
+  void append_ports(std::string& text, std::string_view name, const std::vector<Port>& ports,
+                    const std::vector<std::string>& names) const {
+    append(text, "struct ", name, " {\n");
     for (std::size_t i = 0; i < ports.size(); ++i) {
-      Field field;
-      field.unit = ports[i].unit;
-      field.meaning = ports[i].meaning;
-      text += fmt::format("  {} {} = {};{}\n", cpp_type(ports[i].type), names[i],
-                          expressions_.literal(ports[i].type, ports[i].preset), comment_of(field));
+      append(text, "  ", cpp_type(ports[i].type), " ", names[i], " = ",
+             expressions_.literal(ports[i].type, ports[i].preset), ";");
+      append_comment(text, ports[i].unit, ports[i].meaning);
+      append(text, "\n");
     }
-    return text + "};\n\n";
+    append(text, "};\n\n");
   }
 
   // --- functions ---
 
   std::string functions() {
-    std::string reset_body = statements(routine_.reset);
-    std::string step_body = statements(routine_.step);
-    if (routine_.longest_period > 1) {
-      const std::string& counter = expressions_.cells[routine_.counter];
-      step_body += fmt::format("  {0} = {0} + 1 < {1} ? {0} + 1 : 0;\n", counter, routine_.longest_period);
-    }
-    const auto used = [](const std::string& body, std::string_view prefix) {
-      return body.find(prefix) != std::string::npos;
-    };
-    std::string text = "/// Puts the state to its beginning.\n";
-    text += fmt::format("inline void reset(const Params&{}, State&{}) noexcept {{\n",
-                        used(reset_body, "params.") ? " params" : "", used(reset_body, "state.") ? " state" : "");
-    text += reset_body;
-    text += "}\n\n/// One step: outputs from inputs and state, and the state moved on.\n";
-    text += fmt::format("inline Out step(const Params&{}, State&{}, const In&{}) noexcept {{\n  Out out;\n",
-                        used(step_body, "params.") ? " params" : "", used(step_body, "state.") ? " state" : "",
-                        used(step_body, "in.") ? " in" : "");
-    text += step_body;
-    text += "  return out;\n}\n\n";
-    return text;
-  }
-
-  std::string statements(const std::vector<Statement>& list) {
-    const auto uses = count_uses(routine_.tape, list);
-    own_names_.assign(routine_.tape.size(), {});
-    for (const Statement& statement : list) {
-      if (statement.kind == Statement::Kind::Define && statement.target == 1 && own_names_[statement.value].empty()) {
-        own_names_[statement.value] = statement.name;
-      }
-    }
     std::string text;
-    std::string indent = "  ";
-    std::string section;
-    std::uint32_t section_node = 0;
-    for (const Statement& statement : list) {
-      switch (statement.kind) {
-        case Statement::Kind::Section:
-          section_node = statement.target;
-          section = section_comment(statement.target, indent);
-          continue;
-        case Statement::Kind::BeginRate:
-          text += fmt::format("{}if ({} % {} == {}) {{\n", indent, expressions_.cells[routine_.counter],
-                              statement.rate.every, statement.rate.phase);
-          indent = "    ";
-          continue;
-        case Statement::Kind::EndRate:
-          indent = "  ";
-          text += indent + "}\n";
-          continue;
-        default:
-          break;
-      }
-      std::string lines;
-      const std::string_view owner =
-          graph_.nodes.empty() ? std::string_view("step") : std::string_view(graph_.nodes[section_node].path);
-      if (statement.kind == Statement::Kind::Define) {
-        const bool worth_a_name = statement.target == 1 || uses[statement.value] > 1;
-        if (!worth_a_name || expressions_.is_named(statement.value)) {
-          continue;
-        }
-        name_shared(statement.value, uses, owner, indent, lines, false);
-        const std::string expression = expressions_.text(statement.value);
-        const std::string name = locals_.make(statement.name);
-        lines += fmt::format("{}const {} {} = {};\n", indent, cpp_type(routine_.tape[statement.value].type), name,
-                             expression);
-        expressions_.name(statement.value, name);
-      } else {
-        name_shared(statement.value, uses, owner, indent, lines, true);
-        if (statement.index != no_value) {
-          name_shared(statement.index, uses, owner, indent, lines, true);
-        }
-        const std::string value = expressions_.text(statement.value);
-        if (statement.kind == Statement::Kind::SetOutput) {
-          lines += fmt::format("{}out.{} = {};\n", indent, output_names_[statement.target], value);
-        } else if (statement.kind == Statement::Kind::SetCell) {
-          lines += fmt::format("{}{} = {};\n", indent, expressions_.cells[statement.target], value);
-        } else if (statement.index == no_value) {
-          lines += fmt::format("{}{}.fill({});\n", indent, expressions_.cells[statement.target], value);
-        } else {
-          lines += fmt::format("{}detail::store({}, {}, {});\n", indent, expressions_.cells[statement.target],
-                               expressions_.text(statement.index), value);
-        }
-      }
-      text += section + lines;
-      section.clear();
+    text.reserve(100 * (routine_.step.size() + routine_.reset.size() + graph_.parameters.size() + 200));
+    append(text, "/// Puts the state to its beginning.\ninline void reset(");
+    append_arguments(text, routine_.reset, routine_.used_by_reset);
+    append(text, ") noexcept {\n");
+    for (const Statement& statement : routine_.reset) {
+      write(statement, text);
     }
+    append(text, "}\n\n/// One step: outputs from inputs and state, and the state moved on.\ninline Out step(");
+    append_arguments(text, routine_.step, routine_.used_by_step);
+    append(text, ", const In&", routine_.used_by_step.test(static_cast<std::size_t>(Op::Input)) ? " in" : "",
+           ") noexcept {\n  Out out;\n");
+    for (const Statement& statement : routine_.step) {
+      write(statement, text);
+    }
+    if (routine_.longest_period > 1) {
+      std::string counter;
+      CppExpressions::print_cell(expressions_.cells[routine_.counter], counter);
+      append(text, fmt::format("  {0} = {0} + 1 < {1} ? {0} + 1 : 0;\n", counter, routine_.longest_period));
+    }
+    append(text, "  return out;\n}\n\n}  // namespace ", lower_identifier(graph_.name), "\n");
     return text;
   }
 
-  std::string section_comment(std::uint32_t index, std::string_view indent) const {
-    const Node& node = graph_.nodes[index];
-    return node.block != nullptr ? fmt::format("\n{}// {} : {}\n", indent, node.path, node.block->about.name)
-                                 : std::string();
+  /// Parameters of a function are named only where it uses them.
+  static void append_arguments(std::string& text, const std::vector<Statement>& list, const Operations& used) {
+    const bool state =
+        used.test(static_cast<std::size_t>(Op::Cell)) || std::ranges::any_of(list, [](const Statement& one) {
+          return one.kind == Statement::Kind::SetCell || one.kind == Statement::Kind::StoreCell ||
+                 one.kind == Statement::Kind::BeginRate;
+        });
+    append(text, "const Params&", used.test(static_cast<std::size_t>(Op::Parameter)) ? " params" : "", ", State&",
+           state ? " state" : "");
   }
 
-  /// Gives a name to every value below a root that is used more than once.
-  void name_shared(ValueId root, const std::vector<std::uint32_t>& uses, std::string_view owner,
-                   std::string_view indent, std::string& lines, bool with_root) {
+  void write(const Statement& statement, std::string& text) {
+    switch (statement.kind) {
+      case Statement::Kind::Section:
+        section_ = statement.target;
+        section_begins_ = graph_.nodes[section_].block != nullptr;
+        return;
+      case Statement::Kind::BeginRate:
+        append(text, indent_, "if (");
+        CppExpressions::print_cell(expressions_.cells[routine_.counter], text);
+        append(text, fmt::format(" % {} == {}) {{\n", statement.rate.every, statement.rate.phase));
+        indent_ = "    ";
+        return;
+      case Statement::Kind::EndRate:
+        indent_ = "  ";
+        append(text, indent_, "}\n");
+        return;
+      case Statement::Kind::Define:
+        if ((statement.always || routine_.uses[statement.value] > 1) && !expressions_.is_named(statement.value)) {
+          write_shared(statement.value, false, text);
+          write_definition(statement.value, name_of(statement), text);
+        }
+        return;
+      default:
+        break;
+    }
+    write_shared(statement.value, true, text);
+    if (statement.index != no_value) {
+      write_shared(statement.index, true, text);
+    }
+    begin_line(text);
+    if (statement.kind == Statement::Kind::SetOutput) {
+      append(text, "out.", output_names_[statement.target], " = ");
+      expressions_.print(statement.value, text);
+      append(text, ";\n");
+    } else if (statement.kind == Statement::Kind::SetCell) {
+      CppExpressions::print_cell(expressions_.cells[statement.target], text);
+      append(text, " = ");
+      expressions_.print(statement.value, text);
+      append(text, ";\n");
+    } else {
+      append(text, statement.index == no_value ? "" : "detail::store(");
+      CppExpressions::print_cell(expressions_.cells[statement.target], text);
+      append(text, statement.index == no_value ? ".fill(" : ", ");
+      if (statement.index != no_value) {
+        expressions_.print(statement.index, text);
+        append(text, ", ");
+      }
+      expressions_.print(statement.value, text);
+      append(text, ");\n");
+    }
+  }
+
+  /// The first line of a block stands behind its name.
+  void begin_line(std::string& text) {
+    if (section_begins_) {
+      const Node& node = graph_.nodes[section_];
+      append(text, "\n", indent_, "// ", node.path, " : ", node.block->about.name, "\n");
+      section_begins_ = false;
+    }
+    append(text, indent_);
+  }
+
+  void write_definition(ValueId id, std::string_view name, std::string& text) {
+    begin_line(text);
+    append(text, "const ", cpp_type(routine_.tape[id].type), " ", name, " = ");
+    expressions_.print(id, text);
+    append(text, ";\n");
+    expressions_.name(id, name);
+  }
+
+  std::string_view name_of(const Statement& definition) {
+    return locals_.make({owner(definition.target), definition.field, definition.what});
+  }
+  /// The block, or the pin that an operation feeds.
+  [[nodiscard]] std::string_view owner(std::uint32_t node) const {
+    const std::string_view path = graph_.nodes[node].path;
+    return path.substr(0, path.find('#'));
+  }
+
+  /// Defines every value below a root that is used more than once.
+  void write_shared(ValueId root, bool with_root, std::string& text) {
     struct Visit {
       ValueId id;
       bool entered;
@@ -385,13 +422,9 @@ class CppHeader {
         continue;
       }
       if (entered) {
-        const std::string_view own = own_names_[id];
-        if ((uses[id] > 1 || !own.empty()) && (with_root || id != root)) {
-          const std::string expression = expressions_.text(id);
-          const std::string name =
-              locals_.make(own.empty() ? fmt::format("{}_t", owner.substr(0, owner.find('#'))) : std::string(own));
-          lines += fmt::format("{}const {} {} = {};\n", indent, cpp_type(value.type), name, expression);
-          expressions_.name(id, name);
+        const std::uint32_t own = own_definition_[id];
+        if ((routine_.uses[id] > 1 || own != none) && (with_root || id != root)) {
+          write_definition(id, own != none ? name_of(routine_.step[own]) : locals_.make({owner(section_), "t"}), text);
         }
         continue;
       }
@@ -409,12 +442,15 @@ class CppHeader {
   Routine routine_;
   CppExpressions expressions_;
   CppOptions options_;
+  Identifiers members_;  ///< groups of Params and State, and what stands in them alone
+  NameTable fields_;     ///< members of groups
   Identifiers locals_;
   std::vector<std::string> input_names_;
   std::vector<std::string> output_names_;
-  std::vector<Member> parameter_members_;
-  std::vector<Member> cell_members_;
-  std::vector<std::string_view> own_names_;  ///< by value: the output or next state that it is
+  std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state
+  std::string_view indent_ = "  ";
+  std::uint32_t section_ = 0;  ///< the node to which the statement at hand belongs
+  bool section_begins_ = false;
 };
 
 void require_sample_time(const Graph& graph) {

@@ -52,10 +52,21 @@ std::string CppExpressions::literal(Type type, double value) const {
   return "";
 }
 
-std::string CppExpressions::text(ValueId id) const {
-  std::string out;
-  print(id, 0, out);
-  return out;
+namespace {
+
+void append_member(std::string_view object, const CppMember& member, std::string& out) {
+  out += object;
+  if (!member.group.empty()) {
+    out += member.group;
+    out += '.';
+  }
+  out += member.name;
+}
+
+}  // namespace
+
+void CppExpressions::print_cell(const CppMember& cell, std::string& out) {
+  append_member("state.", cell, out);
 }
 
 void CppExpressions::binary(const Value& value, std::string_view spelled, int strength, int outer,
@@ -98,7 +109,7 @@ void CppExpressions::call(const Value& value, std::string_view function, std::si
 
 void CppExpressions::print(ValueId id, int outer, std::string& out) const {
   if (is_named(id)) {
-    out += names_[id];
+    out += names_[name_of_[id] - 1];
     return;
   }
   const Value& value = tape_[id];
@@ -117,17 +128,16 @@ void CppExpressions::print(ValueId id, int outer, std::string& out) const {
         out += "sample_time";
         return;
       }
-      out += cpp_real(static_cast<double>(base_ns * value.index) * 1e-9, float32_);
+      out += cpp_real(static_cast<double>(base_ns_ * value.index) * 1e-9, float32_);
       return;
     case Op::Input:
+      out += "in.";
       out += inputs[value.index];
       return;
     case Op::Parameter:
-      out += parameters[value.index];
-      return;
+      return append_member("params.", parameters[value.index], out);
     case Op::Cell:
-      out += cells[value.index];
-      return;
+      return print_cell(cells[value.index], out);
     case Op::Pin:
       return;
     case Op::Add:

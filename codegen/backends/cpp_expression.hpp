@@ -3,26 +3,40 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/backends/routine.hpp"
 
 namespace hysteron {
 
+/// A member `group.name` of Params, State or In; of the diagram itself where there is no group. It names identifiers
+/// that live elsewhere.
+struct CppMember {
+  std::string_view group{};
+  std::string_view name{};
+};
+
 /// Prints the values of a routine's tape. A value that has a name is its name.
 class CppExpressions {
  public:
-  CppExpressions(const Routine& routine, bool float32) : tape_(routine.tape), float32_(float32), names_(tape_.size()) {}
+  CppExpressions(const Routine& routine, std::int64_t base_ns, bool float32)
+      : tape_(routine.tape), base_ns_(base_ns), float32_(float32), name_of_(tape_.size(), 0) {}
 
-  void name(ValueId id, std::string text) { names_[id] = std::move(text); }
-  [[nodiscard]] bool is_named(ValueId id) const { return !names_[id].empty(); }
-  /// The text of a leaf: a parameter, cell or input by its index.
-  std::vector<std::string> parameters{};
-  std::vector<std::string> cells{};
-  std::vector<std::string> inputs{};
-  std::int64_t base_ns = 0;  ///< sample time of the diagram
+  /// The members that leaves are, by their index.
+  std::vector<CppMember> parameters{};
+  std::vector<CppMember> cells{};
+  std::vector<std::string_view> inputs{};
 
-  [[nodiscard]] std::string text(ValueId id) const;
+  void name(ValueId id, std::string_view name) {
+    names_.push_back(name);
+    name_of_[id] = static_cast<std::uint32_t>(names_.size());
+  }
+  [[nodiscard]] bool is_named(ValueId id) const { return name_of_[id] != 0; }
+
+  /// Appends a value's text.
+  void print(ValueId id, std::string& out) const { print(id, 0, out); }
+  static void print_cell(const CppMember& cell, std::string& out);
   [[nodiscard]] std::string literal(Type type, double value) const;
 
  private:
@@ -31,8 +45,10 @@ class CppExpressions {
   void call(const Value& value, std::string_view function, std::size_t arity, std::string& out) const;
 
   const Tape& tape_;
+  std::int64_t base_ns_;  ///< sample time of the diagram
   bool float32_;
-  std::vector<std::string> names_;
+  std::vector<std::uint32_t> name_of_;  ///< by value: 0, or one more than its place in names_
+  std::vector<std::string_view> names_;
 };
 
 std::string_view cpp_type(Type type);

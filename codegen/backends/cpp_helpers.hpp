@@ -3,9 +3,12 @@
 
 #include <string>
 
+#include "codegen/backends/routine.hpp"
+
 namespace hysteron {
 
-/// The definitions of those that a body of text calls, in a namespace of their own; empty where it calls none.
-std::string cpp_helper_functions(const std::string& body);
+/// The definitions of those that operations call, in a namespace of their own; empty where they call none. `stores`:
+/// elements of arrays are set, which is no operation.
+std::string cpp_helper_functions(const Operations& operations, bool stores);
 
 }  // namespace hysteron

@@ -125,7 +125,7 @@ std::vector<std::string> cpp_port_names(const std::vector<Port>& ports) {
   Identifiers identifiers(cpp_words);
   std::vector<std::string> names;
   for (const Port& port : ports) {
-    names.push_back(identifiers.make(port.name));
+    names.emplace_back(identifiers.make({port.name}));
   }
   return names;
 }

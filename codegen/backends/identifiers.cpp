@@ -1,34 +1,62 @@
 #include "codegen/backends/identifiers.hpp"
 
-#include <cctype>
+#include <algorithm>
 
 namespace hysteron {
+namespace {
 
-std::string lower_identifier(std::string_view name) {
-  std::string result;
-  for (const char letter : name) {
-    const auto code = static_cast<unsigned char>(letter);
-    const char next = std::isalnum(code) != 0 ? static_cast<char>(std::tolower(code)) : '_';
-    if (next != '_' || result.empty() || result.back() != '_') {  // two underscores in a row are the compiler's
-      result += next;
-    }
-  }
-  if (result.empty() || std::isdigit(static_cast<unsigned char>(result.front())) != 0) {
-    result.insert(0, "_");
-  }
-  return result;
+bool is_digit(char letter) {
+  return letter >= '0' && letter <= '9';
 }
 
-std::string Identifiers::make(std::string_view name) {
-  std::string base = lower_identifier(name);
-  if (taken_.insert(base).second) {
-    return base;
+/// One character of an identifier; two underscores in a row are the compiler's.
+void append_letter(std::string& text, char letter) {
+  if (letter >= 'A' && letter <= 'Z') {
+    text += static_cast<char>(letter - 'A' + 'a');
+  } else if ((letter >= 'a' && letter <= 'z') || is_digit(letter)) {
+    text += letter;
+  } else if (text.empty() || text.back() != '_') {
+    text += '_';
   }
-  int& number = next_number_.try_emplace(base, 2).first->second;
+}
+
+void append_lower(std::string& text, std::initializer_list<std::string_view> parts) {
+  for (const std::string_view part : parts) {
+    if (!text.empty() && !part.empty()) {
+      append_letter(text, '.');
+    }
+    std::ranges::for_each(part, [&](char letter) { append_letter(text, letter); });
+  }
+  if (text.empty() || is_digit(text.front())) {
+    text.insert(0, "_");
+  }
+}
+
+}  // namespace
+
+std::string lower_identifier(std::string_view name) {
+  std::string text;
+  append_lower(text, {name});
+  return text;
+}
+
+std::string_view Identifiers::make(std::initializer_list<std::string_view> parts) {
+  text_.clear();
+  append_lower(text_, parts);
+  const auto [base, is_new] = taken_.add(text_);
+  if (is_new) {
+    return taken_[base];
+  }
+  if (next_number_.size() <= base) {
+    next_number_.resize(taken_.size(), 2);
+  }
+  const std::size_t length = text_.size();
   for (;;) {
-    std::string candidate = base + "_" + std::to_string(number++);
-    if (taken_.insert(candidate).second) {
-      return candidate;
+    text_.resize(length);
+    text_ += '_';
+    text_ += std::to_string(next_number_[base]++);
+    if (const auto numbered = taken_.add(text_); numbered.is_new) {
+      return taken_[numbered.number];
     }
   }
 }

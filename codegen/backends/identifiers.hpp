@@ -1,11 +1,14 @@
 // Identifiers for generated text: the names of the diagram, in lower case, unique, and none of the target's words.
 #pragma once
 
+#include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
-#include <unordered_set>
+#include <vector>
+
+#include "support/name_table.hpp"
 
 namespace hysteron {
 
@@ -14,16 +17,18 @@ class Identifiers {
   /// `reserved` are the words of the target that no identifier may be.
   explicit Identifiers(std::span<const std::string_view> reserved) {
     for (const std::string_view word : reserved) {
-      taken_.emplace(word);
+      taken_.add(word);
     }
   }
 
-  /// An identifier close to a name: PLANT.HYST → plant_hyst. Numbered where it is taken.
-  std::string make(std::string_view name);
+  /// An identifier close to the parts of a name: PLANT.HYST and XOUT → plant_hyst_xout. Empty parts do not count.
+  /// Numbered where it is taken. It stays where it is as long as this object lives.
+  std::string_view make(std::initializer_list<std::string_view> parts);
 
  private:
-  std::unordered_set<std::string> taken_;
-  std::unordered_map<std::string, int> next_number_;  ///< by name: below it all are taken
+  NameTable taken_;
+  std::vector<std::uint32_t> next_number_;  ///< by number in taken_: below it all are taken
+  std::string text_;                        ///< of the identifier that is being made
 };
 
 /// A name in lower case, with anything but letters and digits made an underscore.

@@ -1,10 +1,8 @@
 #include "codegen/backends/routine.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <unordered_map>
 
 namespace hysteron {
 namespace {
@@ -28,7 +26,10 @@ class RoutineBuilder {
 
   Routine run() {
     place_cells();
+    make_room();
     write_reset();
+    routine_.tape.forget();
+    const auto first_of_step = static_cast<ValueId>(routine_.tape.size());
     for (const Action& action : program_.schedule.actions) {
       write_action(action);
     }
@@ -36,8 +37,9 @@ class RoutineBuilder {
       routine_.step.push_back(
           {.kind = Statement::Kind::SetOutput, .target = i, .value = value_of_wire(graph_.outputs[i].wire)});
     }
+    count_uses();
     drop_unused();
-    count_operations();
+    count_operations(first_of_step);
     return std::move(routine_);
   }
 
@@ -49,6 +51,7 @@ class RoutineBuilder {
   void place_cells() {
     first_cell_.resize(graph_.nodes.size());
     first_output_.resize(graph_.nodes.size());
+    laid_.resize(graph_.nodes.size());
     std::uint32_t outputs = 0;
     for (std::uint32_t index = 0; index < graph_.nodes.size(); ++index) {
       const Node& node = graph_.nodes[index];
@@ -86,6 +89,18 @@ class RoutineBuilder {
       field.meaning = "steps since the beginning of the longest period";
       routine_.cells.push_back({.field = field});
     }
+  }
+
+  /// The values of a node are at most those of its trace, once for the reset and once for the step, and its wires.
+  void make_room() {
+    std::size_t values = 0;
+    std::size_t statements = 0;
+    for (const Node& node : graph_.nodes) {
+      values += node.wire_count + 1 + (node.block != nullptr ? 2 * node.block->trace.tape.size() : 0);
+      statements += 2 + (node.block != nullptr ? node.block->outputs.size() + 2 * node.block->states.size() : 0);
+    }
+    routine_.tape.reserve(values);
+    routine_.step.reserve(statements);
   }
 
   // --- values ---
@@ -153,19 +168,22 @@ class RoutineBuilder {
     routine_.tape.forget();
     if (slow) {
       routine_.step.push_back({.kind = Statement::Kind::BeginRate, .rate = node.rate});
-      laid_.erase(action.node);  // what was computed in an earlier scope cannot be named here
+      laid_[action.node].clear();  // what was computed in an earlier scope cannot be named here
     }
     routine_.step.push_back({.kind = Statement::Kind::Section, .target = action.node});
     if (node.block == nullptr) {
       write_operation(action.node);
     } else {
-      auto& laid = laid_.try_emplace(action.node, node.block->trace.tape.size(), no_value).first->second;
+      std::vector<ValueId>& laid = laid_[action.node];
+      if (laid.empty()) {
+        laid.assign(node.block->trace.tape.size(), no_value);
+      }
       if (action.kind != Action::Kind::Update) {
         write_outputs(action.node, laid);
       }
       if (action.kind != Action::Kind::Output) {
         write_update(action.node, laid);
-        laid_.erase(action.node);
+        laid = {};
       }
     }
     if (slow) {
@@ -180,11 +198,11 @@ class RoutineBuilder {
       args[pin] = value_of_wire(graph_.wire(node, pin));
     }
     const ValueId value = routine_.tape.apply(node.op, args[0], args[1], args[2]);
-    set_output(index, 0, value, node.path.substr(0, node.path.find('#')), false);
+    set_output(index, 0, value, {}, false);
   }
 
   /// An output gets a name of its own; outputs of a slower part become cells.
-  void set_output(std::uint32_t index, std::size_t port, ValueId value, std::string name, bool always_named) {
+  void set_output(std::uint32_t index, std::size_t port, ValueId value, std::string_view name, bool always_named) {
     const std::uint32_t output = first_output_[index] + static_cast<std::uint32_t>(port);
     if (held_[output] != unknown) {
       routine_.step.push_back({.kind = Statement::Kind::SetCell, .target = held_[output], .value = value});
@@ -198,7 +216,7 @@ class RoutineBuilder {
         mark_defined(value);
       }
       routine_.step.push_back(
-          {.kind = Statement::Kind::Define, .target = always_named ? 1U : 0U, .value = value, .name = std::move(name)});
+          {.kind = Statement::Kind::Define, .always = always_named, .target = index, .value = value, .field = name});
     }
   }
 
@@ -209,8 +227,7 @@ class RoutineBuilder {
       if (outputs_[first_output_[index] + port] != unknown || !known(node, trace.feedthrough[port])) {
         continue;
       }
-      set_output(index, port, lay(index, trace.outputs[port], laid),
-                 fmt::format("{}.{}", node.path, node.block->outputs[port].name), true);
+      set_output(index, port, lay(index, trace.outputs[port], laid), node.block->outputs[port].name, true);
     }
   }
 
@@ -257,9 +274,9 @@ class RoutineBuilder {
                         (sets[later].index != no_value && reads_cell(sets[later].index, sets[earlier].target));
       }
       if (reads_changed) {
-        name_first(node, sets[later].value, sets[later].target, "next");
+        name_first(index, sets[later].value, sets[later].target, "next");
         if (sets[later].index != no_value) {
-          name_first(node, sets[later].index, sets[later].target, "place");
+          name_first(index, sets[later].index, sets[later].target, "place");
         }
       }
     }
@@ -272,13 +289,15 @@ class RoutineBuilder {
     defined_[id] = true;
   }
 
-  void name_first(const Node& node, ValueId value, std::uint32_t cell, std::string_view what) {
+  void name_first(std::uint32_t node, ValueId value, std::uint32_t cell, std::string_view what) {
     if (!is_literal(routine_.tape[value].op)) {
       mark_defined(value);
       routine_.step.push_back({.kind = Statement::Kind::Define,
-                               .target = 1,
+                               .always = true,
+                               .target = node,
                                .value = value,
-                               .name = fmt::format("{}.{}.{}", node.path, routine_.cells[cell].field.name, what)});
+                               .field = routine_.cells[cell].field.name,
+                               .what = what});
     }
   }
 
@@ -360,40 +379,49 @@ class RoutineBuilder {
 
   // --- what nobody needs ---
 
-  void drop_unused() {
-    std::vector<bool> needed(routine_.tape.size(), false);
-    std::vector<ValueId> stack;
-    const auto need = [&](ValueId id) {
-      if (id != no_value && !needed[id]) {
-        needed[id] = true;
-        stack.push_back(id);
+  /// What is used once is written where it is used. An operand stands in the tape before its operation.
+  void count_uses() {
+    std::vector<std::uint32_t>& uses = routine_.uses;
+    uses.assign(routine_.tape.size(), 0);
+    const auto use = [&](ValueId id) {
+      if (id != no_value) {
+        ++uses[id];
       }
     };
-    for (const Statement& statement : routine_.step) {
-      if (statement.kind != Statement::Kind::Define) {
-        need(statement.value);
-        need(statement.index);
+    for (const auto* list : {&routine_.reset, &routine_.step}) {
+      for (const Statement& statement : *list) {
+        if (statement.kind != Statement::Kind::Define) {
+          use(statement.value);
+          use(statement.index);
+        }
       }
     }
-    while (!stack.empty()) {
-      const Value value = routine_.tape[stack.back()];
-      stack.pop_back();
-      std::ranges::for_each(value.args, need);
+    for (auto id = static_cast<ValueId>(uses.size()); id-- > 0;) {
+      if (uses[id] > 0) {
+        std::ranges::for_each(routine_.tape[id].args, use);
+      }
     }
+  }
+
+  void drop_unused() {
     std::erase_if(routine_.step, [&](const Statement& statement) {
-      return statement.kind == Statement::Kind::Define && !needed[statement.value];
+      return statement.kind == Statement::Kind::Define && routine_.uses[statement.value] == 0;
     });
   }
 
-  void count_operations() {
-    const auto uses = count_uses(routine_.tape, routine_.step);
+  void count_operations(ValueId first_of_step) {
     for (ValueId id = 0; id < routine_.tape.size(); ++id) {
-      const Op op = routine_.tape[id].op;
-      if (uses[id] == 0 || is_leaf(op)) {
+      const Value& value = routine_.tape[id];
+      if (routine_.uses[id] == 0) {
         continue;
       }
-      ++routine_.operations;
-      routine_.function_calls += op >= Op::Exp && op <= Op::Power ? 1 : 0;
+      const bool of_step = id >= first_of_step;
+      (of_step ? routine_.used_by_step : routine_.used_by_reset).set(static_cast<std::size_t>(value.op));
+      routine_.infinite_literals = routine_.infinite_literals || !std::isfinite(value.literal);
+      if (of_step && !is_leaf(value.op)) {
+        ++routine_.operations;
+        routine_.function_calls += value.op >= Op::Exp && value.op <= Op::Power ? 1 : 0;
+      }
     }
   }
 
@@ -402,11 +430,11 @@ class RoutineBuilder {
   Routine routine_;
   std::vector<std::uint32_t> first_cell_;
   std::vector<std::uint32_t> first_output_;
-  std::vector<ValueId> outputs_;     ///< by output of any node
-  std::vector<std::uint32_t> held_;  ///< by output: the cell that holds it between the steps of a slower rate
-  std::unordered_map<std::uint32_t, std::vector<ValueId>> laid_;
-  std::vector<bool> defined_;        ///< values that have a name by now: their cells were read before
-  std::vector<std::uint32_t> seen_;  ///< by value: the last search that met it
+  std::vector<ValueId> outputs_;            ///< by output of any node
+  std::vector<std::uint32_t> held_;         ///< by output: the cell that holds it between the steps of a slower rate
+  std::vector<std::vector<ValueId>> laid_;  ///< by node: where the values of its trace are in the tape
+  std::vector<bool> defined_;               ///< values that have a name by now: their cells were read before
+  std::vector<std::uint32_t> seen_;         ///< by value: the last search that met it
   std::uint32_t search_ = 0;
 };
 
@@ -414,32 +442,6 @@ class RoutineBuilder {
 
 Routine make_routine(const Program& program) {
   return RoutineBuilder(program).run();
-}
-
-std::vector<std::uint32_t> count_uses(const Tape& tape, const std::vector<Statement>& statements) {
-  std::vector<std::uint32_t> uses(tape.size(), 0);
-  std::vector<ValueId> stack;
-  const auto use = [&](ValueId id) {
-    if (id != no_value && uses[id]++ == 0) {
-      stack.push_back(id);
-    }
-    while (!stack.empty()) {
-      const Value value = tape[stack.back()];
-      stack.pop_back();
-      for (const ValueId arg : value.args) {
-        if (arg != no_value && uses[arg]++ == 0) {
-          stack.push_back(arg);
-        }
-      }
-    }
-  };
-  for (const Statement& statement : statements) {
-    if (statement.kind != Statement::Kind::Define) {
-      use(statement.value);
-      use(statement.index);
-    }
-  }
-  return uses;
 }
 
 }  // namespace hysteron

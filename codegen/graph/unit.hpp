@@ -21,6 +21,9 @@ struct Fraction {
   std::int32_t under = 1;
 
   static Fraction of(std::int64_t numerator, std::int64_t denominator) {
+    if (denominator == 1) {
+      return {static_cast<std::int32_t>(numerator), 1};
+    }
     const std::int64_t divisor = std::gcd(numerator, denominator) * (denominator < 0 ? -1 : 1);
     return {static_cast<std::int32_t>(numerator / divisor), static_cast<std::int32_t>(denominator / divisor)};
   }
@@ -48,9 +51,11 @@ struct Unit {
   std::vector<std::pair<std::string_view, Fraction>> symbols{};  ///< as it was written, for messages
 
   void multiply(const Unit& other, Fraction exponent) {
-    factor *= std::pow(other.factor, exponent.number());
+    factor *= other.factor == 1.0 ? 1.0 : std::pow(other.factor, exponent.number());
     for (std::size_t i = 0; i < dimensions; ++i) {
-      powers[i] = powers[i] + other.powers[i] * exponent;
+      if (!other.powers[i].zero()) {
+        powers[i] = powers[i] + other.powers[i] * exponent;
+      }
     }
     for (const auto& [variable, power] : other.variables) {
       add_variable(variable, power * exponent);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -31,6 +33,7 @@ class Checker {
     }
     outputs_.resize(graph_.nodes.size());
     prepared_.assign(graph_.nodes.size(), false);
+    first_variable_.assign(graph_.nodes.size(), none);
     for (const Action& action : schedule.actions) {
       if (action.kind != Action::Kind::Update && !prepared_[action.node]) {
         prepare(action.node);
@@ -42,10 +45,10 @@ class Checker {
       }
     }
     for (const Port& inner : graph_.inner) {
-      agree(of_wire(inner.wire), known(inner.unit), inner.span, inner.name);
+      agree(of_wire(inner.wire), known(inner.unit), inner.span, [&] { return inner.name; });
     }
     for (const Port& output : graph_.outputs) {
-      agree(of_wire(output.wire), known(output.unit), output.span, output.name);
+      agree(of_wire(output.wire), known(output.unit), output.span, [&] { return output.name; });
     }
   }
 
@@ -73,6 +76,7 @@ class Checker {
 
  private:
   using MaybeUnit = std::optional<Unit>;
+  static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
 
   MaybeUnit known(std::string_view text) {
     if (text.empty()) {
@@ -123,7 +127,8 @@ class Checker {
       if (quietly && given && expected && !can_agree(*given, *expected)) {
         continue;  // reported in the second pass
       }
-      agree(given, expected, graph_.wire_spans[node.first_wire + pin], fmt::format("{}.{}", node.path, field.name));
+      agree(given, expected, graph_.wire_spans[node.first_wire + pin],
+            [&] { return fmt::format("{}.{}", node.path, field.name); });
     }
   }
 
@@ -134,20 +139,58 @@ class Checker {
     if (field.unit.find('\'') == std::string_view::npos) {
       return known(field.unit);
     }
-    std::string reason;
-    return parse_unit(field.unit, reason, [&](std::string_view name) { return variable_of(index, name); });
-  }
-
-  std::uint32_t variable_of(std::uint32_t index, std::string_view name) {
-    auto& names = variables_[index];
-    for (const auto& [known_name, variable] : names) {
-      if (known_name == name) {
-        return variable;
+    const BlockUnits& units = units_of(index);
+    MaybeUnit unit = units.by_text.find(field.unit)->second;
+    if (unit) {
+      for (auto& [variable, power] : unit->variables) {
+        variable += first_variable(index);
       }
     }
-    names.emplace_back(name, static_cast<std::uint32_t>(solutions_.size()));
-    solutions_.emplace_back();
-    return names.back().second;
+    return unit;
+  }
+
+  /// The units of a block that name its unit variables: read once, the variables numbered from 0.
+  struct BlockUnits {
+    std::vector<std::string_view> variables{};
+    std::map<std::string_view, MaybeUnit> by_text{};
+  };
+
+  const BlockUnits& units_of(std::uint32_t index) {
+    const BlockType& block = *graph_.nodes[index].block;
+    const auto [place, is_new] = blocks_.try_emplace(&block);
+    if (is_new) {
+      for (const auto& fields : {block.outputs, block.inputs, block.params}) {
+        for (const Field& field : fields) {
+          read_unit(field.unit, place->second);
+        }
+      }
+    }
+    return place->second;
+  }
+
+  static void read_unit(std::string_view text, BlockUnits& units) {
+    const auto number = [&](std::string_view name) {
+      const auto known_name = std::ranges::find(units.variables, name);
+      const auto result = static_cast<std::uint32_t>(known_name - units.variables.begin());
+      if (known_name == units.variables.end()) {
+        units.variables.push_back(name);
+      }
+      return result;
+    };
+    for (auto quote = text.find('\''); quote != std::string_view::npos; quote = text.find('\'', quote + 1)) {
+      const std::string_view rest = text.substr(quote + 1);
+      number(rest.substr(0, rest.find_first_of("*/^() ")));  // also where the text is beyond parse_unit
+    }
+    std::string reason;
+    units.by_text.emplace(text, parse_unit(text, reason, number));
+  }
+
+  std::uint32_t first_variable(std::uint32_t index) {
+    if (first_variable_[index] == none) {
+      first_variable_[index] = static_cast<std::uint32_t>(solutions_.size());
+      solutions_.resize(solutions_.size() + units_of(index).variables.size());
+    }
+    return first_variable_[index];
   }
 
   MaybeUnit of_wire(const Wire& wire) {
@@ -174,11 +217,11 @@ class Checker {
     const auto same = [&](std::uint32_t a, std::uint32_t b) {
       const MaybeUnit left = arg(a);
       const MaybeUnit right = arg(b);
-      agree(right, left, span, "the two sides");
+      agree(right, left, span, [] { return "the two sides"; });
       return left ? left : right;
     };
     const auto number = [&](std::uint32_t pin) -> MaybeUnit {
-      agree(arg(pin), Unit{}, span, fmt::format("the argument of {}", info(node.op).name));
+      agree(arg(pin), Unit{}, span, [&] { return fmt::format("the argument of {}", info(node.op).name); });
       return Unit{};
     };
     switch (node.op) {
@@ -278,7 +321,9 @@ class Checker {
     return !quotient.variables.empty() || is_one(quotient);
   }
 
-  void agree(const MaybeUnit& given, const MaybeUnit& expected, language::Span span, std::string_view where) {
+  /// Reports where two units differ. `where` names the place; it is asked only then.
+  template <class Where>
+  void agree(const MaybeUnit& given, const MaybeUnit& expected, language::Span span, Where where) {
     if (!given || !expected) {
       return;
     }
@@ -299,7 +344,7 @@ class Checker {
     const Unit right = solved(*expected);
     const bool scale = left.same_dimension(right);
     diagnostics_.error(error::unit_mismatch, graph_.place(span),
-                       fmt::format("{}: the unit is {}, {} is expected", where, unit_text(left), unit_text(right)),
+                       fmt::format("{}: the unit is {}, {} is expected", where(), unit_text(left), unit_text(right)),
                        scale ? fmt::format("The two differ by the factor {:.6g}: put a HY_GAIN with K = {:.6g} between "
                                            "them, whose output carries the other unit.",
                                            quotient.factor, quotient.factor)
@@ -313,8 +358,9 @@ class Checker {
   std::vector<MaybeUnit> parameters_;
   std::vector<std::vector<MaybeUnit>> outputs_;
   std::vector<bool> prepared_;
-  std::vector<MaybeUnit> solutions_;  ///< by unit variable
-  std::unordered_map<std::uint32_t, std::vector<std::pair<std::string_view, std::uint32_t>>> variables_;
+  std::vector<MaybeUnit> solutions_;           ///< by unit variable
+  std::vector<std::uint32_t> first_variable_;  ///< by node: of its unit variables; none where none was met yet
+  std::unordered_map<const BlockType*, BlockUnits> blocks_;
 };
 
 }  // namespace

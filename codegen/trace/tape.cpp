@@ -1,11 +1,14 @@
 #include "codegen/trace/tape.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
 namespace hysteron {
 
-std::size_t Tape::Hash::operator()(const Value& value) const noexcept {
+namespace {
+
+std::size_t hash_of(const Value& value) {
   std::uint64_t hash = static_cast<std::uint64_t>(value.op) * 0x9E3779B97F4A7C15ULL + value.index;
   for (const ValueId arg : value.args) {
     hash = (hash ^ arg) * 0xBF58476D1CE4E5B9ULL;
@@ -15,17 +18,39 @@ std::size_t Tape::Hash::operator()(const Value& value) const noexcept {
 }
 
 // Literals are compared by bits: 0.0 and -0.0 are two values, and a NaN equals itself.
-bool Tape::SameBits::operator()(const Value& a, const Value& b) const noexcept {
+bool same_bits(const Value& a, const Value& b) {
   return a.op == b.op && a.type == b.type && a.args == b.args && a.index == b.index &&
          std::bit_cast<std::uint64_t>(a.literal) == std::bit_cast<std::uint64_t>(b.literal);
 }
 
+}  // namespace
+
 ValueId Tape::intern(const Value& value) {
-  const auto [place, is_new] = known_.try_emplace(value, static_cast<ValueId>(values_.size()));
-  if (is_new) {
-    values_.push_back(value);
+  if (2 * (values_.size() - first_known_) >= places_.size()) {
+    grow();
   }
-  return place->second;
+  const std::size_t mask = places_.size() - 1;
+  std::size_t at = hash_of(value) & mask;
+  for (; is_known(places_[at]); at = (at + 1) & mask) {
+    if (same_bits(values_[places_[at]], value)) {
+      return places_[at];
+    }
+  }
+  places_[at] = static_cast<ValueId>(values_.size());
+  values_.push_back(value);
+  return places_[at];
+}
+
+void Tape::grow() {
+  places_.assign(std::max<std::size_t>(64, 2 * places_.size()), no_value);
+  const std::size_t mask = places_.size() - 1;
+  for (ValueId id = first_known_; id < values_.size(); ++id) {
+    std::size_t at = hash_of(values_[id]) & mask;
+    while (is_known(places_[at])) {
+      at = (at + 1) & mask;
+    }
+    places_[at] = id;
+  }
 }
 
 ValueId Tape::leaf(Op op, Type type, std::uint32_t index) {

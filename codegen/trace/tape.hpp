@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 #include "codegen/trace/operation.hpp"
@@ -46,20 +45,19 @@ class Tape {
   [[nodiscard]] const Value& operator[](ValueId id) const { return values_[id]; }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   /// Forgets which expressions are equal, not the expressions: what comes later shares nothing with what was before.
-  void forget() { known_.clear(); }
+  void forget() { first_known_ = static_cast<ValueId>(values_.size()); }
+  /// Makes room for a number of values.
+  void reserve(std::size_t count) { values_.reserve(count); }
 
  private:
-  struct Hash {
-    std::size_t operator()(const Value& value) const noexcept;
-  };
-  struct SameBits {
-    bool operator()(const Value& a, const Value& b) const noexcept;
-  };
   ValueId intern(const Value& value);
+  [[nodiscard]] bool is_known(ValueId id) const { return id >= first_known_ && id != no_value; }
   [[nodiscard]] bool is_bool(ValueId id, bool value) const;
+  void grow();
 
   std::vector<Value> values_;
-  std::unordered_map<Value, ValueId, Hash, SameBits> known_;
+  ValueId first_known_ = 0;      ///< earlier values are forgotten
+  std::vector<ValueId> places_;  ///< a hash table, a power of two; places of forgotten values count as free
 };
 
 }  // namespace hysteron

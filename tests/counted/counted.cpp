@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t steps = 10'000;
 constexpr int instances = 10'000;
+constexpr int fewer_instances = 1'000;
 constexpr std::size_t points = 200;
 
 }  // namespace
@@ -56,14 +57,14 @@ double interpreted_step() {
   });
 }
 
-double check() {
-  const std::string text = hysteron::bench::many_instances(instances);
+double check(int count) {
+  const std::string text = hysteron::bench::many_instances(count);
   hysteron::compile_text(hysteron::bench::many_instances(5));  // traces the blocks, once in a process
   return counted_region([&] { return static_cast<double>(hysteron::compile_text(text).graph.nodes.size()); });
 }
 
-double generate() {
-  const auto program = hysteron::compile_text(hysteron::bench::many_instances(instances));
+double generate(int count) {
+  const auto program = hysteron::compile_text(hysteron::bench::many_instances(count));
   return counted_region([&] { return static_cast<double>(hysteron::generate_cpp_header(program).text.size()); });
 }
 
@@ -82,13 +83,20 @@ int main(int count, char** arguments) {
   } else if (work == "interpreted_step") {
     result = interpreted_step();
   } else if (work == "check") {
-    result = check();
+    result = check(instances);
+  } else if (work == "check_fewer") {
+    result = check(fewer_instances);
   } else if (work == "generate") {
-    result = generate();
+    result = generate(instances);
+  } else if (work == "generate_fewer") {
+    result = generate(fewer_instances);
   } else if (work == "static_fit") {
     result = static_fit();
   } else {
-    std::fputs("usage: counted generated_step | interpreted_step | check | generate | static_fit\n", stderr);
+    std::fputs(
+        "usage: counted generated_step | interpreted_step | check | check_fewer | generate | generate_fewer | "
+        "static_fit\n",
+        stderr);
     return 2;
   }
   std::printf("%.17g\n", result);

@@ -1,0 +1,1 @@
+"""Judges verdicts against the key."""

@@ -1,0 +1,141 @@
+"""One verdict against one label."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+ACCUSES = frozenset({"named", "group", "partial", "unknown"})
+"""Verdicts that say that something is wrong with the model's structure."""
+NAMES = frozenset({"named", "partial", "group"})
+"""Verdicts that name effects."""
+VERDICTS = ACCUSES | {"none", "calibration", "refused", "missing"}
+IN_LIBRARY = ("single", "cousin", "pair")
+CALIBRATION_NAMES = frozenset({"parameter_mismatch", "gain_error"})
+
+
+@dataclass
+class Judgement:
+    """What the scorer knows of one case."""
+
+    name: str
+    stratum: str
+    plant: str
+    ratio: float
+    truth: tuple[str, ...]
+    verdict: str
+    effects: tuple[str, ...]
+    """As the verdict states them, first one first."""
+    edges: tuple[str, ...]
+    rivals: tuple[frozenset[str], ...]
+    confidence: float
+    unknown_score: float
+    cannot_tell: bool
+    seconds: float
+    right_edge: bool | None
+    closed: float
+    """As the verdict claims it."""
+    closed_interval: tuple[float, float]
+    closed_true: float
+    """Against the noise that the generator added."""
+    fresh: float = math.nan
+    """Closure on a record that nobody has seen, without noise; not a number where it was not run."""
+    answers: tuple[str, ...] = ()
+    realisations: tuple[str, ...] = ()
+    label: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def first(self) -> str:
+        """The effect that the verdict puts first, or the verdict itself where it names none."""
+        if self.verdict in NAMES and self.effects:
+            return self.effects[0]
+        return self.verdict
+
+    @property
+    def named_first(self) -> bool:
+        """The truth stands first, alone or as the head of a group."""
+        return len(self.truth) > 0 and self.first == self.truth[0] if len(self.truth) < 2 else self.first in self.truth
+
+    @property
+    def named_alone(self) -> bool:
+        """Exactly the truth is named and nothing else."""
+        return self.verdict == "named" and set(self.effects) == set(self.truth)
+
+    @property
+    def in_rivals(self) -> bool:
+        """The true set is among the rivals."""
+        return frozenset(self.truth) in self.rivals
+
+    @property
+    def says_cannot_tell(self) -> bool:
+        """It declines to choose, or says what it cannot tell apart."""
+        return self.verdict in self.answers or self.cannot_tell or (self.verdict in NAMES and len(self.rivals) > 1)
+
+    @property
+    def right(self) -> bool:
+        """Whether the verdict is right, for the reliability of its confidence."""
+        if self.stratum == "none":
+            return self.verdict in ("none", "calibration")
+        if self.stratum == "calibration":
+            return self.verdict in ("calibration", "none") if self.ratio < 2.0 else self.verdict == "calibration"
+        if self.stratum == "outside":
+            return self.verdict in ("unknown", "partial")
+        if self.stratum == "ambiguous":
+            return self.says_cannot_tell
+        if self.stratum == "pair":
+            return set(self.effects) == set(self.truth)
+        return self.named_first
+
+
+def plain(name: str) -> str:
+    """An edge's name without differences that mean nothing."""
+    return "".join(str(name).split()).upper()
+
+
+def number(value: Any) -> float:
+    """A number, or not a number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run: dict[str, Any]) -> Judgement:
+    """Compares a verdict with the label of its case."""
+    v = verdict or {}
+    kind = str(v.get("verdict", "refused" if run.get("exit") == 2 else "missing"))
+    effects = [e for e in v.get("effects", []) if str(e.get("id")) not in CALIBRATION_NAMES]
+    truth = tuple(e["id"] for e in label["effects"])
+    right_edge = None
+    if effects and truth and effects[0].get("id") in truth:
+        true = label["effects"][truth.index(effects[0]["id"])]
+        right_edge = plain(effects[0].get("edge", "")) in {plain(edge) for edge in true["edges"]}
+    gap = v.get("gap") or {}
+    floor2 = float(label["noise_rms"][0]) ** 2
+    nominal2, improved2 = number(gap.get("nominal_rms")) ** 2, number(gap.get("improved_rms")) ** 2
+    if len(label["noise_rms"]) > 1 and str(gap.get("signal", "")).upper() == "U":
+        floor2 = float(label["noise_rms"][1]) ** 2
+    closed_true = 1.0 - (improved2 - floor2) / (nominal2 - floor2) if nominal2 > 1.02 * floor2 else math.nan
+    return Judgement(
+        name=name,
+        stratum=label["stratum"],
+        plant=label["plant"],
+        ratio=label["ratio"] if label["effects"] else label["deviation_ratio"],
+        truth=truth,
+        verdict=kind if kind in VERDICTS else "missing",
+        effects=tuple(str(e.get("id")) for e in effects),
+        edges=tuple(str(e.get("edge", "")) for e in effects),
+        rivals=tuple(frozenset(map(str, one)) for one in v.get("rivals", [])),
+        confidence=number(v.get("confidence")),
+        unknown_score=number(v.get("unknown_score")),
+        cannot_tell=bool(v.get("cannot_tell")),
+        seconds=number(run.get("seconds")),
+        right_edge=right_edge,
+        closed=number(gap.get("closed")),
+        closed_interval=(number(gap.get("closed_low")), number(gap.get("closed_high"))),
+        closed_true=closed_true,
+        answers=tuple(label.get("answers", ())),
+        realisations=tuple(e["realisation"] for e in label["effects"]),
+        label=label,
+    )

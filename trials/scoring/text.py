@@ -1,0 +1,65 @@
+"""The score as text."""
+
+from __future__ import annotations
+
+import math
+
+from trials.scoring.figures import Figure, Score
+
+
+def amount(value: float, unit: str) -> str:
+    """A number in the unit of its figure."""
+    if math.isnan(value):
+        return "–"
+    if unit == "%":
+        return f"{100.0 * value:.1f} %"
+    return f"{value:.1f} s" if unit == "s" else f"{value:.3f}"
+
+
+def goal(figure: Figure) -> str:
+    """The goal in words."""
+    if figure.band:
+        return f"{100 * figure.band[0]:.0f}–{100 * figure.band[1]:.0f} %"
+    if figure.goal is None:
+        return ""
+    return ("≥ " if figure.at_least else "≤ ") + amount(figure.goal, figure.unit)
+
+
+def mark(figure: Figure) -> str:
+    """Reached, missed, or nothing to say."""
+    return {True: "reached", False: "missed", None: ""}[figure.reached]
+
+
+def table(score: Score) -> str:
+    """The figures in columns."""
+    lines = [f"{'figure':52s}{'value':>9s}   {'95 % interval':17s}{'cases':>6s}   {'goal':10s}", "-" * 108]
+    for f in score.figures:
+        interval = f"{amount(f.low, f.unit)} … {amount(f.high, f.unit)}"
+        lines.append(f"{f.title:52s}{amount(f.value, f.unit):>9s}   {interval:17s}{f.count:6d}   {goal(f):10s} {mark(f)}".rstrip())
+    return "\n".join(lines)
+
+
+def effects(score: Score) -> str:
+    """Named first, effect by effect."""
+    cells = ("R10", "R3", "R1", "cousin")
+    lines = [f"{'named first':24s}" + "".join(f"{c.replace('R10', 'R ≥ 10').replace('R3', 'R = 3').replace('R1', 'R = 1'):>10s}" for c in cells)]
+    for name, line in score.by_effect.items():
+        lines.append(f"{name:24s}" + "".join(f"{'{}/{}'.format(*line[c]) if c in line else '':>10s}" for c in cells))
+    return "\n".join(lines)
+
+
+def confusions(score: Score, most: int = 25) -> str:
+    """What is taken for what, most often first."""
+    wrong = [(n, row, column) for row, line in score.confusion.items() for column, n in line.items() if row != column and row not in ("none", "outside")]
+    wrong.sort(key=lambda item: (-item[0], item[1], item[2]))
+    return "\n".join([f"{'taken':>6s}  {'true':24s}for"] + [f"{n:6d}  {row:24s}{column}" for n, row, column in wrong[:most]])
+
+
+def strata(score: Score) -> str:
+    """Kinds of verdicts in each stratum."""
+    return "\n".join(f"{name:14s}" + ", ".join(f"{kind} {n}" for kind, n in sorted(line.items())) for name, line in score.strata.items())
+
+
+def whole(score: Score, head: str) -> str:
+    """All tables."""
+    return "\n\n".join([head, table(score), effects(score), confusions(score), "verdicts by stratum\n" + strata(score)]) + "\n"

@@ -1,0 +1,65 @@
+"""Seals a key: SHA-256 in counter mode as the keystream (NIST SP 800-108's counter construction with HMAC as the
+pseudo-random function), scrypt for the passphrase, encrypt-then-MAC. Python's own hashlib is all it needs."""
+
+from __future__ import annotations
+
+import datetime
+import getpass
+import hashlib
+import hmac
+import os
+from pathlib import Path
+
+import numpy as np
+
+MAGIC = b"hysteron-sealed-key/1\n"
+LOG = Path(__file__).resolve().parent / "openings.log"
+
+
+class NotSealed(ValueError):
+    """The file is no sealed key, or the passphrase is another one."""
+
+
+def _keys(passphrase: bytes, salt: bytes) -> tuple[bytes, bytes]:
+    both = hashlib.scrypt(passphrase, salt=salt, n=2**14, r=8, p=1, dklen=64)
+    return both[:32], both[32:]
+
+
+def _xor_with_stream(key: bytes, data: bytes) -> bytes:
+    blocks = -(-len(data) // 32)
+    stream = b"".join(hmac.digest(key, counter.to_bytes(8, "big"), "sha256") for counter in range(blocks))
+    mixed = np.frombuffer(data, np.uint8) ^ np.frombuffer(stream[: len(data)], np.uint8)
+    return mixed.tobytes()
+
+
+def seal(text: bytes, passphrase: bytes) -> bytes:
+    """Encrypts a key."""
+    salt = os.urandom(16)
+    cipher, mac = _keys(passphrase, salt)
+    body = salt + _xor_with_stream(cipher, text)
+    return MAGIC + body + hmac.digest(mac, body, "sha256")
+
+
+def unseal(sealed: bytes, passphrase: bytes) -> bytes:
+    """Decrypts a key, or raises NotSealed."""
+    if not sealed.startswith(MAGIC) or len(sealed) < len(MAGIC) + 48:
+        raise NotSealed("this is no sealed key")
+    body, tag = sealed[len(MAGIC) : -32], sealed[-32:]
+    cipher, mac = _keys(passphrase, body[:16])
+    if not hmac.compare_digest(hmac.digest(mac, body, "sha256"), tag):
+        raise NotSealed("the passphrase is another one, or the file was changed")
+    return _xor_with_stream(cipher, body[16:])
+
+
+def record_opening(sealed: bytes, purpose: str, log: Path = LOG) -> str:
+    """Appends a line to the log of openings; it is committed with the result."""
+    when = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+    line = f"{when}  {hashlib.sha256(sealed).hexdigest()}  {getpass.getuser()}  {' '.join(purpose.split())}\n"
+    with log.open("a") as file:
+        file.write(line)
+    return line
+
+
+def seed(commit: str, nonce: str) -> str:
+    """Seed of a scored set: nobody can know it before the product's commit exists."""
+    return hashlib.sha256(f"{commit}|{nonce}".encode()).hexdigest()

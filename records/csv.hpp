@@ -12,7 +12,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 #include "records/record.hpp"
 
@@ -22,7 +21,7 @@ namespace hysteron::records {
 [[nodiscard]] Record read_csv(const std::string& path);
 
 /// The same from a text; `file` stands in the places of errors.
-[[nodiscard]] Record parse_csv(const std::string& file, std::string_view text);
+[[nodiscard]] Record parse_csv(const std::string& file, std::string text);
 
 /// The record as CSV with commas, LF and the shortest numbers that read back to the same bits.
 [[nodiscard]] std::string csv_text(const Record& record);

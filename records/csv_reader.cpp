@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "records/csv.hpp"
 #include "records/csv_line.hpp"
+#include "records/source_text.hpp"
 #include "records/time_grid.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -21,22 +22,6 @@ namespace {
 /// More errors than these are not shown: a file of the wrong kind has one in every cell.
 constexpr std::size_t most_errors = 10;
 
-/// The line that begins at an offset, without its end, and the offset of the next.
-struct Line {
-  std::string_view text{};
-  std::size_t offset = 0;
-  std::size_t next = 0;
-};
-
-Line line_at(std::string_view text, std::size_t offset) {
-  const auto end = std::min(text.find('\n', offset), text.size());
-  Line line{.text = text.substr(offset, end - offset), .offset = offset, .next = std::min(end + 1, text.size())};
-  if (line.text.ends_with('\r')) {
-    line.text.remove_suffix(1);
-  }
-  return line;
-}
-
 bool is_comment(std::string_view line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string_view::npos && line[first] == '#';
@@ -45,7 +30,7 @@ bool is_comment(std::string_view line) {
 /// Reads one text into one record. Errors are collected; finish() throws them.
 class Reader {
  public:
-  Reader(const std::string& file, std::string_view text) : file_(file), text_(text) {}
+  Reader(const std::string& file, std::string text) : source_{.file = file, .text = std::move(text)} {}
 
   Record read() {
     check_encoding();
@@ -56,30 +41,6 @@ class Reader {
   }
 
  private:
-  // ---- places -----------------------------------------------------------------------------------------------------
-
-  [[nodiscard]] Place place_of(const Line& line) const {
-    const auto before = text_.substr(0, line.offset);
-    return {.file = file_,
-            .line = static_cast<std::uint32_t>(std::count(before.begin(), before.end(), '\n')) + 1,
-            .column = 1,
-            .length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(line.text)))};
-  }
-
-  [[nodiscard]] Place place_of(const Line& line, const Cell& cell) const {
-    Place place = place_of(line);
-    place.column = static_cast<std::uint32_t>(character_count(line.text.substr(0, cell.offset))) + 1;
-    place.length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(cell.text)));
-    return place;
-  }
-
-  /// The place of the time of a row, once the rows are read.
-  [[nodiscard]] Place place_of_time(std::size_t row) {
-    const Line line = line_at(text_, row_offsets_[row]);
-    cut_line(line.text, separator_, cells_);
-    return place_of(line, cells_[time_column_]);
-  }
-
   void stop_on_errors() const {
     if (diagnostics_.has_errors()) {
       throw InputError(diagnostics_);
@@ -91,21 +52,22 @@ class Reader {
   // ---- bytes ------------------------------------------------------------------------------------------------------
 
   void check_encoding() {
-    if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
-      throw InputError(error::not_text, {.file = file_}, "The file is UTF-16, not UTF-8.",
+    const std::string_view text = source_.text;
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+      throw InputError(error::not_text, {.file = source_.file}, "The file is UTF-16, not UTF-8.",
                        "save it as UTF-8; spreadsheets call that \"CSV UTF-8\".");
     }
-    const auto bad = std::min(first_invalid_utf8(text_), text_.find('\0'));
+    const auto bad = std::min(first_invalid_utf8(text), text.find('\0'));
     if (bad != std::string_view::npos) {
-      const auto begin = bad == 0 ? 0 : text_.rfind('\n', bad - 1) + 1;  // npos + 1 is 0
-      const Line line = line_at(text_, begin);
+      const auto begin = bad == 0 ? 0 : text.rfind('\n', bad - 1) + 1;  // npos + 1 is 0
+      const Line line = source_.line_at(begin);
       throw InputError(
-          error::not_text, place_of(line, {.text = text_.substr(bad, 1), .offset = bad - begin}),
-          fmt::format("The byte 16#{:02X} belongs to no text in UTF-8.", static_cast<unsigned char>(text_[bad])),
+          error::not_text, source_.place_of(line, {.text = text.substr(bad, 1), .offset = bad - begin}),
+          fmt::format("The byte 16#{:02X} belongs to no text in UTF-8.", static_cast<unsigned char>(text[bad])),
           "save the file as UTF-8, or write the header without accents, µ and °.");
     }
-    if (text_.starts_with("\xEF\xBB\xBF")) {
-      text_.remove_prefix(3);
+    if (text.starts_with("\xEF\xBB\xBF")) {
+      source_.text.erase(0, 3);
     }
   }
 
@@ -114,15 +76,16 @@ class Reader {
   void read_header() {
     bool comments = false;
     do {
-      header_ = line_at(text_, header_.next);
+      header_ = source_.line_at(header_.next);
       comments = comments || is_comment(header_.text);
-    } while (header_.next < text_.size() && (is_blank(header_.text, ',') || is_comment(header_.text)));
+    } while (header_.next < source_.text.size() && (is_blank(header_.text, ',') || is_comment(header_.text)));
     if (is_blank(header_.text, ',') || is_comment(header_.text)) {
-      throw InputError(error::record_too_short, {.file = file_}, "The file holds no header and no rows.",
+      throw InputError(error::record_too_short, {.file = source_.file}, "The file holds no header and no rows.",
                        "write a header row, such as t,u,y, and one row of numbers for each sample.");
     }
-    separator_ = separator_of(header_.text);
-    cut_line(header_.text, separator_, cells_);
+    source_.header = header_.offset;
+    source_.separator = separator_of(header_.text);
+    cut_line(header_.text, source_.separator, cells_);
     for (const Cell& cell : cells_) {
       take_name(cell, comments);
     }
@@ -136,12 +99,12 @@ class Reader {
       if (time_like != columns_.end()) {
         mend = fmt::format("give the column {} the name t, with the time in seconds.", time_like->name);
       }
-      throw InputError(error::missing_column, place_of(header_), "There is no column t.", mend);
+      throw InputError(error::missing_column, source_.place_of(header_), "There is no column t.", mend);
     }
   }
 
   void take_name(const Cell& cell, bool after_comments) {
-    const auto place = place_of(header_, cell);
+    const auto place = source_.place_of(header_, cell);
     auto [name, unit] = split_header(cell.text);
     std::string as_number(cell.text);
     std::replace(as_number.begin(), as_number.end(), ',', '.');
@@ -186,44 +149,44 @@ class Reader {
   // ---- rows -------------------------------------------------------------------------------------------------------
 
   void read_rows() {
-    const auto rest = text_.substr(header_.next);
+    const auto rest = std::string_view(source_.text).substr(header_.next);
     const auto rows = static_cast<std::size_t>(std::count(rest.begin(), rest.end(), '\n')) + 1;
     for (Column& column : columns_) {
       column.values.reserve(rows);
     }
-    row_offsets_.reserve(rows);
+    source_.rows.reserve(rows);
     std::optional<Line> blank;
-    for (std::size_t at = header_.next; at < text_.size() && !enough_errors();) {
-      const Line line = line_at(text_, at);
+    for (std::size_t at = header_.next; at < source_.text.size() && !enough_errors();) {
+      const Line line = source_.line_at(at);
       at = line.next;
       if (is_comment(line.text)) {
         continue;
       }
-      if (is_blank(line.text, separator_)) {
+      if (is_blank(line.text, source_.separator)) {
         blank = blank ? blank : line;
         continue;
       }
       if (blank) {
-        diagnostics_.error(error::ragged_row, place_of(*blank), "There is a blank row between rows of numbers.",
+        diagnostics_.error(error::ragged_row, source_.place_of(*blank), "There is a blank row between rows of numbers.",
                            "remove the row, if no sample is missing there.");
         blank.reset();
       }
       read_row(line);
     }
     stop_on_errors();
-    if (row_offsets_.size() < 2) {
+    if (source_.rows.size() < 2) {
       throw InputError(
-          error::record_too_short, place_of(header_),
-          fmt::format("The record has {}; the sample time needs two.", row_offsets_.empty() ? "no rows" : "one row"),
+          error::record_too_short, source_.place_of(header_),
+          fmt::format("The record has {}; the sample time needs two.", source_.rows.empty() ? "no rows" : "one row"),
           "record at least two rows.");
     }
   }
 
   void read_row(const Line& line) {
-    cut_line(line.text, separator_, cells_);
+    cut_line(line.text, source_.separator, cells_);
     if (cells_.size() != columns_.size()) {
-      const bool decimal_commas = separator_ == ',' && cells_.size() == 2 * columns_.size();
-      diagnostics_.error(error::ragged_row, place_of(line),
+      const bool decimal_commas = source_.separator == ',' && cells_.size() == 2 * columns_.size();
+      diagnostics_.error(error::ragged_row, source_.place_of(line),
                          fmt::format("The row has {} where the header names {}.", counted(cells_.size(), "cell"),
                                      counted(columns_.size(), "column")),
                          decimal_commas
@@ -231,7 +194,7 @@ class Reader {
                              : "write one number for each column of the header, and no separator at the end.");
       return;
     }
-    row_offsets_.push_back(line.offset);
+    source_.rows.push_back(line.offset);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       columns_[i].values.push_back(number_in(line, cells_[i], columns_[i].name, i == time_column_));
     }
@@ -245,7 +208,7 @@ class Reader {
         (text.find(',', comma + 1) != std::string_view::npos || text.find('.') != std::string_view::npos)) {
       if (std::all_of(text.begin(), text.end(),
                       [](char c) { return std::string_view("0123456789.,+-").find(c) != std::string_view::npos; })) {
-        diagnostics_.error(error::ambiguous_decimal_mark, place_of(line, cell),
+        diagnostics_.error(error::ambiguous_decimal_mark, source_.place_of(line, cell),
                            fmt::format("{} has more than one decimal mark.", text),
                            "write numbers without separators between thousands.");
         return 0.0;
@@ -284,16 +247,16 @@ class Reader {
     }
     seen = std::pair(line, cell);
     if (other) {
-      diagnostics_.error(error::ambiguous_decimal_mark, place_of(line, cell),
+      diagnostics_.error(error::ambiguous_decimal_mark, source_.place_of(line, cell),
                          fmt::format("{} has a decimal {}, an earlier number has a decimal {}.", cell.text,
                                      comma ? "comma" : "point", comma ? "point" : "comma"),
                          "write all numbers with the same decimal mark, and without separators between thousands.",
-                         {{.place = place_of(other->first, other->second), .text = "the earlier number"}});
+                         {{.place = source_.place_of(other->first, other->second), .text = "the earlier number"}});
     }
   }
 
   void refuse_number(const Line& line, const Cell& cell, const std::string& column, NumberStatus status) {
-    const Place place = place_of(line, cell);
+    const Place place = source_.place_of(line, cell);
     switch (status) {
       case NumberStatus::NotFinite:
         diagnostics_.error(error::number_not_finite, place,
@@ -327,16 +290,18 @@ class Reader {
     if (grid.fault) {
       refuse_time(*grid.fault, time);
     }
-    return {std::move(time), grid.sample_time, std::move(columns_), place_of(header_)};
+    const Place header = source_.place_of(header_);
+    return {std::move(time), grid.sample_time, std::move(columns_), header,
+            std::make_shared<const SourceText>(std::move(source_))};
   }
 
   [[noreturn]] void refuse_time(const TimeFault& fault, const std::vector<double>& time) {
     const auto seconds = [](double value) { return fmt::format("{:.6g} s", value); };
     Diagnostics list;
-    const std::vector<Note> before{{.place = place_of_time(fault.row - 1), .text = "the row before"}};
+    const std::vector<Note> before{{.place = source_.place("t", fault.row - 1), .text = "the row before"}};
     if (fault.reversed) {
       const bool same = time[fault.row] == time[fault.row - 1];
-      list.error(error::reversed_time, place_of_time(fault.row),
+      list.error(error::reversed_time, source_.place("t", fault.row),
                  same ? fmt::format("The time {} stands in two rows.", seconds(time[fault.row]))
                       : fmt::format("The time runs back, from {} to {}.", seconds(time[fault.row - 1]),
                                     seconds(time[fault.row])),
@@ -352,23 +317,20 @@ class Reader {
         mend += " The times are printed coarsely: more digits may mend it.";
       }
       list.error(
-          error::uneven_time, place_of_time(fault.row),
+          error::uneven_time, source_.place("t", fault.row),
           fmt::format("The time goes on by {} here, elsewhere by {}.", seconds(fault.step), seconds(fault.usual)), mend,
           before);
     }
     throw InputError(list);
   }
 
-  const std::string& file_;
-  std::string_view text_;
+  SourceText source_;
   Diagnostics diagnostics_;
-  char separator_ = ',';
   Line header_{};
   std::vector<Cell> cells_;
   std::vector<Column> columns_;  ///< the time among them, until the record is made
   bool has_time_ = false;
   std::size_t time_column_ = 0;
-  std::vector<std::size_t> row_offsets_;
   std::array<char, 64> point_{};
   std::optional<std::pair<Line, Cell>> comma_seen_;
   std::optional<std::pair<Line, Cell>> point_seen_;
@@ -377,8 +339,8 @@ class Reader {
 
 }  // namespace
 
-Record parse_csv(const std::string& file, std::string_view text) {
-  return Reader(file, text).read();
+Record parse_csv(const std::string& file, std::string text) {
+  return Reader(file, std::move(text)).read();
 }
 
 Record read_csv(const std::string& path) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "records/source_text.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -24,8 +25,9 @@ Record Record::even(double start, double sample_time, std::size_t rows) {
   return {std::move(time), sample_time, {}, {}};
 }
 
-Record::Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header)
-    : time_(std::move(time)), sample_time_(sample_time), header_(std::move(header)) {
+Record::Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header,
+               std::shared_ptr<const SourceText> source)
+    : time_(std::move(time)), sample_time_(sample_time), header_(std::move(header)), source_(std::move(source)) {
   columns_.reserve(columns.size());
   for (Column& column : columns) {
     add(std::move(column));
@@ -60,6 +62,10 @@ const Column& Record::column(std::string_view name) const {
                                 : fmt::format("if {} is meant, give it the name {}.", near, name));
 }
 
+Place Record::place(std::string_view column, std::size_t row) const {
+  return source_ == nullptr ? Place{.file = file()} : source_->place(column, first_row_ + row);
+}
+
 void Record::add(Column column) {
   if (column.values.size() != size()) {
     throw std::invalid_argument(
@@ -80,7 +86,8 @@ Record Record::slice(RowRange rows) const {
     return std::vector<double>(begin + static_cast<std::ptrdiff_t>(rows.first),
                                begin + static_cast<std::ptrdiff_t>(rows.last));
   };
-  Record result(cut(time_), sample_time_, {}, header_);
+  Record result(cut(time_), sample_time_, {}, header_, source_);
+  result.first_row_ = first_row_ + rows.first;
   for (const Column& column : columns_) {
     result.add({column.name, column.unit, cut(column.values)});
   }

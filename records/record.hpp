@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "support/diagnostic.hpp"
 
 namespace hysteron::records {
+
+struct SourceText;
 
 struct Column {
   std::string name{};
@@ -30,8 +33,10 @@ class Record {
   /// A record without columns, at times start, start + sample_time, … The sample time is in seconds, above 0.
   static Record even(double start, double sample_time, std::size_t rows);
 
-  /// A record read from a file. `header` is the place of its header row, for errors about missing columns.
-  Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header);
+  /// A record read from a file. `header` is the place of its header row, for errors about missing columns; `source`
+  /// is the text, for errors about its numbers.
+  Record(std::vector<double> time, double sample_time, std::vector<Column> columns, Place header,
+         std::shared_ptr<const SourceText> source = nullptr);
 
   [[nodiscard]] std::size_t size() const { return time_.size(); }
   /// In seconds. Estimated from the whole record; the times themselves may be rounded.
@@ -47,6 +52,9 @@ class Record {
   [[nodiscard]] const Column* find(std::string_view name) const;
   /// Throws InputError HY502, which names the columns there are, where there is no such column.
   [[nodiscard]] const Column& column(std::string_view name) const;
+
+  /// Where the number of a column and row stands in the file; the file as a whole where that is not known.
+  [[nodiscard]] Place place(std::string_view column, std::size_t row) const;
 
   /// Appends a column of as many values as there are rows. Throws std::invalid_argument on another number of values
   /// and on a name that is empty, taken or `t`.
@@ -64,6 +72,8 @@ class Record {
   double sample_time_;
   std::vector<Column> columns_;
   Place header_;
+  std::shared_ptr<const SourceText> source_;
+  std::size_t first_row_ = 0;  ///< in the source
 };
 
 }  // namespace hysteron::records

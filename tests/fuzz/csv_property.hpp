@@ -53,7 +53,7 @@ inline std::string flaw_of_record(const records::Record& record) {
 
 inline ReadingOutcome read_as_record(std::string_view text) {
   try {
-    return {.accepted = true, .flaw = flaw_of_record(records::parse_csv("text", text))};
+    return {.accepted = true, .flaw = flaw_of_record(records::parse_csv("text", std::string(text)))};
   } catch (const InputError& refused) {
     return {.accepted = false, .flaw = flaw_of_refusal(refused, text, "text", 5)};
   }

@@ -39,7 +39,7 @@ TEST(CsvReader, TheSameInEveryFormThatIsTolerated) {
            "U,T,Y\n1.5,0,10\n-2.25,0.5,20\n3,1,30\n",  // t anywhere, capitals
        }) {
     SCOPED_TRACE(text);
-    const Record record = parse_csv("log.csv", text);
+    const Record record = parse_csv("log.csv", std::string(text));
     EXPECT_EQ(record.size(), 3U);
     EXPECT_THAT(record.time(), ElementsAre(0.0, 0.5, 1.0));
     EXPECT_THAT(record.column("u").values, ElementsAre(1.5, -2.25, 3.0));

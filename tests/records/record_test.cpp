@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <bit>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "records/csv.hpp"
 #include "support/errors.hpp"
@@ -47,6 +50,23 @@ TEST(Record, AMissingColumnNamesThoseThereAre) {
     EXPECT_EQ(said.cause, "There is no column postion; the columns are t, ref, position.");
     EXPECT_EQ(said.mend, "if position is meant, give it the name postion.");
   }
+}
+
+TEST(Record, KnowsWhereItsNumbersStand) {
+  const auto at = [](const Record& record, std::string_view column, std::size_t row) {
+    const Place place = record.place(column, row);
+    return std::vector<std::uint32_t>{place.line, place.column, place.length};
+  };
+  const auto record =
+      parse_csv("log.csv", "\xEF\xBB\xBF# log\r\nt;u [V];\"y\"\r\n0; 1,5;20\r\n# µ\r\n1;25 ;\"30\"\r\n2;5;6");
+  EXPECT_EQ(record.place("u", 0).file, "log.csv");
+  EXPECT_THAT(at(record, "U", 0), ElementsAre(3, 4, 3));
+  EXPECT_THAT(at(record, "u", 1), ElementsAre(5, 3, 2));
+  EXPECT_THAT(at(record, "Y", 1), ElementsAre(5, 8, 2));
+  EXPECT_THAT(at(record, "t", 2), ElementsAre(6, 1, 1));
+  EXPECT_THAT(at(record.slice({1, 3}), "y", 1), ElementsAre(6, 5, 1));
+  EXPECT_THAT(at(record, "added", 2), ElementsAre(6, 1, 5)) << "the row, where the file has no such column";
+  EXPECT_EQ(sample().place("u", 3).line, 0U) << "a record that was not read from a file";
 }
 
 TEST(Record, RefusesColumnsThatDoNotFit) {

@@ -13,7 +13,7 @@ namespace hysteron::records {
 
 inline Diagnostics refusals_of(std::string_view csv) {
   try {
-    (void)parse_csv("log.csv", csv);
+    (void)parse_csv("log.csv", std::string(csv));
   } catch (const InputError& refused) {
     return refused.diagnostics();
   }

@@ -38,8 +38,7 @@ struct HysteresisRo {
       return std::tuple{
           HY_FIELD(C1).in("'y/'x").above(0.0).otherwise(1.0).means(
               "slope at a branching point; above 0, so that the loop rises throughout"),
-          HY_FIELD(C2).at_least(0.0).otherwise(0.0).means(
-              "growth of the slope; C1's unit over XIN's unit to the power C3"),
+          HY_FIELD(C2).in("'y/'x^(1+C3)").at_least(0.0).otherwise(0.0).means("growth of the slope"),
           HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
           HY_FIELD(EPS)
               .in("'x")

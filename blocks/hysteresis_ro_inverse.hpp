@@ -35,8 +35,7 @@ struct HysteresisRoInverse {
     static constexpr auto fields() {
       return std::tuple{
           HY_FIELD(C1).in("'x/'y").above(0.0).otherwise(1.0).means("slope of the loop at a branching point"),
-          HY_FIELD(C2).at_least(0.0).otherwise(0.0).means(
-              "growth of the slope; C1's unit over XOUT's unit to the power C3"),
+          HY_FIELD(C2).in("'x/'y^(1+C3)").at_least(0.0).otherwise(0.0).means("growth of the slope"),
           HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
           HY_FIELD(EPS)
               .in("'x")

@@ -30,7 +30,7 @@ struct MemSlopeParams {
   static constexpr auto fields() {
     return std::tuple{HY_FIELD(C1).in("'y/'u").above(0.0).otherwise(1.0).means(
                           "slope at a branching point, M(0); above 0, so that an inverse exists there"),
-                      HY_FIELD(C2).otherwise(0.0).means("growth of the slope; C1's unit over P's unit to the power C3"),
+                      HY_FIELD(C2).in("'y/'u/'p^C3").otherwise(0.0).means("growth of the slope"),
                       HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum")};
   }
 };

@@ -28,11 +28,10 @@ struct MemInverse {
     Int<S> G;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(C1).in("'x/'y").above(0.0).otherwise(1.0).means("gain of the element at momentum 0"),
-          HY_FIELD(C2).otherwise(0.0).means("growth of the gain; C1's unit over P's unit to the power C3"),
-          HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
-          HY_FIELD(G).within(0.0, 1.0).otherwise(1.0).means("0: g(u) = |u|; 1: g(u) = u")};
+      return std::tuple{HY_FIELD(C1).in("'x/'y").above(0.0).otherwise(1.0).means("gain of the element at momentum 0"),
+                        HY_FIELD(C2).in("'x/'y/('y*s)^C3").otherwise(0.0).means("growth of the gain"),
+                        HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
+                        HY_FIELD(G).within(0.0, 1.0).otherwise(1.0).means("0: g(u) = |u|; 1: g(u) = u")};
     }
   };
   template <class S>

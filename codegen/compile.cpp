@@ -46,7 +46,7 @@ struct Checked {
   std::vector<Program> programs;  ///< beside definitions.list
 };
 
-Checked check_all(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
+Checked check_all(std::shared_ptr<const language::SourceFile> source, bool keep_names, Diagnostics& diagnostics) {
   Checked result{.definitions = define(std::move(source), diagnostics), .programs = {}};
   Definitions& definitions = result.definitions;
   result.programs.resize(definitions.list.size());
@@ -55,7 +55,7 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, Diagnostic
     Program& program = result.programs[index];
     Diagnostics own;
     if (definition.usable) {
-      program.graph = elaborate(definitions, index, own);
+      program.graph = elaborate(definitions, index, own, keep_names);
       if (!own.has_errors() && !blocks_work(diagnostics)) {
         program.schedule = schedule(program.graph, own);
       }
@@ -79,9 +79,8 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, Diagnostic
   return result;
 }
 
-/// The block to be run: the named one, or the only one that no other contains.
-std::int64_t find_top(const Definitions& definitions, const std::string& wanted, Diagnostics& diagnostics) {
-  const auto& source = *definitions.source;
+/// By definition, whether another one contains it.
+std::vector<bool> find_contained(const Definitions& definitions) {
   std::vector<bool> contained(definitions.list.size(), false);
   for (const Definition& definition : definitions.list) {
     for (const Declared& declared : definition.variables) {
@@ -90,6 +89,25 @@ std::int64_t find_top(const Definitions& definitions, const std::string& wanted,
       }
     }
   }
+  return contained;
+}
+
+/// A top block meets records, in which t is the time.
+void warn_of_time(const Definitions& definitions, std::size_t top, Diagnostics& diagnostics) {
+  for (const Declared& declared : definitions.list[top].variables) {
+    const bool port = declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Output;
+    if (port && language::same_name(declared.field.name, "T")) {
+      diagnostics.warning(error::port_named_as_time, definitions.source->place(declared.variable->name.span),
+                          fmt::format("'{}' is also the name of the time in a record", declared.field.name),
+                          "Choose another name: no record can hold this signal.");
+    }
+  }
+}
+
+/// The block to be run: the named one, or the only one that no other contains.
+std::int64_t find_top(const Definitions& definitions, const std::string& wanted, Diagnostics& diagnostics) {
+  const auto& source = *definitions.source;
+  const std::vector<bool> contained = find_contained(definitions);
   std::vector<std::string> names;
   std::int64_t top = -1;
   for (std::size_t i = 0; i < definitions.list.size(); ++i) {
@@ -119,15 +137,24 @@ std::int64_t find_top(const Definitions& definitions, const std::string& wanted,
 
 void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
   Diagnostics found;
-  check_all(std::move(source), found);
+  const Checked checked = check_all(std::move(source), false, found);
+  const std::vector<bool> contained = find_contained(checked.definitions);
+  for (std::size_t i = 0; i < contained.size(); ++i) {
+    if (!contained[i]) {
+      warn_of_time(checked.definitions, i, found);
+    }
+  }
   tidy_up(found, false, diagnostics);
 }
 
 Program compile(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
                 Diagnostics& diagnostics) {
   Diagnostics found;
-  Checked checked = check_all(std::move(source), found);
+  Checked checked = check_all(std::move(source), options.keep_names, found);
   const std::int64_t top = find_top(checked.definitions, options.top, found);
+  if (top >= 0) {
+    warn_of_time(checked.definitions, static_cast<std::size_t>(top), found);
+  }
   tidy_up(found, options.any_order, diagnostics);
   return top < 0 ? Program{} : std::move(checked.programs[static_cast<std::size_t>(top)]);
 }
@@ -171,7 +198,7 @@ std::string format_text(std::string path, std::string text, Diagnostics& diagnos
   }
   const auto source = std::make_shared<const language::SourceFile>(std::move(parsed));
   Diagnostics found;
-  const Checked checked = check_all(source, found);
+  const Checked checked = check_all(source, false, found);
   language::StatementOrders orders(source->blocks.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (!blocks_work(found)) {

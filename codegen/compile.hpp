@@ -19,8 +19,9 @@ struct Program {
 };
 
 struct CompileOptions {
-  std::string top{};       ///< which FUNCTION_BLOCK; empty: the only one that no other contains
-  bool any_order = false;  ///< statements may stand in any order: HY402 becomes a warning
+  std::string top{};        ///< which FUNCTION_BLOCK; empty: the only one that no other contains
+  bool any_order = false;   ///< statements may stand in any order: HY402 becomes a warning
+  bool keep_names = false;  ///< Graph::named is filled, which costs time and memory
 };
 
 /// Checks every block of a file. All diagnostics, sorted by place, each once.

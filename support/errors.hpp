@@ -58,6 +58,7 @@ inline constexpr int unknown_function = 212;
 inline constexpr int recursive_block = 213;
 inline constexpr int parameter_out_of_range = 214;
 inline constexpr int ambiguous_top = 215;
+inline constexpr int port_named_as_time = 216;
 inline constexpr int unit_mismatch = 301;
 inline constexpr int unknown_unit = 302;
 inline constexpr int algebraic_loop = 401;
@@ -65,6 +66,7 @@ inline constexpr int hidden_delay = 402;
 inline constexpr int rate_mismatch = 403;
 inline constexpr int missing_sample_time = 404;
 inline constexpr int read_after_call = 405;
+inline constexpr int rates_too_far_apart = 406;
 inline constexpr int record_too_short = 501;
 inline constexpr int missing_column = 502;
 inline constexpr int duplicate_column = 503;
@@ -157,6 +159,7 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::recursive_block, "Block that contains itself"},
     ErrorTitle{error::parameter_out_of_range, "Parameter out of its range"},
     ErrorTitle{error::ambiguous_top, "No single top block"},
+    ErrorTitle{error::port_named_as_time, "Port named as the time"},
     ErrorTitle{error::unit_mismatch, "Units do not match"},
     ErrorTitle{error::unknown_unit, "Unknown unit"},
     ErrorTitle{error::algebraic_loop, "Algebraic loop"},
@@ -164,6 +167,7 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::rate_mismatch, "Wire between two rates"},
     ErrorTitle{error::missing_sample_time, "No sample time"},
     ErrorTitle{error::read_after_call, "Delayed output read after its call"},
+    ErrorTitle{error::rates_too_far_apart, "Rates without a usable common period"},
     ErrorTitle{error::record_too_short, "Record with too few rows"},
     ErrorTitle{error::missing_column, "Missing column"},
     ErrorTitle{error::duplicate_column, "Column named twice"},

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "codegen/parameters/apply.hpp"
 #include "support/errors.hpp"
@@ -22,11 +23,25 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram) {
 }
 
 Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {
-  Program program = compile_file(options.file, {.top = options.top, .any_order = options.any_order}, warnings);
+  Program program = compile_file(
+      options.file, {.top = options.top, .any_order = options.any_order, .keep_names = options.keep_names}, warnings);
   if (!options.parameters.empty()) {
     parameters::apply(parameters::read_parameter_file(options.parameters), program.graph);
   }
   return program;
+}
+
+void refuse_ports_named_as_time(const Diagnostics& warnings) {
+  Diagnostics errors;
+  for (Diagnostic one : warnings.all()) {
+    if (one.number == error::port_named_as_time) {
+      one.severity = Severity::Error;
+      errors.add(std::move(one));
+    }
+  }
+  if (errors.has_errors()) {
+    throw InputError(std::move(errors));
+  }
 }
 
 void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs) {

@@ -18,6 +18,7 @@ struct DiagramOptions {
   std::string parameters{};
   bool any_order = false;
   bool float32 = false;
+  bool keep_names = false;  ///< see CompileOptions
 };
 
 /// The options --top, --params, --any-order and --float32, and the file itself. The structure must outlive the parse.
@@ -25,6 +26,9 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram);
 
 /// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
 [[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
+
+/// Refuses a diagram with a port that no record can hold: throws InputError where HY216 is among its warnings.
+void refuse_ports_named_as_time(const Diagnostics& warnings);
 
 /// Refuses an output that is one of the inputs, under whatever name. Throws InputError HY709. Empty names are ignored.
 void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs);

@@ -26,6 +26,7 @@ constexpr std::string_view examples = R"(Examples:
   hysteron run feedforward.st --in reference.csv --out voltage.csv
   hysteron run feedforward.st --in reference.csv --out voltage.csv --params tuned.toml --summary
   hysteron run feedforward.st --in reference.csv --out voltage.csv --trace INV.XOUT --trace BRANCH.Q
+  hysteron run loop.st --in reference.csv --out voltage.csv --trace ERROR --trace PLANT.HYST.XOUT
   hysteron run feedforward.st --in - --out - < reference.csv | head
 
 The columns of the record are matched to the inputs by name, without regard to case; t is in seconds, and its step is
@@ -43,9 +44,12 @@ struct Options {
   bool summary = false;
 };
 
-/// The outputs of the instances, as INSTANCE.PIN.
+/// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
 std::vector<std::string> signal_names(const Graph& graph) {
   std::vector<std::string> names;
+  for (const NamedWire& named : graph.named) {
+    names.push_back(named.path);
+  }
   for (const Node& node : graph.nodes) {
     for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
       names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
@@ -55,6 +59,11 @@ std::vector<std::string> signal_names(const Graph& graph) {
 }
 
 Wire find_signal(const Graph& graph, const std::string& path) {
+  for (const NamedWire& named : graph.named) {
+    if (equal_ignoring_case(named.path, path)) {
+      return named.wire;
+    }
+  }
   const auto dot = path.rfind('.');
   for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
     const Node& node = graph.nodes[index];
@@ -69,14 +78,11 @@ Wire find_signal(const Graph& graph, const std::string& path) {
   }
   const auto names = signal_names(graph);
   const auto near = nearest_name(path, names);
-  std::string mend = "name an output of an instance, as in INSTANCE.XOUT; the diagram has no instances.";
-  if (!near.empty()) {
-    mend = fmt::format("did you mean {}?", near);
-  } else if (!names.empty()) {
-    mend = fmt::format("name an output of an instance of a library block, such as {}.", names.front());
-  }
   throw InputError(error::unknown_signal, {.file = graph.source->path},
-                   fmt::format("{} has no signal {}.", graph.name, path), std::move(mend));
+                   fmt::format("{} has no signal {}.", graph.name, path),
+                   near.empty() ? "name a variable, an output of an instance, as INSTANCE.XOUT, or either inside a "
+                                  "nested block, as PLANT.HYST.XOUT."
+                                : fmt::format("did you mean {}?", near));
 }
 
 std::string column_summary(const std::string& name, const std::string& unit, const Signal& values,
@@ -132,6 +138,7 @@ int run(const Options& options, Console& console) {
                       {options.input, options.diagram.file, options.diagram.parameters});
   Diagnostics diagnostics;
   Program program = load_diagram(options.diagram, diagnostics);
+  refuse_ports_named_as_time(diagnostics);
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
   const records::Record record = records::parse_csv(options.input, log);
@@ -145,7 +152,8 @@ int run(const Options& options, Console& console) {
   std::vector<Wire> watched = output_wires(program.graph);
   for (const std::string& path : options.traces) {
     watched.push_back(find_signal(program.graph, path));
-    names.push_back(in_capitals(path));
+    // A variable T would stand in a second column t.
+    names.push_back(equal_ignoring_case(path, "t") ? in_capitals(program.graph.name + "." + path) : in_capitals(path));
   }
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
@@ -180,13 +188,17 @@ Action add_run(CLI::App& app) {
   app.add_option("--out", options->output, "The record of the outputs; - for the standard output.")
       ->required()
       ->option_text("OUT.csv");
-  app.add_option("--trace", options->traces, "Writes the output of an instance too, as INSTANCE.PIN; may be repeated.")
+  app.add_option("--trace", options->traces,
+                 "Writes a signal inside too: a variable, INSTANCE.PIN, or PLANT.INSTANCE.PIN; may be repeated.")
       ->option_text("PATH")
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(examples));
-  return [options](Console& console) { return run(*options, console); };
+  return [options](Console& console) {
+    options->diagram.keep_names = !options->traces.empty();
+    return run(*options, console);
+  };
 }
 
 }  // namespace hysteron::tool

@@ -28,7 +28,7 @@ void check_values(const Port& input, const Signal& values, const records::Record
   double farthest = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (const auto fault = type_fault(input.type, values[k]); !fault.empty()) {
-      diagnostics.error(error::unfit_value, {.file = record.file()},
+      diagnostics.error(error::unfit_value, record.place(input.name, k),
                         fmt::format("The column {} is {} at t = {} s, but the input {}.", input.name,
                                     number_text(values[k]), number_text(record.time()[k]), fault),
                         "correct the record, or declare the input as LREAL.");
@@ -46,7 +46,7 @@ void check_values(const Port& input, const Signal& values, const records::Record
   }
   if (outside > 0) {
     diagnostics.warning(
-        error::input_out_of_range, {.file = record.file()},
+        error::input_out_of_range, record.place(input.name, first),
         fmt::format(
             "The column {} leaves the range of the input, {} to {}: {}, the first at t = {} s, the farthest {}.",
             input.name, number_text(input.minimum), number_text(input.maximum), number_of_values(outside),

@@ -90,10 +90,11 @@ void Elaborator::elaborate(const Instance& instance) {
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     close(instance, i, parts[i]);
     note_unit(instance, i);
+    note_name(instance, i);
   }
 }
 
-// A variable of the text leaves no trace in the graph but its unit.
+// A variable of the text leaves no trace in the graph but its unit, and its name where that is asked for.
 void Elaborator::note_unit(const Instance& instance, std::size_t variable) {
   const Declared& declared = instance.definition->variables[variable];
   // What is inside a nested block is checked where the block is elaborated by itself; here, what crosses its border.
@@ -105,11 +106,33 @@ void Elaborator::note_unit(const Instance& instance, std::size_t variable) {
   }
 }
 
+void Elaborator::note_name(const Instance& instance, std::size_t variable) {
+  const Declared& declared = instance.definition->variables[variable];
+  const bool nested_output = declared.kind == Declared::Kind::Output && !instance.top;
+  if (keep_names_ &&
+      (declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Local || nested_output)) {
+    graph_.named.push_back(
+        {.path = instance.path + std::string(declared.field.name),
+         .wire = alias(instance.first_slot + static_cast<std::uint32_t>(variable), declared.field.type)});
+  }
+}
+
+Rate Elaborator::rate_within(Rate outer, const Declared& declared) {
+  const std::uint64_t every = std::uint64_t{outer.every} * declared.rate.every;
+  if (every > longest_common_period) {
+    error(error::rates_too_far_apart, declared.variable->name.span,
+          fmt::format("'{}' would run every {} steps, but a counter of steps holds {} at most", declared.field.name,
+                      every, longest_common_period),
+          "Run the block that contains it, or the instance itself, more often.");
+    return declared.rate;
+  }
+  return {static_cast<std::uint32_t>(every), outer.phase + outer.every * declared.rate.phase};
+}
+
 void Elaborator::instantiate(const Instance& instance, std::size_t variable, Part& part) {
   const Declared& declared = instance.definition->variables[variable];
   Slot& slot = slots_[instance.first_slot + variable];
-  const Rate rate{instance.rate.every * declared.rate.every,
-                  instance.rate.phase + instance.rate.every * declared.rate.phase};
+  const Rate rate = rate_within(instance.rate, declared);
   const std::string path = instance.path + std::string(declared.field.name);
   switch (declared.kind) {
     case Declared::Kind::Constant:
@@ -360,8 +383,8 @@ void Elaborator::check_called(const Declared& declared, const Part& part) {
   }
 }
 
-Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics) {
-  return Elaborator(definitions, diagnostics).run(top);
+Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics, bool keep_names) {
+  return Elaborator(definitions, diagnostics, keep_names).run(top);
 }
 
 }  // namespace hysteron

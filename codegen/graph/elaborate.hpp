@@ -8,7 +8,7 @@ namespace hysteron {
 
 /// Instantiates a definition and, within it, all that it contains. Reports what is wrong with its statements: unknown
 /// names and pins, types, double drive, unconnected inputs, rates, and reads that come before the call. The graph is
-/// sound only where no error was reported.
-Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics);
+/// sound only where no error was reported. `keep_names` fills Graph::named.
+Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics, bool keep_names = false);
 
 }  // namespace hysteron

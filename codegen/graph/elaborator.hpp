@@ -43,8 +43,12 @@ struct Pin {
 
 class Elaborator {
  public:
-  Elaborator(const Definitions& definitions, Diagnostics& diagnostics)
-      : definitions_(definitions), source_(*definitions.source), diagnostics_(diagnostics), builder_(graph_) {
+  Elaborator(const Definitions& definitions, Diagnostics& diagnostics, bool keep_names)
+      : definitions_(definitions),
+        source_(*definitions.source),
+        keep_names_(keep_names),
+        diagnostics_(diagnostics),
+        builder_(graph_) {
     graph_.source = definitions.source;
   }
   Graph run(std::uint32_t top);
@@ -59,6 +63,8 @@ class Elaborator {
   Wire open_parameter(const std::string& path, const Declared& declared, double value);
   void elaborate(const Instance& instance);
   void note_unit(const Instance& instance, std::size_t variable);
+  void note_name(const Instance& instance, std::size_t variable);
+  Rate rate_within(Rate outer, const Declared& declared);
   void instantiate(const Instance& instance, std::size_t variable, Part& part);
   // `INV : HY_M_INVERSE := (C1 := 0.05)`: constants, given once.
   void apply_settings(const Instance& instance, const Declared& declared, Part& part);
@@ -85,6 +91,7 @@ class Elaborator {
 
   const Definitions& definitions_;
   const language::SourceFile& source_;
+  bool keep_names_;
   Diagnostics& diagnostics_;
   Graph graph_;
   GraphBuilder builder_;

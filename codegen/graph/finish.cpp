@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -46,17 +48,11 @@ class Finisher {
       : graph_(graph), slots_(slots), parameters_(parameters), diagnostics_(diagnostics) {}
 
   void run() {
-    for (Wire& wire : graph_.wires) {
-      wire = follow(wire);
-    }
-    for (Port& output : graph_.outputs) {
-      output.wire = follow(output.wire);
-    }
     for (Port& inner : graph_.inner) {
       const language::Span driven = slots_[inner.wire.index].span;
       inner.span = driven.length > 0 ? driven : inner.span;
-      inner.wire = follow(inner.wire);
     }
+    for_each_wire([&](Wire& wire) { wire = follow(wire); });
     std::erase_if(graph_.inner, [](const Port& inner) { return inner.wire.from == Wire::From::Literal; });
     sort_nodes();
     sort_parameters();
@@ -64,6 +60,20 @@ class Finisher {
   }
 
  private:
+  template <class Function>
+  void for_each_wire(Function function) {
+    std::ranges::for_each(graph_.wires, function);
+    for (Port& output : graph_.outputs) {
+      function(output.wire);
+    }
+    for (Port& inner : graph_.inner) {
+      function(inner.wire);
+    }
+    for (NamedWire& named : graph_.named) {
+      function(named.wire);
+    }
+  }
+
   Wire follow(Wire wire) {
     std::size_t steps = 0;
     while (wire.from == Wire::From::Alias) {
@@ -99,20 +109,13 @@ class Finisher {
       node.first_wire = first;
       nodes.push_back(std::move(node));
     }
-    const auto remap = [&](Wire& wire) {
+    graph_.nodes = std::move(nodes);
+    graph_.wires = std::move(wires);
+    for_each_wire([&](Wire& wire) {
       if (wire.from == Wire::From::Node) {
         wire.index = moved_to[wire.index];
       }
-    };
-    std::ranges::for_each(wires, remap);
-    for (Port& output : graph_.outputs) {
-      remap(output.wire);
-    }
-    for (Port& inner : graph_.inner) {
-      remap(inner.wire);
-    }
-    graph_.nodes = std::move(nodes);
-    graph_.wires = std::move(wires);
+    });
     graph_.wire_spans = std::move(spans);
     canonical_literals();
   }
@@ -120,16 +123,12 @@ class Finisher {
   // Literals in the order of the wires that use them, so that nothing remembers the order of the text.
   void canonical_literals() {
     std::vector<double> literals;
-    const auto renumber = [&](Wire& wire) {
+    for_each_wire([&](Wire& wire) {
       if (wire.from == Wire::From::Literal) {
         literals.push_back(graph_.literals[wire.index]);
         wire.index = static_cast<std::uint32_t>(literals.size() - 1);
       }
-    };
-    std::ranges::for_each(graph_.wires, renumber);
-    for (Port& output : graph_.outputs) {
-      renumber(output.wire);
-    }
+    });
     graph_.literals = std::move(literals);
   }
 
@@ -148,32 +147,17 @@ class Finisher {
         take({Wire::From::Parameter, Type::Real, 0, static_cast<std::uint32_t>(i)});
       }
     }
-    for (const Wire& wire : graph_.wires) {
-      take(wire);
-    }
-    for (const Port& output : graph_.outputs) {
-      take(output.wire);
-    }
-    for (const Port& inner : graph_.inner) {
-      take(inner.wire);
-    }
+    for_each_wire(take);
     std::vector<std::uint32_t> moved_to(parameters_.size());
     for (const std::uint32_t old : order) {
       moved_to[old] = static_cast<std::uint32_t>(graph_.parameters.size());
       graph_.parameters.push_back(std::move(parameters_[old]));
     }
-    const auto remap = [&](Wire& wire) {
+    for_each_wire([&](Wire& wire) {
       if (wire.from == Wire::From::Parameter) {
         wire.index = moved_to[wire.index];
       }
-    };
-    std::ranges::for_each(graph_.wires, remap);
-    for (Port& output : graph_.outputs) {
-      remap(output.wire);
-    }
-    for (Port& inner : graph_.inner) {
-      remap(inner.wire);
-    }
+    });
   }
 
   // --- rates ---
@@ -213,9 +197,33 @@ class Finisher {
     node.rate = rate.value_or(Rate{});
   }
 
+  /// All rates repeat together after their least common multiple.
+  bool check_common_period() {
+    std::uint64_t period = 1;
+    for (const Node& node : graph_.nodes) {
+      period = std::lcm(period, std::uint64_t{node.rate.every});
+      if (period > longest_common_period) {
+        diagnostics_.error(error::rates_too_far_apart, graph_.place(node.span),
+                           fmt::format("with {}, which runs every {} steps, the rates repeat together only every {} "
+                                       "steps; a counter of steps holds {} at most",
+                                       node.path, node.rate.every, period, longest_common_period),
+                           "Choose rates that divide each other, such as 10, 100 and 1000.");
+        return false;
+      }
+      if (graph_.sample_time_ns > std::numeric_limits<std::int64_t>::max() / std::int64_t{node.rate.every}) {
+        diagnostics_.error(error::rates_too_far_apart, graph_.place(node.span),
+                           fmt::format("{} would run every {} steps of {} s, which are more than 292 years", node.path,
+                                       node.rate.every, graph_.sample_time()),
+                           "Run it more often, or correct @ts.");
+        return false;
+      }
+    }
+    return true;
+  }
+
   void settle_rates() {
     const bool one_rate = std::ranges::all_of(graph_.nodes, [](const Node& node) { return node.rate == Rate{}; });
-    if (one_rate) {
+    if (one_rate || !check_common_period()) {
       return;
     }
     settled_.assign(graph_.nodes.size(), false);

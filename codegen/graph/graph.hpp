@@ -76,6 +76,22 @@ struct Node {
   language::Span span{};
 };
 
+/// A variable of the text, an input, or a port of a nested block, and what drives it: RATE, PLANT.RATE, PLANT.Y.
+struct NamedWire {
+  std::string path{};
+  Wire wire{};
+};
+
+/// The value of a state after a reset, instead of the one that its block says.
+struct InitialState {
+  std::uint32_t node = 0;
+  std::uint32_t state = 0;  ///< of type LREAL, and no array
+  double value = 0.0;
+};
+
+/// The generated counter of steps is a DINT, and counts up to the time after which all rates repeat together.
+constexpr std::uint32_t longest_common_period = std::numeric_limits<std::int32_t>::max();
+
 struct Graph {
   std::string name{};                                    ///< of the top block, as written
   std::shared_ptr<const language::SourceFile> source{};  ///< the text; spans point into it, fields name parts of it
@@ -83,7 +99,9 @@ struct Graph {
   std::vector<Port> inputs{};
   std::vector<Port> outputs{};
   std::vector<Parameter> parameters{};
-  std::vector<Port> inner{};  ///< variables and inner ports that state a unit: checked, else nothing
+  std::vector<Port> inner{};       ///< variables and inner ports that state a unit: checked, else nothing
+  std::vector<NamedWire> named{};  ///< signals that are no outputs of a block; only where they are asked for
+  std::vector<InitialState> initial_states{};
   std::vector<Node> nodes{};
   std::vector<Wire> wires{};
   std::vector<language::Span> wire_spans{};  ///< beside wires: where each was written

@@ -63,11 +63,8 @@ class Checker {
       const Node& node = graph_.nodes[index];
       for (std::uint32_t pin = 0; node.block != nullptr && pin < node.wire_count; ++pin) {
         const Wire& wire = graph_.wire(node, pin);
-        const MaybeUnit unit = wire.from == Wire::From::Parameter && texts[wire.index].empty()
-                                   ? of_field(index, node.block->pin(pin))
-                                   : std::nullopt;
-        if (unit && solved(*unit).variables.empty()) {
-          texts[wire.index] = unit_text(solved(*unit));
+        if (wire.from == Wire::From::Parameter && texts[wire.index].empty()) {
+          texts[wire.index] = text_of_field(index, node.block->pin(pin));
         }
       }
     }
@@ -191,6 +188,42 @@ class Checker {
       solutions_.resize(solutions_.size() + units_of(index).variables.size());
     }
     return first_variable_[index];
+  }
+
+  /// The unit of a field as text; empty where the wires do not give it. An exponent that is a parameter, as in
+  /// 'y/'x^(1+C3), is beyond the check, but not beyond this text: um/V^(1+C3).
+  std::string text_of_field(std::uint32_t index, const Field& field) {
+    if (const MaybeUnit unit = of_field(index, field)) {
+      const Unit all = solved(*unit);
+      return all.variables.empty() ? unit_text(all) : std::string();
+    }
+    std::string text;
+    for (std::size_t at = 0; at < field.unit.size();) {
+      if (field.unit[at] != '\'') {
+        text += field.unit[at++];
+        continue;
+      }
+      const std::size_t end = std::min(field.unit.find_first_of("*/^() ", at), field.unit.size());
+      const Unit unit = solved(unit_of_variable(variable_of(index, field.unit.substr(at + 1, end - at - 1))));
+      if (!unit.variables.empty()) {
+        return {};
+      }
+      const std::string one = unit_text(unit);
+      text += one.find_first_of("*/^") == std::string::npos ? one : "(" + one + ")";
+      at = end;
+    }
+    return text;
+  }
+
+  static Unit unit_of_variable(std::uint32_t variable) {
+    Unit unit;
+    unit.add_variable(variable, {1, 1});
+    return unit;
+  }
+
+  std::uint32_t variable_of(std::uint32_t index, std::string_view name) {
+    const auto& names = units_of(index).variables;
+    return first_variable(index) + static_cast<std::uint32_t>(std::ranges::find(names, name) - names.begin());
   }
 
   MaybeUnit of_wire(const Wire& wire) {

@@ -30,7 +30,7 @@ class Machine {
   void set_parameter(std::size_t parameter, const S& value, std::size_t element = 0);
   [[nodiscard]] S parameter(std::size_t parameter, std::size_t element = 0) const;
 
-  /// Every state as its block says, steps counted from 0.
+  /// Every state as its block says, or as the program does; steps counted from 0.
   void reset();
 
   void set_input(std::size_t input, const S& value);  ///< of any type: not 0 is TRUE
@@ -65,6 +65,7 @@ class Machine {
   void place_instructions();
   [[nodiscard]] const void* source_of(const Wire& wire) const;
   [[nodiscard]] std::size_t output_offset(const Wire& wire) const;
+  [[nodiscard]] S* real_state(std::uint32_t node, std::uint32_t state);
   [[nodiscard]] const S* ts_of(const Node& node);
   Instruction<S> instruction_of(std::uint32_t node);
 

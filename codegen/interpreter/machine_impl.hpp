@@ -149,6 +149,9 @@ void Machine<S>::lay_out() {
   for (const Port& output : graph.outputs) {
     write_literal(output.wire);
   }
+  for (const NamedWire& named : graph.named) {
+    write_literal(named.wire);
+  }
 }
 
 template <class S>
@@ -267,6 +270,9 @@ void Machine<S>::reset() {
   for (const auto& instruction : resets_) {
     instruction.run(instruction);
   }
+  for (const InitialState& given : program_->graph.initial_states) {
+    *real_state(given.node, given.state) = static_cast<S>(given.value);
+  }
 }
 
 template <class S>
@@ -310,16 +316,22 @@ S* Machine<S>::real_state(std::string_view path) {
         !language::same_name(path.substr(0, node.path.size()), node.path)) {
       continue;
     }
-    const auto& code = block_codes<S>()[static_cast<std::size_t>(node.block - block_types().data())];
-    for (std::size_t state = 0; state < node.block->states.size(); ++state) {
+    for (std::uint32_t state = 0; state < node.block->states.size(); ++state) {
       const Field& field = node.block->states[state];
       if (field.type == Type::Real && field.length == 1 &&
           language::same_name(field.name, path.substr(node.path.size() + 1))) {
-        return reinterpret_cast<S*>(memory_.get() + placed_[index].state + code.state_offsets[state]);
+        return real_state(index, state);
       }
     }
   }
   return nullptr;
+}
+
+template <class S>
+S* Machine<S>::real_state(std::uint32_t node, std::uint32_t state) {
+  const BlockType* const block = program_->graph.nodes[node].block;
+  const auto& code = block_codes<S>()[static_cast<std::size_t>(block - block_types().data())];
+  return reinterpret_cast<S*>(memory_.get() + placed_[node].state + code.state_offsets[state]);
 }
 
 template <class S>

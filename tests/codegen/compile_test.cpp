@@ -196,6 +196,39 @@ TEST(Compile, AWireBetweenTwoRatesNeedsASampleOrAHold) {
   EXPECT_THAT(found, Contains(Field(&Diagnostic::number, error::rate_mismatch)));
 }
 
+TEST(Compile, RatesNeedACommonPeriodThatACounterHolds) {
+  const auto two_rates = [](int a, int b) {
+    return block(io + "VAR A : HY_SAMPLE; (* @every " + std::to_string(a) + " *) B : HY_SAMPLE; (* @every " +
+                     std::to_string(b) + " *) KA : HY_HOLD; KB : HY_HOLD; END_VAR",
+                 "A(XIN := U); B(XIN := U); KA(XIN := A.XOUT); KB(XIN := B.XOUT); Y := KA.XOUT + KB.XOUT;");
+  };
+  EXPECT_THAT(diagnose(two_rates(65536, 32749)), IsEmpty()) << "2146238464 steps are below 2147483647";
+  const auto beyond = diagnose(two_rates(65536, 32771));
+  ASSERT_EQ(beyond.size(), 1U);
+  EXPECT_EQ(beyond[0].number, error::rates_too_far_apart);
+  EXPECT_THAT(beyond[0].cause, HasSubstr("the rates repeat together only every 2147680256 steps"));
+
+  // A slow instance in a slow instance runs at the product.
+  const std::string inner = "FUNCTION_BLOCK SLOW " + io +
+                            "VAR S : HY_SAMPLE; (* @every 100000 *) H : HY_HOLD; END_VAR\n"
+                            "S(XIN := U); H(XIN := S.XOUT); Y := H.XOUT;\nEND_FUNCTION_BLOCK\n";
+  const auto nested = [&](int every) {
+    return diagnose(inner + block(io + "VAR A : HY_SAMPLE; (* @every " + std::to_string(every) +
+                                      " *) P : SLOW; (* @every " + std::to_string(every) + " *) K : HY_HOLD; END_VAR",
+                                  "A(XIN := U); P(U := A.XOUT); K(XIN := P.Y); Y := K.XOUT;"));
+  };
+  EXPECT_THAT(nested(20000), IsEmpty());
+  const auto product = nested(50000);
+  ASSERT_EQ(product.size(), 1U);
+  EXPECT_EQ(product[0].number, error::rates_too_far_apart);
+  EXPECT_THAT(product[0].cause, HasSubstr("'S' would run every 5000000000 steps"));
+
+  std::string ages = two_rates(1000000, 1000000);
+  ages.replace(ages.find("1ms"), 3, "10000000s");
+  ASSERT_EQ(diagnose(ages).size(), 1U);
+  EXPECT_THAT(diagnose(ages)[0].cause, HasSubstr("more than 292 years"));
+}
+
 TEST(Compile, TheOrderOfTheTextDoesNotCount) {
   std::vector<std::string> declarations;
   std::vector<std::string> statements;

@@ -52,5 +52,24 @@ TEST(Units, OfParametersComeFromTheWires) {
   EXPECT_EQ(texts[static_cast<std::size_t>(find_parameter(program.graph, "L.T1"))], "s");
 }
 
+TEST(Units, OfParametersWhoseExponentIsAParameter) {
+  const auto unit_of_c2 = [](const std::string& x, const std::string& y) {
+    const Program program = compile_text("FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; (* @unit " + x +
+                                         " *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit " + y +
+                                         " *) END_VAR VAR H : HY_HYSTERESIS_RO; END_VAR H(XIN := U); Y := H.XOUT; "
+                                         "END_FUNCTION_BLOCK");
+    return units::of_parameters(program.graph,
+                                program.schedule)[static_cast<std::size_t>(find_parameter(program.graph, "H.C2"))];
+  };
+  EXPECT_EQ(unit_of_c2("V", "um"), "um/V^(1+C3)");
+  EXPECT_EQ(unit_of_c2("A/m", "T"), "T/(A/m)^(1+C3)");
+  const Program silent = compile_text(
+      "FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
+      "VAR H : HY_HYSTERESIS_RO; END_VAR H(XIN := U); Y := H.XOUT; END_FUNCTION_BLOCK");
+  EXPECT_EQ(units::of_parameters(silent.graph,
+                                 silent.schedule)[static_cast<std::size_t>(find_parameter(silent.graph, "H.C2"))],
+            "");
+}
+
 }  // namespace
 }  // namespace hysteron::testing

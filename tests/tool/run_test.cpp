@@ -80,6 +80,40 @@ TEST_F(Run, TracesSignalsInside) {
               AllOf(HasSubstr("HY708"), HasSubstr("PLANT has no signal AMP.OUT."), HasSubstr("AMP.XOUT?")));
 }
 
+TEST_F(Run, TracesVariablesAndWhatIsInsideNestedBlocks) {
+  bench.write("plant.st",
+              "FUNCTION_BLOCK STAGE VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+              "VAR AMP : HY_GAIN := (K := 2.0); HALF : LREAL; END_VAR\n"
+              "AMP(XIN := U);\nHALF := AMP.XOUT / 4.0;\nY := AMP.XOUT + HALF;\nEND_FUNCTION_BLOCK\n"
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Z : LREAL; END_VAR\n"
+              "VAR PLANT : STAGE; T : LREAL; FIXED : LREAL := 7.5; END_VAR\n"
+              "T := X + 1.0;\nPLANT(U := T);\nZ := PLANT.Y + FIXED;\nEND_FUNCTION_BLOCK\n");
+  bench.write("log.csv", "t,x\n0,0\n0.001,3\n");
+  EXPECT_EQ(bench.shell(std::string(go) + " --trace plant.half,PLANT.Y,T,X,PLANT.AMP.XOUT,PLANT.U,FIXED").code, 0);
+  EXPECT_EQ(bench.read("out.csv"),
+            "t,Z,PLANT.HALF,PLANT.Y,P.T,X,PLANT.AMP.XOUT,PLANT.U,FIXED\n"
+            "0,10,0.5,2.5,1,0,2,1,7.5\n"
+            "0.001,17.5,2,10,4,3,8,4,7.5\n");
+  EXPECT_THAT(refusal(std::string(go) + " --trace PLANT.HALB"), HasSubstr("PLANT.HALF?"));
+}
+
+TEST_F(Run, RefusesPortsThatNoRecordCanHold) {
+  bench.write("plant.st",
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT t : LREAL; END_VAR\n"
+              "t := X;\nEND_FUNCTION_BLOCK\n");
+  EXPECT_THAT(refusal(), StartsWith("HY216 error: plant.st:1:73: 't' is also the name of the time in a record\n"));
+  const auto checked = bench.shell("hysteron check plant.st");
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_THAT(checked.out, StartsWith("HY216 warning: "));
+  // Inside another block no record meets it.
+  bench.write("plant.st",
+              "FUNCTION_BLOCK IN_IT VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT t : LREAL; END_VAR\n"
+              "t := X;\nEND_FUNCTION_BLOCK\n"
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+              "VAR A : IN_IT; END_VAR\nA(X := X);\nY := A.t;\nEND_FUNCTION_BLOCK\n");
+  EXPECT_EQ(bench.shell(std::string(go)).code, 0);
+}
+
 TEST_F(Run, SummaryComparesWithRecordedOutputs) {
   bench.write("log.csv", "t,x,y,temperature\n0,1.0,0.002,20\n0.001,1.0,0.003,20\n");
   const auto outcome = bench.shell(std::string(go) + " --summary");
@@ -127,7 +161,9 @@ TEST_F(Run, DamagedRecordsAreRefused) {
                 "HY704 error: log.csv: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
                 "mend: state @ts 2000000ns in the diagram, or resample the record to 0.001 s.\n"},
            Case{"t,x,reset\n0,1,0\n0.001,1,2\n",
-                "HY707 error: log.csv: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"},
+                "HY707 error: log.csv:3:9: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"
+                "    3 | 0.001,1,2\n"
+                "      |         ^\n"},
        }) {
     bench.write("log.csv", csv);
     EXPECT_THAT(refusal(), HasSubstr(said)) << csv;
@@ -173,10 +209,18 @@ TEST_F(Run, ValuesOutsideTheRangeAreAWarning) {
   const auto outcome = bench.shell(std::string(go));
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err,
-            "HY705 warning: log.csv: The column X leaves the range of the input, -10 to 10: 2 values, the first at t = "
-            "0.001 s, the farthest -12.5.\n"
+            "HY705 warning: log.csv:3:7: The column X leaves the range of the input, -10 to 10: 2 values, the first at "
+            "t = 0.001 s, the farthest -12.5.\n"
+            "    3 | 0.001,11\n"
+            "      |       ^^\n"
             "mend: check the unit and the scale of the column, or widen @min and @max in the diagram.\n\n1 warning\n");
   EXPECT_TRUE(bench.has("out.csv"));
+}
+
+TEST_F(Run, NamesPlacesInTheStandardInput) {
+  const auto outcome = bench.shell("printf 't,x\\n0,1\\n0.001,11\\n' | hysteron run plant.st --in - --out out.csv");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("HY705 warning: -:3:7: "), HasSubstr("    3 | 0.001,11\n")));
 }
 
 TEST_F(Run, NotANumberIsNeverSilent) {

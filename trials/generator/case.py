@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -257,10 +257,10 @@ class Builder:
             outputs = np.column_stack([self.noises[0].read(clean[:, 0], self.sigma)])
         return columns | dict(zip(plant.outputs, outputs.T)), clean
 
-    def second(self) -> Plant:
-        """The same machine with another excitation."""
+    def second(self, number: int = 1) -> Plant:
+        """The same machine with another excitation: 1 is that of log2.csv, 2 is kept for the scorer."""
         plant = copy.deepcopy(self.plant)
-        rng = np.random.default_rng(self.specification.seed + 1)
+        rng = np.random.default_rng(self.specification.seed + number)
         plant.drive(excitation.join(rng, self.grid, self.plan))
         if plant.other is not None:
             plant.other = other_axis(rng, self.grid)
@@ -284,7 +284,7 @@ class Builder:
             "stratum": specification.stratum,
             "plant": specification.plant,
             "excitation": specification.plan,
-            "seed": specification.seed,
+            "specification": asdict(specification),
             "noise_kind": self.noises[0].kind,
             "noise_rms": [float(x) for x in levels],
             "ratio": self.ratio(change, self.sigma) if injections else 0.0,
@@ -341,6 +341,14 @@ def table(grid: Grid, columns: dict[str, np.ndarray]) -> str:
 def build(specification: Specification) -> Case:
     """A case from its specification."""
     return Builder(specification).build()
+
+
+def from_label(label: dict) -> Builder:
+    """The builder of a case that stands in a key, so that the same machine can be asked again."""
+    stored = dict(label["specification"])
+    stored["effects"] = tuple((effect, name) for effect, name in stored["effects"])
+    stored["answers"] = tuple(stored["answers"])
+    return Builder(Specification(**stored))
 
 
 def write(case: Case, folder: Path) -> None:

@@ -1,0 +1,67 @@
+"""Closure on a record that nobody has seen: the same machine, driven by another excitation, without noise.
+
+What a verdict claims of its held-out blocks is checked here against the truth: the improved diagram is run on the fresh
+record, and its error against the noise-free output is held against that of the diagram as it was.
+"""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from trials.generator.case import from_label, table
+from trials.progress import Progress
+from trials.runner import resolve
+from trials.scoring.judge import Judgement
+
+
+def outputs(product: str, diagram: Path, parameters: Path, log: Path, names: tuple[str, ...]) -> np.ndarray | None:
+    """Outputs of a diagram by the product's own run; None where it refuses."""
+    out = log.with_suffix(".out.csv")
+    command = [product, "run", str(diagram), "--in", str(log), "--out", str(out), "--params", str(parameters)]
+    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+    if done.returncode != 0:
+        return None
+    with out.open() as file:
+        rows = list(csv.reader(file))
+    at = [[name.upper() for name in rows[0]].index(name.upper()) for name in names]
+    return np.array([[float(row[i]) for i in at] for row in rows[1:]])
+
+
+def closure(label: dict, verdict: str, product: str) -> float:
+    """1 - MSE(improved) / MSE(nominal), both against the noise-free fresh record."""
+    folder = Path(verdict)
+    builder = from_label(label)
+    case = builder.build()
+    machine = builder.second(2)
+    clean = machine.simulate(machine.truth, case.injections)
+    columns = machine.columns(case.injections) | dict(zip(machine.outputs, clean.T))
+    weights = 1.0 / np.array(label["noise_rms"])
+    with tempfile.TemporaryDirectory(prefix="fresh-") as name:
+        scratch = Path(name)
+        for file in ("plant.st", "params.toml"):
+            (scratch / file).write_text(case.files[file])
+        (scratch / "log.csv").write_text(table(builder.grid, columns))
+        before = outputs(product, scratch / "plant.st", scratch / "params.toml", scratch / "log.csv", machine.outputs)
+        after = outputs(product, folder / "improved.st", folder / "improved.toml", scratch / "log.csv", machine.outputs)
+    if before is None or after is None:
+        return float("nan")
+    error = [float(np.mean(((y - clean) * weights) ** 2)) for y in (before, after)]
+    return 1.0 - error[1] / error[0] if error[0] > 0.0 else float("nan")
+
+
+def run_fresh(cases: list[Judgement], verdicts: Path, product: str, jobs: int) -> None:
+    """Fills in the closure on fresh records, for every verdict that left an improved diagram."""
+    program = resolve(product)
+    chosen = [c for c in cases if c.truth and (verdicts / c.name / "improved.st").exists()]
+    progress = Progress("fresh records", len(chosen))
+    with ProcessPoolExecutor(jobs) as pool:
+        futures = [pool.submit(closure, c.label, str(verdicts / c.name), program) for c in chosen]
+        for case, future in zip(chosen, futures):
+            case.fresh = future.result()
+            progress.step()

@@ -16,8 +16,11 @@ constexpr std::string_view main_text =
 //
 // The first line of the record names the columns; `t` is seconds, the others are matched to the inputs without regard
 // to case. An input without a column keeps its default.
+#include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <concepts>
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -51,11 +54,43 @@ std::string lower(std::string_view text) {{
   return result;
 }}
 
-template <class T>
-void append(std::string& line, T value) {{
-  char digits[64];
-  const auto end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
-  line.append(digits, end);
+void append(std::string& line, std::integral auto value) {{
+  line += std::to_string(value);
+}}
+
+// As `hysteron run` writes it: the fewest digits that read back to the same bits, plain from 1e-5 up to 1e16.
+void append(std::string& line, std::floating_point auto value) {{
+  if (!std::isfinite(value)) {{
+    line += std::isnan(value) ? "nan" : value < 0 ? "-inf" : "inf";
+    return;
+  }}
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::scientific).ptr;
+  const std::string number(text, end);
+  const auto mark = number.find('e');
+  const int exponent = std::stoi(number.substr(mark + 1));
+  std::string digits;
+  for (const char c : number.substr(0, mark)) {{
+    if (c == '-') {{
+      line += c;
+    }} else if (c != '.') {{
+      digits += c;
+    }}
+  }}
+  if (exponent >= -5 && exponent < 0) {{
+    line += "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+    return;
+  }}
+  const bool plain = exponent >= 0 && exponent <= 15;
+  const std::size_t before_point = plain ? static_cast<std::size_t>(exponent) + 1 : 1;
+  digits.append(before_point - std::min(before_point, digits.size()), '0');
+  line += digits.substr(0, before_point);
+  if (digits.size() > before_point) {{
+    line += "." + digits.substr(before_point);
+  }}
+  if (!plain) {{
+    line += "e" + std::to_string(exponent);
+  }}
 }}
 
 }}  // namespace

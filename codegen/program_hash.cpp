@@ -38,6 +38,9 @@ std::string program_hash(const Program& program) {
     }
     fmt::format_to(out, "\n");
   }
+  for (const InitialState& given : graph.initial_states) {
+    fmt::format_to(out, "initial {} {} {}\n", given.node, given.state, number_text(given.value));
+  }
   for (const Port& output : graph.outputs) {
     fmt::format_to(out, "output {} {}", language::upper(output.name), static_cast<int>(output.type));
     wire(output.wire);

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -32,10 +31,13 @@ The parameter file says what may change, and on which part of the records:
   train = [1.0, 21.0]         seconds; several as [[1.0, 5.0], [9.0, 21.0]]
   test = [21.0, 40.0]
   loss = "huber"              outliers pull with constant force
-  initial_states = ["LAG.Y"]  fitted too, for each record
+  initial_states = ["SUM.SUM"]  fitted too, for each record
+  [initial.SUM]
+  SUM = 0.0                   where a state begins, instead of its reset
 The diagram is run from its reset over each whole record: columns are its inputs, and the outputs of the same name are
-what it is to meet. TUNED.toml is P.toml with the fitted values; run, generate and tune take it. Ctrl-C ends the fit and
-writes the best so far.
+what it is to meet. TUNED.toml is P.toml with the fitted values, and with your comments; run, generate and tune take it.
+The initial states of a single record stand there under [initial], those of several in the heading alone. Ctrl-C ends
+the fit and writes the best so far.
 Exit codes: 0 fitted; 1 the fit did not converge, the best is written; 2 an error in diagram, parameters or records, and
 nothing is written; 130 ended by Ctrl-C, the best is written.
 )";
@@ -86,6 +88,7 @@ int tune(const Options& options, Console& console) {
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
+  refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
   std::vector<records::Record> records;
   records.reserve(options.logs.size());
@@ -109,10 +112,8 @@ int tune(const Options& options, Console& console) {
     line.finish();
   }
 
-  const auto heading =
-      fmt::format("Fitted by hysteron tune to {}.\n{}", fmt::join(options.logs, ", "), fit.solution.message);
   parameters::write_parameter_file(options.output, tuned_file(file, problem, fit), tuned_remarks(problem, fit),
-                                   heading);
+                                   tuned_heading(problem, fit));
   const TuneReport report{.problem = problem, .fit = fit};
   if (!options.report.empty()) {
     write_report(options.report, report);

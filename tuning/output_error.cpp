@@ -2,6 +2,7 @@
 #include "tuning/output_error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +12,7 @@
 
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/numbers.hpp"
 #include "tuning/rollout.hpp"
 
 namespace hysteron {
@@ -21,6 +23,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// What the heading of a tuned file begins with, and is known by when it is tuned again.
+constexpr std::string_view tuned_by = "Fitted by hysteron tune to ";
 
 /// A fraction in 0 … 1 that depends on the two numbers alone (S. Vigna's SplitMix64).
 double fraction(std::uint64_t start, std::uint64_t unknown) {
@@ -306,7 +311,33 @@ parameters::ParameterFile tuned_file(parameters::ParameterFile file, const Outpu
       std::get<std::vector<double>>(found->value)[free.element] = value;
     }
   }
+  for (std::size_t i = 0; problem.experiments.size() == 1 && i < problem.initial_states.size(); ++i) {
+    const std::string& path = problem.initial_states[i].path;
+    const double value = fit.solution.x[static_cast<Index>(problem.parameters.size() + i)];
+    const auto found = std::ranges::find_if(
+        file.initial, [&](const parameters::ParameterValue& given) { return equal_ignoring_case(given.path, path); });
+    if (found == file.initial.end()) {
+      file.initial.push_back({.path = path, .value = value});
+    } else {
+      found->value = value;
+    }
+  }
+  std::erase_if(file.comments, [](const parameters::Comment& comment) {
+    return comment.where == parameters::Comment::Where::Head && comment.text.starts_with(fmt::format("# {}", tuned_by));
+  });
   return file;
+}
+
+std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
+  std::vector<std::string> files;
+  for (const Experiment& experiment : problem.experiments) {
+    files.push_back(experiment.name);
+  }
+  std::string text = fmt::format("{}{}.\n{}", tuned_by, fmt::join(files, ", "), fit.solution.message);
+  for (std::size_t j = problem.parameters.size(); files.size() > 1 && j < fit.names.size(); ++j) {
+    text += fmt::format("\n{}: {}", fit.names[j], number_text(fit.solution.x[static_cast<Index>(j)]));
+  }
+  return text;
 }
 
 parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
@@ -318,7 +349,15 @@ parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const Outpu
     if (parameter.value.size() == 1 && std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
       remark.standard_error = fit.covariance.standard_errors[static_cast<Index>(j)];
     }
-    remarks[in_capitals(parameter.path)] = std::move(remark);
+    remarks[in_capitals("parameters." + parameter.path)] = std::move(remark);
+  }
+  for (std::size_t i = 0; i < problem.initial_states.size(); ++i) {
+    const FreeState& state = problem.initial_states[i];
+    const double error = fit.covariance.standard_errors[static_cast<Index>(problem.parameters.size() + i)];
+    remarks[in_capitals("initial." + state.path)] = {
+        .unit = {},
+        .meaning = state.meaning,
+        .standard_error = std::isfinite(error) ? std::optional(error) : std::nullopt};
   }
   return remarks;
 }

@@ -45,6 +45,7 @@ struct FreeParameter {
 /// A state of type LREAL whose value after the reset is fitted, for each record on its own.
 struct FreeState {
   std::string path{};  ///< LAG.XOUT, say
+  std::string meaning{};
   Place place{};
   double lower = 0.0;
   double upper = 0.0;
@@ -117,9 +118,15 @@ struct OutputErrorFit {
 /// on any sample in train.
 OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputErrorOptions& options = {});
 
-/// The parameter file with the fitted values in it; all else is kept. Initial states are no part of it.
+/// The parameter file with the fitted values in it; all else is kept, but for the heading of an earlier fit. The
+/// initial states of a single record become its table [initial]; those of several records belong to each alone, and no
+/// run could take them all.
 parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
                                      const OutputErrorFit& fit);
+
+/// What stands at the top of it: the records, how the fit ended, and the initial states where there are several
+/// records.
+std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFit& fit);
 
 /// What is written beside its values: unit, meaning, standard error.
 parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const OutputErrorFit& fit);

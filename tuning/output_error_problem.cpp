@@ -128,34 +128,15 @@ class Builder {
   }
 
   void add_state(const parameters::PlacedText& wanted) {
-    std::vector<std::string> known;
-    for (const Node& node : graph().nodes) {
-      for (std::size_t i = 0; node.block != nullptr && i < node.block->states.size(); ++i) {
-        const Field& field = node.block->states[i];
-        if (field.type != Type::Real || field.length > 1) {
-          continue;
-        }
-        known.push_back(fmt::format("{}.{}", node.path, field.name));
-        if (equal_ignoring_case(known.back(), wanted.text)) {
-          problem_.initial_states.push_back(
-              {.path = known.back(), .place = wanted.place, .lower = field.minimum, .upper = field.maximum});
-          return;
-        }
-      }
+    if (const auto found = parameters::find_state(graph(), wanted.text, wanted.place, diagnostics_)) {
+      const Node& node = graph().nodes[found->node];
+      const Field& field = node.block->states[found->state];
+      problem_.initial_states.push_back({.path = fmt::format("{}.{}", node.path, field.name),
+                                         .meaning = std::string(field.meaning),
+                                         .place = wanted.place,
+                                         .lower = field.minimum,
+                                         .upper = field.maximum});
     }
-    const auto near = nearest_name(wanted.text, known);
-    std::string mend = "remove it; no block of the diagram has a state that is a real number.";
-    if (!near.empty()) {
-      mend = fmt::format("did you mean {}?", near);
-    } else if (!known.empty()) {
-      constexpr std::ptrdiff_t most = 8;
-      mend = fmt::format("the states are {}{}.",
-                         fmt::join(known.begin(), known.begin() + std::min(std::ssize(known), most), ", "),
-                         std::ssize(known) > most ? ", …" : "");
-    }
-    diagnostics_.error(error::unknown_key, wanted.place,
-                       fmt::format("{} has no state {} that is a real number.", graph().name, wanted.text),
-                       std::move(mend));
   }
 
   // ---- records ----------------------------------------------------------------------------------------------------

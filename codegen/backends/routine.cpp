@@ -28,6 +28,7 @@ class RoutineBuilder {
     place_cells();
     make_room();
     write_reset();
+    write_initial_states();
     routine_.tape.forget();
     const auto first_of_step = static_cast<ValueId>(routine_.tape.size());
     for (const Action& action : program_.schedule.actions) {
@@ -359,6 +360,18 @@ class RoutineBuilder {
         routine_.reset.push_back(
             {.kind = Statement::Kind::SetCell, .target = cell, .value = routine_.tape.literal(op, 0)});
       }
+    }
+  }
+
+  /// States that begin elsewhere than their block says.
+  void write_initial_states() {
+    for (const InitialState& given : graph_.initial_states) {
+      const std::uint32_t cell = first_cell_[given.node] + given.state;
+      std::erase_if(routine_.reset,
+                    [&](const Statement& one) { return one.kind == Statement::Kind::SetCell && one.target == cell; });
+      routine_.reset.push_back({.kind = Statement::Kind::SetCell,
+                                .target = cell,
+                                .value = routine_.tape.literal(Op::RealLiteral, given.value)});
     }
   }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <unordered_map>
@@ -187,6 +189,66 @@ void report_unknown_parameter(const Graph& graph, std::string_view path, const P
                     std::move(mend));
 }
 
+std::optional<InitialState> find_state(const Graph& graph, std::string_view path, const Place& place,
+                                       Diagnostics& diagnostics) {
+  std::vector<std::string> known;
+  for (std::uint32_t node = 0; node < graph.nodes.size(); ++node) {
+    const BlockType* const block = graph.nodes[node].block;
+    for (std::uint32_t state = 0; block != nullptr && state < block->states.size(); ++state) {
+      const Field& field = block->states[state];
+      if (field.type != Type::Real || field.length > 1) {
+        continue;
+      }
+      known.push_back(fmt::format("{}.{}", graph.nodes[node].path, field.name));
+      if (equal_ignoring_case(known.back(), path)) {
+        return InitialState{.node = node, .state = state};
+      }
+    }
+  }
+  const auto near = nearest_name(path, known);
+  std::string mend = "remove it; no block of the diagram has a state that is a real number.";
+  if (!near.empty()) {
+    mend = fmt::format("did you mean {}?", near);
+  } else if (!known.empty()) {
+    const auto shown = std::min(known.size(), most_names);
+    mend = fmt::format("the states are {}{}.",
+                       fmt::join(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                       shown < known.size() ? fmt::format(" and {} more", known.size() - shown) : "");
+  }
+  diagnostics.error(error::unknown_key, place,
+                    fmt::format("{} has no state {} that is a real number.", graph.name, path), std::move(mend));
+  return std::nullopt;
+}
+
+namespace {
+
+void set_state(const ParameterValue& given, Graph& graph, Diagnostics& diagnostics) {
+  auto state = find_state(graph, given.path, given.place, diagnostics);
+  if (!state) {
+    return;
+  }
+  const Field& field = graph.nodes[state->node].block->states[state->state];
+  const auto numbers = numbers_of(given.value, field);
+  if (!numbers) {
+    diagnostics.error(error::wrong_value_type, given.value_place,
+                      fmt::format("{} takes a number, not {}.", given.path, kind_of(given.value)),
+                      fmt::format("write it as in {} = 0.0.", field.name));
+    return;
+  }
+  state->value = numbers->front();
+  if (const auto fault = range_fault(field, state->value); !fault.empty()) {
+    diagnostics.error(error::parameter_out_of_range, given.value_place,
+                      fmt::format("{} = {} lies outside of its range.", given.path, number_text(state->value)),
+                      fmt::format("{} {}.", field.name, fault));
+    return;
+  }
+  std::erase_if(graph.initial_states,
+                [&](const InitialState& one) { return one.node == state->node && one.state == state->state; });
+  graph.initial_states.push_back(*state);
+}
+
+}  // namespace
+
 void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
   std::unordered_map<std::string, std::size_t> by_path;
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
@@ -199,6 +261,9 @@ void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
     } else {
       set(given, graph.parameters[found->second], diagnostics);
     }
+  }
+  for (const ParameterValue& given : file.initial) {
+    set_state(given, graph, diagnostics);
   }
 }
 

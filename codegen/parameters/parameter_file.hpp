@@ -4,6 +4,9 @@
 //   C1 = 0.05
 //   C2 = 1.3
 //
+//   [initial.SUM]                         # values that states have after a reset, instead of the block's own
+//   SUM = 0.3
+//
 //   [fit.INV]                             # what `hysteron tune` may change; every key may be left out
 //   C1 = {min = 0.0, max = 1.0, start = 0.05, scale = 1e-3}
 //   C2 = {}
@@ -76,11 +79,26 @@ struct TuneSettings {
   std::vector<PlacedText> initial_states{};  ///< states whose initial values are fitted too
 };
 
+/// A comment of the user, which is kept when the file is written anew.
+struct Comment {
+  enum class Where : std::uint8_t {
+    Head,    ///< above all keys, and a blank line away from them
+    Above,   ///< above a key or the head of a table
+    Beside,  ///< behind it, on the same line
+    End      ///< below all keys
+  };
+  Where where = Where::Above;
+  std::string key{};   ///< in capitals, with its table: PARAMETERS.INV.C1
+  std::string text{};  ///< of one or several lines, each with its #
+};
+
 struct ParameterFile {
   std::string file{};
-  std::vector<ParameterValue> values{};  ///< in the order of the file
-  std::vector<FitSetting> fits{};        ///< in the order of the file
+  std::vector<ParameterValue> values{};   ///< in the order of the file
+  std::vector<ParameterValue> initial{};  ///< of states, as SUM.SUM, in the order of the file
+  std::vector<FitSetting> fits{};         ///< in the order of the file
   TuneSettings tune{};
+  std::vector<Comment> comments{};  ///< in the order of the file
 
   /// The value of a path, without regard to case; null where the file has none.
   [[nodiscard]] const ParameterValue* find(std::string_view path) const;
@@ -99,12 +117,13 @@ struct Remark {
   std::optional<double> standard_error{};
 };
 
-/// Remarks by path in capitals: see in_capitals.
+/// Remarks by key in capitals, with its table: PARAMETERS.INV.C1, INITIAL.SUM.SUM.
 using Remarks = std::map<std::string, Remark>;
 
 /// The file as TOML: the same bytes for the same contents, and the same bits when it is read back. `heading` becomes
-/// a comment at the top, line by line. Throws std::invalid_argument where a value is not finite, or a path names both a
-/// value and an instance: no file says that.
+/// a comment at the top, line by line. A comment of the user beside a key that has a remark moves above it, or goes
+/// where it is an older remark of the same key. Throws std::invalid_argument where a value is not finite, or a path
+/// names both a value and an instance: no file says that.
 [[nodiscard]] std::string parameter_text(const ParameterFile& file, const Remarks& remarks = {},
                                          std::string_view heading = {});
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codegen/parameters/parameter_file.hpp"
+#include "codegen/parameters/toml_comments.hpp"
 #include "codegen/parameters/toml_text.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -22,7 +23,7 @@ namespace {
 /// Instances inside instances. Further down is no diagram but an attack on the stack.
 constexpr int most_levels = 64;
 
-constexpr std::array<std::string_view, 3> top_keys{"parameters", "fit", "tune"};
+constexpr std::array<std::string_view, 4> top_keys{"parameters", "initial", "fit", "tune"};
 constexpr std::array<std::string_view, 4> fit_keys{"min", "max", "start", "scale"};
 constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", "test", "initial_states"};
 
@@ -61,13 +62,18 @@ void sort_by_place(std::vector<Item>& items) {
 
 class Reader {
  public:
-  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text)) { result_.file = file; }
+  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text)) {
+    result_.file = file;
+    result_.comments = comments_of(text);
+  }
 
   ParameterFile read() {
     for (const auto& [key, node] : root_) {
       if (const auto* const table = known_key(key, node, top_keys, "") ? as_table(key, node) : nullptr) {
         if (key.str() == "parameters") {
-          read_values(*table, "", 0);
+          read_values(*table, "", 0, result_.values);
+        } else if (key.str() == "initial") {
+          read_values(*table, "", 0, result_.initial);
         } else if (key.str() == "fit") {
           read_fits(*table, "", 0);
         } else {
@@ -76,8 +82,10 @@ class Reader {
       }
     }
     sort_by_place(result_.values);
+    sort_by_place(result_.initial);
     sort_by_place(result_.fits);
     refuse_doubles(result_.values);
+    refuse_doubles(result_.initial);
     refuse_doubles(result_.fits);
     for (const FitSetting& fit : result_.fits) {
       check_range(fit);
@@ -159,17 +167,16 @@ class Reader {
 
   // ---- values -----------------------------------------------------------------------------------------------------
 
-  void read_values(const toml::table& table, const std::string& path, int level) {
+  void read_values(const toml::table& table, const std::string& path, int level, std::vector<ParameterValue>& values) {
     for (const auto& [key, node] : table) {
       const auto below = path_below(path, key, level);
       if (!below) {
         continue;
       }
       if (const auto* const instance = node.as_table()) {
-        read_values(*instance, *below, level + 1);
+        read_values(*instance, *below, level + 1, values);
       } else if (auto value = value_of(key, node)) {
-        result_.values.push_back(
-            {.path = *below, .value = std::move(*value), .place = at(key), .value_place = at(node)});
+        values.push_back({.path = *below, .value = std::move(*value), .place = at(key), .value_place = at(node)});
       }
     }
   }

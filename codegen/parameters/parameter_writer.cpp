@@ -51,61 +51,6 @@ std::pair<std::string, std::string> split(const std::string& path) {
                                   : std::pair(path.substr(0, dot), path.substr(dot + 1));
 }
 
-/// Lines by instance, in the order in which instances first appear; those of the diagram itself first, because a
-/// table below ends the one above.
-class Tables {
- public:
-  void add(const std::string& path, std::string text, std::string comment = {}) {
-    auto [instance, name] = split(path);
-    const auto capitals = in_capitals(instance);
-    if (!names_.insert(in_capitals(path)).second) {
-      throw std::invalid_argument("two entries for " + path);
-    }
-    for (auto dot = capitals.find('.');; dot = capitals.find('.', dot + 1)) {
-      instances_.insert(capitals.substr(0, dot));
-      if (dot == std::string::npos) {
-        break;
-      }
-    }
-    auto table = std::find_if(tables_.begin(), tables_.end(),
-                              [&](const Table& one) { return in_capitals(one.instance) == capitals; });
-    if (table == tables_.end()) {
-      table = tables_.insert(instance.empty() ? tables_.begin() : tables_.end(), Table{.instance = instance});
-    }
-    table->lines.emplace_back(name + " = " + std::move(text), std::move(comment));
-  }
-
-  [[nodiscard]] std::string text(std::string_view title) const {
-    for (const auto& name : names_) {
-      if (instances_.contains(name)) {
-        throw std::invalid_argument(name + " is a value and an instance");
-      }
-    }
-    std::string text;
-    for (const Table& table : tables_) {
-      text += fmt::format("\n[{}{}{}]\n", title, table.instance.empty() ? "" : ".", table.instance);
-      std::size_t widest = 0;
-      for (const auto& [line, comment] : table.lines) {
-        widest = std::max(widest, comment.empty() ? 0 : line.size());
-      }
-      for (const auto& [line, comment] : table.lines) {
-        text += comment.empty() ? line + "\n" : fmt::format("{:<{}}  # {}\n", line, widest, comment);
-      }
-    }
-    return text;
-  }
-
- private:
-  struct Table {
-    std::string instance{};
-    std::vector<std::pair<std::string, std::string>> lines{};
-  };
-
-  std::vector<Table> tables_;
-  std::set<std::string> names_;
-  std::set<std::string> instances_;
-};
-
 std::string one_line(std::string_view text) {
   std::string line(text);
   std::replace_if(
@@ -121,6 +66,72 @@ std::string comment_of(const Remark& remark) {
     append(fmt::format("standard error {:.2g}", *remark.standard_error));
   }
   return text;
+}
+
+/// A line of the file: a key with its value, or the head of a table.
+struct Entry {
+  std::string key{};  ///< in capitals, with its table
+  std::string text{};
+  std::string remark{};
+  bool head = false;
+};
+
+/// Values by instance, in the order in which instances first appear; those of the diagram itself first, because a
+/// table below ends the one above.
+class Tables {
+ public:
+  explicit Tables(std::string_view title) : title_(title) {}
+
+  void add(const std::string& path, const std::string& text, const Remarks& remarks = {});
+  void append_to(std::vector<Entry>& entries) const;
+
+ private:
+  struct Table {
+    std::string instance{};
+    std::vector<Entry> entries{};
+  };
+
+  std::string title_;
+  std::vector<Table> tables_;
+  std::set<std::string> names_;
+  std::set<std::string> instances_;
+};
+
+void Tables::add(const std::string& path, const std::string& text, const Remarks& remarks) {
+  const auto [instance, name] = split(path);
+  const auto capitals = in_capitals(instance);
+  if (!names_.insert(in_capitals(path)).second) {
+    throw std::invalid_argument("two entries for " + path);
+  }
+  for (auto dot = capitals.find('.');; dot = capitals.find('.', dot + 1)) {
+    instances_.insert(capitals.substr(0, dot));
+    if (dot == std::string::npos) {
+      break;
+    }
+  }
+  auto table = std::find_if(tables_.begin(), tables_.end(),
+                            [&](const Table& one) { return in_capitals(one.instance) == capitals; });
+  if (table == tables_.end()) {
+    table = tables_.insert(instance.empty() ? tables_.begin() : tables_.end(), Table{.instance = instance});
+  }
+  const auto key = in_capitals(title_ + "." + path);
+  const auto remark = remarks.find(key);
+  table->entries.push_back({.key = key,
+                            .text = name + " = " + text,
+                            .remark = remark == remarks.end() ? std::string() : comment_of(remark->second)});
+}
+
+void Tables::append_to(std::vector<Entry>& entries) const {
+  for (const auto& name : names_) {
+    if (instances_.contains(name)) {
+      throw std::invalid_argument(name + " is a value and an instance");
+    }
+  }
+  for (const Table& table : tables_) {
+    const std::string head = title_ + (table.instance.empty() ? "" : ".") + table.instance;
+    entries.push_back({.key = in_capitals(head), .text = "[" + head + "]", .remark = {}, .head = true});
+    entries.insert(entries.end(), table.entries.begin(), table.entries.end());
+  }
 }
 
 std::string settings_of(const FitSetting& fit) {
@@ -154,24 +165,101 @@ std::string list_of(const std::vector<Interval>& intervals) {
   return intervals.size() == 1 ? text : "[" + text + "]";
 }
 
-std::string tune_text(const TuneSettings& tune) {
-  std::string text;
+void append_tune(const TuneSettings& tune, std::vector<Entry>& entries) {
+  const std::size_t head = entries.size();
+  entries.push_back({.key = "TUNE", .text = "[tune]", .remark = {}, .head = true});
+  const auto add = [&](const std::string& key, const std::string& value) {
+    entries.push_back({.key = in_capitals("tune." + key), .text = key + " = " + value, .remark = {}});
+  };
   if (!tune.outputs.empty()) {
-    text += "outputs = " + list_of(tune.outputs) + "\n";
+    add("outputs", list_of(tune.outputs));
   }
   if (tune.loss == Loss::Huber) {
-    text += "loss = \"huber\"\n";
+    add("loss", "\"huber\"");
   }
   if (!tune.train.empty()) {
-    text += "train = " + list_of(tune.train) + "\n";
+    add("train", list_of(tune.train));
   }
   if (!tune.test.empty()) {
-    text += "test = " + list_of(tune.test) + "\n";
+    add("test", list_of(tune.test));
   }
   if (!tune.initial_states.empty()) {
-    text += "initial_states = " + list_of(tune.initial_states) + "\n";
+    add("initial_states", list_of(tune.initial_states));
   }
-  return text.empty() ? text : "\n[tune]\n" + text;
+  if (entries.size() == head + 1) {
+    entries.pop_back();
+  }
+}
+
+bool is_below(const std::string& key, const std::string& table) {
+  return key.size() > table.size() && key.starts_with(table) && key[table.size()] == '.';
+}
+
+/// The entry that a comment goes with: that of its key, else the nearest above it, else the first below; none where the
+/// file has nothing of the kind any more.
+std::size_t entry_of(const std::string& key, const std::vector<Entry>& entries) {
+  std::size_t nearest = entries.size();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].key == key) {
+      return i;
+    }
+    const bool outer = is_below(key, entries[i].key);
+    if (outer && (nearest == entries.size() || is_below(entries[i].key, entries[nearest].key))) {
+      nearest = i;
+    }
+  }
+  const auto inner =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return is_below(entry.key, key); });
+  return nearest < entries.size() ? nearest : static_cast<std::size_t>(inner - entries.begin());
+}
+
+/// Whether a comment was written by a fit before: it differs from the remark in the standard error alone.
+bool is_older_remark(std::string_view comment, std::string_view remark) {
+  const auto without_error = [](std::string_view text) {
+    text = text.substr(0, text.rfind("standard error "));
+    return text.ends_with(", ") ? text.substr(0, text.size() - 2) : text;
+  };
+  return comment.starts_with("# ") && without_error(comment.substr(2)) == without_error(remark);
+}
+
+/// Entries with their comments and remarks; the remarks of one table below each other.
+std::string entries_text(const std::vector<Entry>& entries, const std::vector<Comment>& comments) {
+  std::vector<std::string> above(entries.size());
+  std::vector<std::string> beside(entries.size());
+  std::string end;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    beside[i] = entries[i].remark.empty() ? "" : "# " + entries[i].remark;
+  }
+  for (const Comment& comment : comments) {
+    const std::size_t i = comment.where == Comment::Where::End ? entries.size() : entry_of(comment.key, entries);
+    if (comment.where == Comment::Where::Head) {
+      continue;
+    }
+    if (i == entries.size()) {
+      end += "\n" + comment.text + "\n";
+    } else if (comment.where != Comment::Where::Beside || comment.key != entries[i].key) {
+      above[i] += comment.text + "\n";
+    } else if (beside[i].empty()) {
+      beside[i] = comment.text;
+    } else if (!is_older_remark(comment.text, entries[i].remark)) {
+      above[i] += comment.text + "\n";
+    }
+  }
+  std::string text;
+  std::size_t widest = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const bool head = entries[i].head;
+    if (head) {
+      widest = 0;
+      for (std::size_t k = i + 1; k < entries.size() && !entries[k].head; ++k) {
+        widest = std::max(widest, beside[k].empty() ? 0 : entries[k].text.size());
+      }
+    }
+    text += (head ? "\n" : "") + above[i];
+    text += beside[i].empty() ? entries[i].text + "\n"
+                              : fmt::format("{:<{}}  {}\n", entries[i].text, head ? 0 : widest, beside[i]);
+  }
+  return text + end;
 }
 
 }  // namespace
@@ -184,17 +272,29 @@ std::string parameter_text(const ParameterFile& file, const Remarks& remarks, st
     text += line.empty() ? "#\n" : "# " + one_line(line) + "\n";
     heading.remove_prefix(end == std::string_view::npos ? heading.size() : end + 1);
   }
-  Tables values;
-  for (const ParameterValue& value : file.values) {
-    const auto remark = remarks.find(in_capitals(value.path));
-    values.add(value.path, value_text(value.value),
-               remark == remarks.end() ? std::string() : comment_of(remark->second));
+  for (const Comment& comment : file.comments) {
+    if (comment.where == Comment::Where::Head) {
+      text += (text.empty() ? "" : "\n") + comment.text + "\n";
+    }
   }
-  Tables fits;
+  Tables values("parameters");
+  for (const ParameterValue& value : file.values) {
+    values.add(value.path, value_text(value.value), remarks);
+  }
+  Tables initial("initial");
+  for (const ParameterValue& value : file.initial) {
+    initial.add(value.path, value_text(value.value), remarks);
+  }
+  Tables fits("fit");
   for (const FitSetting& fit : file.fits) {
     fits.add(fit.path, settings_of(fit));
   }
-  text += values.text("parameters") + fits.text("fit") + tune_text(file.tune);
+  std::vector<Entry> entries;
+  values.append_to(entries);
+  initial.append_to(entries);
+  fits.append_to(entries);
+  append_tune(file.tune, entries);
+  text += entries_text(entries, file.comments);
   text.erase(0, text.find_first_not_of('\n'));  // where there is no heading
   return text;
 }

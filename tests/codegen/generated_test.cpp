@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "codegen/backends/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/parameters/apply.hpp"
 #include "tests/codegen/random_program.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -150,6 +152,84 @@ TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) {
 }
 TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) {
   hold_generated_against_interpreted<float>();
+}
+
+/// A target runs for years: 10^10 steps are six days at 50 us. The counter of steps is a DINT, which ends at 2.1·10^9.
+/// It stays below the common period of the rates for ever, if it goes from its last value to 0; that passage is tried
+/// at the longest of periods, and what runs in the steps round it is held against the interpreter, which counts on.
+TEST(Generated, TheCounterOfStepsNeverOverflows) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK RATES (* @ts 50us *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "VAR A : HY_SAMPLE; (* @every 65536 @phase 1 *) B : HY_SAMPLE; (* @every 32749 *) KA : HY_HOLD; KB : HY_HOLD;\n"
+      "END_VAR A(XIN := U); B(XIN := U); KA(XIN := A.XOUT); KB(XIN := B.XOUT); Y := KA.XOUT + 0.5 * KB.XOUT;\n"
+      "END_FUNCTION_BLOCK\n");
+  constexpr std::int64_t period = std::int64_t{65536} * 32749;
+  static_assert(period < longest_common_period);
+  constexpr std::int64_t first = 5 * period - 2;  // beyond 10^10
+  static_assert(first > 10'000'000'000);
+  const test::ScratchFolder folder;
+  const GeneratedFile header = generate_cpp_header(program, {});
+  std::ofstream(folder.path() / header.name) << header.text;
+  std::ofstream(folder.path() / "main.cpp") << fmt::format(R"(#include <cstdio>
+#include "{}"
+int main() {{
+  rates::Params params;
+  rates::State state;
+  rates::reset(params, state);
+  state.steps = {};
+  for (int k = 0; k < 6; ++k) {{
+    std::printf("%d", static_cast<int>(state.steps));
+    std::printf(" %g\n", rates::step(params, state, {{.u = 1.0 + k}}).y);
+  }}
+}}
+)",
+                                                           header.name, first % period);
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  const std::string compile =
+      fmt::format("c++ -std=c++20 -O1 -fsanitize=undefined -fno-sanitize-recover=all {} {} -o {} 2> {}",
+                  cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
+  ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
+  ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("out")).c_str()), 0);
+
+  Machine<double> machine(program);
+  auto bytes = machine.save();  // its last eight bytes are the count of steps
+  std::memcpy(bytes.data() + bytes.size() - sizeof(first), &first, sizeof(first));
+  machine.restore(bytes);
+  std::ifstream out(at("out"));
+  std::vector<double> values;
+  for (int k = 0; k < 6; ++k) {
+    std::int64_t counter = -1;
+    double y = 0.0;
+    out >> counter >> y;
+    EXPECT_EQ(counter, (first + k) % period);
+    machine.set_input(0, 1.0 + k);
+    machine.step();
+    EXPECT_EQ(y, machine.output(0)) << "step " << first + k;
+    values.push_back(y);
+  }
+  EXPECT_EQ(values, (std::vector{0.0, 0.0, 1.5, 5.5, 5.5, 5.5})) << "B runs in the third of them, A in the fourth";
+}
+
+TEST(Generated, StatesBeginWhereTheParameterFileSays) {
+  Program program = compile_text(
+      "FUNCTION_BLOCK TANK (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "VAR SUM : HY_INTEGRAL; LAG : HY_DELAY; END_VAR SUM(XIN := U); LAG(XIN := SUM.XOUT); Y := LAG.XOUT;\n"
+      "END_FUNCTION_BLOCK\n");
+  const std::string plain = generate_cpp_header(program, {}).text;
+  parameters::apply(parameters::parse_parameter_file("p.toml", "[initial.Sum]\nsum = 2.5\n"), program.graph);
+  const std::string given = generate_cpp_header(program, {}).text;
+  const auto reset_of = [](const std::string& text) {
+    const auto begin = text.find("inline void reset(");
+    return text.substr(begin, text.find("\n}\n", begin) - begin);
+  };
+  EXPECT_EQ(reset_of(plain).find("2.5"), std::string::npos);
+  EXPECT_NE(reset_of(given).find("state.sum.sum = 2.5;"), std::string::npos) << reset_of(given);
+  Machine<float> machine(program);
+  machine.step();
+  machine.step();
+  EXPECT_EQ(machine.output(0), 2.5F);
+  machine.reset();
+  EXPECT_EQ(*machine.real_state("SUM.SUM"), 2.5F);
 }
 
 }  // namespace

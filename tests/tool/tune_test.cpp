@@ -129,6 +129,80 @@ TEST_F(Tune, FittedValuesRunAndTuneAgain) {
   }
 }
 
+constexpr std::string_view tank = R"(FUNCTION_BLOCK TANK  (* @ts 10ms *)
+  VAR_INPUT
+    Q : LREAL;
+  END_VAR
+  VAR_OUTPUT
+    LEVEL : LREAL;
+  END_VAR
+  VAR
+    AREA : HY_GAIN;
+    SUM  : HY_INTEGRAL;
+  END_VAR
+
+  AREA(XIN := Q);
+  SUM(XIN := AREA.XOUT);
+  LEVEL := SUM.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+/// A tank that is not empty when the record begins: LEVEL = start + 2.5·∫Q dt.
+std::string tank_log(double start) {
+  std::string text = "t,q,level\n";
+  double sum = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const double q = 1.0 + k % 7;
+    sum += 0.01 * 2.5 * q;
+    text += number_text(0.01 * k) + "," + number_text(q) + "," + number_text(start + sum + (k % 2) * 1e-6) + "\n";
+  }
+  return text;
+}
+
+TEST_F(Tune, InitialStatesOfOneRecordAreStored) {
+  bench.write("tank.st", tank);
+  bench.write("log.csv", tank_log(3.0));
+  bench.write("p.toml",
+              "# the tank in the yard\n\n[fit.AREA]\nK = {}  # per area\n\n"
+              "[tune]\ninitial_states = [\"SUM.SUM\"]\n");
+  ASSERT_EQ(bench.shell("hysteron tune tank.st --log log.csv --params p.toml --out tuned.toml --report report").code,
+            0);
+  const auto text = bench.read("tuned.toml");
+  EXPECT_THAT(text, AllOf(HasSubstr("\n[initial.SUM]\nSUM = "), HasSubstr("K = {}  # per area\n"),
+                          HasSubstr("\n# the tank in the yard\n")));
+  // The run meets the record that the fit was made to, from its first sample on.
+  const auto run = bench.shell(
+      "hysteron run tank.st --in log.csv --out out.csv --params tuned.toml && "
+      "tail -n +2 out.csv | cut -d, -f2 > a && tail -n +2 report/residuals.csv | cut -d, -f3 > b && cmp a b && "
+      "head -n 1 a");
+  ASSERT_EQ(run.code, 0) << run.out << run.err;
+  EXPECT_NEAR(parse_number(run.out.substr(0, run.out.find('\n'))).value, 3.025, 1e-4);
+  // What is tuned again begins there, and keeps one heading and one remark.
+  ASSERT_EQ(bench.shell("hysteron tune tank.st --log log.csv --params tuned.toml --out again.toml").code, 0);
+  const auto again = bench.read("again.toml");
+  const auto count = [&](const std::string& part) {
+    int found = 0;
+    for (auto at = again.find(part); at != std::string::npos; at = again.find(part, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("Fitted by hysteron tune"), 1);
+  EXPECT_EQ(count("standard error"), 2);
+  EXPECT_EQ(count("# the tank in the yard"), 1);
+}
+
+TEST_F(Tune, InitialStatesOfSeveralRecordsStandInTheHeading) {
+  bench.write("tank.st", tank);
+  bench.write("a.csv", tank_log(3.0));
+  bench.write("b.csv", tank_log(-7.0));
+  bench.write("p.toml", "[fit.AREA]\nK = {}\n\n[tune]\ninitial_states = [\"SUM.SUM\"]\n");
+  ASSERT_EQ(bench.shell("hysteron tune tank.st --log a.csv --log b.csv --params p.toml --out tuned.toml").code, 0);
+  EXPECT_THAT(bench.read("tuned.toml"),
+              AllOf(HasSubstr("# SUM.SUM at the start of record 1: 3.0"),
+                    HasSubstr("# SUM.SUM at the start of record 2: -"), Not(HasSubstr("[initial"))));
+}
+
 TEST_F(Tune, InterruptLeavesTheBestSoFar) {
   // Thousands of starts take minutes. The signal goes once the tool catches it: bit 1 of SigCgt is SIGINT.
   const auto outcome = bench.shell(

@@ -150,6 +150,22 @@ TEST_F(Apply, NamesAreChecked) {
               HasSubstr("FIXED.K is not free to be set: the diagram connects or fixes it."));
 }
 
+TEST_F(Apply, SetsWhereStatesBegin) {
+  set("[initial.hyst]\nbranch_y = 3\nBRANCH_X = -0.5\n");
+  set("[initial.HYST]\nBRANCH_Y = 4.5\n");
+  const Graph& graph = program.graph;
+  ASSERT_EQ(graph.initial_states.size(), 2U);
+  const InitialState& last = graph.initial_states.back();
+  EXPECT_EQ(graph.nodes[last.node].path, "HYST");
+  EXPECT_EQ(graph.nodes[last.node].block->states[last.state].name, "BRANCH_Y");
+  EXPECT_EQ(last.value, 4.5);
+  EXPECT_THAT(refusal("[initial.HYST]\nBRANCH_Q = 1.0\n"),
+              AllOf(HasSubstr("HY603 error: p.toml:2:1: TOP has no state HYST.BRANCH_Q that is a real number."),
+                    HasSubstr("did you mean HYST.BRANCH_")));
+  EXPECT_THAT(refusal("[initial.HYST]\nBRANCH_Y = true\n"),
+              HasSubstr("HY604 error: p.toml:2:12: HYST.BRANCH_Y takes a number, not true."));
+}
+
 TEST_F(Apply, EveryFaultIsReportedAndNothingElseIsLost) {
   const auto text = refusal("[parameters]\nBIAS = true\nMODE = 1.5\nNONE = 1\n");
   EXPECT_THAT(text, AllOf(HasSubstr(":2:8:"), HasSubstr(":3:8:"), HasSubstr(":4:1:"), HasSubstr("3 errors")));

@@ -37,9 +37,9 @@ TEST(ParameterWriter, WritesAFileThatAPersonCanRead) {
   file.tune.test = {{.begin = 21.0, .end = 30.0}, {.begin = 31.0, .end = 40.5}};
   file.tune.initial_states = {{.text = "HYST.P"}, {.text = "LAG.XOUT"}};
   const Remarks remarks{
-      {"INV.C1", {.unit = "um/V", .meaning = "slope at a branching point", .standard_error = 0.000123}},
-      {"INV.C2", {.unit = "um/V^2.7", .meaning = "", .standard_error = {}}},
-      {"INV.C3", {.unit = "", .meaning = "exponent\n[evil]", .standard_error = {}}}};
+      {"PARAMETERS.INV.C1", {.unit = "um/V", .meaning = "slope at a branching point", .standard_error = 0.000123}},
+      {"PARAMETERS.INV.C2", {.unit = "um/V^2.7", .meaning = "", .standard_error = {}}},
+      {"PARAMETERS.INV.C3", {.unit = "", .meaning = "exponent\n[evil]", .standard_error = {}}}};
   EXPECT_EQ(parameter_text(file, remarks, "Tuned by hysteron\n\nfrom log.csv"),
             R"(# Tuned by hysteron
 #
@@ -70,6 +70,74 @@ train = [1.0, 21.0]
 test = [[21.0, 30.0], [31.0, 40.5]]
 initial_states = ["HYST.P", "LAG.XOUT"]
 )");
+}
+
+TEST(ParameterWriter, KeepsTheCommentsOfTheUser) {
+  ParameterFile file = parse_parameter_file("p.toml", R"(# Stage 7, axis X
+# serial number 4711
+
+# from the data sheet
+[parameters] # of the machine
+GAIN = 2 # do not touch
+
+[parameters.INV]  # the inverse
+# measured on Monday
+# at 20 degC
+C1 = 0.05   # um/V, slope, standard error 0.5
+C2 = 1.25 # "growth" # twice
+TAB = [0.0,   # first
+       1.0]
+
+# bounds
+[fit.INV.C1]
+min = 0.0  # by physics
+[tune]
+# the ramp is left out
+train = [1.0, 21.0]
+loss = "squares"  # no outliers
+# the end
+)");
+  file.values[1].value = 0.0625;
+  const Remarks remarks{{"PARAMETERS.INV.C1", {.unit = "um/V", .meaning = "slope", .standard_error = 0.25}},
+                        {"PARAMETERS.INV.C2", {.unit = "um", .meaning = "growth", .standard_error = 1.0}}};
+  constexpr std::string_view expected = R"(# Tuned
+
+# Stage 7, axis X
+# serial number 4711
+
+# from the data sheet
+[parameters]  # of the machine
+GAIN = 2  # do not touch
+
+[parameters.INV]  # the inverse
+# measured on Monday
+# at 20 degC
+C1 = 0.0625       # um/V, slope, standard error 0.25
+# "growth" # twice
+C2 = 1.25         # um, growth, standard error 1
+TAB = [0.0, 1.0]  # first
+
+[fit.INV]
+# bounds
+# by physics
+C1 = {min = 0.0}
+
+# no outliers
+[tune]
+# the ramp is left out
+train = [1.0, 21.0]
+
+# the end
+)";
+  const std::string text = parameter_text(file, remarks, "Tuned");
+  EXPECT_EQ(text, expected);
+  EXPECT_EQ(parameter_text(parse_parameter_file("again.toml", text), remarks), text) << "and once more";
+}
+
+TEST(ParameterWriter, WritesWhereStatesBegin) {
+  const auto text = "[parameters.LAG]\nT1 = 0.5\n\n[initial.LAG]\nXOUT = 0.25  # begin, standard error 0.1\n";
+  const Remarks remarks{{"INITIAL.LAG.XOUT", {.unit = "", .meaning = "begin", .standard_error = 0.1}}};
+  EXPECT_EQ(parameter_text(parse_parameter_file("p.toml", text), remarks), text);
 }
 
 TEST(ParameterWriter, AnEmptyFileIsEmpty) {

@@ -17,7 +17,8 @@ struct Place {
   std::string prefix{};
 };
 
-void add_places(const Definitions& definitions, std::uint32_t index, const std::string& prefix, std::vector<Place>& places) {
+void add_places(const Definitions& definitions, std::uint32_t index, const std::string& prefix,
+                std::vector<Place>& places) {
   places.push_back({.definition = index, .prefix = prefix});
   for (const Declared& declared : definitions.list[index].variables) {
     if (declared.kind == Declared::Kind::UserBlock) {
@@ -27,9 +28,8 @@ void add_places(const Definitions& definitions, std::uint32_t index, const std::
 }
 
 const Node* find_node(const Graph& graph, std::string_view path) {
-  const auto found = std::ranges::find_if(graph.nodes, [&](const Node& node) {
-    return node.block != nullptr && language::same_name(node.path, path);
-  });
+  const auto found = std::ranges::find_if(
+      graph.nodes, [&](const Node& node) { return node.block != nullptr && language::same_name(node.path, path); });
   return found == graph.nodes.end() ? nullptr : &*found;
 }
 
@@ -87,7 +87,8 @@ class Enumeration {
         return result;
       }
       for (const Declared& declared : definitions_.list[index_].variables) {
-        if (declared.kind == Declared::Kind::Input && declared.field.type == Type::Real && declared.field.name != edge.local) {
+        if (declared.kind == Declared::Kind::Input && declared.field.type == Type::Real &&
+            declared.field.name != edge.local) {
           result.push_back(language::upper(declared.field.name));
         }
       }
@@ -130,11 +131,8 @@ class Enumeration {
     const std::string instance =
         free_name(source_->blocks[edge.definition], fmt::format("{}_{}", base_name, language::upper(kind.id)));
     Candidate candidate{.kind = kind, .variant = base_};
-    Applied applied{.effect = kind.id,
-                    .block = kind.block,
-                    .edge = edge.name,
-                    .instance = edge.prefix + instance,
-                    .wires = wires};
+    Applied applied{
+        .effect = kind.id, .block = kind.block, .edge = edge.name, .instance = edge.prefix + instance, .wires = wires};
     const auto* text = source_.get();
     language::SourceFile widened;
     Edge here = edge;
@@ -147,12 +145,9 @@ class Enumeration {
       }
       text = &widened;
     }
-    candidate.variant.text = with_effect(*text, here,
-                                         {.block = kind.block,
-                                          .instance = instance,
-                                          .input = kind.input,
-                                          .output = kind.output,
-                                          .wires = wires});
+    candidate.variant.text = with_effect(
+        *text, here,
+        {.block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires});
     candidate.family = edge.name;
     for (const auto& [pin, driver] : wires) {
       candidate.family += "|" + driver;

@@ -19,9 +19,9 @@ struct Applied {
   std::string edge{};      ///< HYST.XOUT; of a richer block, its output
   std::string instance{};  ///< path of the block that carries it
   std::vector<EffectParameter> parameters{};
-  std::vector<std::string> paths{};                             ///< of the parameters, beside them
-  std::vector<std::pair<std::string, double>> settings{};       ///< of parameters that are not fitted, by path
-  std::vector<std::pair<std::string, std::string>> wires{};     ///< auxiliary pins and what drives them
+  std::vector<std::string> paths{};                          ///< of the parameters, beside them
+  std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
+  std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
 };
 
 /// A diagram with the effects added so far.
@@ -36,7 +36,7 @@ struct Variant {
 struct Candidate {
   EffectKind kind{};
   Variant variant{};
-  Wire input{};                  ///< what drives the effect's XIN
+  Wire input{};                   ///< what drives the effect's XIN
   std::vector<Wire> auxiliary{};  ///< what drives its further inputs
   std::string family{};           ///< candidates with the same signals: name of edge and wires
 

@@ -28,7 +28,8 @@ struct DiagnosisInput {
 };
 
 struct DiagnosisOptions {
-  double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; a quarter of the floor counts at least
+  double material =
+      0.0;  ///< smallest gap that matters, RMS in the output's unit; a quarter of the floor counts at least
   std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
   int most_effects = 3;
   double budget = 60.0;  ///< seconds after which no further effect is added
@@ -88,7 +89,7 @@ struct GapFinding {
 
 struct EdgeFinding {
   std::string edge{};
-  double share = 0.0;                 ///< of the gap that a change on this edge could explain at most
+  double share = 0.0;                ///< of the gap that a change on this edge could explain at most
   std::vector<std::string> group{};  ///< edges that the record cannot tell from it
 };
 
@@ -129,7 +130,7 @@ struct NextExperiment {
 
 struct Diagnosis {
   Verdict verdict = Verdict::Unknown;
-  std::string summary{};  ///< the verdict in plain words
+  std::string summary{};                ///< the verdict in plain words
   std::vector<std::string> refusals{};  ///< why the record could not be diagnosed; empty where it could
   std::vector<std::string> warnings{};
   std::vector<EffectFinding> effects{};
@@ -138,14 +139,14 @@ struct Diagnosis {
   std::vector<Rival> rivals{};
   double confidence = 0.0;
   double unknown_score = 0.0;
-  GapFinding gap{};                     ///< of the output with the largest gap over its floor
-  std::vector<GapFinding> gaps{};       ///< of all outputs
+  GapFinding gap{};                ///< of the output with the largest gap over its floor
+  std::vector<GapFinding> gaps{};  ///< of all outputs
   std::vector<EdgeFinding> edges{};
   std::vector<MapFinding> maps{};
   std::vector<std::string> cannot_tell{};
   NextExperiment next{};
   std::vector<Trace> traces{};
-  std::string improved_text{};               ///< the diagram with the effects, formatted
+  std::string improved_text{};                ///< the diagram with the effects, formatted
   parameters::ParameterFile improved_file{};  ///< its parameters
   std::size_t tried = 0;
   double seconds = 0.0;

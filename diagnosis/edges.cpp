@@ -21,10 +21,7 @@ struct Read {
 class BlockEdges {
  public:
   BlockEdges(const Definitions& definitions, std::uint32_t index)
-      : definitions_(definitions),
-        source_(*definitions.source),
-        definition_(definitions.list[index]),
-        index_(index) {
+      : definitions_(definitions), source_(*definitions.source), definition_(definitions.list[index]), index_(index) {
     for (const language::Statement& statement : definition_.block->statements) {
       if (const auto* const call = std::get_if<language::Call>(&statement)) {
         take_call(*call);
@@ -51,17 +48,17 @@ class BlockEdges {
       result.push_back(std::move(edge));
       for (const Read& read : reads) {  // one branch of several
         if (!read.consumer.empty()) {
-          result.push_back({.name = read.consumer, .definition = index_, .local = read.consumer, .source = name,
+          result.push_back({.name = read.consumer,
+                            .definition = index_,
+                            .local = read.consumer,
+                            .source = name,
                             .reads = {read.span}});
         }
       }
     }
     for (const auto& [name, span] : computed_) {
-      result.push_back({.name = name,
-                        .definition = index_,
-                        .local = name,
-                        .source = std::string(text(span)),
-                        .reads = {span}});
+      result.push_back(
+          {.name = name, .definition = index_, .local = name, .source = std::string(text(span)), .reads = {span}});
     }
     return joined(std::move(result));
   }
@@ -226,8 +223,8 @@ class BlockEdges {
   std::map<std::string, Span> computed_{};
 };
 
-void add_edges(const Definitions& definitions, std::uint32_t index, const std::string& prefix, std::set<std::string>& taken,
-               std::vector<Edge>& edges) {
+void add_edges(const Definitions& definitions, std::uint32_t index, const std::string& prefix,
+               std::set<std::string>& taken, std::vector<Edge>& edges) {
   for (Edge& edge : BlockEdges(definitions, index).list()) {
     edge.prefix = prefix;
     edge.name.insert(0, prefix);
@@ -265,8 +262,8 @@ std::uint32_t top_definition(const Definitions& definitions, std::string_view na
 
 const Edge* find_edge(const std::vector<Edge>& edges, std::string_view name) {
   for (const Edge& edge : edges) {
-    const bool is_alias = std::ranges::any_of(
-        edge.aliases, [&](const std::string& alias) { return language::same_name(alias, name); });
+    const bool is_alias =
+        std::ranges::any_of(edge.aliases, [&](const std::string& alias) { return language::same_name(alias, name); });
     if (language::same_name(edge.name, name) || is_alias) {
       return &edge;
     }

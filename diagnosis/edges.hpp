@@ -16,12 +16,12 @@
 namespace hysteron::diagnosis {
 
 struct Edge {
-  std::string name{};                  ///< PLANT.HYST.XOUT, in capitals
-  std::vector<std::string> aliases{};  ///< other names of the same wire: Y, HYST.XIN
-  std::uint32_t definition = 0;        ///< the FUNCTION_BLOCK that it lies in, by its place in the file
-  std::string prefix{};                ///< of the instance of that block: "PLANT.", empty in the top block
-  std::string local{};                 ///< the name within the block: HYST.XOUT
-  std::string source{};                ///< the text that computes the signal: HYST.XOUT, or U - OFFSET
+  std::string name{};                   ///< PLANT.HYST.XOUT, in capitals
+  std::vector<std::string> aliases{};   ///< other names of the same wire: Y, HYST.XIN
+  std::uint32_t definition = 0;         ///< the FUNCTION_BLOCK that it lies in, by its place in the file
+  std::string prefix{};                 ///< of the instance of that block: "PLANT.", empty in the top block
+  std::string local{};                  ///< the name within the block: HYST.XOUT
+  std::string source{};                 ///< the text that computes the signal: HYST.XOUT, or U - OFFSET
   std::vector<language::Span> reads{};  ///< the places in the text that are to read the changed signal instead
 };
 

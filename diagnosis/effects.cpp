@@ -31,7 +31,7 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
   if (unit == "'x/s") {
     return Role::Rate;
   }
-  if (!strength && unit == "'p") {
+  if (!strength && name == "PITCH") {
     return Role::Period;
   }
   return Role::Other;
@@ -48,8 +48,10 @@ std::vector<EffectParameter> searched(std::span<const Field> fields) {
     if (!strength && !std::isfinite(field.preset)) {
       continue;  // an end that need not come
     }
-    result.push_back(
-        {.field = field, .unit = std::string(field.unit), .role = role_of(field, field.unit, strength), .strength = strength});
+    result.push_back({.field = field,
+                      .unit = std::string(field.unit),
+                      .role = role_of(field, field.unit, strength),
+                      .strength = strength});
   }
   return result;
 }

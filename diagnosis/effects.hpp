@@ -29,7 +29,7 @@ enum class Role : std::uint8_t {
 
 struct EffectParameter {
   Field field{};
-  std::string unit{};    ///< as declared
+  std::string unit{};  ///< as declared
   Role role = Role::Other;
   bool strength = false;  ///< neutral at field.neutral; else a shape, without meaning while all strengths are neutral
 };
@@ -47,7 +47,7 @@ struct EffectKind {
   Change change = Change::Insert;
   std::string input = "XIN";
   std::string output = "XOUT";
-  std::string enriches{};                    ///< Enrich: the block that it can stand for; Free: the block itself
+  std::string enriches{};                     ///< Enrich: the block that it can stand for; Free: the block itself
   std::vector<EffectParameter> parameters{};  ///< those that are searched
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
 };

@@ -41,7 +41,8 @@ VectorXd step_of(const Model& model, const Normal& normal, const VectorXd& x, do
   MatrixXd matrix = normal.matrix;
   VectorXd gradient = normal.gradient;
   for (Index j = 0; j < x.size(); ++j) {
-    const bool held = (x[j] <= model.lower()[j] && gradient[j] > 0.0) || (x[j] >= model.upper()[j] && gradient[j] < 0.0);
+    const bool held =
+        (x[j] <= model.lower()[j] && gradient[j] > 0.0) || (x[j] >= model.upper()[j] && gradient[j] < 0.0);
     const double size = matrix(j, j);
     if (held || !(size > 0.0)) {
       matrix.row(j).setZero();

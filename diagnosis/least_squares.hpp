@@ -25,7 +25,7 @@ struct Fit {
 
 struct FitOptions {
   int iterations = 25;
-  double tolerance = 1e-5;   ///< of the relative decrease of the cost
+  double tolerance = 1e-5;            ///< of the relative decrease of the cost
   const VectorXd* weights = nullptr;  ///< of the rows; null: 1
 };
 

@@ -31,18 +31,18 @@ struct Unknown {
   double start = 0.0;
   double lower = 0.0;
   double upper = 0.0;
-  double typical = 1.0;   ///< size of a notable change
+  double typical = 1.0;    ///< size of a notable change
   double deviation = 0.0;  ///< of the prior about `start`; ∞: none
 };
 
 /// What stays the same while candidates come and go.
 struct Task {
-  parameters::ParameterFile file{};       ///< values only
+  parameters::ParameterFile file{};  ///< values only
   std::vector<records::Record> records{};
-  std::vector<std::string> outputs{};      ///< the measured ones, by name
-  std::vector<Unknown> known{};            ///< calibration parameters
+  std::vector<std::string> outputs{};  ///< the measured ones, by name
+  std::vector<Unknown> known{};        ///< calibration parameters
   std::vector<std::string> initial_states{};
-  std::vector<double> scales{};            ///< of the residuals, by output
+  std::vector<double> scales{};  ///< of the residuals, by output
 };
 
 class Model {

@@ -18,8 +18,8 @@ struct NoiseFloor {
   double differences = 0.0;  ///< standard deviations in the unit of the output; 0 where there is no such evidence
   double dwells = 0.0;
   double repeats = 0.0;
-  double value = 0.0;        ///< the one that counts, above 0
-  std::string evidence{};    ///< "repeats", "dwells" or "differences"
+  double value = 0.0;      ///< the one that counts, above 0
+  std::string evidence{};  ///< "repeats", "dwells" or "differences"
 };
 
 /// For one measured output over all records.

@@ -65,6 +65,10 @@ class Extents {
   std::map<std::string, Signals> signals_{};
 };
 
+bool has_period(const Applied& effect) {
+  return std::ranges::any_of(effect.parameters, [](const EffectParameter& one) { return one.role == Role::Period; });
+}
+
 class Searcher {
  public:
   Searcher(const Task& task, const std::string& top, double floor_cost, const SearchOptions& options)
@@ -91,9 +95,8 @@ class Searcher {
       beam = next_beam(found, result);
       std::ranges::move(found, std::back_inserter(result.explanations));
     }
-    std::ranges::stable_sort(result.explanations, [](const Explanation& a, const Explanation& b) {
-      return a.fit.cost < b.fit.cost;
-    });
+    std::ranges::stable_sort(result.explanations,
+                             [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
     return result;
   }
 
@@ -134,8 +137,9 @@ class Searcher {
         return;
       }
       std::vector<double> periods;
-      if (signals->auxiliary_values) {
-        periods = strongest_periods(from.fit.residuals, *signals->auxiliary_values, 5);
+      if (has_period(candidates[i].own())) {
+        periods = strongest_periods(from.fit.residuals,
+                                    signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 5);
       }
       const Grids grids = grids_of(candidates[i].own(), signals->input,
                                    signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);

@@ -24,7 +24,7 @@ struct SearchOptions {
   std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
   std::size_t fitted_later = 10;  ///< and after each further one
   std::size_t beam = 3;
-  double least_share = 0.05;      ///< of the gap that a further effect has to close
+  double least_share = 0.05;  ///< of the gap that a further effect has to close
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
 };
@@ -45,10 +45,10 @@ struct Attempt {
 };
 
 struct Search {
-  Explanation calibrated{};               ///< no effect, known parameters fitted
+  Explanation calibrated{};                 ///< no effect, known parameters fitted
   std::vector<Explanation> explanations{};  ///< with effects, best first
-  std::vector<Attempt> attempts{};        ///< of the first round, best first
-  std::size_t tried = 0;                  ///< candidates over all rounds
+  std::vector<Attempt> attempts{};          ///< of the first round, best first
+  std::size_t tried = 0;                    ///< candidates over all rounds
 };
 
 /// `floor_cost` is ½Σr² of noise alone: what no effect can close.

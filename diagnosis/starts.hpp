@@ -12,8 +12,8 @@ namespace hysteron::diagnosis {
 /// What the residual of the diagram says beforehand.
 struct Hints {
   double sample_time = 0.0;
-  double duration = 0.0;               ///< of the longest record, s
-  std::vector<double> frequencies{};   ///< of lines in the residual, Hz
+  double duration = 0.0;              ///< of the longest record, s
+  std::vector<double> frequencies{};  ///< of lines in the residual, Hz
 };
 
 /// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.
@@ -22,8 +22,8 @@ struct Grid {
 };
 
 struct Grids {
-  std::vector<Grid> parameters{};          ///< beside the effect's parameters
-  std::vector<double> settings{};          ///< of references, NaN elsewhere
+  std::vector<Grid> parameters{};  ///< beside the effect's parameters
+  std::vector<double> settings{};  ///< of references, NaN elsewhere
 };
 
 /// `input` is the signal that the effect changes, `auxiliary` what drives its first further input.

@@ -10,6 +10,7 @@ std::span<const Command> commands() {
       Command{"fmt", "Formats diagrams, with statements in the order of the data flow.", add_fmt},
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
+      Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},
       Command{"generate", "Generates code from a diagram.", add_generate},
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},

@@ -1,0 +1,250 @@
+#include "diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "codegen/parameters/apply.hpp"
+#include "diagnosis/discrepancy.hpp"
+#include "diagnosis/findings.hpp"
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/maps.hpp"
+#include "diagnosis/record_check.hpp"
+#include "diagnosis/search.hpp"
+#include "diagnosis/task.hpp"
+#include "diagnosis/verdict.hpp"
+#include "diagnosis/where.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Run {
+ public:
+  Run(const DiagnosisInput& input, const DiagnosisOptions& options) : input_(input), options_(options) {}
+
+  Diagnosis run() {
+    const auto begun = Clock::now();
+    prepare();
+    if (result_.refusals.empty()) {
+      investigate(begun);
+    } else {
+      result_.verdict = Verdict::Unknown;
+      result_.unknown_score = 1.0;
+      result_.cannot_tell = result_.refusals;
+      result_.summary = "No diagnosis: " + result_.refusals.front();
+    }
+    result_.seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+    return std::move(result_);
+  }
+
+ private:
+  void prepare() {
+    task_ = task_of(input_);
+    base_ = {.text = input_.text, .program = std::make_shared<Program>(input_.program)};
+    Model model(task_, *base_.program);
+    floors_.clear();
+    for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
+      floors_.push_back(noise_floor(model.problem().experiments, output));
+      task_.scales.push_back(floors_.back().value);
+    }
+    Model scaled(task_, *base_.program);
+    if (!scaled.residuals(scaled.start(), nominal_)) {
+      throw InputError(error_of_start(input_));
+    }
+    auto [refusals, warnings] = check_records(task_, scaled, nominal_);
+    result_.refusals = std::move(refusals);
+    result_.warnings = std::move(warnings);
+    for (std::size_t output = 0; output < floors_.size(); ++output) {
+      if (floors_[output].evidence == "differences") {
+        result_.warnings.push_back(fmt::format(
+            "The noise floor of {} rests on its fast part alone: no input repeats or dwells. Slow noise would "
+            "count as a gap.",
+            task_.outputs[output]));
+      }
+    }
+    floor_cost_ = 0.5 * static_cast<double>(nominal_.size());
+  }
+
+  void investigate(Clock::time_point begun) {
+    SearchOptions searching{.threads = options_.threads, .most_effects = options_.most_effects};
+    searching.candidates.effects = options_.effects;
+    searching.candidates.columns = unused_columns(task_, *base_.program);
+    searching.progress = options_.progress;
+    searching.out_of_time = [&] {
+      return std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
+    };
+    const std::string top = base_.program->graph.name;
+    const Search found = search(task_, base_, top, floor_cost_, searching);
+    result_.tried = found.tried;
+    const Judgement judgement = judge(task_, found, floor_cost_, searching.least_share);
+    const Explanation& chosen = *judgement.chosen;
+    describe_gap(found.calibrated, chosen);
+    decide(found, judgement);
+    result_.edges = where(task_, found.calibrated, top, options_.threads);
+    result_.maps = maps_of(task_, found.calibrated, chosen);
+    describe(found, judgement);
+  }
+
+  [[nodiscard]] double rms(const VectorXd& residuals, std::size_t output) const {
+    const Index rows = residuals.size() / std::ssize(task_.outputs);
+    const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
+    return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task_.scales[output];
+  }
+
+  void describe_gap(const Explanation& calibrated, const Explanation& chosen) {
+    const auto before = by_blocks(task_, nominal_);
+    const auto after = held_out(task_, chosen);
+    double largest = -1.0;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const Port& port = *std::ranges::find_if(input_.program.graph.outputs, [&](const Port& one) {
+        return language::same_name(one.name, task_.outputs[output]);
+      });
+      GapFinding gap{.signal = port.name,
+                     .unit = port.unit,
+                     .nominal = rms(nominal_, output),
+                     .calibrated = rms(calibrated.fit.residuals, output),
+                     .improved = rms(chosen.fit.residuals, output),
+                     .floor = floors_[output]};
+      const Closure share = closure(before[output], after[output], 1.0, options_.seed);
+      gap.closed = share.closed;
+      gap.closed_low = share.low;
+      gap.closed_high = share.high;
+      if (const double size = gap.nominal / gap.floor.value; size > largest) {
+        largest = size;
+        result_.gap = gap;
+      }
+      result_.gaps.push_back(gap);
+    }
+  }
+
+  /// Whether something remains of the residuals, beyond the floor, that matters to the user.
+  [[nodiscard]] bool material(const VectorXd& residuals) const {
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const double floor = floors_[output].value;
+      const double here = rms(residuals, output);
+      const double excess = std::sqrt(std::max(0.0, here * here - floor * floor));
+      if (excess > std::max(0.35 * floor, options_.material)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void decide(const Search& found, const Judgement& judgement) {
+    const Explanation& chosen = *judgement.chosen;
+    const bool has_effect = !chosen.variant.effects.empty();
+    const bool gap_before = material(nominal_);
+    const bool gap_calibrated = material(found.calibrated.fit.residuals);
+    const bool gap_left = material(chosen.fit.residuals);
+
+    const Model model(task_, *base_.program);
+    const Discrepancy left = discrepancy_of(model, chosen.fit.residuals);
+    const double size = chosen.fit.residuals.norm() / std::sqrt(static_cast<double>(chosen.fit.residuals.size()));
+    const bool predictable = left.share_low > 0.02 && left.rms > 0.25 * std::min(size, 4.0);
+    const double gap = found.calibrated.fit.cost - floor_cost_;
+    const double open = gap > 0.0 ? std::clamp((chosen.fit.cost - floor_cost_) / gap, 0.0, 1.0) : 0.0;
+    result_.unknown_score = gap_left ? std::clamp(std::max(left.share, 0.0) * (0.3 + 0.7 * open), 0.0, 1.0) : 0.0;
+
+    if (has_effect && gap_calibrated) {
+      if (gap_left && predictable && open > 0.5) {
+        result_.verdict = Verdict::Partial;
+      } else {
+        result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
+      }
+    } else if (gap_calibrated && predictable) {
+      result_.verdict = Verdict::Unknown;
+    } else if (gap_before && calibration_matters(found.calibrated)) {
+      result_.verdict = Verdict::Calibration;
+    } else {
+      result_.verdict = Verdict::None;
+    }
+  }
+
+  [[nodiscard]] Discrepancy discrepancy_of(const Model& model, const VectorXd& residuals) const {
+    const Index rows = residuals.size() / std::ssize(task_.outputs);
+    Discrepancy largest;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const Discrepancy here =
+          discrepancy(model.problem().experiments, residuals.segment(static_cast<Index>(output) * rows, rows));
+      if (here.rms > largest.rms) {
+        largest = here;
+      }
+    }
+    return largest;
+  }
+
+  /// Whether the refit closed something material.
+  [[nodiscard]] bool calibration_matters(const Explanation& calibrated) const {
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const double before = rms(nominal_, output);
+      const double after = rms(calibrated.fit.residuals, output);
+      const double closed = std::sqrt(std::max(0.0, before * before - after * after));
+      if (closed > std::max(0.25 * floors_[output].value, options_.material)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void describe(const Search& found, const Judgement& judgement) {
+    const Findings findings{.task = task_, .search = found, .judgement = judgement, .floor_cost = floor_cost_};
+    result_.calibration = calibration_findings(findings);
+    result_.nominal = nominal_findings(task_);
+    const bool named =
+        result_.verdict == Verdict::Named || result_.verdict == Verdict::Group || result_.verdict == Verdict::Partial;
+    if (named) {
+      result_.effects = effect_findings(findings);
+      result_.rivals = rival_findings(findings);
+    }
+    result_.confidence = confidence(findings, result_);
+    for (std::string& reason : structural_reasons(result_)) {
+      result_.cannot_tell.push_back(std::move(reason));
+    }
+    result_.traces = traces_of(task_, nominal_, found.calibrated.fit.residuals, judgement.chosen->fit.residuals);
+    const Explanation& kept = named ? *judgement.chosen : found.calibrated;
+    result_.improved_text = improved_text(kept, input_.program.graph.source->path);
+    result_.improved_file = improved_file(task_, input_.file, kept);
+    result_.summary = summary_of(result_);
+  }
+
+  const DiagnosisInput& input_;
+  const DiagnosisOptions& options_;
+  Task task_{};
+  Variant base_{};
+  std::vector<NoiseFloor> floors_{};
+  VectorXd nominal_{};
+  double floor_cost_ = 0.0;
+  Diagnosis result_{};
+};
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::None:
+      return "none";
+    case Verdict::Calibration:
+      return "calibration";
+    case Verdict::Named:
+      return "named";
+    case Verdict::Group:
+      return "group";
+    case Verdict::Partial:
+      return "partial";
+    case Verdict::Unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options) {
+  return Run(input, options).run();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,315 @@
+#include "diagnosis/findings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "support/diagnostic.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double normal_95 = 1.96;
+
+/// Standard errors of all unknowns: s²(JᵀJ/τ + Λ)⁻¹ with the residual deviation s; ∞ where nothing determines one.
+VectorXd standard_errors(const Model& model, const Fit& fit, double effective_samples) {
+  const auto rows = static_cast<double>(fit.residuals.size());
+  const double variance = fit.residuals.squaredNorm() / std::max(1.0, rows);
+  const double tau = std::max(1.0, rows / std::max(1.0, effective_samples));
+  MatrixXd normal = fit.jacobian.transpose() * fit.jacobian / (variance * tau);
+  normal.diagonal() += model.prior().cwiseAbs2();
+  VectorXd scale = normal.diagonal().cwiseSqrt();
+  for (Index j = 0; j < scale.size(); ++j) {
+    scale[j] = scale[j] > 0.0 ? scale[j] : 1.0;
+  }
+  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+  const MatrixXd inverse = (scaled + 1e-10 * MatrixXd::Identity(scaled.rows(), scaled.cols()))
+                               .ldlt()
+                               .solve(MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  return inverse.diagonal().cwiseAbs().cwiseSqrt().cwiseQuotient(scale);
+}
+
+ParameterFinding finding_of(const std::string& name, const std::string& unit, double value, double error, double lower,
+                            double upper) {
+  return {.name = name,
+          .value = value,
+          .low = std::max(lower, value - normal_95 * error),
+          .high = std::min(upper, value + normal_95 * error),
+          .unit = unit};
+}
+
+std::string leaf(const std::string& path) {
+  return path.substr(path.rfind('.') + 1);
+}
+
+/// ½Σr² of the best set with exactly these identifiers; NaN where none was fitted.
+double cost_of_names(const Search& search, std::vector<std::string> names) {
+  std::ranges::sort(names);
+  if (names.empty()) {
+    return search.calibrated.fit.cost;
+  }
+  for (const Explanation& one : search.explanations) {  // best first
+    if (one.names() == names) {
+      return one.fit.cost;
+    }
+  }
+  return std::nan("");
+}
+
+/// Shapley shares of the effects of a set in what the set closes, from the sets that were fitted.
+std::vector<double> shares_of(const Findings& findings, const Explanation& chosen) {
+  const Search& search = findings.search;
+  const std::size_t count = chosen.variant.effects.size();
+  std::vector<std::string> names;
+  for (const Applied& applied : chosen.variant.effects) {
+    names.push_back(applied.effect);
+  }
+  std::vector<double> shares(count, 0.0);
+  std::vector<std::size_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    order[i] = i;
+  }
+  double orders = 0.0;
+  do {
+    std::vector<std::string> set;
+    double before = search.calibrated.fit.cost;
+    for (const std::size_t i : order) {
+      set.push_back(names[i]);
+      const double fitted = set.size() == count ? chosen.fit.cost : cost_of_names(search, set);
+      const double after = std::isnan(fitted) ? before : std::min(before, fitted);
+      shares[i] += before - after;
+      before = after;
+    }
+    orders += 1.0;
+  } while (std::ranges::next_permutation(order).found);
+  const double gap = std::max(1e-300, search.calibrated.fit.cost - std::min(findings.floor_cost, chosen.fit.cost));
+  for (double& share : shares) {
+    share = std::clamp(share / orders / gap, 0.0, 1.0);
+  }
+  return shares;
+}
+
+}  // namespace
+
+std::vector<ParameterFinding> nominal_findings(const Task& task) {
+  std::vector<ParameterFinding> result;
+  for (const Unknown& known : task.known) {
+    result.push_back(
+        {.name = known.path, .value = known.start, .low = known.start, .high = known.start, .unit = known.unit});
+  }
+  return result;
+}
+
+std::vector<ParameterFinding> calibration_findings(const Findings& findings) {
+  const Explanation& kept = *findings.judgement.chosen;
+  const Model model(findings.task, *kept.variant.program, kept.variant.further);
+  const VectorXd errors = standard_errors(model, kept.fit, findings.judgement.effective_samples);
+  std::vector<ParameterFinding> result;
+  for (std::size_t j = 0; j < findings.task.known.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    result.push_back(finding_of(findings.task.known[j].path, model.problem().parameters[j].unit, kept.fit.x[at],
+                                errors[at], model.lower()[at], model.upper()[at]));
+  }
+  return result;
+}
+
+std::vector<EffectFinding> effect_findings(const Findings& findings) {
+  const Explanation& chosen = *findings.judgement.chosen;
+  const Model model(findings.task, *chosen.variant.program, chosen.variant.further);
+  const VectorXd errors = standard_errors(model, chosen.fit, findings.judgement.effective_samples);
+  const std::vector<double> shares = shares_of(findings, chosen);
+  std::vector<EffectFinding> result;
+  for (std::size_t i = 0; i < chosen.variant.effects.size(); ++i) {
+    const Applied& applied = chosen.variant.effects[i];
+    EffectFinding finding{.id = applied.effect, .edge = applied.edge, .share = shares[i]};
+    for (std::size_t j = 0; j < chosen.variant.further.size(); ++j) {
+      const Unknown& unknown = chosen.variant.further[j];
+      if (std::ranges::find(applied.paths, unknown.path) == applied.paths.end()) {
+        continue;
+      }
+      const Index at = model.first_further() + static_cast<Index>(j);
+      finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
+                                              model.lower()[at], model.upper()[at]));
+    }
+    std::set<std::string> same;
+    for (const Weighed& other : findings.judgement.same) {
+      for (const Applied& there : other.explanation->variant.effects) {
+        if (there.effect == applied.effect && there.edge != applied.edge) {
+          same.insert(there.edge);
+        }
+      }
+    }
+    finding.same_edges.assign(same.begin(), same.end());
+    result.push_back(std::move(finding));
+  }
+  std::ranges::stable_sort(result, [](const EffectFinding& a, const EffectFinding& b) { return a.share > b.share; });
+  return result;
+}
+
+std::vector<Rival> rival_findings(const Findings& findings) {
+  std::vector<Rival> result;
+  double total = 0.0;
+  for (const Weighed& weighed : findings.judgement.rivals) {
+    const Explanation& one = *weighed.explanation;
+    Rival rival{
+        .effects = one.names(),
+        .improved_rms = std::sqrt(one.fit.residuals.squaredNorm() / static_cast<double>(one.fit.residuals.size())) *
+                        findings.task.scales.front(),
+        .support = weighed.support,
+        .probability = std::exp(std::min(0.0, weighed.support))};
+    for (const Applied& applied : one.variant.effects) {
+      rival.edges.push_back(applied.edge);
+    }
+    total += rival.probability;
+    result.push_back(std::move(rival));
+  }
+  for (Rival& rival : result) {
+    rival.probability /= total;
+  }
+  return result;
+}
+
+double confidence(const Findings& findings, const Diagnosis& so_far) {
+  const double sure = 1.0 - 0.5 * so_far.unknown_score;
+  switch (so_far.verdict) {
+    case Verdict::Named:
+    case Verdict::Group:
+    case Verdict::Partial: {
+      const double first = so_far.rivals.empty() ? 0.0 : so_far.rivals.front().probability;
+      const double strength = 1.0 - std::exp(-0.2 * std::max(0.0, findings.judgement.significance));
+      const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
+      const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
+      return std::clamp(first * strength * whole * sure, 0.0, 0.99);
+    }
+    case Verdict::None:
+    case Verdict::Calibration:
+      return 0.95;
+    case Verdict::Unknown:
+      return 0.7;
+  }
+  return 0.0;
+}
+
+std::vector<std::string> structural_reasons(const Diagnosis& so_far) {
+  std::vector<std::string> reasons;
+  for (const EffectFinding& effect : so_far.effects) {
+    if (!effect.same_edges.empty()) {
+      reasons.push_back(fmt::format(
+          "{} at {} or at {}: the measured outputs are the same but for the noise. Measure a signal between them.",
+          effect.id, effect.edge, fmt::join(effect.same_edges, ", ")));
+    }
+  }
+  if (so_far.rivals.size() > 1) {
+    std::vector<std::string> names;
+    for (const Rival& rival : so_far.rivals) {
+      names.push_back(fmt::format("{}", fmt::join(rival.effects, " + ")));
+    }
+    reasons.push_back(
+        fmt::format("{}: after a refit of the known parameters their outputs differ by less than this "
+                    "record's noise can show.",
+                    fmt::join(names, " or ")));
+  }
+  for (const std::string& warning : so_far.warnings) {
+    reasons.push_back(warning);
+  }
+  return reasons;
+}
+
+std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
+                             const VectorXd& improved) {
+  std::vector<Trace> traces;
+  Index row = 0;
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    const double scale = task.scales[output];
+    for (const records::Record& record : task.records) {
+      const records::Column& column = record.column(task.outputs[output]);
+      Trace trace{.record = record.file(), .signal = task.outputs[output], .unit = column.unit};
+      trace.time.assign(record.time().begin(), record.time().end());
+      trace.measured = column.values;
+      for (const double y : column.values) {
+        trace.nominal.push_back(y + scale * nominal[row]);
+        trace.calibrated.push_back(y + scale * calibrated[row]);
+        trace.improved.push_back(y + scale * improved[row]);
+        ++row;
+      }
+      traces.push_back(std::move(trace));
+    }
+  }
+  return traces;
+}
+
+std::string improved_text(const Explanation& explanation, const std::string& path) {
+  Diagnostics diagnostics;
+  return format_text(path, explanation.variant.text, diagnostics);
+}
+
+parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
+                                        const Explanation& explanation) {
+  const auto set = [&](const std::string& path, double value) {
+    for (parameters::ParameterValue& one : file.values) {
+      if (language::same_name(one.path, path)) {
+        one.value = value;
+        return;
+      }
+    }
+    file.values.push_back({.path = path, .value = value});
+  };
+  const auto fitted = [&](const std::string& path) {
+    return std::ranges::any_of(file.fits,
+                               [&](const parameters::FitSetting& one) { return language::same_name(one.path, path); });
+  };
+  const VectorXd& x = explanation.fit.x;
+  for (std::size_t j = 0; j < task.known.size(); ++j) {
+    set(task.known[j].path, x[static_cast<Index>(j)]);
+    for (parameters::FitSetting& one : file.fits) {
+      if (language::same_name(one.path, task.known[j].path)) {
+        one.start.reset();
+      }
+    }
+  }
+  for (std::size_t j = 0; j < explanation.variant.further.size(); ++j) {
+    const std::string& path = explanation.variant.further[j].path;
+    set(path, x[std::ssize(task.known) + static_cast<Index>(j)]);
+    if (!file.fits.empty() && !fitted(path)) {
+      file.fits.push_back({.path = path});
+    }
+  }
+  for (const Applied& applied : explanation.variant.effects) {
+    for (const auto& [path, value] : applied.settings) {
+      set(path, value);
+    }
+  }
+  return file;
+}
+
+std::string summary_of(const Diagnosis& found) {
+  const std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
+                                      found.gap.nominal, found.gap.calibrated, found.gap.improved,
+                                      found.gap.unit.empty() ? "" : " ", found.gap.unit, found.gap.floor.value);
+  std::vector<std::string> effects;
+  for (const EffectFinding& effect : found.effects) {
+    effects.push_back(fmt::format("{} at {}", effect.id, effect.edge));
+  }
+  switch (found.verdict) {
+    case Verdict::None:
+      return fmt::format("No material gap: the model explains the record down to its noise ({}).", gap);
+    case Verdict::Calibration:
+      return fmt::format("Calibration: refitted parameters close the gap, no effect is missing ({}).", gap);
+    case Verdict::Named:
+      return fmt::format("{} ({}).", fmt::join(effects, " and "), gap);
+    case Verdict::Group:
+      return fmt::format("{}, or a rival that the record cannot tell from it ({}).", fmt::join(effects, " and "), gap);
+    case Verdict::Partial:
+      return fmt::format("{}, and something more that none of the effects explains ({}).", fmt::join(effects, " and "),
+                         gap);
+    case Verdict::Unknown:
+      return fmt::format("The record follows something that none of the effects explains ({}).", gap);
+  }
+  return gap;
+}
+
+}  // namespace hysteron::diagnosis

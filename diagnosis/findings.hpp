@@ -1,0 +1,43 @@
+// What the user reads, from the sets of effects that were fitted: parameters with intervals, shares, rivals, reasons.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict.hpp"
+
+namespace hysteron::diagnosis {
+
+struct Findings {
+  const Task& task;
+  const Search& search;
+  const Judgement& judgement;
+  double floor_cost = 0.0;
+};
+
+[[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);
+[[nodiscard]] std::vector<ParameterFinding> calibration_findings(const Findings& findings);
+[[nodiscard]] std::vector<EffectFinding> effect_findings(const Findings& findings);
+[[nodiscard]] std::vector<Rival> rival_findings(const Findings& findings);
+
+/// The probability of the verdict: of the named set among the rivals, lowered by what is left unexplained.
+[[nodiscard]] double confidence(const Findings& findings, const Diagnosis& so_far);
+
+/// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict.
+[[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far);
+
+[[nodiscard]] std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
+                                           const VectorXd& improved);
+
+/// The diagram with its effects, in the house's layout.
+[[nodiscard]] std::string improved_text(const Explanation& explanation, const std::string& path);
+
+/// The user's parameter file with the fitted values, and those of the effects, which may be fitted further.
+[[nodiscard]] parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
+                                                      const Explanation& explanation);
+
+/// The verdict in one or two sentences.
+[[nodiscard]] std::string summary_of(const Diagnosis& diagnosis);
+
+}  // namespace hysteron::diagnosis

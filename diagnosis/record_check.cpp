@@ -1,0 +1,210 @@
+#include "diagnosis/record_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr std::size_t fewest_samples = 100;
+
+struct Moments {
+  double mean = 0.0;
+  double deviation = 0.0;
+};
+
+Moments moments(const std::vector<double>& values) {
+  Moments result;
+  const auto count = static_cast<double>(values.size());
+  result.mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  for (const double v : values) {
+    result.deviation += (v - result.mean) * (v - result.mean) / count;
+  }
+  result.deviation = std::sqrt(result.deviation);
+  return result;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const Moments x = moments(a);
+  const Moments y = moments(b);
+  if (!(x.deviation > 0.0) || !(y.deviation > 0.0)) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    sum += (a[k] - x.mean) * (b[k] - y.mean);
+  }
+  return sum / (static_cast<double>(a.size()) * x.deviation * y.deviation);
+}
+
+bool moves(const Signal& signal) {
+  return signal.size() > 1 && std::ranges::max(signal) > std::ranges::min(signal);
+}
+
+/// The share of samples that stand exactly at the largest or smallest value in runs of five or more.
+double clipped_share(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  if (!(high > low)) {
+    return 0.0;
+  }
+  std::size_t count = 0;
+  std::size_t run = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const bool at_end = values[k] == low || values[k] == high;
+    run = at_end && k > 0 && values[k] == values[k - 1] ? run + 1 : 0;
+    count += run >= 5 ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(values.size());
+}
+
+class Check {
+ public:
+  Check(const Task& task, const Model& model, const VectorXd& nominal)
+      : task_(task), problem_(model.problem()), nominal_(nominal) {}
+
+  RecordCheck run() {
+    std::size_t total = 0;
+    bool moving = false;
+    for (const Experiment& experiment : problem_.experiments) {
+      total += experiment.drive.steps;
+      moving = moving || std::ranges::any_of(experiment.drive.inputs, moves);
+    }
+    if (total < fewest_samples) {
+      refuse(fmt::format("The records have {} samples, and fewer than {} cannot tell an effect from noise.", total,
+                         fewest_samples));
+      return std::move(result_);
+    }
+    if (!moving) {
+      refuse("No input moves: the record shows how the machine rests, not how it differs from the model.");
+      return std::move(result_);
+    }
+    Index row = 0;
+    for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
+      std::vector<double> measured;
+      std::vector<double> model;
+      for (const Experiment& experiment : problem_.experiments) {
+        for (const double y : experiment.measured[output]) {
+          measured.push_back(y);
+          model.push_back(y + nominal_[row++] * task_.scales[output]);
+        }
+      }
+      check_output(problem_.program.graph.outputs[problem_.outputs[output]], measured, model);
+    }
+    check_swap();
+    return std::move(result_);
+  }
+
+ private:
+  void refuse(std::string text) { result_.refusals.push_back(std::move(text)); }
+  void warn(std::string text) { result_.warnings.push_back(std::move(text)); }
+
+  void check_output(const Port& port, const std::vector<double>& measured, const std::vector<double>& model) {
+    const Moments seen = moments(measured);
+    const Moments simulated = moments(model);
+    if (!(seen.deviation > 0.0)) {
+      refuse(fmt::format("The output {} never changes: a sensor that is stuck or not connected.", port.name));
+      return;
+    }
+    if (const double share = clipped_share(measured); share > 0.02) {
+      warn(fmt::format("{:.0f} % of {} stand exactly at its largest or smallest value: a clipped sensor, or a stop.",
+                       100.0 * share, port.name));
+    }
+    if (!(simulated.deviation > 0.0)) {
+      refuse(fmt::format("The model's {} does not move under the record's inputs: are its inputs the right columns?",
+                         port.name));
+      return;
+    }
+    const double together = correlation(measured, model);
+    if (together < -0.7) {
+      refuse(fmt::format("{} moves against the model (correlation {:.2f}): a sign is mirrored in record or diagram.",
+                         port.name, together));
+      return;
+    }
+    const double ratio = seen.deviation / simulated.deviation;
+    const double decades = std::log10(ratio);
+    if (together > 0.8 && std::abs(decades) > 1.5 && std::abs(decades - std::round(decades)) < 0.15) {
+      refuse(
+          fmt::format("{} is {:.3g} times as large as the model's, almost a power of ten: the units of record and "
+                      "diagram differ ({}).",
+                      port.name, ratio, port.unit.empty() ? "the diagram states none" : "diagram: " + port.unit));
+      return;
+    }
+    if (together < 0.3) {
+      warn(fmt::format("{} has little in common with the model (correlation {:.2f}).", port.name, together));
+    }
+    check_start(port, measured, model, seen);
+  }
+
+  /// A model that starts from another state than the machine did.
+  void check_start(const Port& port, const std::vector<double>& measured, const std::vector<double>& model,
+                   const Moments& seen) {
+    const std::size_t head = std::max<std::size_t>(5, measured.size() / 50);
+    double early = 0.0;
+    double late = 0.0;
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+      const double r = model[k] - measured[k];
+      (k < head ? early : late) += r * r;
+    }
+    early = std::sqrt(early / static_cast<double>(head));
+    late = std::sqrt(late / static_cast<double>(measured.size() - head));
+    if (early > 4.0 * late && early > 0.05 * seen.deviation) {
+      warn(
+          fmt::format("The model misses the begin of the record by {:.3g} {}, {:.1f} times as much as later on: it "
+                      "starts from another state than the machine. Name the states under initial_states in [tune].",
+                      early, port.unit, early / late));
+    }
+  }
+
+  /// Whether the model explains the record much better with an input and an output column exchanged.
+  void check_swap() {
+    const double before = nominal_.squaredNorm();
+    for (const Port& input : problem_.program.graph.inputs) {
+      for (const std::string& output : task_.outputs) {
+        const records::Record& first = task_.records.front();
+        if (input.type != Type::Real || first.find(input.name) == nullptr || first.find(output) == nullptr) {
+          continue;
+        }
+        Task swapped = task_;
+        for (records::Record& record : swapped.records) {
+          records::Record other = records::Record::even(record.time().front(), record.sample_time(), record.size());
+          for (records::Column column : record.columns()) {
+            if (language::same_name(column.name, input.name)) {
+              column.values = record.column(output).values;
+            } else if (language::same_name(column.name, output)) {
+              column.values = record.column(input.name).values;
+            }
+            other.add(std::move(column));
+          }
+          record = std::move(other);
+        }
+        try {
+          Model model(swapped, problem_.program);
+          VectorXd residuals;
+          if (model.residuals(model.start(), residuals) && residuals.squaredNorm() < 0.02 * before) {
+            refuse(fmt::format(
+                "The model fits {:.0f} times better with the columns {} and {} exchanged: are they swapped?",
+                std::sqrt(before / residuals.squaredNorm()), input.name, output));
+          }
+        } catch (const InputError&) {
+          continue;  // the values of one do not fit the other
+        }
+      }
+    }
+  }
+
+  const Task& task_;
+  const OutputErrorProblem& problem_;
+  const VectorXd& nominal_;
+  RecordCheck result_{};
+};
+
+}  // namespace
+
+RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal) {
+  return Check(task, model, nominal).run();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,19 @@
+// Whether a record can be diagnosed at all: refused with a reason rather than given a confident name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/model.hpp"
+
+namespace hysteron::diagnosis {
+
+struct RecordCheck {
+  std::vector<std::string> refusals{};  ///< why no diagnosis is given
+  std::vector<std::string> warnings{};  ///< what weakens it
+};
+
+/// `nominal`: residuals of the diagram with its parameters as given, in standard deviations of the floor.
+[[nodiscard]] RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal);
+
+}  // namespace hysteron::diagnosis

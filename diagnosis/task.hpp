@@ -1,0 +1,26 @@
+// From what the user gives to the task of a diagnosis: which parameters count as known, which columns are measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/model.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::diagnosis {
+
+/// Known parameters are those that the parameter file marks for fitting; where it marks none, every real number that is
+/// not 0 and no starting value: gains, time constants, the constants of a hysteresis. Each has a prior of 30 % about
+/// its tuned value, wide enough for a poor tuning and narrow enough that no parameter runs away where the record does
+/// not see it.
+/// @throws InputError as output_error_problem does.
+[[nodiscard]] Task task_of(const DiagnosisInput& input);
+
+/// Columns of the records that are neither input nor output of the diagram and could be inputs by their name.
+[[nodiscard]] std::vector<std::string> unused_columns(const Task& task, const Program& program);
+
+/// HY711: the diagram has no finite value with the parameters as given.
+[[nodiscard]] InputError error_of_start(const DiagnosisInput& input);
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,131 @@
+#include "diagnosis/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tuning/covariance.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// Sets whose support lies within this of the best are not ruled out: odds of some 1 : 50.
+constexpr double rival_within = 4.0;
+/// Edges that the record cannot tell apart.
+constexpr double same_within = 3.0;
+/// What a set has to gain over calibration beyond its penalties, nats.
+constexpr double least_significance = 6.0;
+
+class Judge {
+ public:
+  Judge(const Task& task, const Search& search, double floor_cost, double least_share)
+      : task_(task), search_(search), floor_cost_(floor_cost), least_share_(least_share) {}
+
+  Judgement run() {
+    Judgement result{.chosen = &search_.calibrated};
+    const Explanation& best = search_.explanations.empty() ? search_.calibrated : search_.explanations.front();
+    const double tau = correlation_time(best.fit.residuals);
+    samples_ = static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau);
+    result.effective_samples = samples_;
+    result.chosen = choose();
+    if (result.chosen == &search_.calibrated) {
+      return result;
+    }
+    const double reference = support(*result.chosen);
+    result.significance = reference - support(search_.calibrated);
+    std::map<std::vector<std::string>, Weighed> by_names;
+    for (const Explanation& one : search_.explanations) {
+      const double here = support(one) - reference;
+      if (one.names() == result.chosen->names() && &one != result.chosen && here > -same_within) {
+        result.same.push_back({.explanation = &one, .support = here});
+      }
+      if (here > -rival_within && worth_its_size(one)) {
+        const auto [found, first] = by_names.emplace(one.names(), Weighed{.explanation = &one, .support = here});
+        if (!first && here > found->second.support) {
+          found->second = {.explanation = &one, .support = here};
+        }
+      }
+    }
+    by_names[result.chosen->names()] = {.explanation = result.chosen, .support = 0.0};
+    for (const auto& [names, weighed] : by_names) {
+      result.rivals.push_back(weighed);
+    }
+    std::ranges::stable_sort(result.rivals, [&](const Weighed& a, const Weighed& b) {
+      return (a.explanation == result.chosen) != (b.explanation == result.chosen) ? a.explanation == result.chosen
+                                                                                  : a.support > b.support;
+    });
+    return result;
+  }
+
+ private:
+  [[nodiscard]] double support(const Explanation& one) const {
+    const double penalty = 0.5 * static_cast<double>(one.parameters()) * std::log(std::max(2.0, samples_)) +
+                           static_cast<double>(one.variant.effects.size()) *
+                               std::log(static_cast<double>(std::max<std::size_t>(2, search_.tried)));
+    return -0.5 * samples_ * std::log(std::max(one.fit.cost, 1e-300)) - penalty;
+  }
+
+  [[nodiscard]] double gap() const { return search_.calibrated.fit.cost - floor_cost_; }
+
+  /// Whether each effect of a set closes a notable share of the gap beyond the best set with one effect fewer.
+  [[nodiscard]] bool worth_its_size(const Explanation& one) const {
+    const std::size_t size = one.variant.effects.size();
+    double smaller = search_.calibrated.fit.cost;
+    for (const Explanation& other : search_.explanations) {
+      if (other.variant.effects.size() + 1 == size) {
+        smaller = std::min(smaller, other.fit.cost);
+      }
+    }
+    return smaller - one.fit.cost > least_share_ * std::max(gap(), 0.0);
+  }
+
+  [[nodiscard]] bool holds_on_unseen(const Explanation& simple, const Explanation& rich) const {
+    const auto before = held_out(task_, simple);
+    const auto after = held_out(task_, rich);
+    for (std::size_t output = 0; output < before.size(); ++output) {
+      if (gain_bound(before[output], after[output]) > 0.0) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The best set that deserves its size, from none upwards.
+  [[nodiscard]] const Explanation* choose() const {
+    const Explanation* chosen = &search_.calibrated;
+    for (std::size_t size = 1; size <= 4; ++size) {
+      const Explanation* best = nullptr;
+      for (const Explanation& one : search_.explanations) {
+        if (one.variant.effects.size() == size && (best == nullptr || support(one) > support(*best))) {
+          best = &one;
+        }
+      }
+      if (best == nullptr) {
+        break;
+      }
+      const bool better = support(*best) - support(*chosen) > least_significance;
+      const bool notable = chosen->fit.cost - best->fit.cost > least_share_ * std::max(gap(), 0.0);
+      if (better && notable && holds_on_unseen(*chosen, *best)) {
+        chosen = best;
+      } else if (size > 1) {
+        break;
+      }
+    }
+    return chosen;
+  }
+
+  const Task& task_;
+  const Search& search_;
+  double floor_cost_;
+  double least_share_;
+  double samples_ = 1.0;
+};
+
+}  // namespace
+
+Judgement judge(const Task& task, const Search& search, double floor_cost, double least_share) {
+  return Judge(task, search, floor_cost, least_share).run();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,38 @@
+// From the sets of effects that were fitted to a verdict: which of them the data call for, which they do not rule out,
+// and whether anything is left that none explains.
+//
+// Sets are weighed by their likelihood with the noise level left open, on as many samples as the correlated residuals
+// are worth, less a penalty for each parameter and for each candidate that was tried:
+//
+//   L(S) = −½ N' log C(S) − ½ k log N' − |S| log T,   N' = N/τ of the best set's residuals
+//
+// An effect is part of the verdict if its set is the best, if it closes a notable share of the gap, if it does so on
+// blocks held out, and if it moves the output notably.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/search.hpp"
+
+namespace hysteron::diagnosis {
+
+struct Weighed {
+  const Explanation* explanation = nullptr;
+  double support = 0.0;  ///< L(S) less that of the best
+};
+
+struct Judgement {
+  const Explanation* chosen = nullptr;  ///< never null: the calibrated diagram, where no effect holds
+  std::vector<Weighed> rivals{};        ///< one for each set of identifiers, best first, those not ruled out
+  std::vector<Weighed> same{};          ///< other edges for the chosen set
+  double effective_samples = 0.0;
+  double significance = 0.0;  ///< of the chosen set against the calibrated diagram, nats
+};
+
+/// `floor_cost` as in search().
+[[nodiscard]] Judgement judge(const Task& task, const Search& search, double floor_cost, double least_share);
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "codegen/parameters/apply.hpp"
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict_json.hpp"
+#include "records/csv.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/progress.hpp"
+#include "tool/commands.hpp"
+#include "tool/diagnose_report.hpp"
+#include "tool/diagram.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron diagnose plant.st --log machine.csv --params tuned.toml --out diagnosis
+  hysteron diagnose plant.st --log slow.csv --log fast.csv --params tuned.toml --out diagnosis --material 0.05
+  hysteron diagnose plant.st --log machine.csv --params tuned.toml --out diagnosis --effects creep,lag,delay
+
+Where the diagram of a plant and a record of the machine differ, which effect causes it, and how far the gap shrinks once
+that effect is added. The diagram is run from its reset over each whole record: columns are its inputs, and the outputs
+of the same name are what it should meet. Parameters named under [fit] in P.toml are refitted first, those that are not 0
+where none is named; what that closes is calibration and no effect.
+DIR gets verdict.json, report.html, improved.st and improved.toml, traces.csv, where an experiment would tell more
+next_experiment.csv, and where the improved diagram has an inverse feedforward.st.
+Exit codes: 0 a verdict; 1 the record cannot be diagnosed, verdict.json says why; 2 an error in diagram, parameters,
+records or command line, and nothing is written.
+)";
+
+struct Options {
+  DiagramOptions diagram;
+  std::vector<std::string> logs;
+  std::string output;
+  std::vector<std::string> effects;
+  std::vector<std::string> limits;
+  diagnosis::DiagnosisOptions diagnosis;
+  bool json = false;
+};
+
+/// INPUT=VALUE as a limit of the next experiment.
+std::pair<std::string, double> limit_of(const std::string& text) {
+  const auto equals = text.find('=');
+  try {
+    std::size_t used = 0;
+    const double value = std::stod(text.substr(equals == std::string::npos ? text.size() : equals + 1), &used);
+    if (equals != std::string::npos && equals > 0 && equals + 1 + used == text.size()) {
+      return {text.substr(0, equals), value};
+    }
+  } catch (const std::exception&) {  // falls through: no number
+  }
+  throw InputError(error::bad_usage, {}, fmt::format("--limit {} is no limit.", text),
+                   "write --limit U=5.0: the input and its largest size.");
+}
+
+int diagnose(Options options, Console& console) {
+  Diagnostics warnings;
+  const Program program = compile_file(options.diagram.file,
+                                       {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
+  diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
+  input.file = parameters::read_parameter_file(options.diagram.parameters);
+  for (const std::string& log : options.logs) {
+    input.records.push_back(records::read_csv(log));
+  }
+  options.diagnosis.effects = options.effects;
+  for (const std::string& limit : options.limits) {
+    options.diagnosis.limits.push_back(limit_of(limit));
+  }
+  diagnosis::Diagnosis found;
+  {
+    Progress line("Diagnosing");
+    options.diagnosis.progress = [&](double fraction, std::string_view text) { line.update(fraction, text); };
+    found = diagnosis::diagnose(input, options.diagnosis);
+    line.finish();
+  }
+  write_files_atomically(diagnosis_files(options.output, found));
+  console.print(options.json ? diagnosis::verdict_json(found) : diagnosis_text(found));
+  console.report(warnings);
+  return found.refusals.empty() ? exit_ok : exit_findings;
+}
+
+}  // namespace
+
+Action add_diagnose(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  options->diagnosis.threads = std::max(1U, std::thread::hardware_concurrency());
+  app.add_option("FILE", options->diagram.file, "The diagram of the plant, a file in Structured Text.")
+      ->required()
+      ->option_text("FILE.st");
+  app.add_option("--log", options->logs, "A measured record; may be repeated.")
+      ->required()
+      ->option_text("LOG.csv")
+      ->allow_extra_args(false);
+  app.add_option("--params", options->diagram.parameters, "Its tuned parameters.")->required()->option_text("P.toml");
+  app.add_option("--out", options->output, "A folder for what is found.")->required()->option_text("DIR");
+  app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
+      ->option_text("NAME");
+  app.add_option("--material", options->diagnosis.material,
+                 "The smallest gap that matters, RMS in the unit of the output; a quarter of the noise at least.")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("SIZE");
+  app.add_option("--effects", options->effects, "Tries these effects alone, by their identifiers.")
+      ->delimiter(',')
+      ->option_text("A,B,…");
+  app.add_option("--most", options->diagnosis.most_effects, "The most effects that are combined.")
+      ->check(CLI::Range(1, 4))
+      ->option_text("N");
+  app.add_option("--limit", options->limits, "The largest size of an input in the next experiment, as U=5.0.")
+      ->option_text("INPUT=SIZE")
+      ->allow_extra_args(false);
+  app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
+      ->check(CLI::PositiveNumber)
+      ->option_text("SECONDS");
+  app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->option_text("N");
+  app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
+  app.add_flag("--json", options->json, "Prints verdict.json.");
+  app.footer(std::string(examples));
+  return [options](Console& console) { return diagnose(*options, console); };
+}
+
+}  // namespace hysteron::tool

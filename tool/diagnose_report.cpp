@@ -1,0 +1,98 @@
+#include "tool/diagnose_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "diagnosis/verdict_json.hpp"
+#include "records/csv.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+using diagnosis::Diagnosis;
+using diagnosis::ParameterFinding;
+
+std::string with_unit(double value, const std::string& unit) {
+  return unit.empty() || unit == "1" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+std::string line_of(const ParameterFinding& one) {
+  return fmt::format("    {:<24} {}   ({:.4g} to {:.4g})\n", one.name, with_unit(one.value, one.unit), one.low,
+                     one.high);
+}
+
+/// One record for each signal and file: time, measured, nominal, calibrated, improved.
+records::Record trace_record(const diagnosis::Trace& trace) {
+  const std::size_t rows = trace.time.size();
+  const double step = rows > 1 ? (trace.time.back() - trace.time.front()) / static_cast<double>(rows - 1) : 1.0;
+  records::Record record = records::Record::even(trace.time.front(), step, rows);
+  record.add({.name = trace.signal + "_measured", .unit = trace.unit, .values = trace.measured});
+  record.add({.name = trace.signal + "_nominal", .unit = trace.unit, .values = trace.nominal});
+  record.add({.name = trace.signal + "_calibrated", .unit = trace.unit, .values = trace.calibrated});
+  record.add({.name = trace.signal + "_improved", .unit = trace.unit, .values = trace.improved});
+  return record;
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& found) {
+  std::string text = found.summary + "\n";
+  if (!found.refusals.empty()) {
+    for (const std::string& refusal : found.refusals) {
+      text += "  - " + refusal + "\n";
+    }
+    return text;
+  }
+  text += fmt::format("Verdict: {}, confidence {:.2f}, unknown {:.2f}\n", name_of(found.verdict), found.confidence,
+                      found.unknown_score);
+  for (const diagnosis::GapFinding& gap : found.gaps) {
+    text += fmt::format("  {:<10} nominal {}  calibrated {}  improved {}  floor {} ({})\n", gap.signal,
+                        with_unit(gap.nominal, gap.unit), with_unit(gap.calibrated, gap.unit),
+                        with_unit(gap.improved, gap.unit), with_unit(gap.floor.value, gap.unit), gap.floor.evidence);
+    text += fmt::format("  {:<10} closed {:.1f} % ({:.1f} to {:.1f}) on blocks held out\n", "", 100.0 * gap.closed,
+                        100.0 * gap.closed_low, 100.0 * gap.closed_high);
+  }
+  for (const diagnosis::EffectFinding& effect : found.effects) {
+    text += fmt::format("  {} at {}{}: {:.0f} % of the gap\n", effect.id, effect.edge,
+                        effect.same_edges.empty() ? "" : fmt::format(" (or {})", fmt::join(effect.same_edges, ", ")),
+                        100.0 * effect.share);
+    for (const ParameterFinding& one : effect.parameters) {
+      text += line_of(one);
+    }
+  }
+  if (found.rivals.size() > 1) {
+    text += "  not ruled out:\n";
+    for (const diagnosis::Rival& rival : found.rivals) {
+      text += fmt::format("    {:<44} {:.2f}\n",
+                          fmt::format("{} at {}", fmt::join(rival.effects, " + "), fmt::join(rival.edges, ", ")),
+                          rival.probability);
+    }
+  }
+  for (std::size_t i = 0; i < found.edges.size() && i < 5; ++i) {
+    text += fmt::format(
+        "  edge {:<20} {:.0f} %{}\n", found.edges[i].edge, 100.0 * found.edges[i].share,
+        found.edges[i].group.empty() ? "" : fmt::format("  (as {})", fmt::join(found.edges[i].group, ", ")));
+  }
+  for (const std::string& warning : found.warnings) {
+    text += "  note: " + warning + "\n";
+  }
+  return text + fmt::format("{} candidates, {:.1f} s\n", found.tried, found.seconds);
+}
+
+std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, const Diagnosis& found) {
+  std::vector<OutputFile> files{{.path = folder / "verdict.json", .contents = diagnosis::verdict_json(found)}};
+  if (!found.refusals.empty()) {
+    return files;
+  }
+  files.push_back({.path = folder / "improved.st", .contents = found.improved_text});
+  files.push_back(
+      {.path = folder / "improved.toml",
+       .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});
+  for (std::size_t i = 0; i < found.traces.size(); ++i) {
+    const std::string name = found.traces.size() == 1 ? "traces.csv" : fmt::format("traces{}.csv", i + 1);
+    files.push_back({.path = folder / name, .contents = records::csv_text(trace_record(found.traces[i]))});
+  }
+  return files;
+}
+
+}  // namespace hysteron::tool

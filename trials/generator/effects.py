@@ -70,8 +70,9 @@ def _length(x: np.ndarray, c: Context) -> float:
 
 def delay(x, c, size, rng):
     """x(t - T)."""
-    c.note(DEAD_TIME=size * c.substeps * c.dt)
-    return op.delay(x, c.dt, size * c.substeps * c.dt)
+    late = round(size * c.substeps) * c.dt
+    c.note(DEAD_TIME=late)
+    return op.delay(x, c.dt, late)
 
 
 def jittered_delay(x, c, size, rng):
@@ -414,7 +415,7 @@ def sensor_gain(x, c, size, rng):
 
 CATALOGUE: dict[str, tuple[Realisation, ...]] = {
     "sensor_gain": (Realisation("sensor_gain", sensor_gain, 0.03, 0.03, smallest=0.03),),
-    "delay": (Realisation("delay", delay, 1.0, 40.0), Realisation("jittered_delay", jittered_delay, 1.0, 40.0, True)),
+    "delay": (Realisation("delay", delay, 1.0, 40.0, smallest=0.05), Realisation("jittered_delay", jittered_delay, 1.0, 40.0, True)),
     "lag": (Realisation("lag", lag, 1.0, 40.0), Realisation("unequal_lags", unequal_lags, 1.0, 40.0, True)),
     "resonance": (Realisation("resonance", resonance, 1.5, 12.0), Realisation("two_modes", two_modes, 1.5, 12.0, True)),
     "rate_limit": (

@@ -31,6 +31,9 @@ def resonance(x: np.ndarray, dt: float, frequency: float, damping: float) -> np.
 
 def delay(x: np.ndarray, dt: float, seconds: float | np.ndarray) -> np.ndarray:
     """x(t - seconds); before the record x stood at its first value. `seconds` may change with time."""
+    if isinstance(seconds, float):
+        late = round(seconds / dt)  # whole sub-steps, so that no corner of the signal is cut
+        return x if late == 0 else np.concatenate((np.full(late, x[0]), x[:-late]))
     t = np.arange(len(x)) * dt
     return np.interp(t - seconds, t, x)
 

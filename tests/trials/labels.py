@@ -17,7 +17,7 @@ def keys(seed: str = "made-up") -> dict[str, dict[str, Any]]:
         effects = [{"id": e, "edge": "A", "edges": ["A", "B"], "realisation": r} for e, r in one.effects]
         made[f"{number:05d}"] = {
             "stratum": one.stratum, "plant": one.plant, "ratio": one.ratio, "deviation_ratio": one.ratio, "effects": effects,
-            "noise_rms": [NOISE], "answers": list(one.answers),
+            "noise_rms": [NOISE], "effect_rms": [NOISE * one.ratio], "answers": list(one.answers),
         }  # fmt: skip
     return made
 

@@ -111,6 +111,9 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     claimed = [c.closed_true for c in chosen if not math.isnan(c.closed_true)]
     out.append(_quantile("closure", "closure against the oracle, R ≥ 3, median", claimed, 0.5, 0.98))
     out.append(_quantile("closure_10", "  10th percentile", claimed, 0.1, 0.90))
+    own = [c.effect_closed for c in chosen if not math.isnan(c.effect_closed)]
+    out.append(_quantile("own_closure", "  of the effect's own gap alone, median", own, 0.5, 0.98))
+    out.append(_quantile("own_closure_10", "  the same, 10th percentile", own, 0.1, 0.90))
     fresh = [c.fresh for c in chosen if not math.isnan(c.fresh)]
     out.append(_quantile("fresh", "  on a fresh record of the machine, median", fresh, 0.5, None))
     out.append(_quantile("fresh_10", "  the same, 10th percentile", fresh, 0.1, None))

@@ -38,7 +38,10 @@ class Judgement:
     """As the verdict claims it."""
     closed_interval: tuple[float, float]
     closed_true: float
-    """Against the noise that the generator added."""
+    """Against the noise that the generator added: 0 at the nominal gap, 1 where the noise alone is left, as it is for an oracle
+    that knows structure and parameters."""
+    effect_closed: float = math.nan
+    """The same of the effect's own gap, which calibration cannot close: 0 where a refit of the known parameters ends."""
     fresh: float = math.nan
     """Closure on a record that nobody has seen, without noise; not a number where it was not run."""
     answers: tuple[str, ...] = ()
@@ -55,7 +58,7 @@ class Judgement:
     @property
     def named_first(self) -> bool:
         """The truth stands first, alone or as the head of a group."""
-        return len(self.truth) > 0 and self.first == self.truth[0] if len(self.truth) < 2 else self.first in self.truth
+        return self.first in self.truth
 
     @property
     def named_alone(self) -> bool:
@@ -112,10 +115,10 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         true = label["effects"][truth.index(effects[0]["id"])]
         right_edge = plain(effects[0].get("edge", "")) in {plain(edge) for edge in true["edges"]}
     gap = v.get("gap") or {}
-    floor2 = float(label["noise_rms"][0]) ** 2
+    output = 1 if len(label["noise_rms"]) > 1 and str(gap.get("signal", "")).upper() == "U" else 0
+    floor2 = float(label["noise_rms"][output]) ** 2
+    effect2 = float(label.get("effect_rms", [0.0, 0.0])[output]) ** 2
     nominal2, improved2 = number(gap.get("nominal_rms")) ** 2, number(gap.get("improved_rms")) ** 2
-    if len(label["noise_rms"]) > 1 and str(gap.get("signal", "")).upper() == "U":
-        floor2 = float(label["noise_rms"][1]) ** 2
     closed_true = 1.0 - (improved2 - floor2) / (nominal2 - floor2) if nominal2 > 1.02 * floor2 else math.nan
     return Judgement(
         name=name,
@@ -135,6 +138,7 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         closed=number(gap.get("closed")),
         closed_interval=(number(gap.get("closed_low")), number(gap.get("closed_high"))),
         closed_true=closed_true,
+        effect_closed=1.0 - (improved2 - floor2) / effect2 if effect2 > 2.0 * floor2 else math.nan,
         answers=tuple(label.get("answers", ())),
         realisations=tuple(e["realisation"] for e in label["effects"]),
         label=label,

@@ -101,7 +101,7 @@ TEST_F(Run, RefusesPortsThatNoRecordCanHold) {
   bench.write("plant.st",
               "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT t : LREAL; END_VAR\n"
               "t := X;\nEND_FUNCTION_BLOCK\n");
-  EXPECT_THAT(refusal(), StartsWith("HY216 error: plant.st:1:73: 't' is also the name of the time in a record\n"));
+  EXPECT_THAT(refusal(), StartsWith("HY216 error: plant.st:1:72: 't' is also the name of the time in a record\n"));
   const auto checked = bench.shell("hysteron check plant.st");
   EXPECT_EQ(checked.code, 0);
   EXPECT_THAT(checked.out, StartsWith("HY216 warning: "));

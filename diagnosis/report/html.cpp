@@ -1,0 +1,108 @@
+#include "diagnosis/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hysteron::diagnosis::report {
+namespace {
+
+bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string figure(double value, int digits) {
+  if (!std::isfinite(value)) {
+    return "–";
+  }
+  const double size = std::fabs(value);
+  if (size >= std::pow(10.0, digits) && size < 1e6) {
+    return fmt::format("{:.0f}", value);
+  }
+  return fmt::format("{:.{}g}", value == 0.0 ? 0.0 : value, digits);
+}
+
+std::string quantity(double value, std::string_view unit, int digits) {
+  const std::string number = figure(value, digits);
+  return unit.empty() || unit == "1" || !std::isfinite(value) ? number : fmt::format("{} {}", number, unit);
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) {
+    return "–";
+  }
+  if (share > 0.999 && share < 1.0) {
+    return "> 99.9 %";
+  }
+  const bool fine = (std::fabs(share) < 0.0995 && share != 0.0) || (share > 0.99 && share < 1.0);
+  return fmt::format("{:.{}f} %", 100.0 * share, fine ? 1 : 0);
+}
+
+std::string with_unit(std::string_view name, std::string_view unit) {
+  return unit.empty() || unit == "1" ? std::string(name) : fmt::format("{} [{}]", name, unit);
+}
+
+std::string words_of(std::string_view identifier) {
+  std::string words(identifier);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::size_t length_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+}
+
+std::string clipped(std::string_view text, std::size_t most) {
+  if (length_of(text) <= most) {
+    return std::string(text);
+  }
+  std::size_t seen = 0;
+  std::size_t end = 0;
+  while (end < text.size() && (!begins_character(text[end]) || ++seen < most)) {
+    ++end;
+  }
+  return std::string(text.substr(0, end)) + "…";
+}
+
+std::string list_of(const std::vector<std::string>& texts, std::string_view css_class) {
+  if (texts.empty()) {
+    return {};
+  }
+  std::string html = fmt::format("<ul class=\"{}\">\n", css_class);
+  for (const std::string& text : texts) {
+    html += fmt::format("<li>{}</li>\n", escaped(text));
+  }
+  return html + "</ul>\n";
+}
+
+}  // namespace hysteron::diagnosis::report

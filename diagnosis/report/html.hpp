@@ -1,0 +1,37 @@
+// Words and numbers for the report: escaped, rounded to what a reader can use, with their unit.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hysteron::diagnosis::report {
+
+/// Text for HTML and SVG: &, <, > and quotes escaped.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// A number with so many significant digits; a dash where it is not finite.
+[[nodiscard]] std::string figure(double value, int digits = 3);
+
+/// The number and its unit, which may be "1" or empty: 1.83 um. Not escaped.
+[[nodiscard]] std::string quantity(double value, std::string_view unit, int digits = 3);
+
+/// A share as 93 %, 0.4 %, > 99.9 %.
+[[nodiscard]] std::string percent(double share);
+
+/// A name with its unit in brackets: Y [um]. Not escaped.
+[[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);
+
+/// An identifier as words: even_nonlinearity becomes even nonlinearity.
+[[nodiscard]] std::string words_of(std::string_view identifier);
+
+/// At most so many characters of UTF-8, with an ellipsis for the rest.
+[[nodiscard]] std::string clipped(std::string_view text, std::size_t most);
+
+/// The number of characters of UTF-8.
+[[nodiscard]] std::size_t length_of(std::string_view text);
+
+/// `<ul class="…">` of texts, which are escaped; nothing where there are none.
+[[nodiscard]] std::string list_of(const std::vector<std::string>& texts, std::string_view css_class);
+
+}  // namespace hysteron::diagnosis::report

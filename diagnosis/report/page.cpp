@@ -1,0 +1,74 @@
+#include "diagnosis/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include "diagnosis/report/html.hpp"
+#include "diagnosis/report/page_data.hpp"
+#include "diagnosis/report/parts.hpp"
+#include "diagnosis/report/sections.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using report::escaped;
+
+/// Nothing may be loaded from anywhere, whatever a name in the data may say.
+constexpr const char* policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+
+/// Places for what the script draws.
+std::string traces_section(const Diagnosis& diagnosis) {
+  if (diagnosis.traces.empty()) {
+    return {};
+  }
+  std::string html = "<section class=\"traces\"><h2>Residual over time</h2>\n";
+  for (std::size_t i = 0; i < diagnosis.traces.size(); ++i) {
+    const Trace& trace = diagnosis.traces[i];
+    html += fmt::format(
+        "<details class=\"trace\"{}><summary>{}: {}</summary>\n<div class=\"plot\" id=\"trace-{}\"></div></details>\n",
+        i == 0 ? " open" : "", escaped(trace.record), escaped(report::with_unit(trace.signal, trace.unit)), i);
+  }
+  return html + "</section>\n";
+}
+
+std::string maps_section(const Diagnosis& diagnosis) {
+  if (diagnosis.maps.empty()) {
+    return {};
+  }
+  return "<section class=\"maps\"><h2>What the residual depends on</h2>\n<div id=\"maps\"></div></section>\n";
+}
+
+}  // namespace
+
+std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
+  const std::string& name = improved.graph.name;
+  const std::string title = "Diagnosis of " + (name.empty() ? std::string("a diagram") : escaped(name));
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+      "<title>{}</title>\n<style>\n{}</style></head>\n<body><main>\n<h1>{}</h1>\n",
+      policy, title, report::style(), title);
+  html +=
+      "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need JavaScript; text "
+      "and tables do not.</p></noscript>\n";
+  const std::string gap = report::gap_section(diagnosis);
+  html += fmt::format("<div class=\"{}\">\n{}{}</div>\n", gap.empty() ? "head" : "head two",
+                      report::verdict_section(diagnosis), gap);
+  html += report::effects_section(diagnosis);
+  html += report::where_section(diagnosis, improved.graph);
+  html += traces_section(diagnosis);
+  html += maps_section(diagnosis);
+  html += report::rivals_section(diagnosis);
+  html += report::next_section(diagnosis);
+  html += report::calibration_section(diagnosis);
+  html += report::improved_section(diagnosis);
+  html += fmt::format("<footer>{} candidates tried in {} s.</footer>\n</main>\n", diagnosis.tried,
+                      report::figure(diagnosis.seconds, 2));
+  html += fmt::format(
+      "<svg id=\"pen\" hidden=\"hidden\"></svg>\n<script type=\"application/json\" id=\"data\">\n{}\n</script>\n"
+      "<script>\n{}{}</script>\n</body></html>\n",
+      report::page_data(diagnosis), report::plot_script(), report::page_script());
+  return html;
+}
+
+}  // namespace hysteron::diagnosis

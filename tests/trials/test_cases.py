@@ -15,7 +15,7 @@ from scipy import stats
 
 from trials.generator.case import PLANTS, Builder, Specification, build, from_label, scales, write
 from trials.generator.grid import Grid
-from trials.generator.strata import FULL, plan
+from trials.generator.strata import AMBIGUOUS, FULL, plan
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = os.environ.get("HYSTERON_TOOL", str(ROOT / "build" / "hysteron"))
@@ -96,6 +96,16 @@ class Cases(unittest.TestCase):
         for off in label["deviations"].values():
             self.assertTrue(0.005 <= abs(off) <= 0.02)
         self.assertLess(build(Specification("none", "thermal", (), 0.0, 5)).label["deviation_ratio"], 0.2)
+
+    def test_every_designed_ambiguous_record_can_be_made(self) -> None:
+        for plant, effect, name, edge, excitation, answers in AMBIGUOUS:
+            with self.subTest(plant=plant, effect=effect):
+                made = build(Specification("ambiguous", plant, ((effect, name),), 10.0, 12, excitation, edge, answers))
+                self.assertEqual(made.label["answers"], list(answers))
+                if effect == "sensor_gain":  # what the known parameters take over is nothing after a refit
+                    self.assertLess(made.label["ratio"], 0.05)
+                else:
+                    self.assertAlmostEqual(made.label["ratio"] / 10.0, 1.0, delta=0.05)
 
     def test_full_plan_has_every_effect_and_enough_cousins(self) -> None:
         cases = plan("any", FULL)

@@ -209,8 +209,10 @@ class Builder:
         for effect, name in self.specification.effects:
             choices = self.plant.realisations(effect)
             named = [one for one in choices if one.name == name] or [one for one in choices if not one.cousin] or list(choices)
-            sites = self.plant.outside_sites if effect.startswith("outside:") else self.plant.sites[effect]
-            edge = self.specification.edge or str(self.rng.choice(sites))
+            edge = self.specification.edge
+            if not edge:
+                sites = self.plant.outside_sites if effect.startswith("outside:") else self.plant.sites[effect]
+                edge = str(self.rng.choice(sites))
             one = Injection(effect, edge, named[0], named[0].start, int(self.rng.integers(2**31)))
             if effect != "sensor_gain":  # a refit takes it over whole, so that it has no ratio
                 reached.append(self.size(one, self.specification.ratio))

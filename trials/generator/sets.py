@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
 import warnings
 from concurrent.futures import ProcessPoolExecutor
@@ -24,10 +25,8 @@ def make_one(specification: Specification, folder: str, label_file: str) -> None
     warnings.simplefilter("error", RuntimeWarning)
     case = build(specification)
     scratch = Path(folder + ".part")
-    if scratch.exists():
-        for file in scratch.iterdir():
-            file.unlink()
-        scratch.rmdir()
+    for left_over in (scratch, Path(folder)):
+        shutil.rmtree(left_over, ignore_errors=True)
     write(case, scratch)
     scratch.rename(folder)
     Path(label_file + ".part").write_text(json.dumps(case.label))
@@ -52,6 +51,7 @@ def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int
                 future.result()
             except Exception as error:
                 print(f"{names[i]}: {specifications[i]}: {error!r}", file=sys.stderr)
+                pool.shutdown(cancel_futures=True)
                 raise
             progress.step()
     merged = {name: json.loads((labels / f"{name}.json").read_text()) for name in sorted(names)}

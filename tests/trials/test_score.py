@@ -86,6 +86,15 @@ class Controls(unittest.TestCase):
             answer = named([effect]) | {"effects": [{"id": effect, "edge": edge}]}
             self.assertEqual(judged(label, {"0": answer})[0].right_edge, right)
 
+    def test_the_same_output_by_another_name(self) -> None:
+        effect = {"id": "offset", "edge": "U", "edges": ["U"], "realisation": "offset", "same_as": {"drift": ["VEL.XOUT"]}}
+        label = {"0": dict(next(iter(KEYS.values())), stratum="single", ratio=10.0, effects=[effect])}
+        for name, edge, first, right in (("drift", "VEL.XOUT", True, True), ("drift", "U", True, False), ("lag", "U", False, None)):
+            answer = named([name]) | {"effects": [{"id": name, "edge": edge}], "rivals": [[name], ["offset"]]}
+            case = judged(label, {"0": answer})[0]
+            self.assertEqual((case.named_first, case.right_edge), (first, right))
+            self.assertEqual(len(case.rivals), 1 if first else 2)
+
     def test_nothing_answered_counts_as_wrong(self) -> None:
         cases = judged(KEYS, {name: {} for name in KEYS})
         self.assertEqual(by_key(figures(cases))["missing"].value, 1.0)

@@ -299,6 +299,7 @@ class Builder:
                     "id": one.effect,
                     "edge": one.edge,
                     "edges": plant.admissible_edges(one.effect, one.edge),
+                    "same_as": {name: list(edges) for name, edges in plant.same_as(one.effect, one.edge).items()},
                     "realisation": one.realisation.name,
                     "cousin": one.realisation.cousin,
                     "size": one.size,

@@ -415,9 +415,16 @@ def sensor_gain(x, c, size, rng):
 
 CATALOGUE: dict[str, tuple[Realisation, ...]] = {
     "sensor_gain": (Realisation("sensor_gain", sensor_gain, 0.03, 0.03, smallest=0.03),),
-    "delay": (Realisation("delay", delay, 1.0, 40.0, smallest=0.05), Realisation("jittered_delay", jittered_delay, 1.0, 40.0, True)),
-    "lag": (Realisation("lag", lag, 1.0, 40.0), Realisation("unequal_lags", unequal_lags, 1.0, 40.0, True)),
-    "resonance": (Realisation("resonance", resonance, 1.5, 12.0), Realisation("two_modes", two_modes, 1.5, 12.0, True)),
+    # At least a sample long: below, a lag, a delay and a stiff mode are the same thing, and the noise takes up the ratio.
+    "delay": (
+        Realisation("delay", delay, 1.0, 40.0, smallest=1.0),
+        Realisation("jittered_delay", jittered_delay, 1.0, 40.0, True, 1.0),
+    ),
+    "lag": (Realisation("lag", lag, 1.0, 40.0, smallest=1.0), Realisation("unequal_lags", unequal_lags, 1.0, 40.0, True, 1.0)),
+    "resonance": (
+        Realisation("resonance", resonance, 2.0, 12.0, smallest=1.5),
+        Realisation("two_modes", two_modes, 2.0, 12.0, True, 1.5),
+    ),
     "rate_limit": (
         Realisation("rate_limit", rate_limit, 0.2, 0.9),
         Realisation("soft_rate_limit", soft_rate_limit, 0.2, 0.9, True),

@@ -13,8 +13,9 @@ from trials.generator.grid import Grid
 
 EVERYWHERE = frozenset({"delay", "clock"})
 """Effects that commute with every time-invariant block."""
-SLOW_OR_ADDED = frozenset({"offset", "drift", "thermal_drift", "gain_drift", "load"})
-"""Slow against every lag of these plants, so that they commute with a linear block as far as a record can tell."""
+SLOW_OR_ADDED = frozenset({"offset", "drift", "thermal_drift", "gain_drift", "load", "periodic_disturbance"})
+"""Slow against every lag of these plants, or a line that stays a line, so that they commute with a linear block as far as a
+record can tell."""
 
 
 @dataclass
@@ -122,6 +123,10 @@ class Plant(ABC):
         if self.internal(effect) or edge not in self.chain:
             group.update(self.internal_edges(effect))
         return sorted(group | {alias for one in group for alias in self.aliases.get(one, ())})
+
+    def same_as(self, effect: str, edge: str) -> dict[str, tuple[str, ...]]:
+        """Other effects, with their edges, that give the very same output with as many parameters."""
+        return {}
 
     def internal_edges(self, effect: str) -> tuple[str, ...]:
         """Edges that name a block's inside, where an effect changes the block itself."""

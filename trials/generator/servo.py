@@ -130,12 +130,16 @@ class Servo(Plant):
     def admissible_edges(self, effect, edge):
         """A pure integrator does not let offsets and drifts through unchanged; forces act anywhere before it."""
         edges = set(super().admissible_edges(effect, edge))
-        if effect in ("offset", "drift", "thermal_drift", "gain_drift", "load", "periodic_disturbance"):
+        if effect in ("offset", "drift", "thermal_drift", "gain_drift", "load"):
             forces = {"U", "MOTOR.XIN", "MOTOR.XOUT", "VEL.XIN", "ACC"}
             edges = edges | forces if edge == "U" else edges - forces
             if edge == "U":
                 edges -= {"VEL.XOUT", "POS.XOUT", "Y"}
         return sorted(edges)
+
+    def same_as(self, effect, edge):
+        """On an axis without damping a constant force is a linear drift of the speed."""
+        return {"drift": ("VEL.XOUT", "Y")} if effect == "offset" and edge == "U" and not self.damped else {}
 
     def internal(self, effect):
         """Friction and cogging."""

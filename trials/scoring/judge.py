@@ -108,12 +108,16 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
     """Compares a verdict with the label of its case."""
     v = verdict or {}
     kind = str(v.get("verdict", "refused" if run.get("exit") == 2 else "missing"))
-    effects = [e for e in v.get("effects", []) if str(e.get("id")) not in CALIBRATION_NAMES]
     truth = tuple(e["id"] for e in label["effects"])
+    # Another effect that gives the very same output with as many parameters is the true one under another name.
+    same = {name: e["id"] for e in label["effects"] for name in e.get("same_as", {}) if name not in truth}
+    effects = [e for e in v.get("effects", []) if str(e.get("id")) not in CALIBRATION_NAMES]
+    named = tuple(same.get(str(e.get("id")), str(e.get("id"))) for e in effects)
     right_edge = None
-    if effects and truth and effects[0].get("id") in truth:
-        true = label["effects"][truth.index(effects[0]["id"])]
-        right_edge = plain(effects[0].get("edge", "")) in {plain(edge) for edge in true["edges"]}
+    if named and named[0] in truth:
+        true = label["effects"][truth.index(named[0])]
+        allowed = true.get("same_as", {}).get(effects[0]["id"], true["edges"])
+        right_edge = plain(effects[0].get("edge", "")) in {plain(edge) for edge in allowed}
     gap = v.get("gap") or {}
     output = 1 if len(label["noise_rms"]) > 1 and str(gap.get("signal", "")).upper() == "U" else 0
     floor2 = float(label["noise_rms"][output]) ** 2
@@ -127,9 +131,9 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         ratio=label["ratio"] if label["effects"] else label["deviation_ratio"],
         truth=truth,
         verdict=kind if kind in VERDICTS else "missing",
-        effects=tuple(str(e.get("id")) for e in effects),
+        effects=named,
         edges=tuple(str(e.get("edge", "")) for e in effects),
-        rivals=tuple(frozenset(map(str, one)) for one in v.get("rivals", [])),
+        rivals=tuple(dict.fromkeys(frozenset(same.get(str(x), str(x)) for x in one) for one in v.get("rivals", []))),
         confidence=number(v.get("confidence")),
         unknown_score=number(v.get("unknown_score")),
         cannot_tell=bool(v.get("cannot_tell")),

@@ -71,11 +71,10 @@ class Enumeration {
   }
 
  private:
-  /// Whether the effect is there already, by the same block on the same edge.
-  [[nodiscard]] bool present(const std::string& effect, const std::string& edge) const {
-    return std::ranges::any_of(base_.effects, [&](const Applied& applied) {
-      return applied.effect == effect && (applied.edge == edge || applied.instance + ".XOUT" == edge);
-    });
+  /// Whether the effect is there already: twice the same one on two edges is a search for a better fit, not for a
+  /// cause.
+  [[nodiscard]] bool present(const std::string& effect) const {
+    return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.effect == effect; });
   }
 
   /// What may drive a further input: signals of the same block that come from a block with memory, another input of
@@ -97,7 +96,8 @@ class Enumeration {
     }
     for (const Declared& declared : definitions_.list[edge.definition].variables) {
       if (declared.kind != Declared::Kind::LibraryBlock || declared.block->states.empty() ||
-          declared.block->about.group != Group::Dynamics) {
+          declared.block->about.group != Group::Dynamics || declared.block->about.name == "HY_DELAY" ||
+          declared.block->about.effect == "delay") {
         continue;
       }
       for (const Field& output : declared.block->outputs) {
@@ -110,7 +110,7 @@ class Enumeration {
   }
 
   void insert(const EffectKind& kind, const Edge& edge) {
-    if (present(kind.id, edge.name)) {
+    if (present(kind.id)) {
       return;
     }
     if (kind.auxiliaries.empty()) {
@@ -166,7 +166,7 @@ class Enumeration {
           continue;
         }
         const std::string instance = place.prefix + language::upper(declared.field.name);
-        if (present(kind.id, instance + ".XOUT") || !is_neutral(kind, instance)) {
+        if (present(kind.id) || !is_neutral(kind, instance)) {
           continue;
         }
         Candidate candidate{.kind = kind, .variant = base_};

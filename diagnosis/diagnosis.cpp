@@ -202,6 +202,7 @@ class Run {
       result_.effects = effect_findings(findings);
       result_.rivals = rival_findings(findings);
     }
+    result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     for (std::string& reason : structural_reasons(result_)) {
       result_.cannot_tell.push_back(std::move(reason));

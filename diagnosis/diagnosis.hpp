@@ -137,6 +137,7 @@ struct Diagnosis {
   std::vector<ParameterFinding> calibration{};  ///< known parameters, as refitted
   std::vector<ParameterFinding> nominal{};      ///< as they were given
   std::vector<Rival> rivals{};
+  std::vector<Rival> fitted{};  ///< the best of all sets that were fitted, ruled out or not
   double confidence = 0.0;
   double unknown_score = 0.0;
   GapFinding gap{};                ///< of the output with the largest gap over its floor

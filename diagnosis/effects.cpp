@@ -99,8 +99,9 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
                     .enriches = std::string(block.about.enriches.empty() ? block.about.name : block.about.enriches)};
     const auto all = searched(block.params);
     for (const EffectParameter& one : all) {
-      const bool own_reference = one.role == Role::Reference && one.field.name.starts_with(field.name);
-      if (one.field.name == field.name || own_reference) {
+      const bool own = one.field.name == field.name || (one.field.name.starts_with(field.name) &&
+                                                        one.field.name.substr(field.name.size()).starts_with("_"));
+      if (own) {
         kind.parameters.push_back(one);
       }
     }

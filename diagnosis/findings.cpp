@@ -93,6 +93,20 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
   return shares;
 }
 
+Rival rival_of(const Task& task, const Weighed& weighed) {
+  const Explanation& one = *weighed.explanation;
+  Rival rival{
+      .effects = one.names(),
+      .improved_rms = std::sqrt(one.fit.residuals.squaredNorm() / static_cast<double>(one.fit.residuals.size())) *
+                      task.scales.front(),
+      .support = weighed.support,
+      .probability = std::exp(std::min(0.0, weighed.support))};
+  for (const Applied& applied : one.variant.effects) {
+    rival.edges.push_back(applied.edge);
+  }
+  return rival;
+}
+
 }  // namespace
 
 std::vector<ParameterFinding> nominal_findings(const Task& task) {
@@ -154,21 +168,22 @@ std::vector<Rival> rival_findings(const Findings& findings) {
   std::vector<Rival> result;
   double total = 0.0;
   for (const Weighed& weighed : findings.judgement.rivals) {
-    const Explanation& one = *weighed.explanation;
-    Rival rival{
-        .effects = one.names(),
-        .improved_rms = std::sqrt(one.fit.residuals.squaredNorm() / static_cast<double>(one.fit.residuals.size())) *
-                        findings.task.scales.front(),
-        .support = weighed.support,
-        .probability = std::exp(std::min(0.0, weighed.support))};
-    for (const Applied& applied : one.variant.effects) {
-      rival.edges.push_back(applied.edge);
-    }
-    total += rival.probability;
-    result.push_back(std::move(rival));
+    result.push_back(rival_of(findings.task, weighed));
+    total += result.back().probability;
   }
   for (Rival& rival : result) {
     rival.probability /= total;
+  }
+  return result;
+}
+
+std::vector<Rival> fitted_findings(const Findings& findings) {
+  constexpr std::size_t most = 40;
+  std::vector<Rival> result;
+  for (const Weighed& weighed : findings.judgement.fitted) {
+    if (result.size() < most) {
+      result.push_back(rival_of(findings.task, weighed));
+    }
   }
   return result;
 }

@@ -20,6 +20,8 @@ struct Findings {
 [[nodiscard]] std::vector<ParameterFinding> calibration_findings(const Findings& findings);
 [[nodiscard]] std::vector<EffectFinding> effect_findings(const Findings& findings);
 [[nodiscard]] std::vector<Rival> rival_findings(const Findings& findings);
+/// The best of all that was fitted.
+[[nodiscard]] std::vector<Rival> fitted_findings(const Findings& findings);
 
 /// The probability of the verdict: of the named set among the rivals, lowered by what is left unexplained.
 [[nodiscard]] double confidence(const Findings& findings, const Diagnosis& so_far);

@@ -14,7 +14,29 @@ VectorXd within_bounds(const Model& model, const VectorXd& x) {
   return x.cwiseMax(model.lower()).cwiseMin(model.upper());
 }
 
-/// JᵀWJ + Λ and JᵀWr + Λ(x − x⁰).
+/// The steps are those of ln x for an unknown that cannot be negative: constants like C2 and C3 of C2·p^C3 lie along a
+/// valley that is curved in C2 and straight in ln C2. dx/dz, with z = ln x there and z = x elsewhere.
+VectorXd slopes_of(const Model& model, const VectorXd& x) {
+  VectorXd slopes = VectorXd::Ones(x.size());
+  for (Index j = 0; j < x.size(); ++j) {
+    if (model.lower()[j] >= 0.0 && x[j] > 0.0) {
+      slopes[j] = x[j];
+    }
+  }
+  return slopes;
+}
+
+VectorXd moved(const Model& model, const VectorXd& x, const VectorXd& step) {
+  constexpr double farthest = 1.6;  // of ln x in one step
+  VectorXd result = x;
+  for (Index j = 0; j < x.size(); ++j) {
+    const bool positive = model.lower()[j] >= 0.0 && x[j] > 0.0;
+    result[j] = positive ? x[j] * std::exp(std::clamp(step[j], -farthest, farthest)) : x[j] + step[j];
+  }
+  return within_bounds(model, result);
+}
+
+/// SᵀJᵀWJS + Λ and Sᵀ(JᵀWr + Λ(x − x⁰)) with the slopes S.
 struct Normal {
   MatrixXd matrix{};
   VectorXd gradient{};
@@ -33,6 +55,9 @@ Normal normal_equations(const Model& model, const Fit& at, const VectorXd* weigh
   }
   normal.matrix.diagonal() += precision;
   normal.gradient += precision.cwiseProduct(at.x - model.start());
+  const VectorXd slopes = slopes_of(model, at.x);
+  normal.matrix = slopes.asDiagonal() * normal.matrix * slopes.asDiagonal();
+  normal.gradient = slopes.cwiseProduct(normal.gradient);
   return normal;
 }
 
@@ -85,7 +110,7 @@ Fit fit(Model& model, VectorXd start, const FitOptions& options) {
     const Normal normal = normal_equations(model, best, options.weights);
     bool descended = false;
     for (int attempt = 0; attempt < 6 && !descended; ++attempt) {
-      const VectorXd x = within_bounds(model, best.x + step_of(model, normal, best.x, damping));
+      const VectorXd x = moved(model, best.x, step_of(model, normal, best.x, damping));
       ++best.evaluations;
       const bool valued = model.residuals(x, residuals, nullptr);
       const double cost = valued ? cost_of(model, x, residuals, options.weights) : infinity;

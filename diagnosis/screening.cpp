@@ -184,7 +184,17 @@ class Screening {
       const Index j = list[static_cast<std::size_t>(k)];
       values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
     }
-    starts.push_back({.values = values, .gain = gain});
+    // What the straight line promises, held against the diagram itself, there and short of there.
+    for (const double share : {1.0, 0.3, 0.1}) {
+      VectorXd there = shape;
+      for (const Index j : list) {
+        there[j] += share * (values[j] - shape[j]);
+      }
+      try_point(there, starts);
+      if (!starts.empty() && starts.back().gain > 0.8 * gain) {
+        break;
+      }
+    }
   }
 
   /// Each strength by itself over its grid, and all of them at once.
@@ -203,7 +213,8 @@ class Screening {
         }
       }
     }
-    for (std::size_t k = 0; list.size() > 1 && k < longest; ++k) {
+    const bool limits = std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
+    for (std::size_t k = 0; limits && list.size() > 1 && k < longest; ++k) {
       VectorXd values = shape;
       for (const Index j : list) {
         const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;

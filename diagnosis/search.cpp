@@ -7,11 +7,13 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <set>
 
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/spectrum.hpp"
+#include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -80,7 +82,12 @@ class Searcher {
     result.calibrated.variant = std::move(base);
     Model model(task_, *result.calibrated.variant.program);
     result.calibrated.fit = fit(model, model.start(), {.iterations = 40, .tolerance = 1e-7});
-    std::vector<Explanation> beam{result.calibrated};
+    // The first candidates are tried about the parameters as tuned: a large effect bends a calibration far away.
+    Explanation nominal = result.calibrated;
+    nominal.fit.x = model.start();
+    (void)model.residuals(nominal.fit.x, nominal.fit.residuals, &nominal.fit.jacobian);
+    nominal.fit.cost = cost_of(model, nominal.fit.x, nominal.fit.residuals, nullptr);
+    std::vector<Explanation> beam{nominal};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
       begin_ = static_cast<double>(round) / options_.most_effects;
       width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
@@ -91,6 +98,9 @@ class Searcher {
         }
         expand(one, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
         begin_ += width_;
+      }
+      if (round > 0) {
+        without_each(found, result);
       }
       beam = next_beam(found, result);
       std::ranges::move(found, std::back_inserter(result.explanations));
@@ -130,6 +140,7 @@ class Searcher {
     const Background background(model, from.fit);
 
     std::vector<Screened> list(candidates.size());
+    std::vector<Grids> grids(candidates.size());
     std::atomic<std::size_t> done{0};
     in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
       const Extents::Signals* const signals = extents.find(candidates[i]);
@@ -141,12 +152,13 @@ class Searcher {
         periods = strongest_periods(from.fit.residuals,
                                     signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 5);
       }
-      const Grids grids = grids_of(candidates[i].own(), signals->input,
-                                   signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);
-      list[i] = screened(task_, std::move(candidates[i]), grids, from.fit.x, background, 4);
-      say(0.6 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
-          list[i].starts.empty() ? "" : list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
+      grids[i] = grids_of(candidates[i].own(), signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr,
+                          hints, periods);
+      list[i] = screened(task_, candidates[i], thinned(grids[i], 3), from.fit.x, background, 3);
+      say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
+          candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
+    refine(list, candidates, grids, from, background);
     std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
     std::ranges::stable_sort(list, [](const Screened& a, const Screened& b) { return a.gain() > b.gain(); });
     if (from.variant.effects.empty()) {
@@ -160,6 +172,14 @@ class Searcher {
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
       fits[i] = fitted_from(list[i], from.fit.x);
+      if (from.variant.effects.empty()) {  // and about the calibrated ones
+        Screened best_start = list[i];
+        best_start.starts.resize(1);
+        Explanation other = fitted_from(best_start, result.calibrated.fit.x);
+        if (other.fit.cost < fits[i].fit.cost) {
+          fits[i] = std::move(other);
+        }
+      }
       say(0.6 + 0.4 * static_cast<double>(++done) / static_cast<double>(list.size()),
           list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
     });
@@ -169,6 +189,101 @@ class Searcher {
       }
     }
   }
+
+  /// The whole grid for the candidates that the thin one has brought to the front.
+  void refine(std::vector<Screened>& list, const std::vector<Candidate>& candidates, const std::vector<Grids>& grids,
+              const Explanation& from, const Background& background) {
+    std::vector<std::size_t> order(list.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return list[a].gain() > list[b].gain(); });
+    order.resize(std::min(order.size(), 2 * options_.fitted_first));
+    std::atomic<std::size_t> done{0};
+    in_parallel(order.size(), options_.threads, [&](std::size_t i) {
+      const std::size_t at = order[i];
+      if (!list[at].starts.empty()) {
+        Screened whole = screened(task_, candidates[at], grids[at], from.fit.x, background, 3);
+        if (whole.gain() > list[at].gain()) {
+          list[at] = std::move(whole);
+        }
+      }
+      say(0.4 + 0.2 * static_cast<double>(++done) / static_cast<double>(order.size()), "finer grids");
+    });
+  }
+
+  /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
+  /// all that it was there for, and the other one by itself the better explanation.
+  void without_each(std::vector<Explanation>& found, const Search& result) const {
+    std::vector<const Explanation*> best;
+    for (const Explanation& one : found) {
+      best.push_back(&one);
+    }
+    std::ranges::stable_sort(best,
+                             [](const Explanation* a, const Explanation* b) { return a->fit.cost < b->fit.cost; });
+    best.resize(std::min<std::size_t>(best.size(), 3));
+    std::vector<Explanation> reduced;
+    for (const Explanation* const one : best) {
+      for (std::size_t i = 0; i + 1 < one->variant.effects.size(); ++i) {
+        Explanation smaller = without(*one, i, result.calibrated.variant);
+        if (std::isfinite(smaller.fit.cost)) {
+          reduced.push_back(std::move(smaller));
+        }
+      }
+    }
+    std::ranges::move(reduced, std::back_inserter(found));
+  }
+
+  /// A set without one of its effects, built anew on the bare diagram and fitted from where it stood.
+  [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare) const {
+    Explanation result{.variant = bare};
+    result.fit.cost = std::numeric_limits<double>::infinity();
+    VectorXd start = whole.fit.x.head(std::ssize(task_.known));
+    for (std::size_t i = 0; i < whole.variant.effects.size(); ++i) {
+      if (i == dropped) {
+        continue;
+      }
+      const Applied& wanted = whole.variant.effects[i];
+      std::vector<Candidate> candidates =
+          candidates_of(result.variant, top_, {.effects = {wanted.effect}, .columns = options_.candidates.columns});
+      const auto match = std::ranges::find_if(candidates, [&](const Candidate& one) {
+        return one.own().block == wanted.block && one.own().wires == wanted.wires &&
+               root_of(one.own().edge) == root_of(wanted.edge);
+      });
+      if (match == candidates.end()) {
+        return result;
+      }
+      Applied& own = match->variant.effects.back();
+      for (std::size_t j = 0; j < own.paths.size(); ++j) {
+        for (const auto& [path, value] : wanted.settings) {
+          if (path == wanted.paths[j]) {
+            own.settings.emplace_back(own.paths[j], value);
+          }
+        }
+        for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
+          const Unknown& unknown = whole.variant.further[k];
+          if (unknown.path == wanted.paths[j]) {
+            match->variant.further.push_back(unknown);
+            match->variant.further.back().path = own.paths[j];
+            start.conservativeResize(start.size() + 1);
+            start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
+          }
+        }
+      }
+      result.variant = std::move(match->variant);
+      result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
+    }
+    Model model(task_, *result.variant.program, result.variant.further);
+    const Index states = model.unknowns() - start.size();
+    start.conservativeResize(model.unknowns());
+    start.tail(states) = whole.fit.x.tail(states);
+    result.fit = fit(model, start, {.iterations = 30});
+    for (std::size_t j = 0; j < result.variant.further.size() && std::isfinite(result.fit.cost); ++j) {
+      result.variant.further[j].start = result.fit.x[model.first_further() + static_cast<Index>(j)];
+    }
+    return result;
+  }
+
+  /// An edge behind an effect that was put on an edge before is that edge: HYST_CREEP.XOUT is HYST.XOUT.
+  [[nodiscard]] static std::string root_of(const std::string& edge) { return edge.substr(0, edge.find_first_of("._")); }
 
   /// The best ones, but of no effect so many that others do not get their turn.
   static void keep_best(std::vector<Screened>& list, std::size_t count) {
@@ -197,6 +312,9 @@ class Searcher {
     x.head(first) = at.head(first);
     x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = at.tail(at.size() - first);
     for (const Start& start : one.starts) {
+      if (start.gain < 0.5 * one.gain() && &start != &one.starts.front()) {
+        continue;
+      }
       x.segment(first, std::ssize(one.unknowns)) = start.values;
       Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
       if (here.cost < best.fit.cost) {
@@ -255,8 +373,9 @@ class Searcher {
     const double gap = result.calibrated.fit.cost - floor_cost_;
     for (const Explanation& one : found) {
       const double left = one.fit.cost - floor_cost_;
-      if (found.front().fit.cost - floor_cost_ < options_.least_share * gap) {
-        break;  // nothing notable is left for another effect
+      const bool closed = found.front().fit.cost - floor_cost_ < options_.least_share * gap;
+      if (closed || correlation_time(found.front().fit.residuals) < 1.5) {
+        break;  // nothing notable is left for another effect, or nothing but white noise
       }
       if (beam.size() < options_.beam && left < gap && taken.insert(one.names()).second) {
         beam.push_back(one);

@@ -46,16 +46,16 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       if (std::isinf(field.neutral)) {
         return levels_above(input, field.neutral);
       }
-      return scaled(range, {0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3});
+      return geometric(0.003 * range, 0.4 * range, 1.15);
     case Role::Rate:
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});
     case Role::Duration:
-      return geometric(0.5 * hints.sample_time, std::min(0.2 * hints.duration, 4000.0 * hints.sample_time), 2.0);
+      return geometric(0.5 * hints.sample_time, std::min(0.2 * hints.duration, 4000.0 * hints.sample_time), 2.5);
     case Role::PerSecond:
       return {0.05 / hints.duration};
     case Role::Share:
-      return {1e-4, 1e-3, 0.01, 0.05, 0.15, 0.4, 0.9};
+      return {1e-4, 1e-3, 0.01, 0.1, 0.5};
     case Role::Instant:
     case Role::Frequency:
     case Role::Period:
@@ -67,7 +67,7 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
     return {1.05 * field.neutral};
   }
   const double against = auxiliary == nullptr ? 1.0 : size_or(auxiliary->range(), 1.0);
-  return {0.05 * range / against};
+  return scaled(range / against, {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0});
 }
 
 std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
@@ -84,8 +84,8 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     }
     case Role::Instant: {
       std::vector<double> values;
-      for (int k = 1; k < 10; ++k) {
-        values.push_back(0.1 * k * hints.duration);
+      for (int k = 1; k < 8; ++k) {
+        values.push_back(0.125 * k * hints.duration);
       }
       return values;
     }
@@ -96,7 +96,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     case Role::Share:
       return {0.02, 0.1, 0.4};
     case Role::Level:
-      return scaled(range, {0.01, 0.05, 0.2});
+      return scaled(range, {0.05, 0.15, 0.4});
     case Role::Rate:
     case Role::PerSecond:
     case Role::Reference:
@@ -147,6 +147,22 @@ Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxilia
     grids.settings.push_back(setting);
   }
   return grids;
+}
+
+Grids thinned(const Grids& grids, std::size_t stride) {
+  constexpr std::size_t short_enough = 4;
+  Grids result = grids;
+  for (std::size_t j = 0; j < grids.parameters.size(); ++j) {
+    const std::vector<double>& values = grids.parameters[j].values;
+    if (values.size() <= short_enough) {
+      continue;
+    }
+    result.parameters[j].values.clear();
+    for (std::size_t k = 0; k < values.size(); k += stride) {
+      result.parameters[j].values.push_back(values[k]);
+    }
+  }
+  return result;
 }
 
 Unknown unknown_of(const EffectParameter& parameter, const std::string& path, const Grid& grid) {

@@ -30,6 +30,9 @@ struct Grids {
 [[nodiscard]] Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxiliary, const Hints& hints,
                              const std::vector<double>& periods);
 
+/// With one point in so many of each long grid: enough to see which candidates deserve the whole of it.
+[[nodiscard]] Grids thinned(const Grids& grids, std::size_t stride);
+
 /// The unknown that a parameter of an effect becomes in a fit, at its neutral or default value.
 [[nodiscard]] Unknown unknown_of(const EffectParameter& parameter, const std::string& path, const Grid& grid);
 

@@ -16,6 +16,8 @@ constexpr double rival_within = 4.0;
 constexpr double same_within = 3.0;
 /// What a set has to gain over calibration beyond its penalties, nats.
 constexpr double least_significance = 6.0;
+/// What a record is worth at least: what another formula of the same physics leaves is slow, but no noise.
+constexpr double fewest_samples = 60.0;
 
 class Judge {
  public:
@@ -26,9 +28,13 @@ class Judge {
     Judgement result{.chosen = &search_.calibrated};
     const Explanation& best = search_.explanations.empty() ? search_.calibrated : search_.explanations.front();
     const double tau = correlation_time(best.fit.residuals);
-    samples_ = static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau);
+    samples_ = std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
     result.effective_samples = samples_;
     result.chosen = choose();
+    for (const Explanation& one : search_.explanations) {
+      result.fitted.push_back({.explanation = &one, .support = support(one) - support(*result.chosen)});
+    }
+    std::ranges::stable_sort(result.fitted, [](const Weighed& a, const Weighed& b) { return a.support > b.support; });
     if (result.chosen == &search_.calibrated) {
       return result;
     }
@@ -104,6 +110,7 @@ class Judge {
       if (best == nullptr) {
         break;
       }
+      best = simplest_near(*best);
       const bool better = support(*best) - support(*chosen) > least_significance;
       const bool notable = chosen->fit.cost - best->fit.cost > least_share_ * std::max(gap(), 0.0);
       if (better && notable && holds_on_unseen(*chosen, *best)) {
@@ -113,6 +120,19 @@ class Judge {
       }
     }
     return chosen;
+  }
+
+  /// Of the sets of one size that the record does not rule out against the best, the one with the fewest parameters: a
+  /// friction with a falling part that is 0 is a friction without.
+  [[nodiscard]] const Explanation* simplest_near(const Explanation& best) const {
+    const Explanation* simplest = &best;
+    for (const Explanation& one : search_.explanations) {
+      if (one.variant.effects.size() == best.variant.effects.size() && one.parameters() < simplest->parameters() &&
+          support(one) > support(best) - 0.75 * rival_within) {
+        simplest = &one;
+      }
+    }
+    return simplest;
   }
 
   const Task& task_;

@@ -27,6 +27,7 @@ struct Weighed {
 struct Judgement {
   const Explanation* chosen = nullptr;  ///< never null: the calibrated diagram, where no effect holds
   std::vector<Weighed> rivals{};        ///< one for each set of identifiers, best first, those not ruled out
+  std::vector<Weighed> fitted{};        ///< all sets, best first
   std::vector<Weighed> same{};          ///< other edges for the chosen set
   double effective_samples = 0.0;
   double significance = 0.0;  ///< of the chosen set against the calibrated diagram, nats

@@ -22,6 +22,18 @@ Json parameters_of(const std::vector<ParameterFinding>& list) {
   return result;
 }
 
+Json sets_of(const std::vector<Rival>& list) {
+  Json result = Json::array();
+  for (const Rival& one : list) {
+    result.push_back({{"effects", one.effects},
+                      {"edges", one.edges},
+                      {"improved_rms", number(one.improved_rms)},
+                      {"support", number(one.support)},
+                      {"probability", number(one.probability)}});
+  }
+  return result;
+}
+
 Json gap_of(const GapFinding& gap) {
   return {{"signal", gap.signal},
           {"unit", gap.unit},
@@ -67,14 +79,8 @@ std::string verdict_json(const Diagnosis& found) {
                        {"parameters", parameters_of(effect.parameters)}});
   }
   Json rivals = Json::array();
-  Json details = Json::array();
   for (const Rival& rival : found.rivals) {
     rivals.push_back(rival.effects);
-    details.push_back({{"effects", rival.effects},
-                       {"edges", rival.edges},
-                       {"improved_rms", number(rival.improved_rms)},
-                       {"support", number(rival.support)},
-                       {"probability", number(rival.probability)}});
   }
   Json next = Json::object();
   if (!found.next.title.empty()) {
@@ -110,7 +116,8 @@ std::string verdict_json(const Diagnosis& found) {
                         {"warnings", found.warnings},
                         {"calibration", parameters_of(found.calibration)},
                         {"nominal", parameters_of(found.nominal)},
-                        {"rival_details", std::move(details)},
+                        {"rival_details", sets_of(found.rivals)},
+                        {"fitted", sets_of(found.fitted)},
                         {"gaps", std::move(gaps)},
                         {"candidates_tried", found.tried}};
   return verdict.dump(2) + "\n";

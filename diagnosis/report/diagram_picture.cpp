@@ -20,7 +20,7 @@ constexpr std::size_t most_boxes = 120;
 constexpr double character = 7.6;  ///< width of one in a box's name
 constexpr double small_character = 6.2;
 constexpr double row = 14.0;  ///< height of a pin's row
-constexpr std::size_t longest_name = 22;
+constexpr std::size_t longest_name = 20;
 
 /// What is known of a wire.
 struct WireState {

@@ -19,14 +19,6 @@ std::string joined(const std::vector<std::string>& texts) {
   return result;
 }
 
-/// A share as a small bar in a table.
-std::string share_bar(double share, const char* css_class) {
-  return fmt::format(
-      "<svg class=\"share-bar\" viewBox=\"0 0 100 10\" aria-hidden=\"true\"><rect class=\"rest\" "
-      "width=\"100\" height=\"10\"/><rect class=\"{}\" width=\"{:.1f}\" height=\"10\"/></svg>",
-      css_class, 100.0 * std::clamp(share, 0.0, 1.0));
-}
-
 std::string edge_rows(const Diagnosis& diagnosis, std::size_t first, std::size_t last) {
   std::string html =
       "<table><thead><tr><th>wire</th><th>share of the gap that a change there could explain at most</th>"

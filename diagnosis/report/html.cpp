@@ -94,6 +94,13 @@ std::string clipped(std::string_view text, std::size_t most) {
   return std::string(text.substr(0, end)) + "…";
 }
 
+std::string share_bar(double share, std::string_view css_class) {
+  return fmt::format(
+      "<svg class=\"share-bar\" viewBox=\"0 0 100 10\" aria-hidden=\"true\"><rect class=\"rest\" "
+      "width=\"100\" height=\"10\"/><rect class=\"{}\" width=\"{:.1f}\" height=\"10\"/></svg>",
+      css_class, 100.0 * std::clamp(share, 0.0, 1.0));
+}
+
 std::string list_of(const std::vector<std::string>& texts, std::string_view css_class) {
   if (texts.empty()) {
     return {};

@@ -31,6 +31,9 @@ namespace hysteron::diagnosis::report {
 /// The number of characters of UTF-8.
 [[nodiscard]] std::size_t length_of(std::string_view text);
 
+/// A share as a small bar within a line of text.
+[[nodiscard]] std::string share_bar(double share, std::string_view css_class);
+
 /// `<ul class="…">` of texts, which are escaped; nothing where there are none.
 [[nodiscard]] std::string list_of(const std::vector<std::string>& texts, std::string_view css_class);
 

@@ -1,6 +1,7 @@
 #include "diagnosis/report/layered_layout.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -8,11 +9,11 @@
 namespace hysteron::diagnosis::report {
 namespace {
 
-constexpr double column_gap = 76.0;
+constexpr double column_gap = 56.0;
 constexpr double box_gap = 22.0;
 constexpr double lane_gap = 14.0;  ///< between curves that pass boxes
 constexpr double margin = 14.0;
-constexpr double turn = 34.0;  ///< how far a curve that turns back reaches out
+constexpr double turn = 30.0;  ///< how far a curve that turns back reaches out
 constexpr int order_sweeps = 24;
 constexpr int height_sweeps = 40;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -68,29 +69,33 @@ class Layering {
     return false;
   }
 
-  /// Boxes in the order of the signals. Where only cycles are left, the box that already has most of its inputs comes
-  /// next, as the summing point of a loop does, and what it still waits for runs backward.
+  /// Boxes in the order of the signals. Where only cycles are left, the box that waits for the fewest of its inputs
+  /// comes next, and of those the one nearest to the inputs of the diagram, as the summing point of a loop is. What it
+  /// still waits for runs backward.
   void cut_cycles() {
     std::vector<bool> placed(boxes_.size(), false);
+    std::vector<int> depth(boxes_.size(), 0);
     while (order_.size() < boxes_.size()) {
       std::size_t best = none;
-      std::pair<int, int> best_rank{};
+      std::tuple<bool, int, int> best_rank{};
       bool ready = false;
       for (std::size_t box = 0; box < boxes_.size() && !ready; ++box) {
         if (placed[box]) {
           continue;
         }
         int waiting = 0;
-        int met = 0;
+        int nearest = std::numeric_limits<int>::max();
         for (const LayoutEdge& edge : edges_) {
           waiting += edge.to == box && !placed[edge.from] ? 1 : 0;
-          met += edge.to == box && placed[edge.from] ? 1 : 0;
+          nearest = edge.to == box && placed[edge.from] ? std::min(nearest, depth[edge.from]) : nearest;
         }
         ready = waiting == 0;
-        const std::pair rank{met > 0 ? 0 : 1, waiting};
+        const bool unfed = nearest == std::numeric_limits<int>::max();
+        const std::tuple rank{unfed, waiting, nearest};
         if (ready || ((best == none || rank < best_rank) && on_cycle(box, placed))) {
           best = box;
           best_rank = rank;
+          depth[best] = unfed ? 0 : nearest + 1;
         }
       }
       for (std::size_t e = 0; e < edges_.size(); ++e) {

@@ -143,7 +143,7 @@ function traceFigure(host, trace) {
 function mapFigures(host, maps, unit) {
   keys(host, [{ kind: "before", text: "before: calibrated, RMS" }, { kind: "after", text: "after: improved, RMS" },
               { kind: "mean", text: "before: mean" }]);
-  const grid = add(host, "div", { className: "grid" });
+  const grid = add(host, "div", { className: "mosaic" });
   for (const map of [...maps].sort((a, b) => b.share - a.share)) {
     const cell = add(grid, "div", { className: "map" });
     const svg = draw(cell, "svg", { viewBox: "0 0 300 218", role: "img", "aria-label": "Residual over " + map.over });

@@ -54,7 +54,7 @@ footer { color: var(--soft); font-size: .87rem; border-top: 1px solid var(--line
   color: var(--paper); background: var(--after); }
 .verdict .label.refused { background: var(--bad-line); }
 .summary { font-size: 1.3rem; line-height: 1.35; font-weight: 600; margin: 0 0 .6rem; }
-.confidence meter { width: 9rem; height: .9rem; margin: 0 .6rem; vertical-align: middle; }
+.confidence svg { width: 9rem; height: .9rem; margin: 0 0 0 .6rem; vertical-align: -2px; }
 .box { border-left: 5px solid; padding: .6rem 1rem; margin: .8rem 0; border-radius: 0 .3rem .3rem 0; }
 .box h2 { font-size: 1rem; margin: 0 0 .2rem; }
 .box ul { margin: 0; padding-left: 1.2rem; }
@@ -68,9 +68,10 @@ article.effect .at { font-weight: 400; color: var(--soft); }
 
 table { border-collapse: collapse; margin: .4rem 0; font-variant-numeric: tabular-nums; }
 article table { width: 100%; }
+article th, article td { padding-right: .5rem; }
 th, td { padding: .22rem .9rem .22rem 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 500; font-size: .87rem; color: var(--soft); }
-.number { text-align: right; }
+.number { text-align: right; white-space: nowrap; }
 td.bar { white-space: nowrap; }
 tr.own td { font-weight: 600; }
 .tag { background: var(--after); color: var(--paper); font-size: .75rem; padding: 0 .45rem; border-radius: .6rem; }
@@ -136,7 +137,7 @@ svg.key { width: 26px; height: 12px; margin-right: .3rem; vertical-align: -2px; 
 .keys i.mean { border-top: 2px dashed var(--soft); }
 .keys i.band { border-top: 10px solid var(--floor); opacity: .3; vertical-align: 1px; }
 .readout { font-size: .87rem; color: var(--soft); min-height: 1.4em; font-variant-numeric: tabular-nums; }
-.maps .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(265px, 1fr)); gap: .8rem 1.2rem; }
+.maps .mosaic { display: grid; grid-template-columns: repeat(auto-fill, minmax(265px, 1fr)); gap: .8rem 1.2rem; }
 )css";
 
 }  // namespace

@@ -157,10 +157,9 @@ std::string verdict_section(const Diagnosis& diagnosis) {
   }
   if (!refused) {
     html += fmt::format(
-        "<p class=\"confidence\"><strong>{}</strong> confidence<meter min=\"0\" max=\"1\" value=\"{:.4f}\">{}</meter>"
-        " <span class=\"note\">score of a cause outside the library: {}</span></p>\n",
-        percent(diagnosis.confidence), std::clamp(diagnosis.confidence, 0.0, 1.0), percent(diagnosis.confidence),
-        figure(diagnosis.unknown_score, 2));
+        "<p class=\"confidence\"><strong>{}</strong> confidence {}</p>\n<p class=\"note\">Score of a cause outside the "
+        "library: {}</p>\n",
+        percent(diagnosis.confidence), share_bar(diagnosis.confidence, "after"), figure(diagnosis.unknown_score, 2));
   } else {
     html += "<div class=\"box refusals\"><h2>Why the record could not be diagnosed</h2>\n" +
             list_of(diagnosis.refusals, "refusals") + "</div>\n";

@@ -229,6 +229,14 @@ std::string unit_comment(const Port& port) {
   return port.unit.empty() ? std::string() : fmt::format("  (* @unit {} *)", port.unit);
 }
 
+/// The sample time in the largest unit that takes no fraction.
+std::string duration_text(std::int64_t ns) {
+  if (ns % 1'000'000 == 0) {
+    return fmt::format("{}ms", ns / 1'000'000);
+  }
+  return ns % 1000 == 0 ? fmt::format("{}us", ns / 1000) : fmt::format("{}ns", ns);
+}
+
 std::string written(const Program& program, const Port& input, const Port& output, const Inverter& inverter) {
   const InverseText& text = inverter.text();
   std::string comment = fmt::format("The input {} of {} that makes its output {} follow REF.", input.name,
@@ -237,8 +245,9 @@ std::string written(const Program& program, const Port& input, const Port& outpu
     comment += fmt::format("\n   - {}", note);
   }
   const std::int64_t ns = program.graph.sample_time_ns;
-  std::string result = fmt::format("(* {} *)\nFUNCTION_BLOCK FEEDFORWARD{}\n  VAR_INPUT\n    REF : LREAL;{}\n", comment,
-                                   ns > 0 ? fmt::format("  (* @ts {}ns *)", ns) : "", unit_comment(output));
+  std::string result =
+      fmt::format("(* {} *)\nFUNCTION_BLOCK FEEDFORWARD{}\n  VAR_INPUT\n    REF : LREAL;{}\n", comment,
+                  ns > 0 ? fmt::format("  (* @ts {} *)", duration_text(ns)) : "", unit_comment(output));
   for (const std::string& one : text.inputs()) {
     result += "    " + one + "\n";
   }

@@ -1,7 +1,6 @@
 #include "diagnosis/inverse_blocks.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -320,7 +319,7 @@ std::string hysteresis_general(InverseText& text, const BlockStage& stage) {
   if (stage.value("RETURN_POINT") != 0.0) {
     const std::string moved = text.signal(stage.name + "_DX", fmt::format("{} - {}.XOUT", x, x1));
     const std::string still = fmt::format("{} = 0.0", moved);
-    tangent = fmt::format("MAX({0}, SEL({1} OR NOT {2}, ({3}.XOUT - {4}.XOUT) / SEL({1}, {5}, 1.0), {0}))", tangent,
+    tangent = fmt::format("MAX({0}, SEL({1} OR NOT ({2}), ({3}.XOUT - {4}.XOUT) / SEL({1}, {5}, 1.0), {0}))", tangent,
                           still, later, model, y1, moved);
   }
   text.call(x1, "XIN := " + x);

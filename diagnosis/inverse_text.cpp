@@ -73,7 +73,7 @@ std::string InverseText::started(int samples) {
     third_ = instance("THIRD", "HY_DELAY");
     call(third_, fmt::format("XIN := {}.XOUT", second_));
   }
-  return fmt::format("({}.XOUT > 0.5)", samples > 1 ? third_ : second_);
+  return fmt::format("{}.XOUT > 0.5", samples > 1 ? third_ : second_);
 }
 
 void InverseText::input(const std::string& declaration) {

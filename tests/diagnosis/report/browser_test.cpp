@@ -1,0 +1,121 @@
+// The report in a browser without a screen: the script runs without fault, and drags and double clicks zoom.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "diagnosis/report/page.hpp"
+#include "tests/diagnosis/report/fixture.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* no_browser = "chromium is not installed: scripts/install-dependencies test";
+
+bool has_browser() {
+  return std::system("command -v chromium > /dev/null 2>&1") == 0;
+}
+
+struct Shown {
+  std::string page{};  ///< after its script has run
+  std::string log{};
+};
+
+Shown shown(std::string html, const std::string& script = {}) {
+  const hysteron::test::ScratchFolder folder;
+  html.insert(html.rfind("</body>"), "<script>" + script + "</script>");
+  const std::string file = folder.write("report.html", html);
+  const std::string command =
+      "timeout 120 chromium --headless --no-sandbox --disable-gpu --enable-logging=stderr --window-size=1280,1000 "
+      "--virtual-time-budget=5000 --user-data-dir=" +
+      folder.path().string() + "/profile --dump-dom file://" + file + " > " + (folder / "dom") + " 2> " +
+      (folder / "log");
+  const int status = std::system(command.c_str());
+  Shown result{hysteron::test::contents_of(folder / "dom"), hysteron::test::contents_of(folder / "log")};
+  EXPECT_EQ(status, 0) << result.log;
+  return result;
+}
+
+void expect_no_fault(const Shown& shown) {
+  EXPECT_THAT(shown.log, Not(HasSubstr("Uncaught")));
+  EXPECT_THAT(shown.log, Not(HasSubstr("CONSOLE")));
+  EXPECT_THAT(shown.page, Not(HasSubstr("class=\"box fault\"")));
+}
+
+TEST(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  const Shown rich = shown(report_page(test::rich_diagnosis(), test::rich_program()));
+  expect_no_fault(rich);
+  EXPECT_THAT(rich.page, HasSubstr("data-figures=\"10\""));  // the first trace, eight maps, the command
+  for (const char* text : {"Residual, model − measured", "time since branch [s]", "mean explains 61 %", "REF [um]"}) {
+    EXPECT_THAT(rich.page, HasSubstr(text));
+  }
+  for (const char* text : {"MNaN", "LNaN", "=\"NaN\""}) {
+    EXPECT_THAT(rich.page, Not(HasSubstr(text)));
+  }
+}
+
+TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  expect_no_fault(shown(report_page({}, {})));
+  expect_no_fault(shown(report_page(test::refused_diagnosis(), test::rich_program())));
+  Diagnosis odd = test::rich_diagnosis(1);  // one sample, no models, maps without places
+  odd.traces[0].improved.clear();
+  odd.traces[0].calibrated.clear();
+  odd.traces[0].nominal.clear();
+  odd.maps[0] = {.over = "nothing"};
+  expect_no_fault(shown(report_page(odd, test::rich_program())));
+}
+
+/// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
+/// stands out is among them.
+TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  const Shown tried = shown(report_page({}, {}), R"(
+    const times = Float64Array.from({ length: 100000 }, (_, k) => k);
+    const values = times.map(k => k === 54321 ? 9 : Math.sin(k));
+    const path = linePath(times, values, 0, times.length, t => t / 100, v => v);
+    const points = path.split(/[ML]/).length - 1;
+    document.body.dataset.points = points <= 2002 && points >= 1000 ? "few" : points;
+    document.body.dataset.peak = path.includes(" 9.0") ? "kept" : "lost";)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-points=\"few\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-peak=\"kept\""));
+}
+
+TEST(ReportInBrowser, ADragZoomsAndADoubleClickResets) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  const Shown zoomed = shown(report_page(test::rich_diagnosis(), test::rich_program()), R"(
+    const host = document.getElementById("trace-0");
+    const times = () => [...host.querySelectorAll("svg text")].map(text => text.textContent);
+    const send = (name, share) => {
+      const svg = host.querySelector("svg"), box = svg.getBoundingClientRect();
+      svg.dispatchEvent(new PointerEvent(name, { clientX: box.left + share * box.width, button: 0, bubbles: true }));
+    };
+    const before = times().join();
+    send("pointerdown", 0.5);
+    send("pointermove", 0.55);
+    send("pointerup", 0.55);
+    const during = times().join();
+    document.body.dataset.zoom = during !== before && during.includes("2.5") && !during.includes("4.5") ? "yes" : during;
+    host.querySelector("svg").dispatchEvent(new MouseEvent("dblclick"));
+    document.body.dataset.reset = times().join() === before ? "yes" : "no";)");
+  expect_no_fault(zoomed);
+  EXPECT_THAT(zoomed.page, HasSubstr("data-zoom=\"yes\""));
+  EXPECT_THAT(zoomed.page, HasSubstr("data-reset=\"yes\""));
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,138 @@
+// The report as text: self-contained, well formed, escaped, with the numbers in it, and sound where parts are missing.
+#include "diagnosis/report/page.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/diagnosis/report/fixture.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// What is wrong with the nesting of the tags; empty where nothing is.
+std::string unbalanced(const std::string& html) {
+  const std::set<std::string> alone{"meta", "!DOCTYPE"};
+  std::vector<std::string> open;
+  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at)) {
+    const std::size_t end = html.find('>', at);
+    const bool closes = html[at + 1] == '/';
+    const std::size_t begin = at + (closes ? 2 : 1);
+    const std::string name = html.substr(begin, html.find_first_of(" >/\n", begin) - begin);
+    if (end == std::string::npos || name.empty()) {
+      return "a < that begins no tag: " + html.substr(at, 40);
+    }
+    if (closes) {
+      if (open.empty() || open.back() != name) {
+        return "</" + name + "> closes " + (open.empty() ? "nothing" : open.back());
+      }
+      open.pop_back();
+    } else if (html[end - 1] != '/' && !alone.contains(name)) {
+      open.push_back(name);
+    }
+    at = end;
+    if (!closes && (name == "script" || name == "style")) {
+      at = html.find("</" + name, end);
+    }
+  }
+  return open.empty() ? "" : open.back() + " is not closed";
+}
+
+std::string data_of(const std::string& page) {
+  const std::string begin = "id=\"data\">\n";
+  const std::size_t from = page.find(begin) + begin.size();
+  return page.substr(from, page.find("</script>", from) - from);
+}
+
+TEST(ReportPage, NeedsNothingBesideItself) {
+  const std::string page = report_page(test::rich_diagnosis(), test::rich_program());
+  EXPECT_THAT(page, Not(HasSubstr("http://")));
+  EXPECT_THAT(page, Not(HasSubstr("https://")));
+  EXPECT_THAT(page, Not(HasSubstr(" src=")));
+  EXPECT_THAT(page, Not(HasSubstr("url(//")));
+  EXPECT_THAT(page, Not(HasSubstr("@import")));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+}
+
+TEST(ReportPage, TagsAreBalancedInRichEmptyAndRefusedPages) {
+  EXPECT_EQ(unbalanced(report_page(test::rich_diagnosis(), test::rich_program())), "");
+  EXPECT_EQ(unbalanced(report_page(test::refused_diagnosis(), test::rich_program())), "");
+  EXPECT_EQ(unbalanced(report_page({}, {})), "");
+  EXPECT_EQ(unbalanced("<p><b>x</p></b>"), "</p> closes b");
+}
+
+TEST(ReportPage, SaysTheVerdictTheEffectsAndTheGap) {
+  const std::string page = report_page(test::rich_diagnosis(), test::rich_program());
+  for (const char* text :
+       {"Creep of the stage explains two thirds", "86 %</strong> confidence", "on PLANT.HYST.XOUT", "0.0198 … 0.0223",
+        "gentler reference", "1.83 um", "0.842 um", "0.0192 um", "floor 0.0161 um", "97 % (95 % … 98 %)",
+        "effect: creep", "AMPLIFIER.XOUT, U", "coulomb friction on PLANT.BODY.XIN", "clipped at 31.5 um", "14 times",
+        "REF to 30 um", "412 candidates"}) {
+    EXPECT_THAT(page, HasSubstr(text));
+  }
+}
+
+TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
+  const std::string page = report_page(test::refused_diagnosis(), test::rich_program());
+  EXPECT_THAT(page, HasSubstr("Record refused"));
+  EXPECT_THAT(page, HasSubstr("nothing was excited"));
+  EXPECT_THAT(page, Not(HasSubstr("</strong> confidence")));
+  EXPECT_THAT(page, Not(HasSubstr("How far")));
+}
+
+TEST(ReportPage, NamesOfAnyKindAreEscaped) {
+  const std::string evil = "</script><img onerror=\"x\">&'";
+  Diagnosis found = test::rich_diagnosis(50);
+  found.summary = found.warnings[0] = found.effects[0].edge = found.effects[0].same_edges[0] = evil;
+  found.effects[0].parameters[0].name = found.effects[0].parameters[0].unit = evil;
+  found.rivals[0].effects[0] = found.rivals[0].edges[0] = found.edges[0].edge = found.edges[0].group[0] = evil;
+  found.gap.signal = found.gap.unit = found.gap.floor.evidence = found.gaps[0].signal = evil;
+  found.maps[0].over = found.maps[0].unit = found.cannot_tell[0] = found.improved_text = evil;
+  found.next.title = found.next.reason = found.next.input = found.next.steps[0].first = evil;
+  found.traces[0].record = found.traces[0].signal = found.traces[0].unit = evil;
+  found.calibration[0].name = found.calibration[0].unit = evil;
+  const std::string page = report_page(found, test::rich_program());
+  EXPECT_THAT(page, Not(HasSubstr("<img")));
+  EXPECT_EQ(unbalanced(page), "");
+  const nlohmann::json data = nlohmann::json::parse(data_of(page));
+  EXPECT_EQ(data["traces"][0]["record"], evil);
+  EXPECT_EQ(data["maps"][0]["over"], evil);
+}
+
+TEST(ReportPage, TheDataAreTheTracesAsResiduals) {
+  const Diagnosis found = test::rich_diagnosis(200);
+  const nlohmann::json data = nlohmann::json::parse(data_of(report_page(found, test::rich_program())));
+  ASSERT_EQ(data["traces"].size(), found.traces.size());
+  ASSERT_EQ(data["traces"][0]["improved"].size(), 200U);
+  EXPECT_EQ(data["traces"][0]["time"]["count"], 200);
+  EXPECT_DOUBLE_EQ(data["traces"][0]["floor"], 0.0161);
+  for (std::size_t k = 0; k < 200; ++k) {
+    const double residual = found.traces[0].calibrated[k] - found.traces[0].measured[k];
+    EXPECT_NEAR(data["traces"][0]["calibrated"][k].get<double>(), residual, 1e-6 * std::fabs(residual));
+  }
+}
+
+TEST(ReportPage, WhatIsNotFiniteIsNullOrADash) {
+  Diagnosis found = test::rich_diagnosis(50);
+  found.traces[0].improved[3] = std::nan("");
+  found.traces[0].time[7] = 0.0071;  // no longer even
+  found.effects[0].parameters[0].low = -INFINITY;
+  found.effects[0].parameters[0].high = INFINITY;
+  found.rivals[1].improved_rms = std::nan("");
+  const std::string page = report_page(found, test::rich_program());
+  const nlohmann::json data = nlohmann::json::parse(data_of(page));
+  EXPECT_TRUE(data["traces"][0]["improved"][3].is_null());
+  EXPECT_DOUBLE_EQ(data["traces"][0]["time"]["values"][7], 0.0071);
+  EXPECT_THAT(page, HasSubstr("not determined"));
+  EXPECT_THAT(page, Not(HasSubstr(">nan<")));
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

@@ -20,7 +20,7 @@ constexpr std::size_t most_boxes = 120;
 constexpr double character = 7.6;  ///< width of one in a box's name
 constexpr double small_character = 6.2;
 constexpr double row = 14.0;  ///< height of a pin's row
-constexpr std::size_t longest_name = 20;
+constexpr std::size_t longest_name = 16;
 
 /// What is known of a wire.
 struct WireState {
@@ -57,7 +57,7 @@ class Picture {
     std::string svg = fmt::format(
         "<svg class=\"diagram\" viewBox=\"0 -16 {0:.0f} {1:.0f}\" style=\"max-width:{0:.0f}px;min-width:{2:.0f}px\" "
         "role=\"img\" aria-label=\"The diagram with the gap on its wires\">\n",
-        layout.width, layout.height + 16.0, 0.6 * layout.width);
+        layout.width, layout.height + 16.0, 0.55 * layout.width);
     for (std::size_t i = 0; i < wires_.size(); ++i) {
       svg += wire_text(wires_[i], layout.curves[i]);
     }
@@ -124,7 +124,8 @@ class Picture {
         }
       }
       for (const EffectFinding& effect : diagnosis_.effects) {
-        if (names_wire(wire, effect.edge) || carries(wire.from, effect) || carries(wire.to, effect)) {
+        const bool carried = carries(wire.from, effect) || carries(wire.to, effect);
+        if (carried || (!has_carrier(effect.id) && names_wire(wire, effect.edge))) {
           wires_[i].effect = effect.id;
         }
       }

@@ -113,7 +113,7 @@ class Drawing {
     const About& about = node.block->about;
     return {DrawnBox::Kind::Block,
             node.path,
-            std::string(about.name),
+            std::string(about.name.substr(about.name.starts_with("HY_") ? 3 : 0)),
             std::string(about.effect),
             std::string(about.title),
             {},

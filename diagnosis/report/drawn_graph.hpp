@@ -14,7 +14,7 @@ struct DrawnBox {
   enum class Kind : std::uint8_t { Input, Block, Expression, Output };
   Kind kind = Kind::Block;
   std::string name{};                  ///< of the instance or port; the text of an expression
-  std::string type{};                  ///< of a block; the unit of a port
+  std::string type{};                  ///< of a block, without HY_; the unit of a port
   std::string effect{};                ///< that the block stands for; empty for none
   std::string meaning{};               ///< in a sentence
   std::vector<std::string> pins{};     ///< that wires lead to

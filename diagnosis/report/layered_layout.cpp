@@ -9,11 +9,11 @@
 namespace hysteron::diagnosis::report {
 namespace {
 
-constexpr double column_gap = 56.0;
+constexpr double column_gap = 46.0;
 constexpr double box_gap = 22.0;
 constexpr double lane_gap = 14.0;  ///< between curves that pass boxes
 constexpr double margin = 14.0;
-constexpr double turn = 30.0;  ///< how far a curve that turns back reaches out
+constexpr double turn = 24.0;  ///< how far a curve that turns back reaches out
 constexpr int order_sweeps = 24;
 constexpr int height_sweeps = 40;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -324,14 +324,16 @@ class Layering {
 
   static void straight(std::vector<Point>& curve, Point to) {
     const Point from = curve.back();
-    curve.insert(curve.end(), {{from.x + (to.x - from.x) / 3.0, from.y + (to.y - from.y) / 3.0},
-                               {to.x - (to.x - from.x) / 3.0, to.y - (to.y - from.y) / 3.0},
-                               to});
+    curve.push_back({from.x + (to.x - from.x) / 3.0, from.y + (to.y - from.y) / 3.0});
+    curve.push_back({to.x - (to.x - from.x) / 3.0, to.y - (to.y - from.y) / 3.0});
+    curve.push_back(to);
   }
   static void bend(std::vector<Point>& curve, Point to) {
     const Point from = curve.back();
     const double middle = 0.5 * (from.x + to.x);
-    curve.insert(curve.end(), {{middle, from.y}, {middle, to.y}, to});
+    curve.push_back({middle, from.y});
+    curve.push_back({middle, to.y});
+    curve.push_back(to);
   }
 
   Layout drawn() const {
@@ -365,9 +367,13 @@ class Layering {
       if (backward_[e]) {
         const double out = right[column_[edge.from]];
         const double in = left[column_[edge.to]];
-        curve.insert(curve.end(), {{out + turn, from.y}, {out + turn, lane}, {out, lane}});
+        curve.push_back({out + turn, from.y});
+        curve.push_back({out + turn, lane});
+        curve.push_back({out, lane});
         straight(curve, {in, lane});
-        curve.insert(curve.end(), {{in - turn, lane}, {in - turn, to.y}, {in, to.y}});
+        curve.push_back({in - turn, lane});
+        curve.push_back({in - turn, to.y});
+        curve.push_back({in, to.y});
         layout.height = lane + margin;
         layout.width = std::max(layout.width, out + turn);
         lane += lane_gap;

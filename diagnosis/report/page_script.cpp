@@ -157,7 +157,7 @@ function mapFigures(host, maps, unit) {
                        { x, y: reach(curves.map(curve => curve.values), 0, places.length, [0]), log,
                          xLabel: named(map.over, map.unit), yLabel: named("residual", unit) });
     const explained = 100 * map.share;
-    draw(svg, "text", { class: "title", x: 62, y: 15 }, "over " + map.over);
+    draw(svg, "text", { class: "title", x: 4, y: 15 }, "over " + map.over);
     draw(svg, "text", { x: 292, y: 15, "text-anchor": "end" },
          `mean explains ${explained < 9.95 ? explained.toFixed(1) : explained.toFixed(0)} %`);
     for (const curve of curves) {

@@ -89,7 +89,7 @@ function axes(svg, frame, options) {
   const [xl, xh] = options.x.map(place), [yl, yh] = options.y;
   const x = value => left + (place(value) - xl) / (xh - xl) * (right - left);
   const y = value => bottom - (value - yl) / (yh - yl) * (bottom - top);
-  const wide = Math.max(2, Math.floor((right - left) / 85)), tall = Math.max(2, Math.floor((bottom - top) / 34));
+  const wide = Math.max(2, Math.min(10, Math.floor((right - left) / 52))), tall = Math.max(2, Math.floor((bottom - top) / 34));
   let last = -Infinity;
   for (const tick of log ? decades(...options.x) : ticks(xl, xh, wide)) {
     draw(svg, "path", { class: "grid", d: `M${x(tick.value)} ${top}V${bottom}` });

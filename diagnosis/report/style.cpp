@@ -102,14 +102,14 @@ svg.diagram { display: block; width: 100%; height: auto; margin: 0 auto; }
 .diagram .port rect { fill: var(--paper); }
 .diagram .expression rect { fill: var(--paper); stroke: var(--line); }
 .diagram .added rect { stroke: var(--after); stroke-width: 3; }
-.diagram .name { text-anchor: middle; font-size: 12.5px; font-weight: 600; }
+.diagram .name { text-anchor: middle; font-size: 13px; font-weight: 600; }
 .diagram .expression .name { font-weight: 400; font-size: 11.5px; font-family: "DejaVu Sans Mono", monospace; }
-.diagram .type { text-anchor: middle; font-size: 10px; font-weight: 400; fill: var(--soft); }
-.diagram .pin { font-size: 9px; fill: var(--soft); } .diagram .pin.out { text-anchor: end; }
+.diagram .type { text-anchor: middle; font-size: 11px; font-weight: 400; fill: var(--soft); }
+.diagram .pin { font-size: 10px; fill: var(--soft); } .diagram .pin.out { text-anchor: end; }
 .diagram text.effect { text-anchor: middle; font-weight: 700; fill: var(--after); }
 .diagram text.effect.here { text-anchor: start; }
 .diagram text.share, .diagram text.effect { paint-order: stroke; stroke: var(--paper); stroke-width: 4; }
-.diagram text.share { font-size: 11px; font-weight: 600; }
+.diagram text.share { font-size: 12px; font-weight: 600; }
 .legend span { white-space: nowrap; margin-left: .8rem; }
 .legend { font-size: .87rem; color: var(--soft); }
 svg.key { width: 26px; height: 12px; margin-right: .3rem; vertical-align: -2px; }

@@ -10,9 +10,13 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/discrepancy.hpp"
+#include "diagnosis/feedforward.hpp"
 #include "diagnosis/findings.hpp"
+#include "diagnosis/glitches.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/inverse.hpp"
 #include "diagnosis/maps.hpp"
+#include "diagnosis/next_experiment.hpp"
 #include "diagnosis/record_check.hpp"
 #include "diagnosis/search.hpp"
 #include "diagnosis/task.hpp"
@@ -46,12 +50,18 @@ class Run {
  private:
   void prepare() {
     task_ = task_of(input_);
+    result_.top = input_.program.graph.name;
     base_ = {.text = input_.text, .program = std::make_shared<Program>(input_.program)};
     Model model(task_, *base_.program);
     floors_.clear();
     for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
       floors_.push_back(noise_floor(model.problem().experiments, output));
       task_.scales.push_back(floors_.back().value);
+      glitches_.push_back(find_glitches(model.problem().experiments, output));
+      const Index rows = model.rows() / std::ssize(model.problem().outputs);
+      for (const std::size_t row : glitches_.back().rows) {
+        task_.left_out.push_back(static_cast<Index>(output) * rows + static_cast<Index>(row));
+      }
     }
     Model scaled(task_, *base_.program);
     if (!scaled.residuals(scaled.start(), nominal_)) {
@@ -204,6 +214,7 @@ class Run {
     }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
+    add_glitches(chosen_edges());
     for (std::string& reason : structural_reasons(result_)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
@@ -211,7 +222,114 @@ class Run {
     const Explanation& kept = named ? *judgement.chosen : found.calibrated;
     result_.improved_text = improved_text(kept, input_.program.graph.source->path);
     result_.improved_file = improved_file(task_, input_.file, kept);
+    plan(found, judgement, kept);
     result_.summary = summary_of(result_);
+  }
+
+  /// Edges of the diagram as given, to name the one that a measured output hangs on.
+  [[nodiscard]] std::vector<Edge> chosen_edges() const {
+    Diagnostics diagnostics;
+    const auto source = std::make_shared<const language::SourceFile>(language::parse("text", input_.text, diagnostics));
+    const Definitions definitions = define(source, diagnostics);
+    return edges_of(definitions, top_definition(definitions, base_.program->graph.name));
+  }
+
+  /// Glitches are counted, not fitted: an effect of their own where they outweigh the noise, else a remark.
+  void add_glitches(const std::vector<Edge>& edges) {
+    for (std::size_t output = 0; output < glitches_.size(); ++output) {
+      const Glitches& found = glitches_[output];
+      if (found.rows.empty()) {
+        continue;
+      }
+      const double ratio = found.rms / floors_[output].value;
+      result_.warnings.push_back(
+          fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they "
+                      "are left out of the fits.",
+                      found.rows.size(), task_.outputs[output], found.largest));
+      if (ratio < 1.0 ||
+          (!options_.effects.empty() && std::ranges::find(options_.effects, "glitches") == options_.effects.end())) {
+        continue;
+      }
+      const Edge* const edge = find_edge(edges, task_.outputs[output]);
+      EffectFinding finding{.id = "glitches", .edge = edge == nullptr ? task_.outputs[output] : edge->name};
+      const auto count = static_cast<double>(found.rows.size());
+      finding.parameters.push_back({.name = "COUNT", .value = count, .low = count, .high = count, .unit = "1"});
+      finding.parameters.push_back({.name = "LARGEST",
+                                    .value = found.largest,
+                                    .low = found.largest,
+                                    .high = found.largest,
+                                    .unit = result_.gaps[output].unit});
+      finding.share = result_.effects.empty() ? 1.0 : 0.5;
+      const bool alone = result_.effects.empty();
+      result_.effects.push_back(std::move(finding));
+      for (Rival& rival : result_.rivals) {
+        rival.effects.emplace_back("glitches");
+        rival.edges.push_back(result_.effects.back().edge);
+      }
+      if (alone) {
+        result_.verdict = Verdict::Named;
+        result_.rivals = {{.effects = {"glitches"}, .edges = {result_.effects.back().edge}, .probability = 1.0}};
+        result_.confidence = 0.9;
+      }
+    }
+  }
+
+  /// What comes next: the experiment that would tell the rivals apart, and the feedforward with the effect in it.
+  void plan(const Search& found, const Judgement& judgement, const Explanation& kept) {
+    for (EffectFinding& effect : result_.effects) {
+      effect.inverse = inverse_of(effect.id).inverse;
+    }
+    std::vector<Explanation> rivals;
+    for (const Weighed& weighed : judgement.rivals) {
+      rivals.push_back(*weighed.explanation);
+    }
+    for (const Weighed& weighed : judgement.fitted) {
+      if (rivals.size() < 2 && !rivals.empty() && weighed.explanation->names() != rivals.front().names()) {
+        rivals.push_back(*weighed.explanation);
+      }
+    }
+    if (rivals.empty() && !found.explanations.empty()) {
+      rivals.push_back(found.explanations.front());
+    }
+    if (result_.verdict != Verdict::None && result_.verdict != Verdict::Calibration && !rivals.empty()) {
+      result_.next = next_experiment(task_, rivals, options_.limits, floors_.front().value);
+    }
+    invert(kept);
+  }
+
+  void invert(const Explanation& kept) {
+    std::vector<std::string> moving;
+    for (const Port& input : input_.program.graph.inputs) {
+      const records::Column* const column = task_.records.front().find(input.name);
+      if (input.type == Type::Real && column != nullptr &&
+          std::ranges::max(column->values) > std::ranges::min(column->values)) {
+        moving.push_back(input.name);
+      }
+    }
+    if (moving.empty()) {
+      return;
+    }
+    const double sample_time = task_.records.front().sample_time();
+    const Program improved = fitted_program(task_, kept);
+    const Program nominal = nominal_program();
+    const Feedforward feedforward = feedforward_of(improved, moving.front(), result_.gap.signal, sample_time);
+    result_.feedforward_text = feedforward.text;
+    result_.feedforward_notes = feedforward.notes;
+    if (feedforward.text.empty()) {
+      result_.feedforward_notes.push_back(feedforward.reason);
+      return;
+    }
+    if (const auto tracking =
+            predicted_tracking(nominal, improved, moving.front(), result_.gap.signal, task_.records.front())) {
+      result_.tracking_nominal = tracking->nominal;
+      result_.tracking_improved = tracking->improved;
+    }
+  }
+
+  [[nodiscard]] Program nominal_program() const {
+    Program program = input_.program;
+    parameters::apply(task_.file, program.graph);
+    return program;
   }
 
   const DiagnosisInput& input_;
@@ -219,6 +337,7 @@ class Run {
   Task task_{};
   Variant base_{};
   std::vector<NoiseFloor> floors_{};
+  std::vector<Glitches> glitches_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
   Diagnosis result_{};

@@ -147,8 +147,13 @@ struct Diagnosis {
   std::vector<std::string> cannot_tell{};
   NextExperiment next{};
   std::vector<Trace> traces{};
-  std::string improved_text{};                ///< the diagram with the effects, formatted
-  parameters::ParameterFile improved_file{};  ///< its parameters
+  std::string top{};                             ///< the diagram's top block
+  std::string improved_text{};                   ///< the diagram with the effects, formatted
+  parameters::ParameterFile improved_file{};     ///< its parameters
+  std::string feedforward_text{};                ///< where the improved diagram has an inverse, else empty
+  std::vector<std::string> feedforward_notes{};  ///< how exact it is, or why there is none
+  double tracking_nominal = 0.0;   ///< predicted RMS tracking error with the nominal diagram's feedforward
+  double tracking_improved = 0.0;  ///< and with that of the improved one; both 0 where there is none
   std::size_t tried = 0;
   double seconds = 0.0;
 };

@@ -23,7 +23,7 @@ parameters::FitSetting fit_of(const Unknown& unknown) {
 }  // namespace
 
 Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
-    : first_further_(std::ssize(task.known)), further_count_(std::ssize(further)) {
+    : left_out_(task.left_out), first_further_(std::ssize(task.known)), further_count_(std::ssize(further)) {
   parameters::ParameterFile file{.file = task.file.file, .values = task.file.values};
   for (const Unknown& unknown : task.known) {
     file.fits.push_back(fit_of(unknown));
@@ -78,8 +78,17 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
   if (jacobian != nullptr) {
     jacobian->resize(rows(), unknowns());
   }
-  return rollout_->residuals(x, residuals, jacobian) && residuals.allFinite() &&
-         (jacobian == nullptr || jacobian->allFinite());
+  if (!rollout_->residuals(x, residuals, jacobian) || !residuals.allFinite() ||
+      (jacobian != nullptr && !jacobian->allFinite())) {
+    return false;
+  }
+  for (const Index row : left_out_) {
+    residuals[row] = 0.0;
+    if (jacobian != nullptr) {
+      jacobian->row(row).setZero();
+    }
+  }
+  return true;
 }
 
 }  // namespace hysteron::diagnosis

@@ -42,7 +42,9 @@ struct Task {
   std::vector<std::string> outputs{};  ///< the measured ones, by name
   std::vector<Unknown> known{};        ///< calibration parameters
   std::vector<std::string> initial_states{};
-  std::vector<double> scales{};  ///< of the residuals, by output
+  std::vector<double> scales{};
+  std::vector<Index> left_out{};  ///< rows that do not count: glitches
+  ///< of the residuals, by output
 };
 
 class Model {
@@ -80,6 +82,7 @@ class Model {
   VectorXd typical_{};
   VectorXd prior_{};
   std::vector<std::string> names_{};
+  std::vector<Index> left_out_{};
   Index first_further_ = 0;
   Index further_count_ = 0;
 };

@@ -47,7 +47,14 @@ Squares without_trend(const Eigen::VectorXd& values, int order) {
       basis(k, j) = power;
     }
   }
-  const Eigen::VectorXd left = values - basis * basis.householderQr().solve(values);
+  Eigen::VectorXd left = values - basis * basis.householderQr().solve(values);
+  // A glitch is no noise: what lies beyond six standard deviations counts as six.
+  std::vector<double> sizes(left.data(), left.data() + left.size());
+  std::ranges::transform(sizes, sizes.begin(), [](double r) { return std::abs(r); });
+  const double bound = 6.0 * 1.4826 * median(sizes);
+  if (bound > 0.0) {
+    left = left.cwiseMax(-bound).cwiseMin(bound);
+  }
   return {.sum = left.squaredNorm(), .freedom = static_cast<double>(count - order - 1)};
 }
 

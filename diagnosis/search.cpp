@@ -196,7 +196,15 @@ class Searcher {
     std::vector<std::size_t> order(list.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return list[a].gain() > list[b].gain(); });
-    order.resize(std::min(order.size(), 2 * options_.fitted_first));
+    // The front, and of each effect its two best edges: a quantum shows on a fine grid only.
+    std::map<std::string, int> taken;
+    std::vector<std::size_t> kept;
+    for (const std::size_t at : order) {
+      if (kept.size() < options_.fitted_first || ++taken[candidates[at].kind.id] <= 2) {
+        kept.push_back(at);
+      }
+    }
+    order = std::move(kept);
     std::atomic<std::size_t> done{0};
     in_parallel(order.size(), options_.threads, [&](std::size_t i) {
       const std::size_t at = order[i];
@@ -324,6 +332,7 @@ class Searcher {
     if (!std::isfinite(best.fit.cost)) {
       return best;
     }
+    scan(model, best.fit, first, std::ssize(one.unknowns));
     best.fit = fit(model, best.fit.x, {.iterations = 20});
     pattern_search(model, best.fit, first, std::ssize(one.unknowns));
     for (std::size_t j = 0; j < further.size(); ++j) {
@@ -332,6 +341,27 @@ class Searcher {
     }
     best.variant.further = std::move(further);
     return best;
+  }
+
+  /// A quantum or a gap has its minimum in a slot narrower than the grid: each parameter by small steps about the
+  /// start.
+  static void scan(Model& model, Fit& best, Index first, Index count) {
+    VectorXd residuals;
+    for (Index j = first; j < first + count; ++j) {
+      const double middle = best.x[j];
+      for (int step = -9; step <= 9; ++step) {
+        VectorXd x = best.x;
+        x[j] = std::clamp(middle * (1.0 + 0.004 * step), model.lower()[j], model.upper()[j]);
+        if (step == 0 || !model.residuals(x, residuals)) {
+          continue;
+        }
+        const double cost = cost_of(model, x, residuals, nullptr);
+        if (cost < best.cost) {
+          best.x = x;
+          best.cost = cost;
+        }
+      }
+    }
   }
 
   /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.

@@ -17,7 +17,7 @@ std::vector<double> scaled(double size, std::initializer_list<double> shares) {
 
 std::vector<double> geometric(double low, double high, double ratio) {
   std::vector<double> values;
-  for (double value = low; value <= high * (1.0 + 1e-9) && values.size() < 40; value *= ratio) {
+  for (double value = low; value <= high * (1.0 + 1e-9) && values.size() < 100; value *= ratio) {
     values.push_back(value);
   }
   return values;
@@ -46,7 +46,7 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       if (std::isinf(field.neutral)) {
         return levels_above(input, field.neutral);
       }
-      return geometric(0.003 * range, 0.4 * range, 1.15);
+      return geometric(0.003 * range, 0.4 * range, 1.07);
     case Role::Rate:
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});

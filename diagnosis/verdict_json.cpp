@@ -119,6 +119,10 @@ std::string verdict_json(const Diagnosis& found) {
                         {"rival_details", sets_of(found.rivals)},
                         {"fitted", sets_of(found.fitted)},
                         {"gaps", std::move(gaps)},
+                        {"tracking",
+                         {{"nominal_rms", number(found.tracking_nominal)},
+                          {"improved_rms", number(found.tracking_improved)},
+                          {"notes", found.feedforward_notes}}},
                         {"candidates_tried", found.tried}};
   return verdict.dump(2) + "\n";
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "codegen/compile.hpp"
+#include "diagnosis/report/page.hpp"
 #include "diagnosis/verdict_json.hpp"
 #include "records/csv.hpp"
 
@@ -31,6 +33,19 @@ records::Record trace_record(const diagnosis::Trace& trace) {
   record.add({.name = trace.signal + "_calibrated", .unit = trace.unit, .values = trace.calibrated});
   record.add({.name = trace.signal + "_improved", .unit = trace.unit, .values = trace.improved});
   return record;
+}
+
+/// The command of the next experiment, ready to be played.
+records::Record command_record(const diagnosis::NextExperiment& next) {
+  const std::size_t rows = next.time.size();
+  const double step = rows > 1 ? (next.time.back() - next.time.front()) / static_cast<double>(rows - 1) : 1.0;
+  records::Record record = records::Record::even(next.time.front(), step, rows);
+  record.add({.name = next.input, .unit = next.unit, .values = next.values});
+  return record;
+}
+
+Program improved_program(const Diagnosis& found) {
+  return compile_text(found.improved_text, {.top = found.top, .any_order = true});
 }
 
 }  // namespace
@@ -73,6 +88,14 @@ std::string diagnosis_text(const Diagnosis& found) {
         "  edge {:<20} {:.0f} %{}\n", found.edges[i].edge, 100.0 * found.edges[i].share,
         found.edges[i].group.empty() ? "" : fmt::format("  (as {})", fmt::join(found.edges[i].group, ", ")));
   }
+  if (found.tracking_improved > 0.0) {
+    text +=
+        fmt::format("  feedforward: predicted tracking error {:.3g} with the model as it was, {:.3g} improved (RMS)\n",
+                    found.tracking_nominal, found.tracking_improved);
+  }
+  if (!found.next.title.empty()) {
+    text += fmt::format("  next experiment: {} ({})\n", found.next.title, found.next.reason);
+  }
   for (const std::string& warning : found.warnings) {
     text += "  note: " + warning + "\n";
   }
@@ -82,12 +105,21 @@ std::string diagnosis_text(const Diagnosis& found) {
 std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, const Diagnosis& found) {
   std::vector<OutputFile> files{{.path = folder / "verdict.json", .contents = diagnosis::verdict_json(found)}};
   if (!found.refusals.empty()) {
+    files.push_back({.path = folder / "report.html", .contents = diagnosis::report_page(found, {})});
     return files;
   }
   files.push_back({.path = folder / "improved.st", .contents = found.improved_text});
   files.push_back(
       {.path = folder / "improved.toml",
        .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});
+  files.push_back({.path = folder / "report.html", .contents = diagnosis::report_page(found, improved_program(found))});
+  if (!found.feedforward_text.empty()) {
+    files.push_back({.path = folder / "feedforward.st", .contents = found.feedforward_text});
+  }
+  if (!found.next.time.empty()) {
+    files.push_back(
+        {.path = folder / "next_experiment.csv", .contents = records::csv_text(command_record(found.next))});
+  }
   for (std::size_t i = 0; i < found.traces.size(); ++i) {
     const std::string name = found.traces.size() == 1 ? "traces.csv" : fmt::format("traces{}.csv", i + 1);
     files.push_back({.path = folder / name, .contents = records::csv_text(trace_record(found.traces[i]))});

@@ -1,0 +1,69 @@
+#include "diagnosis/glitches.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr std::size_t reach = 3;  // samples to either side
+constexpr double far = 6.0;       // standard deviations
+constexpr double rare = 0.03;     // of all samples: more of them are no glitches but a signal
+
+double median_about(const std::vector<double>& values, std::size_t k) {
+  std::array<double, 2 * reach + 1> window{};
+  const std::size_t first = std::clamp<std::size_t>(k, reach, values.size() - 1 - reach) - reach;
+  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), window.size(), window.begin());
+  std::ranges::nth_element(window, window.begin() + reach);
+  return window[reach];
+}
+
+/// The standard deviation of most of them: by the median of those that are not 0, which rounding makes many.
+double spread(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  for (const double d : differences) {
+    if (d != 0.0) {
+      sizes.push_back(std::abs(d));
+    }
+  }
+  if (sizes.empty()) {
+    return 0.0;
+  }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return 1.4826 * *middle;
+}
+
+}  // namespace
+
+Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output) {
+  Glitches result;
+  std::size_t offset = 0;
+  double squares = 0.0;
+  for (const Experiment& experiment : experiments) {
+    const std::vector<double>& values = experiment.measured[output];
+    if (values.size() > 4 * reach) {
+      std::vector<double> differences(values.size());
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        differences[k] = values[k] - median_about(values, k);
+      }
+      const double bound = far * spread(differences);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        if (bound > 0.0 && std::abs(differences[k]) > bound) {
+          result.rows.push_back(offset + k);
+          squares += differences[k] * differences[k];
+          result.largest = std::max(result.largest, std::abs(differences[k]));
+        }
+      }
+    }
+    offset += values.size();
+  }
+  if (static_cast<double>(result.rows.size()) > rare * static_cast<double>(offset)) {
+    return {};
+  }
+  result.rms = offset > 0 ? std::sqrt(squares / static_cast<double>(offset)) : 0.0;
+  return result;
+}
+
+}  // namespace hysteron::diagnosis

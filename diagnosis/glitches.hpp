@@ -1,0 +1,22 @@
+// Glitches: single samples far off their neighbours, found in the measurement alone.
+//
+// A sample is one if it differs from the median of the seven about it by more than six standard deviations of such
+// differences, by their median. What is found is left out of every fit: a few of them would outweigh all else.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "tuning/output_error.hpp"
+
+namespace hysteron::diagnosis {
+
+struct Glitches {
+  std::vector<std::size_t> rows{};  ///< of one output, record by record
+  double rms = 0.0;                 ///< √(Σe²/N) over all N samples, in the unit of the output
+  double largest = 0.0;
+};
+
+[[nodiscard]] Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output);
+
+}  // namespace hysteron::diagnosis

@@ -375,7 +375,7 @@ class Layering {
         curve.push_back({in - turn, to.y});
         curve.push_back({in, to.y});
         layout.height = lane + margin;
-        layout.width = std::max(layout.width, out + turn);
+        layout.width = std::max(layout.width, out + column_gap + margin);
         lane += lane_gap;
       } else {
         for (const std::size_t item : ways_[e]) {

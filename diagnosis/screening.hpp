@@ -41,6 +41,7 @@ class Background {
 struct Start {
   VectorXd values{};  ///< of the effect's parameters
   double gain = 0.0;
+  bool about_calibration = false;  ///< found with the known parameters as calibrated, not as tuned
 };
 
 struct Screened {

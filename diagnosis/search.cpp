@@ -87,6 +87,8 @@ class Searcher {
     nominal.fit.x = model.start();
     (void)model.residuals(nominal.fit.x, nominal.fit.residuals, &nominal.fit.jacobian);
     nominal.fit.cost = cost_of(model, nominal.fit.x, nominal.fit.residuals, nullptr);
+    nominal_cost_ = Background(model, nominal.fit).unexplained();
+    calibrated_ = result.calibrated.fit.x;
     std::vector<Explanation> beam{nominal};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
       begin_ = static_cast<double>(round) / options_.most_effects;
@@ -126,6 +128,11 @@ class Searcher {
       hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
     }
     const Index rows = std::min<Index>(from.fit.residuals.size(), std::ssize(task_.records.front().time()));
+    for (const std::string& output : task_.outputs) {
+      if (const double step = common_step(task_.records.front().column(output).values); step > 0.0) {
+        hints.quanta.push_back(step);
+      }
+    }
     hints.frequencies = strongest_lines(from.fit.residuals.head(rows), hints.sample_time, 6);
     return hints;
   }
@@ -159,6 +166,9 @@ class Searcher {
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
     refine(list, candidates, grids, from, background);
+    if (from.variant.effects.empty()) {
+      about_calibration(list, candidates, grids, result.calibrated);
+    }
     std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
     std::ranges::stable_sort(list, [](const Screened& a, const Screened& b) { return a.gain() > b.gain(); });
     if (from.variant.effects.empty()) {
@@ -215,6 +225,34 @@ class Searcher {
         }
       }
       say(0.4 + 0.2 * static_cast<double>(++done) / static_cast<double>(order.size()), "finer grids");
+    });
+  }
+
+  /// Gaps and quanta once more about the calibrated parameters: their place on the signal counts, and a gain that is
+  /// off by a percent shifts a quantum at the far end by more than itself.
+  void about_calibration(std::vector<Screened>& list, const std::vector<Candidate>& candidates,
+                         const std::vector<Grids>& grids, const Explanation& calibrated) {
+    Model model(task_, *calibrated.variant.program);
+    const Background background(model, calibrated.fit);
+    in_parallel(list.size(), options_.threads, [&](std::size_t i) {
+      const bool gap = std::ranges::any_of(candidates[i].own().parameters, [](const EffectParameter& one) {
+        return one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0;
+      });
+      if (!gap || grids[i].parameters.empty()) {
+        return;
+      }
+      Screened other = screened(task_, candidates[i], grids[i], calibrated.fit.x, background, 2);
+      // Gains are held against each other by what is left: the calibrated residual is the smaller one.
+      const double saved = nominal_cost_ - calibrated.fit.cost;
+      for (Start& start : other.starts) {
+        start.gain += saved;
+        start.about_calibration = true;
+      }
+      std::ranges::move(other.starts, std::back_inserter(list[i].starts));
+      if (list[i].unknowns.empty()) {
+        list[i] = std::move(other);
+      }
+      std::ranges::stable_sort(list[i].starts, [](const Start& a, const Start& b) { return a.gain > b.gain; });
     });
   }
 
@@ -299,7 +337,8 @@ class Searcher {
     std::vector<Screened> kept;
     for (Screened& one : list) {
       int& times = taken[one.candidate.own().effect];
-      if (times < 3 && kept.size() < count) {
+      const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
+      if (times < 3 && (kept.size() < count || (gap && times < 2))) {
         ++times;
         kept.push_back(std::move(one));
       }
@@ -323,6 +362,9 @@ class Searcher {
       if (start.gain < 0.5 * one.gain() && &start != &one.starts.front()) {
         continue;
       }
+      if (start.about_calibration) {
+        x.head(first) = calibrated_.head(first);
+      }
       x.segment(first, std::ssize(one.unknowns)) = start.values;
       Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
       if (here.cost < best.fit.cost) {
@@ -334,7 +376,8 @@ class Searcher {
     }
     scan(model, best.fit, first, std::ssize(one.unknowns));
     best.fit = fit(model, best.fit.x, {.iterations = 20});
-    pattern_search(model, best.fit, first, std::ssize(one.unknowns));
+    const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
+    pattern_search(model, best.fit, gap ? 0 : first, gap ? first + std::ssize(one.unknowns) : std::ssize(one.unknowns));
     for (std::size_t j = 0; j < further.size(); ++j) {
       further[j].start = best.fit.x[model.first_further() + static_cast<Index>(j)];
       further[j].unit = model.problem().parameters[task_.known.size() + j].unit;
@@ -417,6 +460,8 @@ class Searcher {
   const Task& task_;
   const std::string& top_;
   double floor_cost_;
+  double nominal_cost_ = 0.0;
+  VectorXd calibrated_{};
   const SearchOptions& options_;
   std::mutex mutex_{};
   double begin_ = 0.0;

@@ -63,6 +63,39 @@ std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample
   return places_of(std::move(peaks), count);
 }
 
+double common_step(const std::vector<double>& values) {
+  if (values.size() < 64) {
+    return 0.0;
+  }
+  const auto [low, high] = std::ranges::minmax(values);
+  const double range = high - low;
+  const double largest = std::max(std::abs(low), std::abs(high));
+  if (!(range > 0.0)) {
+    return 0.0;
+  }
+  const std::size_t stride = std::max<std::size_t>(1, values.size() / 1200);
+  const auto strength = [&](double turns) {
+    std::complex<double> sum = 0.0;
+    double count = 0.0;
+    for (std::size_t k = 0; k < values.size(); k += stride) {
+      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * values[k]);
+      count += 1.0;
+    }
+    return std::abs(sum) / count;
+  };
+  // Steps from a third to 1/300 of the range, close enough that the phase of the largest value moves by 1/10 turn.
+  double best = 0.5;
+  double step = 0.0;
+  for (double turns = 3.0 / range; turns < 300.0 / range; turns += 0.1 / largest) {
+    const double here = strength(turns);
+    if (here > best * 1.02) {  // of a step and its parts, the step
+      best = here;
+      step = 1.0 / turns;
+    }
+  }
+  return step;
+}
+
 std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,
                                       std::size_t count) {
   std::vector<double> places;

@@ -46,7 +46,13 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       if (std::isinf(field.neutral)) {
         return levels_above(input, field.neutral);
       }
-      return geometric(0.003 * range, 0.4 * range, 1.07);
+      {
+        std::vector<double> values = geometric(0.003 * range, 0.4 * range, 1.07);
+        if (field.name == "QUANTUM") {
+          values.insert(values.begin(), hints.quanta.begin(), hints.quanta.end());
+        }
+        return values;
+      }
     case Role::Rate:
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});

@@ -14,6 +14,7 @@ struct Hints {
   double sample_time = 0.0;
   double duration = 0.0;              ///< of the longest record, s
   std::vector<double> frequencies{};  ///< of lines in the residual, Hz
+  std::vector<double> quanta{};       ///< steps on which the measured values lie
 };
 
 /// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.

@@ -123,7 +123,7 @@ class Picture {
         y += base;
       }
       panel.lines.push_back({.name = lanes_[i]->name, .line = std::move(line), .style = style(*lanes_[i])});
-      panel.y_names.push_back({lanes_[i]->name, base + 0.5});
+      panel.y_names.emplace_back(lanes_[i]->name, base + 0.5);
     }
     return panel;
   }

@@ -29,7 +29,7 @@ Waveform levels(std::vector<std::pair<double, double>> list) {
   return {.shape = Shape::Levels, .levels = std::move(list)};
 }
 /// FALSE, and TRUE from each first time to the second.
-Waveform pulses(std::vector<std::pair<double, double>> on) {
+Waveform pulses(const std::vector<std::pair<double, double>>& on) {
   std::vector<std::pair<double, double>> list{{0.0, 0.0}};
   for (const auto& [begin, end] : on) {
     list.emplace_back(begin, 1.0);

@@ -23,6 +23,9 @@ class Machine {
   /// Lays out a program and resets it. The sample time is the program's own, or the one given in seconds where the
   /// program has none. Throws InputError (HY404) without either.
   explicit Machine(const Program& program, double sample_time = 0.0);
+  ~Machine() = default;
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
   Machine(Machine&&) noexcept = default;
   Machine& operator=(Machine&&) noexcept = default;
 

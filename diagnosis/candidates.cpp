@@ -183,7 +183,7 @@ class Enumeration {
   /// Whether an effect that an instance may have already is switched off there.
   [[nodiscard]] bool is_neutral(const EffectKind& kind, const std::string& instance) const {
     return std::ranges::all_of(kind.parameters, [&](const EffectParameter& one) {
-      const auto found = find_parameter(base_.program->graph, instance + "." + std::string(one.field.name));
+      const auto found = find_parameter(base_.program->graph, instance + "." + one.name);
       return !one.strength || found < 0 ||
              base_.program->graph.parameters[static_cast<std::size_t>(found)].value.front() == one.field.neutral;
     });
@@ -192,7 +192,7 @@ class Enumeration {
   void add(Candidate candidate, Applied applied) {
     for (const EffectParameter& parameter : candidate.kind.parameters) {
       applied.parameters.push_back(parameter);
-      applied.paths.push_back(applied.instance + "." + std::string(parameter.field.name));
+      applied.paths.push_back(applied.instance + "." + parameter.name);
     }
     const std::string instance = applied.instance;
     candidate.variant.effects.push_back(std::move(applied));

@@ -48,7 +48,8 @@ std::vector<EffectParameter> searched(std::span<const Field> fields) {
     if (!strength && !std::isfinite(field.preset)) {
       continue;  // an end that need not come
     }
-    result.push_back({.field = field,
+    result.push_back({.name = std::string(field.name),
+                      .field = field,
                       .unit = std::string(field.unit),
                       .role = role_of(field, field.unit, strength),
                       .strength = strength});

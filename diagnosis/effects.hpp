@@ -28,6 +28,7 @@ enum class Role : std::uint8_t {
 };
 
 struct EffectParameter {
+  std::string name{};  ///< its own copy: of a user's block the field's name lies in a text that may be gone
   Field field{};
   std::string unit{};  ///< as declared
   Role role = Role::Other;

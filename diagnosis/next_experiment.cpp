@@ -106,6 +106,7 @@ class Planner {
     }
     Task task = task_;
     task.records = {std::move(record)};
+    task.left_out.clear();  // rows of the old records
     Model model(task, model_of.program, model_of.unknowns);
     return model.residuals(model.start(), residuals, &jacobian);
   }

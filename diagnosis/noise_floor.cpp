@@ -196,14 +196,15 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   floor.repeats = noise_by_repeats(experiments, output);
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
   const double rounding = quanta.empty() ? 0.0 : *std::ranges::min_element(quanta) / std::sqrt(12.0);
-  floor.value = std::max({floor.differences, std::min(rounding, 0.02 * range), 1e-9 * range});
+  const double least = std::max(std::min(rounding, 0.02 * range), 1e-9 * range);
+  floor.value = std::max(floor.differences, least);
   floor.evidence = "differences";
   if (floor.dwells > floor.value) {
     floor.value = floor.dwells;
     floor.evidence = "dwells";
   }
   if (floor.repeats > 0.0) {
-    floor.value = std::max(floor.repeats, floor.differences);
+    floor.value = std::max({floor.repeats, floor.differences, least});  // cycles may repeat to the bit
     floor.evidence = "repeats";
   }
   if (!(floor.value > 0.0)) {

@@ -48,7 +48,7 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       }
       {
         std::vector<double> values = geometric(0.003 * range, 0.4 * range, 1.07);
-        if (field.name == "QUANTUM") {
+        if (parameter.name == "QUANTUM") {
           values.insert(values.begin(), hints.quanta.begin(), hints.quanta.end());
         }
         return values;
@@ -120,7 +120,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
 
 /// What a reference is set to: about the middle or half the width of what it refers to.
 double reference(const EffectParameter& parameter, const Extent& input) {
-  const std::string_view name = parameter.field.name;
+  const std::string_view name = parameter.name;
   if (name.ends_with("CENTRE")) {
     return 0.5 * (input.low + input.high);
   }

@@ -122,18 +122,18 @@ class Searcher {
   [[nodiscard]] bool out_of_time() const { return options_.out_of_time && options_.out_of_time(); }
 
   /// Lines of the residual's spectrum, and periods over a signal, for what oscillates.
-  [[nodiscard]] Hints hints_of(const Explanation& from) const {
+  [[nodiscard]] Hints hints_of(const VectorXd& residuals) const {
     Hints hints{.sample_time = task_.records.front().sample_time()};
     for (const records::Record& record : task_.records) {
       hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
     }
-    const Index rows = std::min<Index>(from.fit.residuals.size(), std::ssize(task_.records.front().time()));
+    const Index rows = std::min<Index>(residuals.size(), std::ssize(task_.records.front().time()));
     for (const std::string& output : task_.outputs) {
       if (const double step = common_step(task_.records.front().column(output).values); step > 0.0) {
         hints.quanta.push_back(step);
       }
     }
-    hints.frequencies = strongest_lines(from.fit.residuals.head(rows), hints.sample_time, 6);
+    hints.frequencies = strongest_lines(residuals.head(rows), hints.sample_time, 6);
     return hints;
   }
 
@@ -142,7 +142,9 @@ class Searcher {
     result.tried += candidates.size();
     Extents extents(task_, from.fit.x);
     extents.measure(candidates, options_.threads);
-    const Hints hints = hints_of(from);
+    // Lines and periods show best where a calibration has taken off what is none.
+    const VectorXd& shown = from.variant.effects.empty() ? result.calibrated.fit.residuals : from.fit.residuals;
+    const Hints hints = hints_of(shown);
     Model model(task_, *from.variant.program, from.variant.further);
     const Background background(model, from.fit);
 
@@ -156,12 +158,12 @@ class Searcher {
       }
       std::vector<double> periods;
       if (has_period(candidates[i].own())) {
-        periods = strongest_periods(from.fit.residuals,
-                                    signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 5);
+        periods =
+            strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
       }
       grids[i] = grids_of(candidates[i].own(), signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr,
                           hints, periods);
-      list[i] = screened(task_, candidates[i], thinned(grids[i], 3), from.fit.x, background, 3);
+      list[i] = screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], 3), from.fit.x, background, 3);
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });

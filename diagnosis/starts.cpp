@@ -155,12 +155,13 @@ Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxilia
   return grids;
 }
 
-Grids thinned(const Grids& grids, std::size_t stride) {
+Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
   constexpr std::size_t short_enough = 4;
   Grids result = grids;
   for (std::size_t j = 0; j < grids.parameters.size(); ++j) {
     const std::vector<double>& values = grids.parameters[j].values;
-    if (values.size() <= short_enough) {
+    const Role role = effect.parameters[j].role;
+    if (values.size() <= short_enough || role == Role::Frequency || role == Role::Period) {
       continue;
     }
     result.parameters[j].values.clear();

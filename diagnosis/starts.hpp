@@ -32,7 +32,8 @@ struct Grids {
                              const std::vector<double>& periods);
 
 /// With one point in so many of each long grid: enough to see which candidates deserve the whole of it.
-[[nodiscard]] Grids thinned(const Grids& grids, std::size_t stride);
+/// Lines and periods stay: each is a guess of its own.
+[[nodiscard]] Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride);
 
 /// The unknown that a parameter of an effect becomes in a fit, at its neutral or default value.
 [[nodiscard]] Unknown unknown_of(const EffectParameter& parameter, const std::string& path, const Grid& grid);

@@ -466,7 +466,7 @@ TEST(OutputError, PagesKeepTheirWord) {
       return first_number([&] {
         const bool is_record = block.kind == "csv";
         fit_output_error(problem_of(gain, is_record ? "[fit.AMP]\nK = {}\n" : block.text,
-                                    {records::parse_csv("log.csv", is_record ? block.text : log)}));
+                                    {records::parse_csv("log.csv", std::string(is_record ? block.text : log))}));
       });
     };
     EXPECT_EQ(run(page.fails), number);

@@ -1,0 +1,154 @@
+// The noise floor: from the measurement alone, by whatever evidence the record holds.
+#include "diagnosis/noise_floor.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double sample_time = 0.005;
+
+template <class Function>
+std::vector<double> over_time(std::size_t count, const Function& function) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < count; ++k) {
+    values.push_back(function(static_cast<double>(k) * sample_time));
+  }
+  return values;
+}
+
+std::vector<double> sum(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    a[k] += b[k];
+  }
+  return a;
+}
+
+std::vector<Experiment> experiment(std::vector<double> input, std::vector<double> output) {
+  Experiment one;
+  one.drive.steps = output.size();
+  one.drive.sample_time = sample_time;
+  one.drive.inputs = {std::move(input)};
+  one.measured = {std::move(output)};
+  return {one};
+}
+
+double slow_sine(double t) {
+  return 20.0 * std::sin(test::two_pi * 0.5 * t);
+}
+
+/// A command that never comes back to where it was, and never rests.
+double chirp(double t) {
+  return std::sin(0.3 * t + 0.08 * t * t);
+}
+
+TEST(NoiseByDifferences, WhiteNoiseOnASlowSine) {
+  for (const double deviation : {0.001, 0.05, 1.0}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const auto y = sum(over_time(4000, slow_sine), test::Noise(seed).white(4000, deviation));
+      EXPECT_NEAR(noise_by_differences(y), deviation, 0.1 * deviation) << "seed " << seed;
+    }
+  }
+}
+
+TEST(NoiseByDifferences, GlitchesDoNotCount) {
+  auto y = sum(over_time(4000, slow_sine), test::Noise(3).white(4000, 0.05));
+  for (std::size_t k = 100; k < y.size(); k += 400) {
+    y[k] += 50.0;
+  }
+  EXPECT_NEAR(noise_by_differences(y), 0.05, 0.005);
+}
+
+TEST(NoiseFloor, ByDifferencesWhereNothingElseSpeaks) {
+  const auto floor = noise_floor(
+      experiment(over_time(4000, chirp), sum(over_time(4000, slow_sine), test::Noise(1).white(4000, 0.05))), 0);
+  EXPECT_EQ(floor.evidence, "differences");
+  EXPECT_NEAR(floor.value, 0.05, 0.005);
+  EXPECT_EQ(floor.repeats, 0.0);
+  EXPECT_EQ(floor.dwells, 0.0);
+}
+
+TEST(InputPeriod, OfASineAndOfNothing) {
+  const auto sine = [](double t) { return std::sin(test::two_pi * 2.0 * t); };
+  EXPECT_EQ(input_period(experiment(over_time(1000, sine), over_time(1000, sine))[0]), 100U);
+  EXPECT_EQ(input_period(experiment(over_time(1000, chirp), over_time(1000, sine))[0]), 0U);
+  EXPECT_EQ(input_period(experiment(std::vector<double>(1000, 1.0), over_time(1000, sine))[0]), 0U);
+}
+
+/// Slow noise: white noise behind a lag of 10 samples, which the differences hardly see.
+std::vector<double> slow_noise(std::size_t count, double deviation) {
+  auto values = test::Noise(11).white(count, 1.0);
+  double state = 0.0;
+  const double decay = std::exp(-0.1);
+  for (double& value : values) {
+    state = decay * state + std::sqrt(1.0 - decay * decay) * value;
+    value = deviation * state;
+  }
+  return values;
+}
+
+TEST(NoiseFloor, RepeatsSeeSlowNoise) {
+  const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
+  const auto floor =
+      noise_floor(experiment(over_time(8000, sine), sum(over_time(8000, slow_sine), slow_noise(8000, 0.2))), 0);
+  EXPECT_EQ(floor.evidence, "repeats");
+  EXPECT_NEAR(floor.value, 0.2, 0.03);
+  EXPECT_LT(floor.differences, 0.15);
+}
+
+TEST(NoiseFloor, ADriftBetweenCyclesIsNoNoise) {
+  const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
+  auto y = sum(over_time(8000, slow_sine), test::Noise(2).white(8000, 0.05));
+  y = sum(y, over_time(8000, [](double t) { return 0.3 * t; }));
+  EXPECT_NEAR(noise_floor(experiment(over_time(8000, sine), y), 0).value, 0.05, 0.005);
+}
+
+TEST(NoiseFloor, DwellsSeeSlowNoise) {
+  // Steps of 2 s to levels that never come back.
+  const auto steps = [](double t) { return std::sqrt(2.0 + std::floor(t / 2.0)); };
+  const auto settling = [](double t) { return 10.0 * std::sqrt(2.0 + std::floor(t / 2.0)); };
+  const auto floor =
+      noise_floor(experiment(over_time(8000, steps), sum(over_time(8000, settling), slow_noise(8000, 0.2))), 0);
+  EXPECT_EQ(floor.evidence, "dwells");
+  EXPECT_NEAR(floor.value, 0.2, 0.04);
+}
+
+TEST(NoiseFloor, OfAQuantisedSensorIsAtLeastItsRounding) {
+  constexpr double quantum = 0.5;
+  auto y = over_time(4000, slow_sine);
+  for (double& value : y) {
+    value = quantum * std::round(value / quantum);
+  }
+  const double rounding = quantum / std::sqrt(12.0);
+  const double drifting = noise_floor(experiment(over_time(4000, chirp), y), 0).value;
+  EXPECT_GE(drifting, 0.999 * rounding);
+  EXPECT_LT(drifting, 1.5 * rounding);
+  const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };  // cycles repeat to the bit
+  const double repeating = noise_floor(experiment(over_time(4000, sine), y), 0).value;
+  EXPECT_GE(repeating, 0.999 * rounding);
+  EXPECT_LT(repeating, 1.5 * rounding);
+}
+
+TEST(NoiseFloor, WithoutNoiseIsSmallButAboveZero) {
+  const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
+  for (const auto& input : {over_time(4000, sine), over_time(4000, chirp)}) {
+    const double floor = noise_floor(experiment(input, over_time(4000, slow_sine)), 0).value;
+    EXPECT_GE(floor, 1e-9 * 40.0);
+    EXPECT_LT(floor, 1e-3 * 40.0);
+  }
+}
+
+TEST(NoiseFloor, OfSeveralRecordsTakesAll) {
+  auto both = experiment(over_time(4000, chirp), sum(over_time(4000, slow_sine), test::Noise(1).white(4000, 0.03)));
+  both.push_back(
+      experiment(over_time(4000, chirp), sum(over_time(4000, slow_sine), test::Noise(2).white(4000, 0.04)))[0]);
+  EXPECT_NEAR(noise_floor(both, 0).value, std::sqrt(0.5 * (0.03 * 0.03 + 0.04 * 0.04)), 0.003);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

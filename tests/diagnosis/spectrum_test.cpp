@@ -1,0 +1,79 @@
+// Lines over time and over a position, against signals whose lines are known.
+#include "diagnosis/spectrum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr Eigen::Index count = 2000;
+constexpr double sample_time = 0.005;
+constexpr double bin = 1.0 / (count * sample_time);
+
+Eigen::VectorXd sine(double frequency, double amplitude, double phase = 0.4) {
+  Eigen::VectorXd values(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    values[k] = amplitude * std::sin(test::two_pi * frequency * sample_time * static_cast<double>(k) + phase);
+  }
+  return values;
+}
+
+Eigen::VectorXd noise(double deviation) {
+  const auto values = test::Noise(3).white(count, deviation);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), count);
+}
+
+TEST(StrongestLines, ALineBetweenBinsWithinATenthOfOne) {
+  for (const double frequency : {3.0 * bin + 5.0, 17.33, 50.07, 80.0 + 0.5 * bin}) {
+    const auto lines = strongest_lines(sine(frequency, 1.0) + noise(0.3), sample_time, 1);
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_NEAR(lines[0], frequency, 0.1 * bin);
+  }
+}
+
+TEST(StrongestLines, ComeStrongestFirst) {
+  const Eigen::VectorXd both = sine(31.0, 0.5) + sine(12.7, 1.0) + noise(0.02);
+  const auto lines = strongest_lines(both, sample_time, 2);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NEAR(lines[0], 12.7, 0.1 * bin);
+  EXPECT_NEAR(lines[1], 31.0, 0.1 * bin);
+}
+
+TEST(StrongestLines, AnOffsetIsNone) {
+  const auto lines = strongest_lines(Eigen::VectorXd::Constant(count, 100.0) + sine(20.0, 0.1), sample_time, 1);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NEAR(lines[0], 20.0, 0.1 * bin);
+}
+
+TEST(StrongestLines, TooFewSamplesHaveNone) {
+  EXPECT_TRUE(strongest_lines(Eigen::VectorXd::Ones(20), sample_time, 3).empty());
+}
+
+TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {
+  // The position goes to and fro at a changing rate, so that the ripple has no line in time.
+  std::vector<double> position;
+  Eigen::VectorXd ripple(count);
+  constexpr double period = 1.7;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double t = sample_time * static_cast<double>(k);
+    position.push_back(10.0 * std::sin(0.7 * t + 0.05 * t * t) + 3.0 * std::sin(2.1 * t));
+    ripple[k] = 0.2 * std::sin(test::two_pi * position.back() / period + 1.0);
+  }
+  const auto periods = strongest_periods(ripple + noise(0.05), {position}, 1);
+  ASSERT_EQ(periods.size(), 1U);
+  const auto [low, high] = std::ranges::minmax(position);
+  // The grid is a quarter of a turn over the whole range, so the nearest point is an eighth away at most.
+  EXPECT_NEAR((high - low) / periods[0], (high - low) / period, 0.126);
+}
+
+TEST(StrongestPeriods, ASignalThatStandsHasNone) {
+  EXPECT_TRUE(strongest_periods(noise(1.0), {std::vector<double>(count, 2.0)}, 3).empty());
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

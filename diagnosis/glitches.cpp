@@ -13,8 +13,7 @@ constexpr double rare = 0.03;     // of all samples: more of them are no glitche
 
 double median_about(const std::vector<double>& values, std::size_t k) {
   std::array<double, 2 * reach + 1> window{};
-  const std::size_t first = std::clamp<std::size_t>(k, reach, values.size() - 1 - reach) - reach;
-  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), window.size(), window.begin());
+  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(k - reach), window.size(), window.begin());
   std::ranges::nth_element(window, window.begin() + reach);
   return window[reach];
 }
@@ -44,8 +43,9 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     if (values.size() > 4 * reach) {
-      std::vector<double> differences(values.size());
-      for (std::size_t k = 0; k < values.size(); ++k) {
+      // The first and the last few have neighbours on one side only, and a slope would make glitches of them.
+      std::vector<double> differences(values.size(), 0.0);
+      for (std::size_t k = reach; k + reach < values.size(); ++k) {
         differences[k] = values[k] - median_about(values, k);
       }
       const double bound = far * spread(differences);

@@ -1,0 +1,217 @@
+// Candidates: every effect that is known gets its turn, on every edge where it makes sense.
+#include "diagnosis/candidates.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "codegen/trace/block_type.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+std::vector<Candidate> candidates(const std::string& text, const std::string& top, CandidateOptions options = {}) {
+  const Variant base{.text = text, .program = std::make_shared<const Program>(compile_text(text, {.top = top}))};
+  return candidates_of(base, top, options);
+}
+
+std::set<std::string> effects_in(const std::vector<Candidate>& list) {
+  std::set<std::string> result;
+  for (const Candidate& one : list) {
+    result.insert(one.own().effect);
+  }
+  return result;
+}
+
+std::vector<std::string> edges_in(const std::vector<Candidate>& list) {
+  std::vector<std::string> result;
+  for (const Candidate& one : list) {
+    result.push_back(one.own().edge);
+  }
+  return result;
+}
+
+/// A stack on an axis: a diagram that has a place for everything.
+const std::string whole_machine = R"(FUNCTION_BLOCK MACHINE  (* @ts 5ms *)
+  VAR_INPUT U : LREAL; W : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR AMP : HY_LAG := (T1 := 0.02); HYST : HY_HYSTERESIS_RO := (C2 := 1.0); SPEED : HY_INTEGRAL; END_VAR
+  AMP(XIN := U);
+  HYST(XIN := AMP.XOUT);
+  SPEED(XIN := HYST.XOUT + W);
+  Y := SPEED.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+TEST(Candidates, EveryEffectOfTheCatalogueIsTried) {
+  std::set<std::string> catalogue;
+  for (const BlockType& block : block_types()) {
+    if (!block.about.effect.empty()) {
+      catalogue.emplace(block.about.effect);
+    }
+    for (const Field& field : block.params) {
+      if (!field.effect.empty()) {
+        catalogue.emplace(field.effect);
+      }
+    }
+  }
+  ASSERT_GE(catalogue.size(), 28U);
+  EXPECT_EQ(effects_in(candidates(whole_machine, "MACHINE")), catalogue);
+}
+
+TEST(Candidates, AnEffectIsTriedOnEachEdge) {
+  const auto list = candidates(test::stack(), "STACK", {.effects = {"creep"}});
+  EXPECT_THAT(edges_in(list), UnorderedElementsAre("U", "AMP.XOUT", "HYST.XOUT"));
+  for (const Candidate& one : list) {
+    EXPECT_EQ(one.own().block, "HY_CREEP");
+    EXPECT_EQ(one.own().paths.size(), one.own().parameters.size());
+    EXPECT_GE(find_parameter(one.variant.program->graph, one.own().instance + ".GAIN"), 0);
+  }
+}
+
+TEST(Candidates, OnlyTheEffectsThatAreAskedFor) {
+  EXPECT_THAT(effects_in(candidates(whole_machine, "MACHINE", {.effects = {"lag", "creep", "asymmetry"}})),
+              UnorderedElementsAre("lag", "creep", "asymmetry"));
+}
+
+TEST(Candidates, ARicherBlockTakesTheInstancesPlace) {
+  const auto list = candidates(test::stack(), "STACK", {.effects = {"asymmetry", "return_point_memory"}});
+  EXPECT_EQ(effects_in(list).size(), 2U);
+  for (const Candidate& one : list) {
+    EXPECT_EQ(one.own().instance, "HYST");
+    EXPECT_EQ(one.own().block, "HY_HYSTERESIS_GENERAL");
+    const Graph& graph = one.variant.program->graph;
+    const auto c2 = find_parameter(graph, "HYST.C2");
+    ASSERT_GE(c2, 0);
+    EXPECT_EQ(graph.parameters[static_cast<std::size_t>(c2)].value.front(), 4.0);  // what was set stays
+  }
+}
+
+TEST(Candidates, ADeadBandThatTheDiagramHasIsSwitchedOn) {
+  const auto list = candidates(test::stack(), "STACK", {.effects = {"branch_chatter"}});
+  const auto freed = std::ranges::find(list, Change::Free, [](const Candidate& one) { return one.kind.change; });
+  ASSERT_NE(freed, list.end());
+  EXPECT_THAT(freed->own().paths, ElementsAre("HYST.EPS"));
+  EXPECT_EQ(freed->variant.text, test::stack());
+}
+
+TEST(Candidates, FrictionTakesAVelocityFromABlockWithMemory) {
+  const auto list = candidates(test::axis(), "AXIS", {.effects = {"coulomb_friction"}});
+  ASSERT_FALSE(list.empty());
+  for (const Candidate& one : list) {
+    ASSERT_EQ(one.own().wires.size(), 1U);
+    EXPECT_EQ(one.own().wires[0], std::pair(std::string("V"), std::string("SPEED.XOUT")));
+  }
+  EXPECT_THAT(edges_in(list), testing::Contains("FORCE"));
+}
+
+TEST(Candidates, AnotherInputOrColumnMayCouple) {
+  const auto inputs = candidates(whole_machine, "MACHINE", {.effects = {"cross_coupling"}});
+  std::set<std::string> drivers;
+  for (const Candidate& one : inputs) {
+    drivers.insert(one.own().wires.at(0).second);
+    EXPECT_NE(one.own().wires.at(0).second, one.own().edge);
+  }
+  EXPECT_THAT(drivers, UnorderedElementsAre("U", "W"));
+
+  const auto columns = candidates(test::stack(), "STACK", {.effects = {"cross_coupling"}, .columns = {"TEMP"}});
+  EXPECT_THAT(edges_in(columns), testing::IsSupersetOf({"U", "AMP.XOUT", "HYST.XOUT"}));
+  int with_column = 0;
+  for (const Candidate& one : columns) {
+    const auto& ports = one.variant.program->graph.inputs;
+    with_column += std::ranges::any_of(ports, [](const Port& port) { return port.name == "TEMP"; }) ? 1 : 0;
+  }
+  EXPECT_EQ(with_column, 3);
+}
+
+TEST(Candidates, ACoupledColumnReachesTheOutput) {
+  const auto columns = candidates(test::axis(), "AXIS", {.effects = {"cross_coupling"}, .columns = {"TEMP"}});
+  const auto at_output = std::ranges::find_if(columns, [](const Candidate& one) {
+    return one.own().edge == "SPEED.XOUT" && one.own().wires.at(0).second == "TEMP";
+  });
+  ASSERT_NE(at_output, columns.end());
+  Program program = *at_output->variant.program;
+  parameters::apply(
+      parameters::parse_parameter_file("p.toml", "[parameters." + at_output->own().instance + "]\nGAIN = 3.0\n"),
+      program.graph);
+  records::Record record = test::record_of("FORCE", std::vector<double>(4, 0.0));
+  record.add({.name = "temp", .values = {2.0, 2.0, 2.0, 2.0}});
+  EXPECT_DOUBLE_EQ(simulate(program, record)[0].back(), 6.0);  // no force, so nothing but GAIN·TEMP
+}
+
+const std::string with_own_effect = R"(FUNCTION_BLOCK SAG  (* @effect sag *)
+  VAR_INPUT
+    XIN : LREAL;
+    SIZE : LREAL := 0.0;   (* @neutral 0 *)
+    HALF : LREAL := 1.0;   (* @param @min 0.1 *)
+  END_VAR
+  VAR_OUTPUT XOUT : LREAL; END_VAR
+  XOUT := XIN - SIZE * XIN * XIN / (HALF + XIN * XIN);
+END_FUNCTION_BLOCK
+)";
+
+TEST(Candidates, AnEffectOfTheUsersOwnJoins) {
+  const auto list = candidates(with_own_effect + test::axis(), "AXIS", {.effects = {"sag"}});
+  EXPECT_THAT(edges_in(list), UnorderedElementsAre("FORCE", "MASS.XOUT", "SPEED.XOUT"));
+  ASSERT_EQ(list.front().kind.parameters.size(), 2U);
+  for (const EffectParameter& one : list.front().kind.parameters) {
+    EXPECT_EQ(one.strength, one.name == "SIZE");
+  }
+  EXPECT_EQ(list.front().own().block, "SAG");
+}
+
+TEST(Candidates, ABlockWithoutANeutralSettingIsNoEffect) {
+  std::string text = with_own_effect;
+  text.replace(text.find("@neutral 0"), 10, "@param");
+  EXPECT_TRUE(candidates(text + test::axis(), "AXIS", {.effects = {"sag"}}).empty());
+}
+
+TEST(Candidates, AnEffectThatIsThereIsNotTriedTwice) {
+  const auto first = candidates(test::stack(), "STACK", {.effects = {"creep"}});
+  const auto second = candidates_of(first.front().variant, "STACK", {.effects = {"creep", "lag"}});
+  EXPECT_EQ(effects_in(second), std::set<std::string>{"lag"});
+  for (const Candidate& one : second) {
+    EXPECT_EQ(one.variant.effects.size(), 2U);
+  }
+}
+
+TEST(EffectKinds, AreSortedAndHaveAStrength) {
+  const auto read = test::read_text(with_own_effect, "SAG");
+  const std::vector<EffectKind> kinds = effect_kinds(read.definitions);
+  EXPECT_TRUE(std::ranges::is_sorted(kinds, {}, &EffectKind::id));
+  for (const EffectKind& kind : kinds) {
+    EXPECT_TRUE(std::ranges::any_of(kind.parameters, [](const EffectParameter& one) { return one.strength; }))
+        << kind.id;
+  }
+}
+
+TEST(EffectKinds, RolesFollowFromUnits) {
+  const auto kinds = effect_kinds({});
+  const auto role = [&](std::string_view effect, std::string_view parameter) {
+    for (const EffectKind& kind : kinds) {
+      for (const EffectParameter& one : kind.parameters) {
+        if (kind.id == effect && one.name == parameter) {
+          return one.role;
+        }
+      }
+    }
+    throw std::runtime_error("no parameter " + std::string(parameter));
+  };
+  EXPECT_EQ(role("backlash", "WIDTH"), Role::Level);
+  EXPECT_EQ(role("rate_limit", "RISE"), Role::Rate);
+  EXPECT_EQ(role("delay", "DEAD_TIME"), Role::Duration);
+  EXPECT_EQ(role("load", "T_ON"), Role::Instant);
+  EXPECT_EQ(role("periodic_disturbance", "FREQUENCY"), Role::Frequency);
+  EXPECT_EQ(role("cogging", "PITCH"), Role::Period);
+  EXPECT_EQ(role("creep", "GAIN"), Role::Share);
+  EXPECT_EQ(role("odd_nonlinearity", "REFERENCE"), Role::Reference);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

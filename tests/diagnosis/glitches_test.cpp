@@ -1,0 +1,53 @@
+// Glitches: samples that were put there are found, and nothing else is.
+#include "diagnosis/glitches.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<Experiment> with(std::vector<double> values) {
+  Experiment one;
+  one.drive.steps = values.size();
+  one.measured = {std::move(values)};
+  return {one};
+}
+
+std::vector<double> smooth(std::uint64_t seed) {
+  auto values = test::Noise(seed).white(2000, 0.1);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] += 20.0 * std::sin(0.01 * static_cast<double>(k));
+  }
+  return values;
+}
+
+TEST(Glitches, AreFoundWithTheirSize) {
+  auto values = smooth(1);
+  values[300] += 5.0;
+  values[1200] -= 8.0;
+  const Glitches found = find_glitches(with(values), 0);
+  EXPECT_THAT(found.rows, ElementsAre(300U, 1200U));
+  EXPECT_NEAR(found.largest, 8.0, 0.5);
+  EXPECT_NEAR(found.rms, std::sqrt((25.0 + 64.0) / 2000.0), 0.02);
+}
+
+TEST(Glitches, NoiseAndCornersAreNone) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_THAT(find_glitches(with(smooth(seed)), 0).rows, IsEmpty()) << seed;
+  }
+  auto steps = test::Noise(2).white(2000, 0.1);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    steps[k] += 10.0 * static_cast<double>(k / 200);
+  }
+  EXPECT_THAT(find_glitches(with(steps), 0).rows, IsEmpty());
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,196 @@
+// Bad records: refused or warned with the reason, and never given a confident name.
+#include "diagnosis/record_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+records::Record stack_record(std::size_t count = 1000) {
+  auto voltage = test::rich_voltage(2000);
+  voltage.resize(count);
+  return test::measured(test::program_of(test::stack()), test::record_of("U", voltage), 0.05);
+}
+
+records::Record axis_record() {
+  return test::measured(test::program_of(test::axis()), test::record_of("FORCE", test::rich_force(1000)), 0.002);
+}
+
+Diagnosis of_stack(const records::Record& record) {
+  return diagnose(test::input_of(test::stack(), test::stack_parameters, {record}), {.effects = {"offset"}});
+}
+
+Diagnosis of_axis(const records::Record& record) {
+  return diagnose(test::input_of(test::axis(), test::axis_parameters, {record}), {.effects = {"offset"}});
+}
+
+void expect_refused(const Diagnosis& found, const char* reason) {
+  EXPECT_THAT(found.refusals, Contains(HasSubstr(reason)));
+  EXPECT_THAT(found.effects, IsEmpty());
+  EXPECT_THAT(found.rivals, IsEmpty());
+  EXPECT_EQ(found.verdict, Verdict::Unknown);
+  EXPECT_EQ(found.confidence, 0.0);
+  EXPECT_THAT(found.summary, HasSubstr("No diagnosis"));
+  EXPECT_THAT(found.improved_text, IsEmpty());
+}
+
+TEST(RecordCheck, AGoodRecordPasses) {
+  EXPECT_THAT(of_stack(stack_record()).refusals, IsEmpty());
+  const Diagnosis found = of_axis(axis_record());
+  EXPECT_THAT(found.refusals, IsEmpty());
+  EXPECT_EQ(found.verdict, Verdict::None);
+}
+
+TEST(RecordCheck, TooShort) {
+  expect_refused(of_stack(stack_record(99)), "99 samples");
+  expect_refused(of_stack(stack_record(20)), "20 samples");
+  expect_refused(of_stack(stack_record(2)), "2 samples");
+}
+
+TEST(RecordCheck, OneSample) {
+  expect_refused(of_stack(stack_record(1)), "1 samples");
+}
+
+TEST(RecordCheck, SeveralShortRecordsAddUp) {
+  EXPECT_THAT(diagnose(test::input_of(test::stack(), test::stack_parameters, {stack_record(300), stack_record(300)}),
+                       {.effects = {"offset"}})
+                  .refusals,
+              IsEmpty());
+}
+
+TEST(RecordCheck, ConstantInput) {
+  expect_refused(of_stack(test::measured(test::program_of(test::stack()),
+                                         test::record_of("U", std::vector<double>(1000, 1.5)), 0.05)),
+                 "No input moves");
+}
+
+TEST(RecordCheck, StuckSensor) {
+  expect_refused(of_stack(test::changed(stack_record(), "Y", [](auto& y) { std::ranges::fill(y, 3.0); })),
+                 "never changes");
+}
+
+TEST(RecordCheck, ClippedSensor) {
+  const auto clip = [](std::vector<double>& y) {
+    for (double& v : y) {
+      v = std::min(v, 25.0);
+    }
+  };
+  const Diagnosis found = of_stack(test::changed(stack_record(), "Y", clip));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("clipped")));
+  EXPECT_LT(found.confidence, 0.9);  // an offset explains no clipping
+}
+
+TEST(RecordCheck, MirroredSign) {
+  expect_refused(of_stack(test::changed(stack_record(), "Y",
+                                        [](auto& y) {
+                                          for (double& v : y) {
+                                            v = -v;
+                                          }
+                                        })),
+                 "mirrored");
+  expect_refused(of_axis(test::changed(axis_record(), "FORCE",
+                                       [](auto& f) {
+                                         for (double& v : f) {
+                                           v = -v;
+                                         }
+                                       })),
+                 "mirrored");
+}
+
+TEST(RecordCheck, UnitsAPowerOfTenApart) {
+  for (const double factor : {1e-6, 1e-3, 1e-2, 1e3, 1e6}) {
+    SCOPED_TRACE(factor);
+    const auto scale = [&](std::vector<double>& values) {
+      for (double& v : values) {
+        v *= factor;
+      }
+    };
+    const Diagnosis output = of_stack(test::changed(stack_record(), "Y", scale));
+    expect_refused(output, "units");
+    EXPECT_THAT(output.refusals, Contains(HasSubstr("um")));
+    expect_refused(of_axis(test::changed(axis_record(), "FORCE", scale)), "units");
+  }
+}
+
+TEST(RecordCheck, AMillivoltRecordOfAHystereticStackGetsNoName) {
+  const auto millivolts = [](std::vector<double>& u) {
+    for (double& v : u) {
+      v *= 1e3;
+    }
+  };
+  const Diagnosis found = of_stack(test::changed(stack_record(), "U", millivolts));
+  EXPECT_FALSE(found.refusals.empty()) << found.summary;
+}
+
+TEST(RecordCheck, ColumnsSwapped) {
+  const records::Record good = stack_record();
+  records::Record swapped = test::record_of("U", good.column("Y").values);
+  swapped.add({.name = "Y", .values = good.column("U").values});
+  expect_refused(of_stack(swapped), "exchanged");
+}
+
+TEST(RecordCheck, AModelThatDoesNotMove) {
+  // The reset stands: all inputs of the record move, and the model does not.
+  const std::string held =
+      "FUNCTION_BLOCK HELD (* @ts 5ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR G : "
+      "HY_GAIN; S : HY_INTEGRAL; END_VAR G(XIN := U); S(XIN := G.XOUT, RUN := FALSE); Y := S.XOUT; END_FUNCTION_BLOCK";
+  records::Record record = test::record_of("U", test::rich_voltage(1000));
+  record.add({.name = "Y", .values = test::rich_voltage(1000)});
+  const Diagnosis found = diagnose(test::input_of(held, "", {record}), {.effects = {"offset"}});
+  expect_refused(found, "does not move");
+}
+
+TEST(RecordCheck, AnotherStartIsNamed) {
+  const std::string body =
+      "FUNCTION_BLOCK BODY (* @ts 5ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; (* @unit K *) END_VAR VAR "
+      "L : HY_LAG := (T1 := 0.05{}); END_VAR L(XIN := U, X0 := 30.0); Y := L.XOUT; END_FUNCTION_BLOCK";
+  const auto text = [&](const char* settled) {
+    std::string result = body;
+    return result.replace(result.find("{}"), 2, settled);
+  };
+  const records::Record record = test::measured(test::program_of(text(", SETTLED := FALSE")),
+                                                test::record_of("U", test::rich_voltage(1000)), 0.01);
+  const Diagnosis found =
+      diagnose(test::input_of(text(""), "[parameters.L]\nT1 = 0.05\n", {record}), {.effects = {"offset"}});
+  EXPECT_THAT(found.warnings, Contains(AllOf(HasSubstr("begin of the record"), HasSubstr("initial_states"))));
+  EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
+}
+
+TEST(RecordCheck, WithoutRepeatsAndDwellsTheFloorIsInDoubt) {
+  std::vector<double> chirp;
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 0.005 * k;
+    chirp.push_back(2.0 + 2.0 * std::sin(t + 0.6 * t * t));
+  }
+  const Diagnosis found = of_stack(test::measured(test::program_of(test::stack()), test::record_of("U", chirp), 0.05));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("no input repeats or dwells")));
+  EXPECT_EQ(found.gap.floor.evidence, "differences");
+}
+
+TEST(RecordCheck, ARecordOfAnotherMachineGetsNoName) {
+  records::Record record = test::record_of("U", test::rich_voltage(1000));
+  record.add({.name = "Y", .values = test::Noise(8).white(1000, 10.0)});
+  const Diagnosis found = of_stack(record);
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("little in common")));
+  EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
+}
+
+TEST(RecordCheck, AMissingColumnIsAnError) {
+  const records::Record record = test::record_of("U", test::rich_voltage(1000));
+  EXPECT_THROW((void)of_stack(record), InputError);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

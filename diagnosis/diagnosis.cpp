@@ -26,6 +26,9 @@
 namespace hysteron::diagnosis {
 namespace {
 
+/// A calibrated residual of this many floors is no noise, whether or not anything predicts it.
+constexpr double far_above_floor = 3.0;
+
 using Clock = std::chrono::steady_clock;
 
 class Run {
@@ -167,7 +170,7 @@ class Run {
       } else {
         result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
       }
-    } else if (gap_calibrated && predictable) {
+    } else if (gap_calibrated && (predictable || size > far_above_floor)) {
       result_.verdict = Verdict::Unknown;
     } else if (gap_before && calibration_matters(found.calibrated)) {
       result_.verdict = Verdict::Calibration;

@@ -201,8 +201,18 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       return std::clamp(first * strength * whole * sure, 0.0, 0.99);
     }
     case Verdict::None:
-    case Verdict::Calibration:
       return 0.95;
+    case Verdict::Calibration: {
+      // A parameter that has run far from its tuned value is no recalibration but another machine.
+      double farthest = 0.0;
+      for (std::size_t j = 0; j < so_far.calibration.size() && j < so_far.nominal.size(); ++j) {
+        const double tuned = so_far.nominal[j].value;
+        if (tuned != 0.0) {
+          farthest = std::max(farthest, std::abs(so_far.calibration[j].value / tuned - 1.0));
+        }
+      }
+      return farthest > 0.6 ? 0.6 : 0.95;
+    }
     case Verdict::Unknown:
       return 0.7;
   }

@@ -37,7 +37,7 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
   for (const std::string& state : task.initial_states) {
     file.tune.initial_states.push_back({.text = state});
   }
-  problem_ = std::make_unique<OutputErrorProblem>(output_error_problem(program, file, task.records));
+  problem_ = std::make_unique<OutputErrorProblem>(output_error_problem(program, file, task.records, true));
   rollout_ = std::make_unique<hysteron::detail::Rollout>(*problem_);
   if (!task.scales.empty()) {
     rollout_->set_scales(task.scales);

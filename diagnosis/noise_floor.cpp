@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "diagnosis/spectrum.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -34,6 +37,25 @@ struct Squares {
   double freedom = 0.0;
 };
 
+/// A line that is most of what is left is a disturbance, and so part of the gap: it is taken off.
+void take_off_line(Eigen::VectorXd& values) {
+  constexpr double most = 0.5;
+  const std::vector<double> lines = strongest_lines(values, 1.0, 1);
+  if (lines.empty()) {
+    return;
+  }
+  Eigen::MatrixXd waves(values.size(), 2);
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const double phase = 2.0 * std::numbers::pi * lines.front() * static_cast<double>(k);
+    waves(k, 0) = std::sin(phase);
+    waves(k, 1) = std::cos(phase);
+  }
+  const Eigen::VectorXd left = values - waves * waves.householderQr().solve(values);
+  if (left.squaredNorm() < (1.0 - most) * values.squaredNorm()) {
+    values = left;
+  }
+}
+
 Squares without_trend(const Eigen::VectorXd& values, int order) {
   const Eigen::Index count = values.size();
   if (count < order + 3) {
@@ -48,6 +70,7 @@ Squares without_trend(const Eigen::VectorXd& values, int order) {
     }
   }
   Eigen::VectorXd left = values - basis * basis.householderQr().solve(values);
+  take_off_line(left);
   // A glitch is no noise: what lies beyond six standard deviations counts as six.
   std::vector<double> sizes(left.data(), left.data() + left.size());
   std::ranges::transform(sizes, sizes.begin(), [](double r) { return std::abs(r); });

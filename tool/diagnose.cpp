@@ -2,18 +2,22 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "codegen/graph/definition.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/effects.hpp"
 #include "diagnosis/verdict_json.hpp"
 #include "records/csv.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
+#include "support/names.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
@@ -62,10 +66,31 @@ std::pair<std::string, double> limit_of(const std::string& text) {
                    "write --limit U=5.0: the input and its largest size.");
 }
 
+/// HY730 for an effect that neither the library nor the file of the diagram has.
+void check_effects(const std::vector<std::string>& wanted, const Program& program) {
+  std::vector<std::string> known{"glitches"};
+  Diagnostics ignored;  // the file compiles
+  for (const diagnosis::EffectKind& kind : diagnosis::effect_kinds(define(program.graph.source, ignored))) {
+    if (kind.id != known.back()) {
+      known.push_back(kind.id);
+    }
+  }
+  std::ranges::sort(known);
+  for (const std::string& effect : wanted) {
+    if (std::ranges::find(known, effect) == known.end()) {
+      const std::string_view near = nearest_name(effect, known);
+      throw InputError(error::bad_usage, {}, fmt::format("There is no effect {}.", effect),
+                       near.empty() ? fmt::format("the effects are {}.", fmt::join(known, ", "))
+                                    : fmt::format("did you mean {}?", near));
+    }
+  }
+}
+
 int diagnose(Options options, Console& console) {
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
+  check_effects(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
   for (const std::string& log : options.logs) {

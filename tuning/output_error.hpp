@@ -77,8 +77,9 @@ struct OutputErrorProblem {
 /// for a parameter that is no real number, HY606 for a start out of bounds, HY502 for a missing column, HY704 for
 /// another sample time, HY716 where nothing is to be fitted, HY717 where no output was measured, HY718 for a record
 /// without a sample in train.
+/// `may_be_fixed`: a problem without anything to fit, to be evaluated only, is no error.
 OutputErrorProblem output_error_problem(const Program& program, const parameters::ParameterFile& file,
-                                        std::span<const records::Record> records);
+                                        std::span<const records::Record> records, bool may_be_fixed = false);
 
 struct OutputErrorOptions {
   /// Fits from this many points: the given one, and others spread over the bounds, always the same ones. The best

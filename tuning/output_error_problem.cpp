@@ -32,7 +32,7 @@ class Builder {
     parameters::apply(file, problem_.program.graph, diagnostics_);
   }
 
-  OutputErrorProblem build() {
+  OutputErrorProblem build(bool may_be_fixed) {
     units_ = units::of_parameters(graph(), problem_.program.schedule);
     for (const FitSetting& fit : file_.fits) {
       add_parameter(fit);
@@ -40,7 +40,7 @@ class Builder {
     for (const parameters::PlacedText& state : file_.tune.initial_states) {
       add_state(state);
     }
-    if (problem_.parameters.empty() && problem_.initial_states.empty() && !diagnostics_.has_errors()) {
+    if (!may_be_fixed && problem_.parameters.empty() && problem_.initial_states.empty() && !diagnostics_.has_errors()) {
       diagnostics_.error(error::nothing_to_fit, {.file = file_.file},
                          fmt::format("{} marks no parameter for fitting.", name_of_file()),
                          "name those that may change in a table [fit.INSTANCE], as in C1 = {min = 0.0}.");
@@ -247,8 +247,8 @@ class Builder {
 }  // namespace
 
 OutputErrorProblem output_error_problem(const Program& program, const ParameterFile& file,
-                                        std::span<const records::Record> records) {
-  return Builder(program, file, records).build();
+                                        std::span<const records::Record> records, bool may_be_fixed) {
+  return Builder(program, file, records).build(may_be_fixed);
 }
 
 }  // namespace hysteron

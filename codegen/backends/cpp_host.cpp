@@ -78,7 +78,7 @@ void append(std::string& line, std::floating_point auto value) {{
     }}
   }}
   if (exponent >= -5 && exponent < 0) {{
-    line += "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+    line.append("0.").append(static_cast<std::size_t>(-exponent - 1), '0').append(digits);
     return;
   }}
   const bool plain = exponent >= 0 && exponent <= 15;
@@ -86,10 +86,10 @@ void append(std::string& line, std::floating_point auto value) {{
   digits.append(before_point - std::min(before_point, digits.size()), '0');
   line += digits.substr(0, before_point);
   if (digits.size() > before_point) {{
-    line += "." + digits.substr(before_point);
+    line.append(".").append(digits, before_point);
   }}
   if (!plain) {{
-    line += "e" + std::to_string(exponent);
+    line.append("e").append(std::to_string(exponent));
   }}
 }}
 

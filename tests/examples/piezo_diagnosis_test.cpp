@@ -1,0 +1,40 @@
+// Example 6 on the real record: two named effects take the held-out cycles below what 12 play operators and a cubic
+// leave. Where there is a folder of measured data, a missing record is a failure, not a skip.
+#include "examples/06_piezo_diagnosis/piezo_diagnosis.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "examples/04_piezo_stack/piezo_stack.hpp"
+#include "records/data_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::examples {
+namespace {
+
+using testing::AnyOf;
+using testing::Eq;
+
+TEST(PiezoDiagnosis, TwoNamedEffectsBeatPlayOperators) {
+  if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
+    GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
+  }
+  const auto identification = stack_record("identify_1hz.csv");
+  ASSERT_TRUE(identification) << "the data folder lacks piezo-picma-dbo";
+  const StackCycles cycles = cycles_of(*identification);
+  const test::ScratchFolder scratch;
+  const Round paper = tuned_model("04_piezo_stack/plant.st", "04_piezo_stack/plant.toml", *identification);
+  EXPECT_NEAR(gap_of(paper, cycles).held_out, 0.0113, 0.0005);
+
+  const Round first = next_round(paper, cycles.fitted, effects_of_a_stack(), scratch.path() / "first");
+  ASSERT_TRUE(first.named()) << first.found.summary;
+  EXPECT_THAT(first.found.effects.front().id, AnyOf(Eq("lag"), Eq("delay")));
+  EXPECT_LT(gap_of(first, cycles).held_out, 0.0095);
+
+  const Round second = next_round(first, cycles.fitted, effects_of_a_stack(), scratch.path() / "second");
+  ASSERT_TRUE(second.named()) << second.found.summary;
+  EXPECT_LT(gap_of(second, cycles).held_out, 0.0076);
+}
+
+}  // namespace
+}  // namespace hysteron::examples

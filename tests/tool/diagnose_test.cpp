@@ -1,0 +1,254 @@
+// hysteron diagnose, as a user runs it.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "records/csv.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+constexpr double noise = 0.001;
+
+const std::string command =
+    "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects load,drift,lag";
+
+/// An axis with a load that the diagram does not know.
+class Diagnose : public testing::Test {
+ protected:
+  void SetUp() override {
+    bench.write("plant.st", test::axis());
+    bench.write("p.toml", test::axis_parameters);
+    bench.write("log.csv", records::csv_text(record()));
+  }
+
+  static records::Record record() {
+    return test::measured(test::program_of(test::axis({"HY_LOAD := (SIZE := 0.3, T_ON := 2.0)", "FORCE"})),
+                          test::record_of("FORCE", test::rich_force(1200)), noise);
+  }
+
+  /// Nothing of `line` is written outside of `found`, and nothing in it is lost.
+  static std::string without_time(std::string text) {
+    json verdict = json::parse(text);
+    verdict["seconds"] = 0.0;
+    return verdict.dump();
+  }
+
+  [[nodiscard]] test::Outcome with_log(const records::Record& log) const {
+    bench.write("bad.csv", records::csv_text(log));
+    return bench.shell("hysteron diagnose plant.st --log bad.csv --params p.toml --out bad --effects load");
+  }
+
+  test::Workbench bench;
+};
+
+TEST_F(Diagnose, NamesTheEffectAndWritesWhatItFound) {
+  const auto outcome = bench.shell(command);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("load at "), HasSubstr("Verdict: "), HasSubstr("SIZE"), HasSubstr("T_ON"),
+                                 HasSubstr("m/s"), HasSubstr("closed"), HasSubstr("candidates")));
+  EXPECT_THAT(bench.names(), IsSupersetOf({"found/verdict.json", "found/improved.st", "found/improved.toml",
+                                           "found/report.html", "found/traces.csv"}));
+  const json verdict = json::parse(bench.read("found/verdict.json"));
+  EXPECT_EQ(verdict["schema"], "hysteron-verdict/1");
+  EXPECT_EQ(verdict["effects"][0]["id"], "load");
+  EXPECT_EQ(verdict["refused"], false);
+  const json& size = verdict["effects"][0]["parameters"]["SIZE"];
+  EXPECT_NEAR(size["value"].get<double>(), 0.3, 0.02);
+  EXPECT_LT(size["low"], size["high"]);
+  EXPECT_NEAR(verdict["gap"]["improved_rms"].get<double>(), noise, 0.1 * noise);
+}
+
+TEST_F(Diagnose, TheImprovedDiagramChecksRunsAndGenerates) {
+  ASSERT_EQ(bench.shell(command).code, 0);
+  const auto check = bench.shell("hysteron check found/improved.st && hysteron fmt --check found/improved.st");
+  EXPECT_EQ(check.code, 0) << check.out << check.err;
+  const auto run =
+      bench.shell("hysteron run found/improved.st --in log.csv --out out.csv --params found/improved.toml");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto model = records::parse_csv("out.csv", bench.read("out.csv")).column("V").values;
+  const auto measured = record().column("V").values;
+  ASSERT_EQ(model.size(), measured.size());
+  double squares = 0.0;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    squares += (model[k] - measured[k]) * (model[k] - measured[k]);
+  }
+  const double improved = json::parse(bench.read("found/verdict.json"))["gap"]["improved_rms"];
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(model.size())), improved, 1e-9 * improved);
+  const auto generated =
+      bench.shell("hysteron generate found/improved.st --target cpp --out code --params found/improved.toml");
+  EXPECT_EQ(generated.code, 0) << generated.err;
+}
+
+TEST_F(Diagnose, TheImprovedDiagramHasNoGapLeft) {
+  ASSERT_EQ(bench.shell(command).code, 0);
+  const auto again = bench.shell(
+      "hysteron diagnose found/improved.st --log log.csv --params found/improved.toml --out again "
+      "--effects creep,drift,lag --json");
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(json::parse(again.out)["verdict"], "none") << again.out;
+}
+
+TEST_F(Diagnose, TracesAreThoseOfTheRecord) {
+  ASSERT_EQ(bench.shell(command).code, 0);
+  const auto traces = records::parse_csv("traces.csv", bench.read("found/traces.csv"));
+  EXPECT_THAT(traces.names(), testing::ElementsAre("V_measured", "V_nominal", "V_calibrated", "V_improved"));
+  EXPECT_EQ(traces.column("V_measured").values, record().column("V").values);
+  const auto nominal = simulate(test::program_of(test::axis()), record())[0];
+  double difference = 0.0;
+  for (std::size_t k = 0; k < nominal.size(); ++k) {
+    difference = std::max(difference, std::abs(nominal[k] - traces.column("V_nominal").values[k]));
+  }
+  EXPECT_LT(difference, 1e-12);
+}
+
+TEST_F(Diagnose, PrintsTheVerdictAsJson) {
+  const auto outcome = bench.shell(command + " --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, bench.read("found/verdict.json"));
+}
+
+TEST_F(Diagnose, IsTheSameEachTimeForASeed) {
+  ASSERT_EQ(bench.shell(command + " --seed 7").code, 0);
+  std::vector<std::string> first;
+  const std::vector<std::string> files{"improved.st", "improved.toml", "traces.csv"};
+  for (const std::string& file : files) {
+    first.push_back(bench.read("found/" + file));
+  }
+  const std::string verdict = without_time(bench.read("found/verdict.json"));
+  ASSERT_EQ(bench.shell(command + " --seed 7").code, 0);  // into the same folder
+  EXPECT_EQ(without_time(bench.read("found/verdict.json")), verdict);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    EXPECT_EQ(bench.read("found/" + files[i]), first[i]) << files[i];
+  }
+}
+
+TEST_F(Diagnose, TouchesNothingOutsideItsFolder) {
+  bench.write("found/notes.txt", "mine");
+  bench.write("verdict.json", "mine too");
+  const std::string plant = bench.read("plant.st");
+  const std::string parameters = bench.read("p.toml");
+  auto before = bench.names();
+  ASSERT_EQ(bench.shell(command).code, 0);
+  EXPECT_EQ(bench.read("plant.st"), plant);
+  EXPECT_EQ(bench.read("p.toml"), parameters);
+  EXPECT_EQ(bench.read("found/notes.txt"), "mine");
+  EXPECT_EQ(bench.read("verdict.json"), "mine too");
+  for (const std::string& name : bench.names()) {
+    EXPECT_TRUE(before.contains(name) || name.starts_with("found/")) << name;
+  }
+}
+
+TEST_F(Diagnose, RefusesARecordThatCannotBeDiagnosed) {
+  const auto flip = [](std::vector<double>& v) {
+    for (double& one : v) {
+      one = -one;
+    }
+  };
+  const auto kilo = [](std::vector<double>& v) {
+    for (double& one : v) {
+      one *= 1000.0;
+    }
+  };
+  const auto stand = [](std::vector<double>& v) { std::ranges::fill(v, 1.0); };
+  const struct {
+    records::Record log;
+    const char* reason;
+  } cases[] = {{record().slice({0, 60}), "60 samples"},
+               {test::changed(record(), "FORCE", stand), "No input moves"},
+               {test::changed(record(), "V", stand), "never changes"},
+               {test::changed(record(), "V", flip), "mirrored"},
+               {test::changed(record(), "V", kilo), "units"}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.reason);
+    const auto outcome = with_log(one.log);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("No diagnosis"), HasSubstr(one.reason), Not(HasSubstr("confidence"))));
+    const json verdict = json::parse(bench.read("bad/verdict.json"));
+    EXPECT_EQ(verdict["refused"], true);
+    EXPECT_EQ(verdict["verdict"], "unknown");
+    EXPECT_TRUE(verdict["effects"].empty());
+    EXPECT_TRUE(verdict["rivals"].empty());
+    EXPECT_EQ(verdict["confidence"], 0.0);
+    EXPECT_THAT(verdict["refusals"].dump(), HasSubstr(one.reason));
+    EXPECT_FALSE(bench.has("bad/improved.st"));
+  }
+}
+
+TEST_F(Diagnose, ARecordThatCannotBeReadIsAnError) {
+  const struct {
+    const char* name;
+    std::string text;
+    const char* number;
+  } cases[] = {{"one sample", "t,force,v\n0.0,1.0,0.5\n", "HY501"},
+               {"no sample", "t,force,v\n", "HY501"},
+               {"NaN", "t,force,v\n0.000,1,0\n0.005,nan,0\n0.010,1,0\n", "HY506"},
+               {"infinite", "t,force,v\n0.000,1,0\n0.005,1,inf\n0.010,1,0\n", "HY506"},
+               {"gap in the times", "t,force,v\n0.000,1,0\n0.005,1,0\n0.010,1,0\n0.500,1,0\n", "HY507"},
+               {"gap in a row", "t,force,v\n0.000,1,0\n0.005,,0\n0.010,1,0\n", "HY505"},
+               {"no input", "t,v\n0.000,1\n0.005,1\n0.010,1\n", "HY502"},
+               {"no output", "t,force\n0.000,1\n0.005,1\n0.010,1\n", "HY717"},
+               {"another sample time", "t,force,v\n0.0,1,0\n0.1,1,0\n0.2,1,0\n", "HY704"}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.name);
+    bench.write("bad.csv", one.text);
+    const auto outcome = bench.shell("hysteron diagnose plant.st --log bad.csv --params p.toml --out bad");
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr(one.number));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_FALSE(bench.has("bad"));
+  }
+}
+
+TEST_F(Diagnose, ErrorsElsewhereWriteNothing) {
+  bench.write("wrong.toml", "[parameters.MASS]\nKK = 1.0\n");
+  bench.write("broken.st", "FUNCTION_BLOCK P");
+  for (const char* line :
+       {"hysteron diagnose plant.st --log none.csv --params p.toml --out bad",
+        "hysteron diagnose plant.st --log log.csv --params none.toml --out bad",
+        "hysteron diagnose plant.st --log log.csv --params wrong.toml --out bad",
+        "hysteron diagnose broken.st --log log.csv --params p.toml --out bad",
+        "hysteron diagnose plant.st --log log.csv --params p.toml --out bad --limit FORCE",
+        "hysteron diagnose plant.st --log log.csv --params p.toml --out bad --limit FORCE=much",
+        "hysteron diagnose plant.st --log log.csv --params p.toml --out bad --effects crepe",
+        "hysteron diagnose plant.st --log log.csv --params p.toml --out bad --most 9",
+        "hysteron diagnose plant.st --log log.csv --params p.toml --out bad --material -1",
+        "hysteron diagnose plant.st --log log.csv --params p.toml", "hysteron diagnose plant.st --out bad"}) {
+    const auto outcome = bench.shell(line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_THAT(outcome.err, HasSubstr("HY")) << line;
+    EXPECT_FALSE(bench.has("bad")) << line;
+  }
+}
+
+TEST_F(Diagnose, SeveralRecordsAreOneDiagnosis) {
+  bench.write("other.csv", records::csv_text(record().slice({0, 700})));
+  const auto outcome = bench.shell(command + " --log other.csv --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["effects"][0]["id"], "load");
+  EXPECT_THAT(bench.names(), IsSupersetOf({"found/traces1.csv", "found/traces2.csv"}));
+}
+
+TEST_F(Diagnose, HelpSaysWhatItDoesAndWhatItReturns) {
+  const auto help = bench.shell("hysteron diagnose --help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out,
+              AllOf(HasSubstr("--log"), HasSubstr("--params"), HasSubstr("--out"), HasSubstr("--effects"),
+                    HasSubstr("--material"), HasSubstr("--limit"), HasSubstr("--seed"), HasSubstr("Exit codes"),
+                    HasSubstr("verdict.json"), HasSubstr("hysteron diagnose plant.st")));
+}
+
+}  // namespace
+}  // namespace hysteron

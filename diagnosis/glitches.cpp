@@ -18,6 +18,14 @@ double median_about(const std::vector<double>& values, std::size_t k) {
   return window[reach];
 }
 
+/// Whether the samples on either side lie level with each other, and not on the flanks of a peak of the signal.
+bool stands_alone(const std::vector<double>& values, std::size_t k, double size) {
+  const double before = std::abs(values[k - 1] - values[k - 2]);
+  const double after = std::abs(values[k + 2] - values[k + 1]);
+  const double across = std::abs(values[k + 1] - values[k - 1]);
+  return std::max({before, after, across}) < 0.4 * size;
+}
+
 /// The standard deviation of most of them: by the median of those that are not 0, which rounding makes many.
 double spread(const std::vector<double>& differences) {
   std::vector<double> sizes;
@@ -50,7 +58,7 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
       }
       const double bound = far * spread(differences);
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (bound > 0.0 && std::abs(differences[k]) > bound) {
+        if (bound > 0.0 && std::abs(differences[k]) > bound && stands_alone(values, k, std::abs(differences[k]))) {
           result.rows.push_back(offset + k);
           squares += differences[k] * differences[k];
           result.largest = std::max(result.largest, std::abs(differences[k]));

@@ -47,6 +47,12 @@ TEST(Glitches, NoiseAndCornersAreNone) {
     steps[k] += 10.0 * static_cast<double>(k / 200);
   }
   EXPECT_THAT(find_glitches(with(steps), 0).rows, IsEmpty());
+  auto teeth = test::Noise(3).white(2000, 0.001);  // slow, with a sharp peak now and then
+  for (std::size_t k = 0; k < teeth.size(); ++k) {
+    const double from_peak = std::abs(static_cast<double>(k % 200) - 100.0);
+    teeth[k] += 0.01 * from_peak + std::max(0.0, 4.0 - from_peak);
+  }
+  EXPECT_THAT(find_glitches(with(teeth), 0).rows, IsEmpty());
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
     bool has_input = false;
     for (const Field& input : block.inputs) {
       has_input = has_input || input.name == kind.input;
-      if (input.type == Type::Real && input.name != kind.input && input.unit != "'x") {
+      // X0 is where a block starts, no signal that drives the effect.
+      if (input.type == Type::Real && input.name != kind.input && input.name != "X0" && input.unit != "'x") {
         kind.auxiliaries.emplace_back(input.name);
       }
     }

@@ -54,7 +54,8 @@ class Run {
   void prepare() {
     task_ = task_of(input_);
     result_.top = input_.program.graph.name;
-    base_ = {.text = input_.text, .program = std::make_shared<Program>(input_.program)};
+    // With the file's values: an effect that it switches on is there already.
+    base_ = {.text = input_.text, .program = std::make_shared<Program>(nominal_program())};
     Model model(task_, *base_.program);
     floors_.clear();
     for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {

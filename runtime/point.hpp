@@ -1,0 +1,65 @@
+// A point: one value of the running program that the outside may read or write, and the door through which servers
+// reach all of them. What a point is called, measured in and limited to is said here once; register maps, the live page
+// and refusals are derived.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hysteron::runtime {
+
+enum class PointKind {
+  input,      ///< a VAR_INPUT of the diagram
+  output,     ///< a VAR_OUTPUT, after limits and fail-safe
+  parameter,  ///< staged, then committed as a set
+  status,     ///< what the task says of itself: cycles, lateness, state
+  command,    ///< what a client asks of the task: commit, discard, reset, heartbeat
+};
+
+enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
+
+struct Point {
+  std::string name;  ///< as in the diagram: U, HYST.C1; status and commands as task.cycles
+  PointKind kind = PointKind::status;
+  PointType type = PointType::real64;
+  std::string unit;  ///< "1" where it has none
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool writable = false;
+  std::string meaning;
+};
+
+struct PointWrite {
+  std::size_t point = 0;  ///< index into points()
+  double value = 0.0;
+};
+
+/// All values of one cycle. A value is a double whatever its type; integers are exact to 2^53.
+struct Snapshot {
+  std::uint64_t cycle = 0;
+  std::vector<double> values;  ///< as points()
+};
+
+/// What a server may do with the running task. Every function may be called from a server's thread and returns at once;
+/// none of them waits for the cyclic thread, and none makes it wait.
+class PointDoor {
+ public:
+  PointDoor() = default;
+  PointDoor(const PointDoor&) = delete;
+  PointDoor& operator=(const PointDoor&) = delete;
+  virtual ~PointDoor() = default;
+
+  /// The same for the life of the door.
+  [[nodiscard]] virtual std::span<const Point> points() const = 0;
+  /// The values of the newest whole cycle; of one cycle, never of two. Parameters read as staged while any are staged.
+  virtual void read(Snapshot& into) = 0;
+  /// All of the writes or none. Empty where taken; otherwise the reason, as a sentence that names the point.
+  /// The caller has checked that each is writable, finite and within its limits.
+  virtual std::string write(std::span<const PointWrite> writes) = 0;
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,89 @@
+#include "runtime/modbus/value_bits.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+template <class Integer>
+std::uint64_t integer_bits(double value) {
+  using Limits = std::numeric_limits<Integer>;
+  using Unsigned = std::make_unsigned_t<Integer>;
+  if (std::isnan(value)) {
+    return 0;
+  }
+  const double whole = std::nearbyint(value);
+  // The upper bound of a type is no double where it has 64 bits; the power of two above it is.
+  const double above = std::ldexp(1.0, Limits::digits);
+  if (whole >= above) {
+    return static_cast<Unsigned>(Limits::max());
+  }
+  if (whole < static_cast<double>(Limits::min())) {
+    return static_cast<Unsigned>(Limits::min());
+  }
+  return static_cast<Unsigned>(static_cast<Integer>(whole));
+}
+
+}  // namespace
+
+std::uint64_t bits_of(double value, PointType type) {
+  switch (type) {
+    case PointType::boolean:
+      return value != 0.0 && !std::isnan(value) ? 1 : 0;
+    case PointType::int16:
+      return integer_bits<std::int16_t>(value);
+    case PointType::uint16:
+      return integer_bits<std::uint16_t>(value);
+    case PointType::int32:
+      return integer_bits<std::int32_t>(value);
+    case PointType::uint32:
+      return integer_bits<std::uint32_t>(value);
+    case PointType::int64:
+      return integer_bits<std::int64_t>(value);
+    case PointType::uint64:
+      return integer_bits<std::uint64_t>(value);
+    case PointType::real32:
+      return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    case PointType::real64:
+      return std::bit_cast<std::uint64_t>(value);
+  }
+  return 0;
+}
+
+std::optional<double> value_of(std::uint64_t bits, PointType type) {
+  constexpr std::int64_t exact = std::int64_t{1} << 53U;
+  switch (type) {
+    case PointType::boolean:
+      return bits != 0 ? 1.0 : 0.0;
+    case PointType::int16:
+      return static_cast<std::int16_t>(bits);
+    case PointType::uint16:
+      return static_cast<std::uint16_t>(bits);
+    case PointType::int32:
+      return static_cast<std::int32_t>(bits);
+    case PointType::uint32:
+      return static_cast<std::uint32_t>(bits);
+    case PointType::int64: {
+      const auto whole = static_cast<std::int64_t>(bits);
+      if (whole > exact || whole < -exact) {
+        return std::nullopt;
+      }
+      return static_cast<double>(whole);
+    }
+    case PointType::uint64:
+      if (bits > static_cast<std::uint64_t>(exact)) {
+        return std::nullopt;
+      }
+      return static_cast<double>(bits);
+    case PointType::real32:
+      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    case PointType::real64:
+      return std::bit_cast<double>(bits);
+  }
+  return std::nullopt;
+}
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,83 @@
+#include "runtime/task/safe_outputs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace hysteron::runtime {
+namespace {
+
+/// As std::clamp, with limits that may be infinite.
+double limited(const OutputSafety& output, double value) noexcept {
+  return std::min(std::max(value, output.low), output.high);
+}
+
+/// From a value towards a target, by no more than a step.
+double towards(double from, double target, double step) noexcept {
+  return target > from ? std::min(target, from + step) : std::max(target, from - step);
+}
+
+}  // namespace
+
+std::string_view name_of(Fault fault) {
+  constexpr std::array<std::string_view, 8> names{"none",        "hang",      "crash",        "not finite",
+                                                  "stale input", "lost link", "missed cycle", "stop"};
+  return names[static_cast<std::size_t>(fault)];
+}
+
+SafeOutputs::SafeOutputs(std::vector<OutputSafety> outputs, double sample_time)
+    : outputs_(std::move(outputs)),
+      sample_time_(sample_time),
+      values_(outputs_.size()),
+      faults_(outputs_.size(), Fault::none),
+      since_(outputs_.size(), 0) {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    values_[i] = limited(outputs_[i], outputs_[i].value);
+  }
+}
+
+void SafeOutputs::start_from(std::span<const double> values) noexcept {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (std::isfinite(values[i])) {
+      values_[i] = limited(outputs_[i], values[i]);
+    }
+  }
+}
+
+void SafeOutputs::step(std::span<const double> wanted, Fault fault) noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const OutputSafety& output = outputs_[i];
+    const Fault now = fault != Fault::none ? fault : std::isfinite(wanted[i]) ? Fault::none : Fault::not_finite;
+    since_[i] = now == Fault::none ? 0 : since_[i] + 1;
+    faults_[i] = now;
+    const double slew = output.slew * sample_time_;
+    if (now == Fault::none) {
+      values_[i] = towards(values_[i], limited(output, wanted[i]), slew);
+    } else if (since_[i] > output.hold_cycles && output.action != SafeAction::hold) {
+      const double ramp = output.action == SafeAction::ramp ? output.ramp * sample_time_ : slew;
+      values_[i] = towards(values_[i], target(i), std::min(slew, ramp));
+    }
+  }
+}
+
+double SafeOutputs::target(std::size_t output) const noexcept {
+  return limited(outputs_[output], outputs_[output].value);
+}
+
+Fault SafeOutputs::worst() const noexcept {
+  const auto found = std::ranges::find_if(faults_, [](Fault one) { return one != Fault::none; });
+  return found == faults_.end() ? Fault::none : *found;
+}
+
+bool SafeOutputs::settled() const noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const bool there = outputs_[i].action == SafeAction::hold || values_[i] == target(i);
+    if (faults_[i] == Fault::none || !there) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace hysteron::runtime

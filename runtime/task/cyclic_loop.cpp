@@ -13,6 +13,7 @@ std::string_view name_of(LoopEnd end) {
 LoopEnd run_loop(const LoopSettings& settings, Clock& clock, CycleBody& body, const std::atomic<bool>& stop,
                  LoopStatistics& statistics) noexcept {
   const std::int64_t first = clock.now() + settings.period;
+  const std::uint64_t before = statistics.run + statistics.skipped;  // of an earlier run of the same task
   std::int64_t due = first;
   std::int64_t stolen = clock.stolen();
   CycleTimes times{.previous_end = first - settings.period};
@@ -35,7 +36,7 @@ LoopEnd run_loop(const LoopSettings& settings, Clock& clock, CycleBody& body, co
     }
     due += static_cast<std::int64_t>(dropped) * settings.period;
     statistics.skipped += dropped;
-    statistics.elapsed = static_cast<std::uint64_t>((due - first) / settings.period);
+    statistics.elapsed = before + static_cast<std::uint64_t>((due - first) / settings.period);
     if (statistics.run + statistics.skipped != statistics.elapsed) {
       return LoopEnd::account_broken;
     }

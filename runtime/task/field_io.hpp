@@ -1,0 +1,23 @@
+// The field as the task sees it: inputs that devices give, outputs that devices take.
+#pragma once
+
+#include <span>
+
+#include "runtime/task/safe_outputs.hpp"
+
+namespace hysteron::runtime {
+
+/// Neither function waits for a device: each hands over to a thread that does.
+class FieldIo {
+ public:
+  FieldIo() = default;
+  FieldIo(const FieldIo&) = delete;
+  FieldIo& operator=(const FieldIo&) = delete;
+  virtual ~FieldIo() = default;
+
+  /// Sets the inputs that devices give, and no others. A lost link or an old value is said by the fault.
+  virtual Fault read(std::span<double> inputs) noexcept = 0;
+  virtual void write(std::span<const double> outputs) noexcept = 0;
+};
+
+}  // namespace hysteron::runtime

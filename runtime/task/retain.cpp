@@ -1,0 +1,210 @@
+#include "runtime/task/retain.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr std::array<char, 8> magic{'H', 'Y', 'R', 'E', 'T', 'A', 'I', '1'};
+constexpr std::uint32_t polynomial = 0x82F63B78;  // Castagnoli's, reflected
+
+constexpr std::array<std::uint32_t, 256> make_table() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t rest = i;
+    for (int bit = 0; bit < 8; ++bit) {
+      rest = (rest >> 1) ^ ((rest & 1) != 0 ? polynomial : 0);
+    }
+    table[i] = rest;
+  }
+  return table;
+}
+
+constexpr auto crc_table = make_table();
+
+void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
+  const std::size_t at = bytes.size();
+  bytes.resize(at + size);
+  if (size > 0) {
+    std::memcpy(bytes.data() + at, data, size);
+  }
+}
+
+template <class T>
+void append(std::vector<std::byte>& bytes, const T& value) {
+  append(bytes, &value, sizeof(T));
+}
+
+/// Reads forward, and never beyond the end.
+class Cursor {
+ public:
+  explicit Cursor(std::span<const std::byte> bytes) : rest_(bytes) {}
+  bool read(void* into, std::size_t size) {
+    if (rest_.size() < size) {
+      return false;
+    }
+    if (size > 0) {
+      std::memcpy(into, rest_.data(), size);
+    }
+    rest_ = rest_.subspan(size);
+    return true;
+  }
+  /// The length of a list whose items are so many bytes; false where the rest cannot hold it.
+  bool read_length(std::size_t& length, std::size_t item) {
+    std::uint32_t number = 0;
+    const bool read_it = read(&number, sizeof(number));
+    length = number;
+    return read_it && length <= rest_.size() / item;
+  }
+  [[nodiscard]] bool at_end() const { return rest_.empty(); }
+
+ private:
+  std::span<const std::byte> rest_;
+};
+
+bool decode(std::span<const std::byte> bytes, RetainedValues& values) {
+  std::uint32_t sum = 0;
+  if (bytes.size() < magic.size() + sizeof(sum)) {
+    return false;
+  }
+  const auto body = bytes.first(bytes.size() - sizeof(sum));
+  std::memcpy(&sum, bytes.data() + body.size(), sizeof(sum));
+  if (std::memcmp(body.data(), magic.data(), magic.size()) != 0 || crc32c(body) != sum) {
+    return false;
+  }
+  Cursor cursor(body.subspan(magic.size()));
+  std::size_t length = 0;
+  if (!cursor.read(&values.sequence, sizeof(values.sequence)) || !cursor.read_length(length, 1)) {
+    return false;
+  }
+  values.layout.resize(length);
+  if (!cursor.read(values.layout.data(), length) || !cursor.read_length(length, sizeof(double))) {
+    return false;
+  }
+  values.parameters.resize(length);
+  if (!cursor.read(values.parameters.data(), length * sizeof(double)) || !cursor.read_length(length, 1)) {
+    return false;
+  }
+  values.state.resize(length);
+  return cursor.read(values.state.data(), length) && cursor.at_end();
+}
+
+}  // namespace
+
+std::uint32_t crc32c(std::span<const std::byte> bytes) noexcept {
+  std::uint32_t rest = ~0U;
+  for (const std::byte byte : bytes) {
+    rest = crc_table[(rest ^ static_cast<std::uint32_t>(byte)) & 0xFF] ^ (rest >> 8);
+  }
+  return ~rest;
+}
+
+std::vector<std::byte> encode_slot(const RetainedValues& values) {
+  std::vector<std::byte> bytes;
+  append(bytes, magic);
+  append(bytes, values.sequence);
+  append(bytes, static_cast<std::uint32_t>(values.layout.size()));
+  append(bytes, values.layout.data(), values.layout.size());
+  append(bytes, static_cast<std::uint32_t>(values.parameters.size()));
+  append(bytes, values.parameters.data(), values.parameters.size() * sizeof(double));
+  append(bytes, static_cast<std::uint32_t>(values.state.size()));
+  append(bytes, values.state.data(), values.state.size());
+  append(bytes, crc32c(bytes));
+  return bytes;
+}
+
+Slot decode_slot(std::span<const std::byte> bytes) {
+  Slot slot;
+  slot.status = decode(bytes, slot.values) ? SlotStatus::whole : SlotStatus::broken;
+  if (slot.status == SlotStatus::broken) {
+    slot.values = {};
+  }
+  return slot;
+}
+
+Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy) {
+  std::array<Slot, 2> slots;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (const auto bytes = files.read(i)) {
+      slots[i] = decode_slot(*bytes);
+    }
+  }
+  const auto sequence_of = [](const Slot& slot) { return slot.status == SlotStatus::whole ? slot.values.sequence : 0; };
+  const std::size_t newest = sequence_of(slots[1]) > sequence_of(slots[0]) ? 1 : 0;
+  Recovery recovery{.sequence = sequence_of(slots[newest]), .next_slot = 1 - newest};
+  const bool any_broken = std::ranges::any_of(slots, [](const Slot& one) { return one.status == SlotStatus::broken; });
+  if (slots[newest].status == SlotStatus::whole && slots[newest].values.layout == layout) {
+    recovery.values = slots[newest].values;
+    recovery.note = any_broken ? "one retain slot was broken; the other was taken" : "";
+    return recovery;
+  }
+  if (slots[newest].status != SlotStatus::whole && !any_broken) {
+    recovery.next_slot = 0;
+    return recovery;  // a first start
+  }
+  const std::string what = slots[newest].status == SlotStatus::whole ? "The retained values are of another diagram."
+                                                                     : "No retain slot is whole.";
+  if (policy == MismatchPolicy::refuse) {
+    recovery.refused = what;
+    return recovery;
+  }
+  recovery.note = "started cold; the retained files were put aside";
+  recovery.next_slot = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].status != SlotStatus::missing) {
+      recovery.refused += files.put_aside(i);
+    }
+  }
+  return recovery;
+}
+
+Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start)
+    : files_(&files),
+      newest_(RetainedValues{.layout = program.shape().layout,
+                             .parameters = std::vector<double>(program.shape().parameters.size()),
+                             .state = std::vector<std::byte>(program.state_size())}),
+      slot_(start.next_slot),
+      sequence_(start.sequence),
+      written_(start.sequence) {
+  writer_ = std::thread([this] {
+    while (!stop_.load(std::memory_order_relaxed)) {
+      write_newest();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    write_newest();
+  });
+}
+
+Retainer::~Retainer() {
+  stop_.store(true, std::memory_order_relaxed);
+  writer_.join();
+}
+
+void Retainer::offer(const StepProgram& program) noexcept {
+  RetainedValues& values = newest_.filling();
+  for (std::size_t i = 0; i < values.parameters.size(); ++i) {
+    values.parameters[i] = program.parameter(i);
+  }
+  program.save(values.state);
+  newest_.publish();
+}
+
+void Retainer::write_newest() {
+  const RetainedValues* const taken = newest_.take();
+  if (taken == nullptr) {
+    return;
+  }
+  RetainedValues values = *taken;
+  values.sequence = sequence_ + 1;
+  if (files_->write(slot_, encode_slot(values)).empty()) {
+    sequence_ = values.sequence;
+    slot_ = 1 - slot_;
+    written_.store(sequence_, std::memory_order_relaxed);
+  } else {
+    failures_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,119 @@
+// Values that outlive the process: parameters and the state of the program, in two slots.
+//
+// The newest state goes into the slot that holds the older one, under a temporary name, flushed, and renamed; so a
+// power cut at any byte leaves the other slot whole. A slot is a sequence number, the layout of the program,
+// parameters, state and a CRC32C over all of it. Files are written by a thread of their own; the cyclic thread only
+// copies.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "runtime/task/exchange.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+struct RetainedValues {
+  std::uint64_t sequence = 0;
+  std::string layout{};
+  std::vector<double> parameters{};
+  std::vector<std::byte> state{};
+};
+
+enum class SlotStatus : std::uint8_t { whole, missing, broken };
+
+struct Slot {
+  SlotStatus status = SlotStatus::missing;
+  RetainedValues values{};
+};
+
+/// The CRC-32C (Castagnoli) of bytes, as in iSCSI.
+[[nodiscard]] std::uint32_t crc32c(std::span<const std::byte> bytes) noexcept;
+
+[[nodiscard]] std::vector<std::byte> encode_slot(const RetainedValues& values);
+/// Whole only where every byte is as it was written; never reads beyond the bytes.
+[[nodiscard]] Slot decode_slot(std::span<const std::byte> bytes);
+
+/// Where slots are kept; a test puts a disk that fails in its place.
+class RetainFiles {
+ public:
+  RetainFiles() = default;
+  RetainFiles(const RetainFiles&) = delete;
+  RetainFiles& operator=(const RetainFiles&) = delete;
+  virtual ~RetainFiles() = default;
+  /// Nothing where there is no such slot.
+  [[nodiscard]] virtual std::optional<std::vector<std::byte>> read(std::size_t slot) = 0;
+  /// Whole or not at all. Empty, or why it failed.
+  virtual std::string write(std::size_t slot, std::span<const std::byte> bytes) = 0;
+  /// Puts a slot aside where nothing overwrites it. Empty, or why it failed.
+  virtual std::string put_aside(std::size_t slot) = 0;
+};
+
+/// Files retain_a and retain_b in a folder, which is made where it is missing.
+class RetainFolder final : public RetainFiles {
+ public:
+  explicit RetainFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::size_t slot) override;
+  std::string write(std::size_t slot, std::span<const std::byte> bytes) override;
+  std::string put_aside(std::size_t slot) override;
+  [[nodiscard]] std::filesystem::path path_of(std::size_t slot) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+enum class MismatchPolicy : std::uint8_t {
+  refuse,  ///< do not start
+  cold,    ///< put the files aside and start without them
+};
+
+struct Recovery {
+  std::optional<RetainedValues> values{};
+  std::string refused{};       ///< why the task must not start, a sentence; empty where it may
+  std::string note{};          ///< what a reader of the status line should know
+  std::uint64_t sequence = 0;  ///< of the newest slot
+  std::size_t next_slot = 0;   ///< where to write first
+};
+
+/// Reads both slots and says how to start.
+[[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy);
+
+/// Copies in the cyclic thread, writes in its own.
+class Retainer {
+ public:
+  Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start);
+  /// Writes what was offered last, and ends.
+  ~Retainer();
+  Retainer(const Retainer&) = delete;
+  Retainer& operator=(const Retainer&) = delete;
+
+  /// From the cyclic thread, between two steps.
+  void offer(const StepProgram& program) noexcept;
+
+  /// Sequence number of the newest slot on the disk.
+  [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_.load(std::memory_order_relaxed); }
+
+ private:
+  void write_newest();
+
+  RetainFiles* files_;
+  Latest<RetainedValues> newest_;
+  std::size_t slot_;
+  std::uint64_t sequence_;
+  std::atomic<std::uint64_t> written_;
+  std::atomic<std::uint64_t> failures_{0};
+  std::atomic<bool> stop_{false};
+  std::thread writer_;
+};
+
+}  // namespace hysteron::runtime

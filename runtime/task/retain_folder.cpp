@@ -1,0 +1,98 @@
+// The slots as files: written aside, flushed, renamed, and the folder flushed, so that the rename is on the disk too.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "runtime/task/retain.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+std::string problem(const std::filesystem::path& path) {
+  return path.string() + ": " + std::strerror(errno);
+}
+
+/// Closes on every way out.
+class File {
+ public:
+  explicit File(int descriptor) : descriptor_(descriptor) {}
+  ~File() {
+    if (descriptor_ >= 0) {
+      (void)close(descriptor_);
+    }
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  [[nodiscard]] int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+bool write_all(int file, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const auto count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno != EINTR) {
+      return false;
+    }
+    bytes = bytes.subspan(count < 0 ? 0 : static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
+  return folder_ / (slot == 0 ? "retain_a" : "retain_b");
+}
+
+std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
+  std::ifstream file(path_of(slot), std::ios::binary);
+  if (!file) {
+    return std::nullopt;
+  }
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::vector<std::byte> bytes(text.size());
+  if (!text.empty()) {
+    std::memcpy(bytes.data(), text.data(), text.size());
+  }
+  return bytes;
+}
+
+std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
+  std::error_code unknown;
+  std::filesystem::create_directories(folder_, unknown);
+  const auto path = path_of(slot);
+  const auto fresh = std::filesystem::path(path).concat(".new");
+  {
+    const File file(open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (file.get() < 0 || !write_all(file.get(), bytes) || fsync(file.get()) != 0) {
+      return problem(fresh);
+    }
+  }
+  if (rename(fresh.c_str(), path.c_str()) != 0) {
+    return problem(path);
+  }
+  const File folder(open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return folder.get() < 0 || fsync(folder.get()) != 0 ? problem(folder_) : std::string();
+}
+
+std::string RetainFolder::put_aside(std::size_t slot) {
+  for (int number = 1;; ++number) {
+    const auto aside = std::filesystem::path(path_of(slot)).concat(".aside" + std::to_string(number));
+    // A link fails where the name is taken; a rename would overwrite what was put aside before.
+    if (link(path_of(slot).c_str(), aside.c_str()) == 0) {
+      return unlink(path_of(slot).c_str()) == 0 ? std::string() : problem(path_of(slot));
+    }
+    if (errno != EEXIST) {
+      return problem(aside);
+    }
+  }
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,69 @@
+// The program that a task runs: a diagram, interpreted, compiled on the fly, or generated into the host. All three give
+// the same bits.
+//
+// Values are doubles by index, whatever their type; TRUE is any number but 0.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/point.hpp"
+
+namespace hysteron::runtime {
+
+struct ProgramSignal {
+  std::string name{};  ///< Y_REF; a parameter: HYST.C1, or TABLE.X[2] for an element of an array
+  std::string unit{};  ///< empty where none is stated
+  std::string meaning{};
+  PointType type = PointType::real64;
+  double preset = 0.0;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_excluded = false;  ///< must be above low, not at it
+};
+
+struct ProgramShape {
+  std::string name{};
+  std::int64_t period = 0;  ///< of the steps, in nanoseconds
+  std::vector<ProgramSignal> inputs{};
+  std::vector<ProgramSignal> outputs{};
+  std::vector<ProgramSignal> parameters{};
+  /// Two programs whose layouts are the same text understand each other's state: same diagram, whatever its parameters.
+  std::string layout{};
+};
+
+class StepProgram {
+ public:
+  StepProgram() = default;
+  StepProgram(const StepProgram&) = delete;
+  StepProgram& operator=(const StepProgram&) = delete;
+  virtual ~StepProgram() = default;
+
+  [[nodiscard]] virtual const ProgramShape& shape() const noexcept = 0;
+  /// Every state as after a start; parameters are kept.
+  virtual void reset() noexcept = 0;
+  /// Allocates nothing, calls nothing of the system.
+  virtual void step(std::span<const double> inputs, std::span<double> outputs) noexcept = 0;
+  /// Between two steps; the state is kept.
+  virtual void set_parameter(std::size_t parameter, double value) noexcept = 0;
+  [[nodiscard]] virtual double parameter(std::size_t parameter) const noexcept = 0;
+  [[nodiscard]] virtual std::size_t state_size() const noexcept = 0;
+  /// `bytes` are of state_size.
+  virtual void save(std::span<std::byte> bytes) const noexcept = 0;
+  virtual void restore(std::span<const std::byte> bytes) noexcept = 0;
+};
+
+/// The values of all parameters.
+[[nodiscard]] inline std::vector<double> parameters_of(const StepProgram& program) {
+  std::vector<double> values(program.shape().parameters.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = program.parameter(i);
+  }
+  return values;
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,191 @@
+#include "runtime/task/task.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hysteron::runtime {
+namespace {
+
+std::vector<bool> device_inputs(const TaskSettings& settings) {
+  std::vector<bool> result;
+  for (const InputSettings& input : settings.inputs) {
+    result.push_back(input.from_device);
+  }
+  return result;
+}
+
+const TaskSettings& fitting(const TaskSettings& settings, const ProgramShape& shape) {
+  if (settings.inputs.size() != shape.inputs.size() || settings.outputs.size() != shape.outputs.size()) {
+    throw std::invalid_argument("the settings of a task name other inputs and outputs than its program has");
+  }
+  return settings;
+}
+
+}  // namespace
+
+Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments, SetCheck check)
+    : program_(&program),
+      settings_(fitting(settings, program.shape())),
+      attachments_(attachments),
+      door_(program, device_inputs(settings), settings.outputs, std::move(check)),
+      safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
+      watchdog_(settings.watchdog),
+      computed_(program.shape().outputs.size()),
+      writes_seen_(program.shape().inputs.size(), 0),
+      ages_(program.shape().inputs.size(), 0),
+      parameters_(parameters_of(program)) {
+  settings_.loop.period = program.shape().period;
+  for (const ProgramSignal& input : program.shape().inputs) {
+    inputs_.push_back(input.preset);
+  }
+  last_good_ = inputs_;
+}
+
+LoopEnd Task::run(Clock& clock, const std::atomic<bool>& stop) {
+  status_.state = TaskState::running;
+  const LoopEnd end = run_loop(settings_.loop, clock, *this, stop, statistics_);
+  if (!guard_took_over_) {
+    settle(clock, end == LoopEnd::missed ? Fault::missed_cycle : tripped_ ? Fault::hang : Fault::stop);
+  }
+  return end;
+}
+
+bool Task::cycle(const CycleMoment& moment) noexcept {
+  if (attachments_.guard != nullptr) {
+    attachments_.guard->cycle_begins(moment.start);
+  }
+  take_orders();
+  Fault fault = read_inputs();
+  if (tripped_) {
+    fault = Fault::hang;
+  } else {
+    if (attachments_.trace != nullptr) {
+      attachments_.trace->before_step(moment.number, *program_);
+    }
+    program_->step(inputs_, computed_);
+  }
+  safe_.step(computed_, fault);
+  status_.fault = safe_.worst();
+  const bool written = write_outputs();
+  if (attachments_.trace != nullptr && !tripped_) {
+    attachments_.trace->step(moment.number, moment.period, status_.fault, inputs_, computed_, safe_.values());
+  }
+  return written;
+}
+
+void Task::take_orders() noexcept {
+  for (std::uint64_t& age : ages_) {
+    ++age;
+  }
+  const TaskOrders* const orders = door_.take_orders();
+  if (orders == nullptr) {
+    return;
+  }
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (orders->input_writes[i] != writes_seen_[i]) {
+      writes_seen_[i] = orders->input_writes[i];
+      inputs_[i] = orders->inputs[i];
+      ages_[i] = 0;
+    }
+  }
+  if (orders->commits != status_.commits) {
+    status_.commits = orders->commits;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      parameters_[i] = orders->parameters[i];
+      program_->set_parameter(i, parameters_[i]);
+    }
+    if (attachments_.trace != nullptr) {
+      attachments_.trace->parameters_changed(parameters_);
+    }
+  }
+  if (orders->resets != resets_seen_) {
+    resets_seen_ = orders->resets;
+    tripped_ = false;
+    status_.state = TaskState::running;
+    watchdog_ = Watchdog(settings_.watchdog);
+    program_->reset();
+    if (attachments_.trace != nullptr) {
+      attachments_.trace->was_reset();
+    }
+  }
+  status_.heartbeat = orders->heartbeat;
+}
+
+Fault Task::read_inputs() noexcept {
+  Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(inputs_);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
+    // A number that is none would stay in the program's state for ever.
+    if (!std::isfinite(inputs_[i])) {
+      inputs_[i] = last_good_[i];
+      fault = fault == Fault::none ? Fault::stale_input : fault;
+    } else if (stale && fault == Fault::none) {
+      fault = Fault::stale_input;
+    }
+    last_good_[i] = inputs_[i];
+  }
+  return fault;
+}
+
+bool Task::write_outputs() noexcept {
+  if (attachments_.guard != nullptr) {
+    attachments_.guard->cycle_ends(safe_.values());
+    if (!attachments_.guard->may_write()) {
+      guard_took_over_ = true;
+      status_.fault = attachments_.guard->fault();
+      status_.state = TaskState::faulted;
+      return false;
+    }
+  }
+  if (attachments_.field != nullptr) {
+    attachments_.field->write(safe_.values());
+  }
+  return true;
+}
+
+bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Verdict /*verdict*/) noexcept {
+  if (!tripped_ && watchdog_.finished(duration)) {
+    tripped_ = true;
+    status_.state = TaskState::faulted;
+    status_.fault = Fault::hang;
+  }
+  if (attachments_.retainer != nullptr) {
+    if (settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0 && !tripped_) {
+      attachments_.retainer->offer(*program_);
+    }
+    status_.retained = attachments_.retainer->written();
+  }
+  status_.dropped = attachments_.trace == nullptr ? 0 : attachments_.trace->dropped();
+  door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
+  return true;
+}
+
+void Task::settle(Clock& clock, Fault fault) {
+  const std::int64_t begin = clock.now();
+  for (std::int64_t due = begin + settings_.loop.period; due - begin <= settings_.longest_stop;
+       due += settings_.loop.period) {
+    if (attachments_.guard != nullptr) {
+      attachments_.guard->cycle_begins(clock.now());
+    }
+    safe_.step(computed_, fault);
+    if (!write_outputs() || safe_.settled()) {
+      break;
+    }
+    clock.sleep_until(due);
+  }
+  if (attachments_.retainer != nullptr && !tripped_) {
+    attachments_.retainer->offer(*program_);
+  }
+  if (!guard_took_over_) {
+    status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;
+    status_.fault = fault;
+    if (attachments_.guard != nullptr && safe_.settled()) {
+      (void)attachments_.guard->goodbye();
+    }
+  }
+  door_.publish(*program_, inputs_, safe_.values(), status_, statistics_);
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,92 @@
+// A cyclic task: a program, its outputs made safe, and all that watches, keeps and records it.
+//
+// One cycle: take what servers ordered; read devices; step; limit the outputs; tell the guard; write devices; trace,
+// retain, publish. The thread allocates nothing, takes no lock and calls nothing of the system but sleep and clock.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/task/cyclic_loop.hpp"
+#include "runtime/task/field_io.hpp"
+#include "runtime/task/guard.hpp"
+#include "runtime/task/retain.hpp"
+#include "runtime/task/safe_outputs.hpp"
+#include "runtime/task/step_program.hpp"
+#include "runtime/task/task_door.hpp"
+#include "runtime/task/trace.hpp"
+#include "runtime/task/watchdog.hpp"
+
+namespace hysteron::runtime {
+
+struct InputSettings {
+  bool from_device = false;
+  std::uint64_t longest_age = 0;  ///< cycles since the last write of a server; 0: never stale
+};
+
+struct TaskSettings {
+  LoopSettings loop{};
+  WatchdogSettings watchdog{};
+  std::vector<InputSettings> inputs{};
+  std::vector<OutputSafety> outputs{};
+  std::uint64_t retain_every = 1000;           ///< cycles
+  std::int64_t longest_stop = 10'000'000'000;  ///< for the way to the safe values at the end
+};
+
+/// Each may be null.
+struct TaskAttachments {
+  FieldIo* field = nullptr;
+  Guard* guard = nullptr;
+  Retainer* retainer = nullptr;
+  Trace* trace = nullptr;
+};
+
+class Task final : private CycleBody {
+ public:
+  /// The loop's period is the program's. Throws std::invalid_argument where settings do not fit the program.
+  Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments, SetCheck check = {});
+
+  /// Runs until it is stopped or ends by itself, and then brings the outputs to their safe values. In the calling
+  /// thread, whose scheduling is the caller's care.
+  LoopEnd run(Clock& clock, const std::atomic<bool>& stop);
+
+  [[nodiscard]] TaskDoor& door() noexcept { return door_; }
+  /// Not while it runs; then, points() of the door say the same.
+  [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
+  [[nodiscard]] Fault fault() const noexcept { return status_.fault; }
+  [[nodiscard]] std::span<const double> outputs() const noexcept { return safe_.values(); }
+  /// For a guard, before run(): where the outputs begin, and how they become safe.
+  [[nodiscard]] const SafeOutputs& safe_outputs() const noexcept { return safe_; }
+  /// A guard needs these outputs before it starts, and is there only afterwards.
+  void attach(Guard* guard) noexcept { attachments_.guard = guard; }
+
+ private:
+  bool cycle(const CycleMoment& moment) noexcept override;
+  bool finished(const LoopStatistics& statistics, std::int64_t duration, Verdict verdict) noexcept override;
+
+  void take_orders() noexcept;
+  [[nodiscard]] Fault read_inputs() noexcept;
+  [[nodiscard]] bool write_outputs() noexcept;
+  void settle(Clock& clock, Fault fault);
+
+  StepProgram* program_;
+  TaskSettings settings_;
+  TaskAttachments attachments_;
+  TaskDoor door_;
+  SafeOutputs safe_;
+  Watchdog watchdog_;
+  LoopStatistics statistics_{};
+  TaskStatus status_{};
+  std::vector<double> inputs_;
+  std::vector<double> last_good_;
+  std::vector<double> computed_;
+  std::vector<std::uint64_t> writes_seen_;
+  std::vector<std::uint64_t> ages_;
+  std::vector<double> parameters_;
+  std::uint64_t resets_seen_ = 0;
+  bool tripped_ = false;
+  bool guard_took_over_ = false;
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,197 @@
+#include "runtime/task/task_door.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr std::size_t status_count = 15;
+constexpr std::size_t command_count = 4;
+constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
+
+std::size_t width_of(const ProgramShape& shape) {
+  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + command_count;
+}
+
+TaskOrders first_orders(const StepProgram& program) {
+  TaskOrders orders{.inputs = {},
+                    .input_writes = std::vector<std::uint64_t>(program.shape().inputs.size(), 0),
+                    .parameters = parameters_of(program)};
+  for (const ProgramSignal& input : program.shape().inputs) {
+    orders.inputs.push_back(input.preset);
+  }
+  return orders;
+}
+
+Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
+  return {.name = signal.name,
+          .kind = kind,
+          .type = signal.type,
+          .unit = signal.unit.empty() ? "1" : signal.unit,
+          .low = signal.low,
+          .high = signal.high,
+          .writable = writable,
+          .meaning = signal.meaning};
+}
+
+}  // namespace
+
+TaskDoor::TaskDoor(const StepProgram& program, const std::vector<bool>& device_inputs,
+                   const std::vector<OutputSafety>& safety, SetCheck check)
+    : device_inputs_(device_inputs),
+      snapshots_(width_of(program.shape())),
+      published_(width_of(program.shape())),
+      parameters_(program.shape().parameters, parameters_of(program), std::move(check)),
+      wanted_(first_orders(program)),
+      orders_(wanted_) {
+  const ProgramShape& shape = program.shape();
+  for (std::size_t i = 0; i < shape.inputs.size(); ++i) {
+    add(point_of(shape.inputs[i], PointKind::input, !device_inputs_[i]));
+  }
+  for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
+    Point point = point_of(shape.outputs[i], PointKind::output, false);
+    point.low = std::max(point.low, safety[i].low);
+    point.high = std::min(point.high, safety[i].high);
+    add(std::move(point));
+  }
+  first_parameter_ = points_.size();
+  for (const ProgramSignal& parameter : shape.parameters) {
+    add(point_of(parameter, PointKind::parameter, true));
+  }
+  add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
+  add_status("task.fault", PointType::uint16, "1",
+             "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop");
+  add_status("task.cycles", PointType::uint64, "1", "cycles that were run");
+  add_status("task.skipped", PointType::uint64, "1", "periods that passed without a cycle");
+  add_status("task.elapsed", PointType::uint64, "1", "periods by the clock: cycles + skipped");
+  add_status("task.late_wake", PointType::uint64, "1", "late cycles: the thread was woken late");
+  add_status("task.late_cpu", PointType::uint64, "1", "late cycles: the cycle computed for too long");
+  add_status("task.late_preempted", PointType::uint64, "1", "late cycles: the thread was not run");
+  add_status("task.late_steal", PointType::uint64, "1", "late cycles: the hypervisor had the processor");
+  add_status("task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later");
+  add_status("task.lateness_worst", PointType::int64, "ns", "the latest start");
+  add_status("task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start");
+  add_status("task.commits", PointType::uint64, "1", "sets of parameters applied");
+  add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
+  add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
+  first_command_ = points_.size();
+  add_command("task.commit", "any number but 0: the staged parameters count from the next step on");
+  add_command("task.discard", "any number but 0: the staged parameters are forgotten");
+  add_command("task.reset", "any number but 0: every state as after a start, and a fault is forgotten");
+  add_command("task.heartbeat", "any number: the client lives");
+}
+
+void TaskDoor::add_status(const char* name, PointType type, const char* unit, const char* meaning) {
+  add({.name = name, .kind = PointKind::status, .type = type, .unit = unit, .meaning = meaning});
+}
+
+void TaskDoor::add_command(const char* name, const char* meaning) {
+  add({.name = name,
+       .kind = PointKind::command,
+       .type = PointType::uint16,
+       .unit = "1",
+       .low = 0.0,
+       .high = 65535.0,
+       .writable = true,
+       .meaning = meaning});
+}
+
+void TaskDoor::read(Snapshot& into) {
+  into.values.resize(points_.size());
+  const bool any = snapshots_.read(into.cycle, into.values);
+  const std::lock_guard lock(servers_);
+  if (!any) {
+    std::ranges::fill(into.values, 0.0);
+    std::ranges::copy(wanted_.inputs, into.values.begin());
+  }
+  if (!any || parameters_.any_staged()) {
+    std::ranges::copy(parameters_.staged(), into.values.begin() + static_cast<std::ptrdiff_t>(first_parameter_));
+  }
+}
+
+std::string TaskDoor::write(std::span<const PointWrite> writes) {
+  const std::lock_guard lock(servers_);
+  // On copies, which take the place of the originals where nothing was refused.
+  StagedParameters parameters = parameters_;
+  TaskOrders wanted = wanted_;
+  for (const PointWrite& one : writes) {
+    const Point& point = points_[one.point];
+    if (point.kind == PointKind::input) {
+      if (device_inputs_[one.point]) {
+        return point.name + " is given by a device.";
+      }
+      wanted.inputs[one.point] = one.value;
+      ++wanted.input_writes[one.point];
+    } else if (point.kind == PointKind::parameter) {
+      parameters.stage(one.point - first_parameter_, one.value);
+    } else if (point.kind != PointKind::command) {
+      return point.name + " can only be read.";
+    }
+  }
+  // Commands after values, whatever their order in the request: a commit counts for what came with it.
+  for (const PointWrite& one : writes) {
+    if (points_[one.point].kind != PointKind::command) {
+      continue;
+    }
+    const auto command = static_cast<Command>(one.point - first_command_);
+    if (command == Command::heartbeat) {
+      wanted.heartbeat = one.value;
+    } else if (one.value == 0.0) {
+      continue;
+    } else if (command == Command::discard) {
+      parameters.discard();
+    } else if (command == Command::reset) {
+      ++wanted.resets;
+    } else {
+      if (auto refusal = parameters.commit(); !refusal.empty()) {
+        return refusal;
+      }
+      wanted.parameters = parameters.committed();
+      ++wanted.commits;
+    }
+  }
+  parameters_ = std::move(parameters);
+  wanted_ = std::move(wanted);
+  orders_.filling() = wanted_;
+  orders_.publish();
+  return {};
+}
+
+void TaskDoor::publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
+                       const TaskStatus& status, const LoopStatistics& statistics) noexcept {
+  auto at = std::ranges::copy(inputs, published_.begin()).out;
+  at = std::ranges::copy(outputs, at).out;
+  const std::size_t parameters = program.shape().parameters.size();
+  for (std::size_t i = 0; i < parameters; ++i) {
+    *at++ = program.parameter(i);
+  }
+  if (statistics.run % percentile_every == 0) {
+    high_lateness_ = statistics.lateness.percentile(0.9999);
+  }
+  const auto events = [&](Cause cause) { return statistics.events[static_cast<std::size_t>(cause)]; };
+  const std::array<double, status_count> values{
+      static_cast<double>(status.state),
+      static_cast<double>(status.fault),
+      static_cast<double>(statistics.run),
+      static_cast<double>(statistics.skipped),
+      static_cast<double>(statistics.elapsed),
+      static_cast<double>(events(Cause::late_wake)),
+      static_cast<double>(events(Cause::own_cpu)),
+      static_cast<double>(events(Cause::preempted)),
+      static_cast<double>(events(Cause::host_steal)),
+      static_cast<double>(high_lateness_),
+      static_cast<double>(statistics.lateness.worst()),
+      static_cast<double>(statistics.lateness.worst_cycle()),
+      static_cast<double>(status.commits),
+      static_cast<double>(status.retained),
+      static_cast<double>(status.dropped),
+  };
+  at = std::ranges::copy(values, at).out;
+  at = std::fill_n(at, 3, 0.0);
+  *at = status.heartbeat;
+  snapshots_.publish(statistics.run, published_);
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,81 @@
+// The points of a task, and what servers ask of it, on its way into the cyclic thread.
+//
+// Inputs that no device gives are written here; parameters are staged and committed; commands are counted. What the
+// cyclic thread takes is always one whole set of orders, the newest, between two steps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/point.hpp"
+#include "runtime/task/exchange.hpp"
+#include "runtime/task/lateness.hpp"
+#include "runtime/task/safe_outputs.hpp"
+#include "runtime/task/staged_parameters.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+/// All that is asked of the cyclic thread; the counters say what is new.
+struct TaskOrders {
+  std::vector<double> inputs{};
+  std::vector<std::uint64_t> input_writes{};
+  std::vector<double> parameters{};
+  std::uint64_t commits = 0;
+  std::uint64_t resets = 0;
+  double heartbeat = 0.0;
+};
+
+enum class TaskState : std::uint8_t { starting, running, faulted, stopped };
+
+/// What a task says of itself once a cycle.
+struct TaskStatus {
+  TaskState state = TaskState::starting;
+  Fault fault = Fault::none;
+  std::uint64_t commits = 0;  ///< sets of parameters applied
+  std::uint64_t retained = 0;
+  std::uint64_t dropped = 0;
+  double heartbeat = 0.0;
+};
+
+class TaskDoor final : public PointDoor {
+ public:
+  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
+  TaskDoor(const StepProgram& program, const std::vector<bool>& device_inputs, const std::vector<OutputSafety>& safety,
+           SetCheck check = {});
+
+  [[nodiscard]] std::span<const Point> points() const override { return points_; }
+  void read(Snapshot& into) override;
+  std::string write(std::span<const PointWrite> writes) override;
+
+  // For the cyclic thread alone.
+  [[nodiscard]] const TaskOrders* take_orders() noexcept { return orders_.take(); }
+  void publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
+               const TaskStatus& status, const LoopStatistics& statistics) noexcept;
+
+ private:
+  enum class Command : std::uint8_t { commit, discard, reset, heartbeat };
+
+  void add(Point point) { points_.push_back(std::move(point)); }
+  void add_status(const char* name, PointType type, const char* unit, const char* meaning);
+  void add_command(const char* name, const char* meaning);
+
+  std::vector<Point> points_;
+  std::vector<bool> device_inputs_;
+  std::size_t first_parameter_ = 0;
+  std::size_t first_command_ = 0;
+  SnapshotRing snapshots_;
+  std::vector<double> published_;  ///< of the cyclic thread
+  std::int64_t high_lateness_ = 0;
+
+  std::mutex servers_;  ///< between servers; the cyclic thread never takes it
+  StagedParameters parameters_;
+  TaskOrders wanted_;
+  Latest<TaskOrders> orders_;
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,261 @@
+#include "runtime/task/trace_file.hpp"
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr std::string_view first_line = "hysteron trace 1";
+
+std::string lines_of(std::string_view word, const std::vector<TraceColumn>& columns) {
+  std::string text;
+  for (const TraceColumn& column : columns) {
+    text += std::string(word) + " " + column.name + (column.unit.empty() ? "" : " " + column.unit) + "\n";
+  }
+  return text;
+}
+
+std::vector<TraceColumn> columns_of(const std::vector<ProgramSignal>& signals) {
+  std::vector<TraceColumn> columns;
+  for (const ProgramSignal& signal : signals) {
+    columns.push_back({.name = signal.name, .unit = signal.unit});
+  }
+  return columns;
+}
+
+template <class T>
+bool read_number(std::string_view text, T& number) {
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return problem == std::errc{} && end == text.data() + text.size();
+}
+
+/// One line of the head; false where it has no meaning.
+bool read_line(std::string_view line, TraceHead& head) {
+  const auto space = line.find(' ');
+  const auto word = line.substr(0, space);
+  const auto rest = space == std::string_view::npos ? std::string_view() : line.substr(space + 1);
+  if (word == "program") {
+    head.program = rest;
+  } else if (word == "layout") {
+    head.layout = rest;
+  } else if (word == "period") {
+    return read_number(rest, head.period) && head.period > 0;
+  } else if (word == "state") {
+    return read_number(rest, head.state_size);
+  } else if (word == "input" || word == "output" || word == "parameter") {
+    const auto end = rest.find(' ');
+    TraceColumn column{.name = std::string(rest.substr(0, end)),
+                       .unit = end == std::string_view::npos ? "" : std::string(rest.substr(end + 1))};
+    (word == "input" ? head.inputs : word == "output" ? head.outputs : head.parameters).push_back(std::move(column));
+  } else {
+    return false;
+  }
+  return !rest.empty();
+}
+
+/// Reads contents forward; their length was checked before.
+class Contents {
+ public:
+  explicit Contents(std::string_view bytes) : rest_(bytes) {}
+  template <class T>
+  T number() {
+    T value{};
+    std::memcpy(&value, rest_.data(), sizeof(T));
+    rest_.remove_prefix(sizeof(T));
+    return value;
+  }
+  void numbers(std::vector<double>& into) {
+    for (double& value : into) {
+      value = number<double>();
+    }
+  }
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+
+ private:
+  std::string_view rest_;
+};
+
+std::string at_byte(std::string_view what, std::size_t byte) {
+  return std::string(what) + " at byte " + std::to_string(byte);
+}
+
+std::size_t length_of(TraceKind kind, const TraceHead& head) {
+  const std::size_t inputs = head.inputs.size() * sizeof(double);
+  const std::size_t outputs = head.outputs.size() * sizeof(double);
+  const std::size_t parameters = head.parameters.size() * sizeof(double);
+  switch (kind) {
+    case TraceKind::state:
+      return 8 + parameters + head.state_size;
+    case TraceKind::parameters:
+      return parameters;
+    case TraceKind::reset:
+      return 0;
+    case TraceKind::step:
+      return 20 + inputs + 2 * outputs;
+    case TraceKind::end:
+      return 16;
+  }
+  return static_cast<std::size_t>(-1);
+}
+
+void hand_on(TraceKind kind, std::string_view bytes, const TraceVisitor& visitor, TraceStep& step,
+             std::vector<double>& parameters) {
+  Contents contents(bytes);
+  if (kind == TraceKind::state && visitor.state) {
+    const auto next = contents.number<std::uint64_t>();
+    contents.numbers(parameters);
+    visitor.state(next, parameters,
+                  {reinterpret_cast<const std::byte*>(contents.rest().data()), contents.rest().size()});
+  } else if (kind == TraceKind::parameters && visitor.parameters) {
+    contents.numbers(parameters);
+    visitor.parameters(parameters);
+  } else if (kind == TraceKind::reset && visitor.reset) {
+    visitor.reset();
+  } else if (kind == TraceKind::step && visitor.step) {
+    step.number = contents.number<std::uint64_t>();
+    step.period = contents.number<std::uint64_t>();
+    step.fault = static_cast<Fault>(contents.number<std::uint32_t>());
+    contents.numbers(step.inputs);
+    contents.numbers(step.computed);
+    contents.numbers(step.outputs);
+    visitor.step(step);
+  } else if (kind == TraceKind::end && visitor.end) {
+    const auto steps = contents.number<std::uint64_t>();
+    visitor.end(steps, contents.number<std::uint64_t>());
+  }
+}
+
+/// The head; gives back where the data begins, 0 with a fault.
+std::size_t read_head(std::string_view bytes, TraceHead& head, std::string& fault) {
+  if (!bytes.starts_with(std::string(first_line) + "\n")) {
+    fault = "this is no trace: it does not begin with \"" + std::string(first_line) + "\"";
+    return 0;
+  }
+  std::size_t at = first_line.size() + 1;
+  for (;;) {
+    const auto end = bytes.find('\n', at);
+    if (end == std::string_view::npos) {
+      fault = at_byte("the head does not end", at);
+      return 0;
+    }
+    const auto line = bytes.substr(at, end - at);
+    if (line == "data") {
+      return end + 1;
+    }
+    if (!read_line(line, head)) {
+      fault = at_byte("a line of the head that has no meaning", at);
+      return 0;
+    }
+    at = end + 1;
+  }
+}
+
+}  // namespace
+
+TraceHead head_of(const StepProgram& program) {
+  const ProgramShape& shape = program.shape();
+  return {.program = shape.name,
+          .layout = shape.layout,
+          .period = shape.period,
+          .state_size = program.state_size(),
+          .inputs = columns_of(shape.inputs),
+          .outputs = columns_of(shape.outputs),
+          .parameters = columns_of(shape.parameters)};
+}
+
+std::string text_of(const TraceHead& head) {
+  return std::string(first_line) + "\nprogram " + head.program + "\nlayout " + head.layout + "\nperiod " +
+         std::to_string(head.period) + "\nstate " + std::to_string(head.state_size) + "\n" +
+         lines_of("input", head.inputs) + lines_of("output", head.outputs) + lines_of("parameter", head.parameters) +
+         "data\n";
+}
+
+std::string read_trace(std::string_view bytes, TraceHead& head,
+                       const std::function<TraceVisitor(const TraceHead&)>& visit) {
+  std::string fault;
+  std::size_t at = read_head(bytes, head, fault);
+  if (at == 0) {
+    return fault;
+  }
+  const TraceVisitor visitor = visit(head);
+  TraceStep step{.inputs = std::vector<double>(head.inputs.size()),
+                 .computed = std::vector<double>(head.outputs.size()),
+                 .outputs = std::vector<double>(head.outputs.size())};
+  std::vector<double> parameters(head.parameters.size());
+  while (bytes.size() - at >= 5) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + at, sizeof(length));
+    const auto kind = static_cast<TraceKind>(bytes[at + 4]);
+    if (length_of(kind, head) != length) {
+      return at_byte("a record of an unknown kind or wrong length", at);
+    }
+    if (bytes.size() - at - 5 < length) {
+      break;  // cut off
+    }
+    hand_on(kind, bytes.substr(at + 5, length), visitor, step, parameters);
+    at += 5 + length;
+  }
+  return {};
+}
+
+std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& result,
+                   const std::function<void(const TraceStep&)>& on_step) {
+  std::string fault;
+  std::uint64_t next = 0;
+  bool known = false;
+  std::vector<double> computed(program.shape().outputs.size());
+  const auto set_all = [&](std::span<const double> parameters) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      program.set_parameter(i, parameters[i]);
+    }
+  };
+  const auto visit = [&](const TraceHead& head) {
+    TraceVisitor visitor;
+    if (head.layout != program.shape().layout || head.state_size != program.state_size()) {
+      fault = "the trace is of another diagram (" + head.program + "), or was made by another way of running it";
+      return visitor;
+    }
+    visitor.state = [&](std::uint64_t number, std::span<const double> parameters, std::span<const std::byte> state) {
+      set_all(parameters);
+      program.restore(state);
+      next = number;
+      known = true;
+    };
+    visitor.parameters = set_all;
+    visitor.reset = [&] { program.reset(); };
+    visitor.step = [&](const TraceStep& step) {
+      known = known && step.number == next;
+      if (known) {
+        program.step(step.inputs, computed);
+        ++result.steps;
+        next = step.number + 1;
+        for (std::size_t i = 0; i < computed.size(); ++i) {
+          const bool same = std::bit_cast<std::uint64_t>(computed[i]) == std::bit_cast<std::uint64_t>(step.computed[i]);
+          if (!same && !(std::isnan(computed[i]) && std::isnan(step.computed[i]))) {
+            result.first_different = result.different == 0 ? step.number : result.first_different;
+            ++result.different;
+            break;
+          }
+        }
+      } else {
+        ++result.without_state;
+      }
+      if (on_step) {
+        on_step(step);
+      }
+    };
+    visitor.end = [&](std::uint64_t /*steps*/, std::uint64_t dropped) {
+      result.dropped = dropped;
+      result.complete = true;
+    };
+    return visitor;
+  };
+  TraceHead head;
+  const auto broken = read_trace(bytes, head, visit);
+  return fault.empty() ? broken : fault;
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,92 @@
+// The trace of a task as a file: what went into the program and what came out, cycle by cycle, and where it started.
+//
+//   hysteron trace 1
+//   program PIEZO_FF
+//   layout 9f3c…
+//   period 1000000
+//   state 120
+//   input Y_REF um
+//   output U V
+//   parameter HYST.C1 um/V
+//   data
+//
+// and then records in the byte order of x86 and ARM (little-endian): length (4 bytes, of what follows the kind), kind
+// (1), contents. Kinds:
+//   K  state: number of the next step (8), parameters, bytes of the state
+//   P  parameters from the next step on
+//   Z  a reset before the next step
+//   R  a step: its number (8), its period (8), fault (4), inputs, outputs as computed, outputs as they left
+//   E  the end: steps recorded (8), steps dropped for want of room (8)
+// From a K on, the program gives the recorded outputs again, to the bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/task/safe_outputs.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+enum class TraceKind : char { state = 'K', parameters = 'P', reset = 'Z', step = 'R', end = 'E' };
+
+struct TraceColumn {
+  std::string name{};
+  std::string unit{};
+};
+
+struct TraceHead {
+  std::string program{};
+  std::string layout{};
+  std::int64_t period = 0;
+  std::size_t state_size = 0;
+  std::vector<TraceColumn> inputs{};
+  std::vector<TraceColumn> outputs{};
+  std::vector<TraceColumn> parameters{};
+};
+
+struct TraceStep {
+  std::uint64_t number = 0;
+  std::uint64_t period = 0;
+  Fault fault = Fault::none;
+  std::vector<double> inputs{};
+  std::vector<double> computed{};
+  std::vector<double> outputs{};
+};
+
+[[nodiscard]] TraceHead head_of(const StepProgram& program);
+[[nodiscard]] std::string text_of(const TraceHead& head);
+
+/// What a reader of a trace is told, in order. What it does not want it leaves out.
+struct TraceVisitor {
+  std::function<void(std::uint64_t next, std::span<const double> parameters, std::span<const std::byte> state)> state{};
+  std::function<void(std::span<const double> parameters)> parameters{};
+  std::function<void()> reset{};
+  std::function<void(const TraceStep& step)> step{};
+  std::function<void(std::uint64_t steps, std::uint64_t dropped)> end{};
+};
+
+/// Reads a trace. Empty, or what is wrong with it and at which byte. A trace that was cut off is read up to the cut.
+[[nodiscard]] std::string read_trace(std::string_view bytes, TraceHead& head,
+                                     const std::function<TraceVisitor(const TraceHead&)>& visit);
+
+struct ReplayResult {
+  std::uint64_t steps = 0;
+  std::uint64_t different = 0;        ///< steps with an output of other bits
+  std::uint64_t first_different = 0;  ///< its number
+  std::uint64_t without_state = 0;    ///< steps that no state came before: they cannot be replayed
+  std::uint64_t dropped = 0;
+  bool complete = false;  ///< the end was written
+};
+
+/// Runs the program over the recorded inputs, and compares every output with the recorded one, bit by bit. Every
+/// recorded step is handed on too. Empty, or what is wrong with the trace.
+[[nodiscard]] std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& result,
+                                 const std::function<void(const TraceStep&)>& on_step = {});
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,69 @@
+// A process that retains as fast as it can and is killed at any moment: what can be recovered afterwards.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+
+#include "runtime/task/retain.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+
+namespace hysteron::runtime::test {
+
+/// The newest number that the child has seen on the disk, and what was recovered.
+struct KillResult {
+  std::uint64_t confirmed = 0;
+  std::uint64_t recovered = 0;
+  bool consistent = false;  ///< state and parameters of one moment
+};
+
+/// Each state that is retained is its own sequence number, so that what comes back can be judged.
+inline KillResult kill_while_retaining(const std::filesystem::path& folder, std::int64_t after) {
+  std::array<int, 2> pipe_ends{};
+  (void)pipe(pipe_ends.data());
+  const pid_t child = fork();
+  if (child == 0) {
+    RetainFolder files(folder);
+    const Recovery start = recover(files, "accumulator", MismatchPolicy::refuse);
+    std::uint64_t number = start.sequence;
+    std::size_t slot = start.next_slot;
+    for (;;) {
+      ++number;
+      RetainedValues values{.sequence = number, .layout = "accumulator"};
+      values.parameters = {static_cast<double>(number), -static_cast<double>(number)};
+      values.state.assign(20'000, static_cast<std::byte>(number & 0xFF));
+      if (!files.write(slot, encode_slot(values)).empty() || write(pipe_ends[1], &number, 8) != 8) {
+        _exit(1);
+      }
+      slot = 1 - slot;
+    }
+  }
+  (void)close(pipe_ends[1]);
+  const timespec wait{.tv_sec = 0, .tv_nsec = static_cast<long>(after)};
+  (void)nanosleep(&wait, nullptr);
+  (void)kill(child, SIGKILL);
+  (void)waitpid(child, nullptr, 0);
+  KillResult result;
+  std::uint64_t number = 0;
+  while (read(pipe_ends[0], &number, 8) == 8) {
+    result.confirmed = number;
+  }
+  (void)close(pipe_ends[0]);
+  RetainFolder files(folder);
+  const Recovery recovery = recover(files, "accumulator", MismatchPolicy::refuse);
+  result.recovered = recovery.sequence;
+  result.consistent = recovery.refused.empty() && (recovery.sequence == 0 || recovery.values.has_value());
+  if (recovery.values) {
+    const auto& values = *recovery.values;
+    result.consistent = values.parameters[0] == static_cast<double>(values.sequence) &&
+                        values.parameters[1] == -values.parameters[0] &&
+                        values.state == std::vector<std::byte>(20'000, static_cast<std::byte>(values.sequence & 0xFF));
+  }
+  return result;
+}
+
+}  // namespace hysteron::runtime::test

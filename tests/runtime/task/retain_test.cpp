@@ -1,0 +1,172 @@
+// No damage to a slot is taken for a value, and none costs more than the newest slot.
+#include "runtime/task/retain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "tests/runtime/task/retain_kill.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+RetainedValues some_values(std::uint64_t sequence) {
+  return {.sequence = sequence,
+          .layout = "9f3c",
+          .parameters = {1.5, -0.0, 1e-300},
+          .state = std::vector<std::byte>(61, static_cast<std::byte>(sequence))};
+}
+
+/// A disk in memory that can refuse.
+class MemoryFiles final : public RetainFiles {
+ public:
+  std::optional<std::vector<std::byte>> read(std::size_t slot) override {
+    return slots.contains(slot) ? std::optional(slots[slot]) : std::nullopt;
+  }
+  std::string write(std::size_t slot, std::span<const std::byte> bytes) override {
+    if (full) {
+      return "no space";
+    }
+    slots[slot] = {bytes.begin(), bytes.end()};
+    return {};
+  }
+  std::string put_aside(std::size_t slot) override {
+    aside.push_back(slots[slot]);
+    slots.erase(slot);
+    return {};
+  }
+  std::map<std::size_t, std::vector<std::byte>> slots;
+  std::vector<std::vector<std::byte>> aside;
+  std::atomic<bool> full{false};
+};
+
+TEST(Retain, TheSumIsTheStandardsOwn) {
+  // RFC 3720, B.4: 32 bytes of zeros, of ones, and 0 to 31.
+  std::vector<std::byte> bytes(32, std::byte{0});
+  EXPECT_EQ(crc32c(bytes), 0x8A9136AAU);
+  bytes.assign(32, std::byte{0xFF});
+  EXPECT_EQ(crc32c(bytes), 0x62A8AB43U);
+  for (std::size_t i = 0; i < 32; ++i) {
+    bytes[i] = static_cast<std::byte>(i);
+  }
+  EXPECT_EQ(crc32c(bytes), 0x46DD794EU);
+}
+
+TEST(Retain, ASlotComesBackAsItWas) {
+  const auto values = some_values(7);
+  const Slot slot = decode_slot(encode_slot(values));
+  ASSERT_EQ(slot.status, SlotStatus::whole);
+  EXPECT_EQ(slot.values.sequence, 7U);
+  EXPECT_EQ(slot.values.layout, values.layout);
+  EXPECT_EQ(slot.values.parameters, values.parameters);
+  EXPECT_EQ(slot.values.state, values.state);
+}
+
+TEST(Retain, EveryTruncationAndEverySingleBitFlipIsSeen) {
+  const auto bytes = encode_slot(some_values(7));
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    ASSERT_EQ(decode_slot(std::span(bytes).first(length)).status, SlotStatus::broken) << length;
+  }
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    auto flipped = bytes;
+    flipped[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    ASSERT_EQ(decode_slot(flipped).status, SlotStatus::broken) << bit;
+  }
+  auto longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_EQ(decode_slot(longer).status, SlotStatus::broken);
+}
+
+TEST(Retain, ABrokenNewestSlotCostsThatSlotAlone) {
+  MemoryFiles files;
+  files.slots[0] = encode_slot(some_values(4));
+  files.slots[1] = encode_slot(some_values(5));
+  auto recovery = recover(files, "9f3c", MismatchPolicy::refuse);
+  EXPECT_EQ(recovery.values->sequence, 5U);
+  EXPECT_EQ(recovery.next_slot, 0U);
+  EXPECT_EQ(recovery.note, "");
+  files.slots[1].resize(40);
+  recovery = recover(files, "9f3c", MismatchPolicy::refuse);
+  EXPECT_EQ(recovery.refused, "");
+  EXPECT_EQ(recovery.values->sequence, 4U);
+  EXPECT_EQ(recovery.next_slot, 1U);  // the whole one is not overwritten first
+  EXPECT_EQ(recovery.note, "one retain slot was broken; the other was taken");
+}
+
+TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
+  MemoryFiles files;
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "");  // a first start
+  files.slots[0] = encode_slot(some_values(4));
+  const auto kept = files.slots[0];
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "The retained values are of another diagram.");
+  EXPECT_EQ(files.slots[0], kept);
+  const auto cold = recover(files, "other", MismatchPolicy::cold);
+  EXPECT_EQ(cold.refused, "");
+  EXPECT_FALSE(cold.values);
+  ASSERT_EQ(files.aside.size(), 1U);
+  EXPECT_EQ(files.aside[0], kept);
+  files.slots[0] = {std::byte{1}};
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "No retain slot is whole.");
+}
+
+TEST(Retain, TheThreadWritesTheNewestAndCountsRefusals) {
+  test::Accumulator program;
+  MemoryFiles files;
+  {
+    Retainer retainer(files, program, recover(files, "accumulator", MismatchPolicy::refuse));
+    for (int i = 1; i <= 50; ++i) {
+      program.set_parameter(0, i);
+      retainer.offer(program);
+    }
+  }
+  auto recovery = recover(files, "accumulator", MismatchPolicy::refuse);
+  ASSERT_TRUE(recovery.values);
+  EXPECT_EQ(recovery.values->parameters[0], 50.0);
+  const auto before = recovery.sequence;
+  files.full = true;
+  {
+    Retainer retainer(files, program, recovery);
+    program.set_parameter(0, 51.0);
+    retainer.offer(program);
+    while (retainer.failures() == 0) {
+      std::this_thread::yield();
+    }
+    EXPECT_EQ(retainer.written(), before);
+  }
+  EXPECT_EQ(recover(files, "accumulator", MismatchPolicy::refuse).values->parameters[0], 50.0);
+}
+
+TEST(Retain, KilledAtAnyMomentNothingConfirmedIsLost) {
+  const hysteron::test::ScratchFolder scratch;
+  std::mt19937_64 random(5);
+  std::uint64_t last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto after = static_cast<std::int64_t>(1'000'000 + random() % 20'000'000);
+    const auto result = test::kill_while_retaining(scratch / "retain", after);
+    EXPECT_TRUE(result.consistent);
+    EXPECT_GE(result.recovered, result.confirmed);
+    EXPECT_GE(result.recovered, last);
+    last = result.recovered;
+  }
+  EXPECT_GT(last, 0U);
+}
+
+TEST(Retain, FilesPutAsideAreNeverOverwritten) {
+  const hysteron::test::ScratchFolder scratch;
+  RetainFolder files(scratch / "retain");
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    ASSERT_EQ(files.write(0, encode_slot(some_values(i))), "");
+    ASSERT_EQ(files.put_aside(0), "");
+    EXPECT_FALSE(files.read(0));
+  }
+  const auto names = scratch.names();
+  for (const char* const name : {"retain/retain_a.aside1", "retain/retain_a.aside2", "retain/retain_a.aside3"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
+  }
+  EXPECT_EQ(names.size(), 4U);
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

@@ -1,0 +1,226 @@
+// A task as a whole, on the virtual clock: orders, faults, points, and the way to the safe values.
+#include "runtime/task/task.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tests/runtime/task/linked_sets.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using test::Accumulator;
+
+TaskSettings settings(std::uint64_t cycles) {
+  return {.loop = {.cycles = cycles}, .inputs = {{}}, .outputs = {{.low = -50.0, .high = 50.0, .value = -1.0}, {}}};
+}
+
+void write(TaskDoor& door, std::initializer_list<std::pair<const char*, double>> values, const std::string& refusal) {
+  std::vector<PointWrite> writes;
+  for (const auto& [name, value] : values) {
+    writes.push_back({test::point(door, name), value});
+  }
+  EXPECT_EQ(door.write(writes), refusal);
+}
+
+/// Runs so many more cycles.
+void run(Task& task) {
+  VirtualClock clock;
+  const std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+}
+
+class Field final : public FieldIo {
+ public:
+  Fault read(std::span<double> inputs) noexcept override {
+    inputs[0] = input;
+    return fault;
+  }
+  void write(std::span<const double> outputs) noexcept override { written.push_back(outputs[0]); }
+  double input = 1.0;
+  Fault fault = Fault::none;
+  std::vector<double> written;
+};
+
+TEST(Task, RunsTheProgramAndEndsInSafeOutputs) {
+  Accumulator program;
+  Field field;
+  Task task(program, settings(100), {.field = &field});
+  run(task);
+  ASSERT_EQ(field.written.size(), 101U);
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(field.written[i], std::min(50.0, static_cast<double>(i + 1)));
+  }
+  EXPECT_EQ(field.written.back(), -1.0);
+  EXPECT_EQ(test::value(task.door(), "task.cycles"), 100.0);
+  EXPECT_EQ(test::value(task.door(), "task.elapsed"), 100.0);
+  EXPECT_EQ(test::value(task.door(), "task.state"), 3.0);
+}
+
+TEST(Task, ParametersAreStagedAndAppliedAsASet) {
+  Accumulator program;
+  Task task(program, settings(1), {});
+  TaskDoor& door = task.door();
+  write(door, {{"G.A", 7.0}}, "");
+  EXPECT_EQ(test::value(door, "G.A"), 7.0);
+  run(task);
+  EXPECT_EQ(program.parameter(0), 1.0);  // staged is not applied
+  write(door, {{"G.B", 2e9}, {"task.commit", 1.0}}, "G.B must be at most 1000000000.");
+  run(task);
+  EXPECT_EQ(program.parameter(0), 1.0);
+  EXPECT_EQ(program.parameter(1), -1.0);
+  EXPECT_EQ(test::value(door, "G.B"), -1.0);  // nothing of a refused write is kept
+  write(door, {{"task.commit", 1.0}, {"G.B", 3.0}}, "");
+  run(task);
+  EXPECT_EQ(program.parameter(0), 7.0);
+  EXPECT_EQ(program.parameter(1), 3.0);
+  EXPECT_EQ(test::value(door, "task.commits"), 1.0);
+  write(door, {{"G.A", 9.0}}, "");
+  write(door, {{"task.discard", 1.0}}, "");
+  EXPECT_EQ(test::value(door, "G.A"), 7.0);
+  // The sum was kept through all of it: three steps of 1, 1 and 7.
+  EXPECT_EQ(task.outputs()[0], -1.0);
+  std::array<std::byte, 8> state{};
+  program.save(state);
+  double sum = 0.0;
+  std::memcpy(&sum, state.data(), 8);
+  EXPECT_EQ(sum, 9.0);
+}
+
+TEST(Task, ASetThatNoSingleRangeRefusesIsRefusedByItsCheck) {
+  Accumulator program;
+  Task task(program, settings(1), {}, [](std::span<const double> set) {
+    return set[0] > set[1] ? std::string() : std::string("G.A must be above G.B.");
+  });
+  write(task.door(), {{"G.A", -3.0}, {"task.commit", 1.0}}, "G.A must be above G.B.");
+  write(task.door(), {{"G.A", -3.0}, {"G.B", -4.0}, {"task.commit", 1.0}}, "");
+}
+
+TEST(Task, AWriteIsTakenWholeOrNotAtAll) {
+  Accumulator program;
+  Task task(program, settings(1), {});
+  write(task.door(), {{"X", 5.0}, {"Y", 1.0}}, "Y can only be read.");
+  EXPECT_EQ(test::value(task.door(), "X"), 1.0);
+  write(task.door(), {{"X", 5.0}, {"task.heartbeat", 77.0}}, "");
+  run(task);
+  EXPECT_EQ(test::value(task.door(), "X"), 5.0);
+  EXPECT_EQ(test::value(task.door(), "task.heartbeat"), 77.0);
+
+  auto device = settings(1);
+  device.inputs[0].from_device = true;
+  Task other(program, device, {});
+  EXPECT_FALSE(other.door().points()[0].writable);
+  write(other.door(), {{"X", 5.0}}, "X is given by a device.");
+}
+
+TEST(Task, LinkedSetsAreNeverTorn) {
+  const auto result = test::commit_linked_sets(20'000);
+  EXPECT_EQ(result.committed, 20'000U);
+  EXPECT_EQ(result.torn, 0U);
+  EXPECT_GT(result.applied, 1U);
+}
+
+TEST(Task, FaultsOfTheFieldMakeTheOutputsSafeWhileTheyLast) {
+  for (const Fault fault : {Fault::stale_input, Fault::lost_link}) {
+    Accumulator program;
+    Field field;
+    Task task(program, settings(1), {.field = &field});
+    run(task);
+    EXPECT_EQ(field.written[0], 1.0);
+    field.fault = fault;
+    run(task);
+    EXPECT_EQ(field.written[2], -1.0);
+    field.fault = Fault::none;
+    run(task);
+    EXPECT_EQ(field.written[4], 3.0);  // the program went on
+  }
+}
+
+TEST(Task, AnInputThatIsNoNumberNeverReachesTheProgram) {
+  Accumulator program;
+  Field field;
+  Task task(program, settings(1), {.field = &field});
+  run(task);
+  field.input = std::numeric_limits<double>::quiet_NaN();
+  run(task);
+  EXPECT_EQ(field.written[2], -1.0);
+  field.input = 1.0;
+  run(task);
+  EXPECT_EQ(field.written[4], 3.0);
+}
+
+TEST(Task, AnInputThatNobodyWritesBecomesStale) {
+  Accumulator program;
+  Field field;
+  auto with_age = settings(10);
+  with_age.inputs[0].longest_age = 5;
+  with_age.outputs[0].high = 1e9;
+  Accumulator plain;
+  Task task(plain, with_age, {});
+  write(task.door(), {{"X", 2.0}}, "");
+  std::vector<double> faults;
+  plain.during_step = [&](std::span<double>) { faults.push_back(test::value(task.door(), "task.fault")); };
+  run(task);
+  // Seen one step later: ages 0 to 5 are well.
+  EXPECT_EQ(faults, (std::vector<double>{0, 0, 0, 0, 0, 0, 0, 4, 4, 4}));
+}
+
+TEST(Task, AnOutputThatIsNoNumberIsSafeByItself) {
+  Accumulator program;
+  Field field;
+  Task task(program, settings(3), {.field = &field});
+  int step = 0;
+  program.during_step = [&](std::span<double> outputs) {
+    if (++step == 2) {
+      outputs[0] = std::numeric_limits<double>::infinity();
+    }
+  };
+  run(task);
+  EXPECT_EQ(field.written, (std::vector<double>{1.0, -1.0, 3.0, -1.0}));
+}
+
+TEST(Task, ATrippedWatchdogLastsUntilTheReset) {
+  class SlowClock final : public Clock {
+   public:
+    std::int64_t now() noexcept override { return now_; }
+    void sleep_until(std::int64_t time) noexcept override { now_ = std::max(now_, time); }
+    std::int64_t own_cpu() noexcept override { return now_; }
+    std::int64_t stolen() noexcept override { return 0; }
+    std::int64_t now_ = 0;
+  };
+  Accumulator program;
+  SlowClock clock;
+  Field field;
+  auto with_watchdog = settings(6);
+  with_watchdog.watchdog = {.time = 500'000, .sensitivity = 1};
+  Task task(program, with_watchdog, {.field = &field});
+  int step = 0;
+  program.during_step = [&](std::span<double>) { clock.now_ += ++step == 2 ? 600'000 : 100; };
+  std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+  EXPECT_EQ(field.written, (std::vector<double>{1.0, 2.0, -1.0, -1.0, -1.0, -1.0, -1.0}));
+  EXPECT_EQ(step, 2);  // not stepped any more
+  EXPECT_EQ(test::value(task.door(), "task.state"), 2.0);
+  EXPECT_EQ(test::value(task.door(), "task.fault"), 1.0);
+}
+
+TEST(Task, AResetClearsStateAndFaultAndKeepsParameters) {
+  Accumulator program;
+  Task task(program, settings(4), {});
+  write(task.door(), {{"G.A", 10.0}, {"task.commit", 1.0}}, "");
+  run(task);
+  write(task.door(), {{"task.reset", 1.0}}, "");
+  auto once = settings(1);
+  run(task);
+  std::array<std::byte, 8> state{};
+  program.save(state);
+  double sum = 0.0;
+  std::memcpy(&sum, state.data(), 8);
+  EXPECT_EQ(sum, 10.0);  // one step after the reset: the loop counts its cycles from the first start
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

@@ -1,0 +1,166 @@
+// A trace holds every step or counts it, and gives the same bits when it is replayed.
+#include "runtime/task/trace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runtime/task/task.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using test::Accumulator;
+
+class Wave final : public FieldIo {
+ public:
+  Fault read(std::span<double> inputs) noexcept override {
+    inputs[0] = std::sin(0.1 * static_cast<double>(++k_)) / 3.0;
+    return Fault::none;
+  }
+  void write(std::span<const double> /*outputs*/) noexcept override {}
+
+ private:
+  std::uint64_t k_ = 0;
+};
+
+std::string traced_run(const TraceSettings& settings, std::uint64_t cycles,
+                       const std::function<void(TaskDoor&, std::uint64_t)>& meanwhile = {}) {
+  Accumulator program;
+  Wave wave;
+  {
+    Trace trace(settings, program);
+    Task task(program, {.loop = {.cycles = cycles}, .inputs = {{.from_device = true}}, .outputs = {{.high = 2.0}, {}}},
+              {.field = &wave, .trace = &trace});
+    std::uint64_t k = 0;
+    program.during_step = [&](std::span<double>) {
+      if (meanwhile) {
+        meanwhile(task.door(), k);
+      }
+      ++k;
+    };
+    VirtualClock clock;
+    const std::atomic<bool> stop{false};
+    (void)task.run(clock, stop);
+  }
+  return hysteron::test::contents_of(settings.file);
+}
+
+ReplayResult replayed(const std::string& bytes, std::vector<TraceStep>* steps = nullptr) {
+  Accumulator program;
+  ReplayResult result;
+  EXPECT_EQ(replay(bytes, program, result,
+                   [&](const TraceStep& step) {
+                     if (steps != nullptr) {
+                       steps->push_back(step);
+                     }
+                   }),
+            "");
+  return result;
+}
+
+TEST(Trace, ReplaysToTheBitThroughParametersAndResets) {
+  const hysteron::test::ScratchFolder scratch;
+  const auto bytes = traced_run({.file = scratch / "trace"}, 5000, [](TaskDoor& door, std::uint64_t k) {
+    if (k % 700 == 3) {
+      const std::array<PointWrite, 2> writes{
+          {{test::point(door, "G.A"), 1.0 / static_cast<double>(k)}, {test::point(door, "task.commit"), 1.0}}};
+      EXPECT_EQ(door.write(writes), "");
+    }
+    if (k == 2500) {
+      const std::array<PointWrite, 1> writes{{{test::point(door, "task.reset"), 1.0}}};
+      EXPECT_EQ(door.write(writes), "");
+    }
+  });
+  std::vector<TraceStep> steps;
+  const auto result = replayed(bytes, &steps);
+  EXPECT_EQ(result.steps, 5000U);
+  EXPECT_EQ(result.different, 0U);
+  EXPECT_EQ(result.without_state, 0U);
+  EXPECT_TRUE(result.complete);
+  ASSERT_EQ(steps.size(), 5000U);
+  EXPECT_EQ(steps[4999].number, 4999U);
+  EXPECT_NE(steps[0].computed[0], steps[1].computed[0]);
+}
+
+TEST(Trace, AChangedBitIsFoundAtItsStep) {
+  const hysteron::test::ScratchFolder scratch;
+  auto bytes = traced_run({.file = scratch / "trace"}, 100);
+  const std::size_t record = 5 + 20 + 5 * 8;
+  const std::size_t end = 5 + 16;
+  // The lowest bit of the first computed output of step 60.
+  const std::size_t at = bytes.size() - end - (100 - 60) * record + 5 + 20 + 8;
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  const auto result = replayed(bytes);
+  EXPECT_EQ(result.different, 1U);
+  EXPECT_EQ(result.first_different, 60U);
+}
+
+TEST(Trace, ATriggerKeepsWhatWasBefore) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceTrigger trigger{
+      .signal = TraceTrigger::Signal::output, .index = 0, .level = 1.5, .before = 15, .after = 20};
+  // Y rises from 0 as the sum of a sine, and passes 1.5 once in each period of it.
+  const auto bytes = traced_run({.file = scratch / "trace", .trigger = trigger}, 5000);
+  std::vector<TraceStep> steps;
+  const auto result = replayed(bytes, &steps);
+  EXPECT_EQ(result.different, 0U);
+  EXPECT_EQ(result.without_state, 0U);
+  std::size_t crossing = 1;
+  while (crossing < steps.size() && !(steps[crossing].outputs[0] > 1.5 && steps[crossing - 1].outputs[0] <= 1.5)) {
+    ++crossing;
+  }
+  ASSERT_LT(crossing, steps.size());
+  EXPECT_EQ(steps.size() - crossing, 21U);
+  EXPECT_GE(crossing, std::min<std::uint64_t>(15, steps[crossing].number));
+  EXPECT_LE(crossing, 45U);
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    EXPECT_EQ(steps[i].number, steps[i - 1].number + 1);
+  }
+}
+
+TEST(Trace, WhatIsDroppedIsCountedExactlyAndTheRestReplays) {
+  const hysteron::test::ScratchFolder scratch;
+  // Room for some steps only, filled faster than any disk takes them.
+  const auto bytes = traced_run({.file = scratch / "trace", .ring_bytes = 2000}, 200'000);
+  std::vector<TraceStep> steps;
+  const auto result = replayed(bytes, &steps);
+  EXPECT_GT(result.dropped, 0U);
+  EXPECT_EQ(steps.size() + result.dropped, 200'000U);
+  EXPECT_EQ(result.steps, steps.size());
+  EXPECT_EQ(result.different, 0U);
+  EXPECT_EQ(result.without_state, 0U);
+}
+
+TEST(Trace, ACutFileIsReadUpToTheCutAndABrokenOneRefused) {
+  const hysteron::test::ScratchFolder scratch;
+  const auto bytes = traced_run({.file = scratch / "trace"}, 50);
+  const std::size_t head = bytes.find("data\n") + 5;
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    Accumulator program;
+    ReplayResult result;
+    const auto fault = replay(std::string_view(bytes).substr(0, length), program, result);
+    EXPECT_EQ(fault.empty(), length >= head) << length;
+    EXPECT_FALSE(result.complete);
+    EXPECT_EQ(result.different, 0U);
+  }
+  Accumulator program;
+  ReplayResult result;
+  auto broken = bytes;
+  broken[head + 4] = 'Q';
+  EXPECT_EQ(replay(broken, program, result),
+            "a record of an unknown kind or wrong length at byte " + std::to_string(head));
+  program.mutable_shape().layout = "other";
+  EXPECT_EQ(replay(bytes, program, result),
+            "the trace is of another diagram (ACCUMULATOR), or was made by another way of running it");
+}
+
+TEST(Trace, AFileThatCannotBeOpenedIsSaid) {
+  const Accumulator program;
+  EXPECT_THROW(Trace({.file = "/nowhere/at/all"}, program), std::system_error);
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

@@ -1,11 +1,11 @@
 // HY_BACKLASH: XOUT(k) = max(XIN(k) − WIDTH/2, min(XIN(k) + WIDTH/2, XOUT(k−1)))
 #pragma once
 
-#include "blocks/ports.hpp"
+#include "blocks/last_output.hpp"
 
 namespace hysteron {
 
-struct Backlash {
+struct Backlash : LastOutput {
   static constexpr About about{
       .name = "HY_BACKLASH",
       .title = "Backlash (play operator)",
@@ -28,16 +28,6 @@ struct Backlash {
     }
   };
   template <class S>
-  struct State {
-    S LAST;
-    Bool<S> STARTED;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the step before"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
-    }
-  };
-  template <class S>
   using In = Xin<S, "'x", "position of the driving side">;
   template <class S>
   using Out = Xout<S, "'x", "position of the driven side">;
@@ -49,14 +39,8 @@ struct Backlash {
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const S half = S(0.5) * params.WIDTH;
-    const S last = select(state.STARTED, state.LAST, in.XIN);
+    const S last = state.before(in.XIN);
     return {.XOUT = max(in.XIN - half, min(in.XIN + half, last))};
-  }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& out,
-                     const S& /*ts*/) {
-    state.LAST = out.XOUT;
-    state.STARTED = Bool<S>(true);
   }
 };
 

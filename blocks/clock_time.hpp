@@ -29,7 +29,7 @@ S passed_part(const S& time, const S& moment, const S& ts) {
   return max(min((time - moment) / ts, S(1.0)), S(0.0));
 }
 
-/// What the effects of clock time have in common: a state that counts.
+/// What the effects of clock time have in common: a state that counts the steps.
 struct OfClockTime {
   template <class S>
   using State = StepCount<S>;
@@ -41,6 +41,10 @@ struct OfClockTime {
   template <class S>
   static void count(State<S>& state) {
     state.COUNT = one_more(state.COUNT);
+  }
+  template <class S, class Params, class In, class Out>
+  static void update(const Params& /*params*/, State<S>& state, const In& /*in*/, const Out& /*out*/, const S& /*ts*/) {
+    count(state);
   }
 };
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "blocks/effect_term.hpp"
-#include "blocks/ports.hpp"
 #include "blocks/ripple.hpp"
 
 namespace hysteron {
@@ -21,17 +20,7 @@ struct Cogging {
       .effect = "cogging"};
 
   template <class S>
-  struct Params {
-    S SINE;
-    S COSINE;
-    S PITCH;
-    using Self = Params;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
-                        HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
-                        HY_FIELD(PITCH).in("'p").above(0.0).otherwise(1.0).means("period in the position")};
-    }
-  };
+  using Params = RippleParams<S, "'p", "period in the position">;
   template <class S>
   struct State {
     S POS1;

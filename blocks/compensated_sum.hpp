@@ -1,7 +1,7 @@
 // A running sum that keeps what rounding would lose: shared by the integrals and the momenta.
 #pragma once
 
-#include "blocks/scalar.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -21,6 +21,20 @@ CompensatedSum<S> add(const CompensatedSum<S>& total, const S& term) {
   const S low = select(abs(total.high) >= abs(due), (total.high - high) + due, (due - high) + total.high);
   return {.high = high, .low = low};
 }
+
+/// The state of a block that keeps such a sum.
+template <class S, Label unit, Label meaning>
+struct SumState {
+  S SUM;
+  S LOST;
+  using Self = SumState;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(SUM).in(unit).otherwise(0.0).means(meaning),
+                      HY_FIELD(LOST).in(unit).otherwise(0.0).means("what rounding took from the sum")};
+  }
+  static SumState of(const CompensatedSum<S>& sum) { return {.SUM = sum.high, .LOST = sum.low}; }
+  [[nodiscard]] CompensatedSum<S> sum() const { return {.high = SUM, .low = LOST}; }
+};
 
 template <class S>
 CompensatedSum<S> select_sum(const Bool<S>& condition, const CompensatedSum<S>& a, const CompensatedSum<S>& b) {

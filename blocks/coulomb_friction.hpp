@@ -3,7 +3,6 @@
 
 #include "blocks/effect_term.hpp"
 #include "blocks/friction.hpp"
-#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -42,17 +41,9 @@ struct CoulombFriction {
     }
   };
   template <class S>
-  struct In {
-    S XIN;
-    S V;
-    using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
-                        HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; counts in the step after")};
-    }
-  };
+  using In = FrictionIn<S>;
   template <class S>
-  using Out = Xout<S, "'x", "force that is left for the motion">;
+  using Out = FrictionOut<S>;
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "blocks/counting.hpp"
-#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -21,15 +20,7 @@ struct DownCounter {
   template <class S>
   using Params = NoFields<S>;
   template <class S>
-  struct State {
-    Int<S> COUNT;
-    Bool<S> LAST;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
-                        HY_FIELD(LAST).otherwise(0.0).means("CD of the step before")};
-    }
-  };
+  using State = CounterState<S, "CD of the step before">;
   template <class S>
   struct In {
     Bool<S> CD;
@@ -43,14 +34,7 @@ struct DownCounter {
     }
   };
   template <class S>
-  struct Out {
-    Bool<S> Q;
-    Int<S> CV;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(Q).means("TRUE where CV has reached 0"), HY_FIELD(CV).means("count")};
-    }
-  };
+  using Out = CounterOut<S, "TRUE where CV has reached 0">;
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {

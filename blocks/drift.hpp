@@ -39,11 +39,6 @@ struct Drift : OfClockTime {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     return {.XOUT = with_term<S>(in.XIN, params.RATE * clock_time(state, ts))};
   }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& /*out*/,
-                     const S& /*ts*/) {
-    count(state);
-  }
 };
 
 }  // namespace hysteron

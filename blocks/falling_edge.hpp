@@ -1,11 +1,11 @@
 // HY_F_TRIG: Q = NOT CLK AND NOT M, then M := NOT CLK
 #pragma once
 
-#include "blocks/ports.hpp"
+#include "blocks/edge.hpp"
 
 namespace hysteron {
 
-struct FallingEdge {
+struct FallingEdge : Edge {
   static constexpr About about{
       .name = "HY_F_TRIG",
       .title = "Falling edge",
@@ -17,21 +17,7 @@ struct FallingEdge {
       .source = "IEC 61131-3, F_TRIG"};
 
   template <class S>
-  using Params = NoFields<S>;
-  template <class S>
-  struct State {
-    Bool<S> M;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(M).otherwise(0.0).means("NOT CLK of the step before")};
-    }
-  };
-  template <class S>
-  struct In {
-    Bool<S> CLK;
-    using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(CLK).means("signal whose edge is wanted")}; }
-  };
+  using State = EdgeState<S, "NOT CLK of the step before">;
   template <class S>
   using Out = Truth<S, "TRUE in the step in which CLK falls">;
 

@@ -7,7 +7,7 @@
 // and have the right derivative there.
 #pragma once
 
-#include "blocks/scalar.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -36,6 +36,20 @@ template <class S>
 S filtered_rate(const S& rate, const S& x, const S& x_before, const S& time_constant, const S& ts) {
   return without_denormals(rate + forgotten_part(time_constant, ts) * ((x - x_before) / ts - rate));
 }
+
+/// The state of a block that keeps such a rate.
+template <class S, Label rate>
+struct RateState {
+  S X1;
+  S RATE1;
+  Bool<S> STARTED;
+  using Self = RateState;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
+                      HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means(rate),
+                      HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+  }
+};
 
 /// What a filtered rate starts from: at the start either the first sample has stood for ever, or 0 has.
 template <class S>

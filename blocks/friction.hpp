@@ -1,9 +1,24 @@
-// Dry friction without chatter: the stop operator, shared by HY_COULOMB_FRICTION and HY_STRIBECK_FRICTION.
+// What the frictions share: the force that drives and the velocity; for the dry ones, HY_COULOMB_FRICTION and
+// HY_STRIBECK_FRICTION, the stop operator, which does not chatter.
 #pragma once
 
-#include "blocks/scalar.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
+
+template <class S>
+struct FrictionIn {
+  S XIN;
+  S V;
+  using Self = FrictionIn;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
+                      HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; counts in the step after")};
+  }
+};
+
+template <class S>
+using FrictionOut = Xout<S, "'x", "force that is left for the motion">;
 
 /// The part of the dry friction that acts, −1 to 1, one step later. It follows the travel ∫V dt with the slope
 /// 1/preslide, and stops at ±1 (L. Prandtl's elasto-plastic element): at rest it holds any force up to the whole

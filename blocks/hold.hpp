@@ -1,11 +1,11 @@
 // HY_HOLD: XOUT = XIN, held until the slower part runs again
 #pragma once
 
-#include "blocks/description.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
-struct Hold {
+struct Hold : Stateless {
   static constexpr About about{
       .name = "HY_HOLD",
       .title = "Hold, from a slow part into a fast one",
@@ -18,23 +18,9 @@ struct Hold {
       .rate_transition = true};
 
   template <class S>
-  using Params = NoFields<S>;
+  using In = Xin<S, "'x", "signal of the slower part">;
   template <class S>
-  using State = NoFields<S>;
-  template <class S>
-  struct In {
-    S XIN;
-    using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal of the slower part")}; }
-  };
-  template <class S>
-  struct Out {
-    S XOUT;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("the same signal, held at the faster rate")};
-    }
-  };
+  using Out = Xout<S, "'x", "the same signal, held at the faster rate">;
 
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

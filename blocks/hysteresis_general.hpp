@@ -33,49 +33,15 @@ struct HysteresisGeneral {
       .enriches = "HY_HYSTERESIS_RO"};
 
   template <class S>
-  struct Params : HysteresisRo::Params<S> {
-    S ASYMMETRY;
-    S RATE;
-    S RATE_REFERENCE;
-    S BIAS;
-    S BIAS_REFERENCE;
-    S SHAPE;
-    S SHAPE_DEPTH;
+  using Rich = RichParams<S, HysteresisRo::Params<S>, "'x/s", "the rate of XIN", "'x", "U0", "'x">;
+  template <class S>
+  struct Params : Rich<S> {
     S RETURN_POINT;
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple_cat(
-          HysteresisRo::Params<S>::fields(),
+          Rich<S>::fields(),
           std::tuple{
-              HY_FIELD(ASYMMETRY)
-                  .in("1")
-                  .within(-1.0, 1.0)
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("asymmetry")
-                  .means("C2 is larger by this share upwards and smaller downwards"),
-              HY_FIELD(RATE)
-                  .in("1")
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("rate_dependence")
-                  .means("share by which C2 grows per decade of the rate of XIN"),
-              HY_FIELD(RATE_REFERENCE).in("'x/s").above(0.0).otherwise(1.0).means("rate above which the decades count"),
-              HY_FIELD(BIAS)
-                  .in("1")
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("bias_dependence")
-                  .means("share by which the slopes are larger on a branch whose middle is BIAS_REFERENCE above U0"),
-              HY_FIELD(BIAS_REFERENCE).in("'x").above(0.0).otherwise(1.0).means("distance at which BIAS is that share"),
-              HY_FIELD(SHAPE)
-                  .in("1")
-                  .within(-0.5, 0.5)
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("curve_shape")
-                  .means("bend of the branch, over C1*SHAPE_DEPTH"),
-              HY_FIELD(SHAPE_DEPTH).in("'x").above(0.0).otherwise(1.0).means("momentum at which the bend is largest"),
               HY_FIELD(RETURN_POINT)
                   .in("1")
                   .within(0.0, 1.0)
@@ -228,12 +194,8 @@ struct HysteresisGeneral {
   template <class S>
   static Place<S> place(const Params<S>& params, const S& x, const S& y, const Bool<S>& skeleton, const S& from,
                         const S& input, const S& share, const S& rate_part) {
-    const LoopConstants<S> loop{.c1 = params.C1, .c2 = params.C2, .c3 = params.C3};
-    const LoopEffects<S> effects{.asymmetry = params.ASYMMETRY,
-                                 .bias = params.BIAS / params.BIAS_REFERENCE,
-                                 .origin = params.U0,
-                                 .shape = params.SHAPE,
-                                 .depth = params.SHAPE_DEPTH};
+    const LoopConstants<S> loop = params.loop();
+    const LoopEffects<S> effects = params.effects(params.U0);
     const S twice = select(skeleton, S(2.0), S(1.0));
     const S distance = input - x;
     const S momentum = abs(distance) * twice;

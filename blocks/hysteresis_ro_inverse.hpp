@@ -2,7 +2,7 @@
 #pragma once
 
 #include "blocks/branching.hpp"
-#include "blocks/ramberg_osgood.hpp"
+#include "blocks/loop_pins.hpp"
 
 namespace hysteron {
 
@@ -23,60 +23,13 @@ struct HysteresisRoInverse {
       .source = "Strijbosch and Oomen, Theorem 8; in closed form"};
 
   template <class S>
-  struct Params {
-    S C1;
-    S C2;
-    S C3;
-    S EPS;
-    Int<S> START;
-    S U0;
-    S Y0;
-    using Self = Params;
-    static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(C1).in("'x/'y").above(0.0).otherwise(1.0).means("slope of the loop at a branching point"),
-          HY_FIELD(C2).in("'x/'y^(1+C3)").at_least(0.0).otherwise(0.0).means("growth of the slope"),
-          HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
-          HY_FIELD(EPS)
-              .in("'x")
-              .at_least(0.0)
-              .otherwise(0.0)
-              .neutral_at(0.0)
-              .effect("branch_chatter")
-              .means("dead band of the branching detector"),
-          HY_FIELD(START).within(-1.0, 1.0).otherwise(0.0).means(
-              "0: on the skeleton; 1, -1: on a rising, falling branch"),
-          HY_FIELD(U0).in("'y").otherwise(0.0).means("XOUT at the origin of the skeleton or of the first branch"),
-          HY_FIELD(Y0).in("'x").otherwise(0.0).means("XIN at that origin")};
-    }
-  };
+  using Params = LoopParams<S, "'y", "'x", "XOUT", "XIN", "slope of the loop at a branching point">;
   template <class S>
   using State = BranchMemory<S>;
   template <class S>
-  struct In {
-    S XIN;
-    Bool<S> R1;
-    using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("wanted output of the hysteresis, a displacement say"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset: begins again at U0, Y0")};
-    }
-  };
+  using In = LoopIn<S, "wanted output of the hysteresis, a displacement say">;
   template <class S>
-  struct Out {
-    S XOUT;
-    S P;
-    S SLOPE;
-    Bool<S> Q;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XOUT).in("'y").means("input for the hysteresis, a voltage say"),
-          HY_FIELD(P).in("'y").means("momentum: travel of XOUT since the branching point, twice that on the skeleton"),
-          HY_FIELD(SLOPE).in("'x/'y").means("slope of the loop, M(P)"),
-          HY_FIELD(Q).means("TRUE in the step in which a reversal is declared")};
-    }
-  };
+  using Out = LoopOut<S, "'y", "'x", "input for the hysteresis, a voltage say", "travel of XOUT">;
 
   /// What is remembered before the present sample.
   template <class S>
@@ -90,7 +43,7 @@ struct HysteresisRoInverse {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const LoopConstants<S> loop{.c1 = params.C1, .c2 = params.C2, .c3 = params.C3};
+    const LoopConstants<S> loop = params.loop();
     const BranchOfSample<S> branch = find_branch(held(params, state, in), in.XIN, params.EPS);
     const S distance = in.XIN - branch.x;
     const S twice = select(branch.skeleton, S(2.0), S(1.0));

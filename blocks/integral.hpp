@@ -2,7 +2,6 @@
 #pragma once
 
 #include "blocks/compensated_sum.hpp"
-#include "blocks/description.hpp"
 
 namespace hysteron {
 
@@ -24,15 +23,7 @@ struct Integral {
   using Params = NoFields<S>;
 
   template <class S>
-  struct State {
-    S SUM;
-    S LOST;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SUM).in("'x*s").otherwise(0.0).means("running sum"),
-                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("what rounding took from the sum")};
-    }
-  };
+  using State = SumState<S, "'x*s", "running sum">;
   template <class S>
   struct In {
     S XIN;
@@ -61,7 +52,7 @@ struct Integral {
   template <class S>
   static CompensatedSum<S> advance(const State<S>& state, const In<S>& in, const S& ts) {
     const S increment = select(in.RUN, in.XIN * ts, S(0.0));
-    const CompensatedSum<S> sum = add<S>({.high = state.SUM, .low = state.LOST}, increment);
+    const CompensatedSum<S> sum = add(state.sum(), increment);
     return select_sum<S>(in.R1, {.high = in.X0, .low = S(0.0)}, sum);
   }
 
@@ -77,8 +68,7 @@ struct Integral {
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
                      const S& ts) {
-    const CompensatedSum<S> next = advance(state, in, ts);
-    state = {.SUM = next.high, .LOST = next.low};
+    state = State<S>::of(advance(state, in, ts));
   }
 };
 

@@ -31,7 +31,7 @@ struct IntegralForward {
   /// The sum at the start of the interval.
   template <class S>
   static CompensatedSum<S> present(const State<S>& state, const In<S>& in) {
-    return select_sum<S>(in.R1, {.high = in.X0, .low = S(0.0)}, {.high = state.SUM, .low = state.LOST});
+    return select_sum<S>(in.R1, {.high = in.X0, .low = S(0.0)}, state.sum());
   }
 
   template <class S>
@@ -47,7 +47,7 @@ struct IntegralForward {
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
                      const S& ts) {
     const CompensatedSum<S> next = add<S>(present(state, in), select(in.RUN, in.XIN * ts, S(0.0)));
-    state = {.SUM = next.high, .LOST = next.low};
+    state = State<S>::of(next);
   }
 };
 

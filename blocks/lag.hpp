@@ -1,7 +1,6 @@
 // HY_LAG: T1·XOUT' + XOUT = XIN
 #pragma once
 
-#include "blocks/description.hpp"
 #include "blocks/filtered_rate.hpp"
 
 namespace hysteron {
@@ -34,17 +33,7 @@ struct Lag {
     }
   };
   template <class S>
-  struct State {
-    S X1;
-    S RATE1;
-    Bool<S> STARTED;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate of the output one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
-    }
-  };
+  using State = RateState<S, "rate of the output one sample ago">;
   template <class S>
   struct In {
     S XIN;

@@ -1,7 +1,6 @@
 // HY_LEAD_LAG: XOUT = (1 + T1·s)/(1 + T2·s)·XIN
 #pragma once
 
-#include "blocks/description.hpp"
 #include "blocks/filtered_rate.hpp"
 
 namespace hysteron {
@@ -30,17 +29,7 @@ struct LeadLag {
     }
   };
   template <class S>
-  struct State {
-    S X1;
-    S RATE1;
-    Bool<S> STARTED;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("filtered rate one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
-    }
-  };
+  using State = RateState<S, "filtered rate one sample ago">;
   template <class S>
   struct In {
     S XIN;

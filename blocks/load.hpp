@@ -50,11 +50,6 @@ struct Load : OfClockTime {
     const S on = max(passed_part(time, params.T_ON, ts) - passed_part(time, params.T_OFF, ts), S(0.0));
     return {.XOUT = with_term<S>(in.XIN, -(params.SIZE * on))};
   }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& /*out*/,
-                     const S& /*ts*/) {
-    count(state);
-  }
 };
 
 }  // namespace hysteron

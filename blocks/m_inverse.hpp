@@ -23,19 +23,8 @@ struct SlopeMInverse {
   template <class S>
   using In = SlopeIn<S, "'y", "wanted rate of the output">;
   template <class S>
-  struct Out {
-    S XOUT;
-    S M;
-    Bool<S> ERROR;
-    Word<S> ERRORID;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'u").means("rate of the input"),
-                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
-                        HY_FIELD(ERROR).means("the slope is not above 0"),
-                        HY_FIELD(ERRORID).means("0 no error, 4 slope not above 0")};
-    }
-  };
+  using Out =
+      CheckedSlopeOut<S, "'u", "rate of the input", "the slope is not above 0", "0 no error, 4 slope not above 0">;
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

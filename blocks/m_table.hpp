@@ -6,7 +6,7 @@
 
 namespace hysteron {
 
-struct SlopeMTable {
+struct SlopeMTable : SlopeTable {
   static constexpr About about{
       .name = "HY_M_TABLE",
       .title = "Slope by momentum, from a table",
@@ -20,30 +20,11 @@ struct SlopeMTable {
       .source = "Strijbosch and Oomen, equation (5)"};
 
   template <class S>
-  using Params = SlopeTableParams<S>;
-  template <class S>
-  using State = SlopeTableState<S>;
-  template <class S>
   using In = SlopeM::In<S>;
   template <class S>
-  struct Out {
-    S XOUT;
-    S M;
-    Bool<S> ERROR;
-    Word<S> ERRORID;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'y").means("rate of the output"),
-                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
-                        HY_FIELD(ERROR).means("TRUE where P_TABLE does not rise"),
-                        HY_FIELD(ERRORID).means("0 no error, 3 points of the table do not rise")};
-    }
-  };
+  using Out = CheckedSlopeOut<S, "'y", "rate of the output", "TRUE where P_TABLE does not rise",
+                              "0 no error, 3 points of the table do not rise">;
 
-  template <class S>
-  static State<S> initial(const Params<S>& params) {
-    return check_slope_table(params);
-  }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const S slope = table_slope(params, in.momentum());
@@ -52,9 +33,6 @@ struct SlopeMTable {
             .ERROR = !state.RISING,
             .ERRORID = select(state.RISING, Word<S>(std::uint16_t{0}), Word<S>(fault::points_not_rising))};
   }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& /*state*/, const In<S>& /*in*/, const Out<S>& /*out*/,
-                     const S& /*ts*/) {}
 };
 
 }  // namespace hysteron

@@ -6,7 +6,7 @@
 
 namespace hysteron {
 
-struct SlopeMTableInverse {
+struct SlopeMTableInverse : SlopeTable {
   static constexpr About about{
       .name = "HY_M_TABLE_INVERSE",
       .title = "Inverse of the slope by momentum, from a table",
@@ -18,30 +18,11 @@ struct SlopeMTableInverse {
       .source = "Strijbosch and Oomen, equation (13)"};
 
   template <class S>
-  using Params = SlopeTableParams<S>;
-  template <class S>
-  using State = SlopeTableState<S>;
-  template <class S>
   using In = SlopeMInverse::In<S>;
   template <class S>
-  struct Out {
-    S XOUT;
-    S M;
-    Bool<S> ERROR;
-    Word<S> ERRORID;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'u").means("rate of the input"),
-                        HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
-                        HY_FIELD(ERROR).means("TRUE where there is no inverse"),
-                        HY_FIELD(ERRORID).means("0 no error, 3 points of the table do not rise, 4 slope not above 0")};
-    }
-  };
+  using Out = CheckedSlopeOut<S, "'u", "rate of the input", "TRUE where there is no inverse",
+                              "0 no error, 3 points of the table do not rise, 4 slope not above 0">;
 
-  template <class S>
-  static State<S> initial(const Params<S>& params) {
-    return check_slope_table(params);
-  }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const S slope = select(state.RISING, table_slope(params, in.momentum()), S(0.0));
@@ -51,9 +32,6 @@ struct SlopeMTableInverse {
             .ERROR = inverse.failed,
             .ERRORID = select(state.RISING, inverse.reason, Word<S>(fault::points_not_rising))};
   }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& /*state*/, const In<S>& /*in*/, const Out<S>& /*out*/,
-                     const S& /*ts*/) {}
 };
 
 }  // namespace hysteron

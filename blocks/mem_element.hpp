@@ -50,6 +50,20 @@ struct SlopeIn {
   [[nodiscard]] S momentum() const { return select(R1, S(0.0), P); }
 };
 
+/// The outputs of such a block where M(p) may not serve.
+template <class S, Label unit, Label meaning, Label error, Label numbers>
+struct CheckedSlopeOut {
+  S XOUT;
+  S M;
+  Bool<S> ERROR;
+  Word<S> ERRORID;
+  using Self = CheckedSlopeOut;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(XOUT).in(unit).means(meaning), HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+                      HY_FIELD(ERROR).means(error), HY_FIELD(ERRORID).means(numbers)};
+  }
+};
+
 /// The input of an element of a given slope that gives a wanted output, or 0 and the reason why there is none.
 template <class S>
 struct InverseOfSlope {

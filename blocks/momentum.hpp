@@ -31,15 +31,7 @@ struct Momentum {
     }
   };
   template <class S>
-  struct State {
-    S SUM;
-    S LOST;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SUM).in("'x*s").otherwise(0.0).means("momentum"),
-                        HY_FIELD(LOST).in("'x*s").otherwise(0.0).means("what rounding took from the sum")};
-    }
-  };
+  using State = SumState<S, "'x*s", "momentum">;
   template <class S>
   struct In {
     S XIN;
@@ -64,7 +56,7 @@ struct Momentum {
   /// The momentum at the start of the interval, after a reset if there is one.
   template <class S>
   static CompensatedSum<S> present(const State<S>& state, const In<S>& in) {
-    return select_sum<S>(in.R1, {.high = in.P0, .low = S(0.0)}, {.high = state.SUM, .low = state.LOST});
+    return select_sum<S>(in.R1, {.high = in.P0, .low = S(0.0)}, state.sum());
   }
 
   template <class S>
@@ -78,7 +70,7 @@ struct Momentum {
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
     const CompensatedSum<S> next = add<S>(present(state, in), momentum_rate<S>(params.G, in.XIN) * ts);  // (11)
-    state = {.SUM = next.high, .LOST = next.low};
+    state = State<S>::of(next);
   }
 };
 

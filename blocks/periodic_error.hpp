@@ -2,7 +2,6 @@
 #pragma once
 
 #include "blocks/effect_term.hpp"
-#include "blocks/ports.hpp"
 #include "blocks/ripple.hpp"
 
 namespace hysteron {
@@ -20,17 +19,7 @@ struct PeriodicError : Stateless {
                                .effect = "cogging"};
 
   template <class S>
-  struct Params {
-    S SINE;
-    S COSINE;
-    S PITCH;
-    using Self = Params;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
-                        HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
-                        HY_FIELD(PITCH).in("'x").above(0.0).otherwise(1.0).means("period of the error in XIN")};
-    }
-  };
+  using Params = RippleParams<S, "'x", "period of the error in XIN">;
   template <class S>
   using In = Xin<S, "'x", "signal">;
   template <class S>

@@ -19,6 +19,28 @@ struct Label {
   constexpr operator std::string_view() const { return {text, N - 1}; }
 };
 
+namespace detail {
+template <Label... parts>
+constexpr auto join() {
+  std::array<char, (sizeof(parts.text) + ...) - sizeof...(parts) + 1> text{};
+  std::size_t end = 0;
+  const auto append = [&](std::string_view part) {
+    for (const char c : part) {
+      text[end++] = c;
+    }
+  };
+  (append(parts), ...);
+  return text;
+}
+template <Label... parts>
+inline constexpr auto joined_text = join<parts...>();
+}  // namespace detail
+
+/// Labels one after another: joined<y, "/", u> is the unit of a slope.
+template <Label... parts>
+inline constexpr std::string_view joined{detail::joined_text<parts...>.data(),
+                                         detail::joined_text<parts...>.size() - 1};
+
 /// What ERRORID says. 0 is no error; the other numbers mean the same in every block.
 namespace fault {
 inline constexpr std::uint16_t zero_divisor = 1;        ///< the divisor is zero

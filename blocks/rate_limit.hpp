@@ -1,11 +1,11 @@
 // HY_RATE_LIMIT: XOUT(k) = min(max(XIN(k), XOUT(k−1) − FALL·TS), XOUT(k−1) + RISE·TS)
 #pragma once
 
-#include "blocks/ports.hpp"
+#include "blocks/last_output.hpp"
 
 namespace hysteron {
 
-struct RateLimit {
+struct RateLimit : LastOutput {
   static constexpr About about{.name = "HY_RATE_LIMIT",
                                .title = "Rate limiter",
                                .group = Group::Shaping,
@@ -30,16 +30,6 @@ struct RateLimit {
     }
   };
   template <class S>
-  struct State {
-    S LAST;
-    Bool<S> STARTED;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the step before"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
-    }
-  };
-  template <class S>
   using In = Xin<S, "'x", "signal">;
   template <class S>
   using Out = Xout<S, "'x", "signal, limited in its rate">;
@@ -50,14 +40,8 @@ struct RateLimit {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const S last = select(state.STARTED, state.LAST, in.XIN);
+    const S last = state.before(in.XIN);
     return {.XOUT = min(max(in.XIN, last - params.FALL * ts), last + params.RISE * ts)};
-  }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& out,
-                     const S& /*ts*/) {
-    state.LAST = out.XOUT;
-    state.STARTED = Bool<S>(true);
   }
 };
 

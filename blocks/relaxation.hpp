@@ -3,7 +3,6 @@
 
 #include "blocks/effect_term.hpp"
 #include "blocks/filtered_rate.hpp"
-#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -35,23 +34,9 @@ struct Relaxation {
     }
   };
   template <class S>
-  struct State {
-    S X1;
-    S RATE1;
-    Bool<S> STARTED;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate of the lagged input one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
-    }
-  };
+  using State = RateState<S, "rate of the lagged input one sample ago">;
   template <class S>
-  struct In {
-    S XIN;
-    using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal")}; }
-  };
+  using In = Xin<S, "'x", "signal">;
   template <class S>
   using Out = Xout<S, "'x", "signal with what follows slowly">;
 

@@ -10,6 +10,7 @@
 // The growth is faster by the share R·log10(1 + |u'|/r) of what it grows within a sample.
 #pragma once
 
+#include "blocks/ports.hpp"
 #include "blocks/ramberg_osgood.hpp"
 
 namespace hysteron {
@@ -21,6 +22,74 @@ struct LoopEffects {
   S origin;  ///< where the bias is 0
   S shape;
   S depth;
+};
+
+/// The parameters of these effects, beside those of the block that they enrich.
+template <class S, class Enriched, Label rate_unit, Label rate, Label distance_unit, Label origin, Label momentum_unit>
+struct RichParams : Enriched {
+  S ASYMMETRY;
+  S RATE;
+  S RATE_REFERENCE;
+  S BIAS;
+  S BIAS_REFERENCE;
+  S SHAPE;
+  S SHAPE_DEPTH;
+  using Self = RichParams;
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        Enriched::fields(),
+        std::tuple{
+            HY_FIELD(ASYMMETRY)
+                .in("1")
+                .within(-1.0, 1.0)
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("asymmetry")
+                .means("C2 is larger by this share upwards and smaller downwards"),
+            HY_FIELD(RATE)
+                .in("1")
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("rate_dependence")
+                .means(joined<"share by which C2 grows per decade of ", rate>),
+            HY_FIELD(RATE_REFERENCE)
+                .in(rate_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("rate above which the decades count"),
+            HY_FIELD(BIAS)
+                .in("1")
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("bias_dependence")
+                .means(joined<"share by which the slopes are larger on a branch whose middle is BIAS_REFERENCE above ",
+                              origin>),
+            HY_FIELD(BIAS_REFERENCE)
+                .in(distance_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("distance at which BIAS is that share"),
+            HY_FIELD(SHAPE)
+                .in("1")
+                .within(-0.5, 0.5)
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("curve_shape")
+                .means("bend of the branch, over C1*SHAPE_DEPTH"),
+            HY_FIELD(SHAPE_DEPTH)
+                .in(momentum_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("momentum at which the bend is largest")});
+  }
+  /// The effects, with the bias counted from where the input has the value `origin_of_bias`.
+  [[nodiscard]] LoopEffects<S> effects(const S& origin_of_bias) const {
+    return {.asymmetry = ASYMMETRY,
+            .bias = BIAS / BIAS_REFERENCE,
+            .origin = origin_of_bias,
+            .shape = SHAPE,
+            .depth = SHAPE_DEPTH};
+  }
 };
 
 /// What the effects add on a branch: 0 where they are neutral.

@@ -1,11 +1,11 @@
 // HY_R_TRIG: Q = CLK AND NOT M, then M := CLK
 #pragma once
 
-#include "blocks/ports.hpp"
+#include "blocks/edge.hpp"
 
 namespace hysteron {
 
-struct RisingEdge {
+struct RisingEdge : Edge {
   static constexpr About about{.name = "HY_R_TRIG",
                                .title = "Rising edge",
                                .group = Group::Logic,
@@ -16,19 +16,7 @@ struct RisingEdge {
                                .source = "IEC 61131-3, R_TRIG"};
 
   template <class S>
-  using Params = NoFields<S>;
-  template <class S>
-  struct State {
-    Bool<S> M;
-    using Self = State;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(M).otherwise(0.0).means("CLK of the step before")}; }
-  };
-  template <class S>
-  struct In {
-    Bool<S> CLK;
-    using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(CLK).means("signal whose edge is wanted")}; }
-  };
+  using State = EdgeState<S, "CLK of the step before">;
   template <class S>
   using Out = Truth<S, "TRUE in the step in which CLK rises">;
 

@@ -1,11 +1,11 @@
 // HY_SAMPLE: XOUT = XIN, at the instants of the slower part
 #pragma once
 
-#include "blocks/description.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
-struct Sample {
+struct Sample : Stateless {
   static constexpr About about{
       .name = "HY_SAMPLE",
       .title = "Sample, from a fast part into a slow one",
@@ -19,23 +19,9 @@ struct Sample {
       .rate_transition = true};
 
   template <class S>
-  using Params = NoFields<S>;
+  using In = Xin<S, "'x", "signal of the faster part">;
   template <class S>
-  using State = NoFields<S>;
-  template <class S>
-  struct In {
-    S XIN;
-    using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal of the faster part")}; }
-  };
-  template <class S>
-  struct Out {
-    S XOUT;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("the same signal at the slower rate")};
-    }
-  };
+  using Out = Xout<S, "'x", "the same signal at the slower rate">;
 
   template <class S>
   static Out<S> output(const Params<S>& /*params*/, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

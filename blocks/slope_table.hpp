@@ -31,10 +31,21 @@ struct SlopeTableState {
   }
 };
 
-template <class S>
-SlopeTableState<S> check_slope_table(const SlopeTableParams<S>& table) {
-  return {.RISING = rises<S, slope_table_capacity>(table.P_TABLE, table.COUNT)};
-}
+/// A block whose table is checked at reset, once.
+struct SlopeTable {
+  template <class S>
+  using Params = SlopeTableParams<S>;
+  template <class S>
+  using State = SlopeTableState<S>;
+
+  template <class S>
+  static State<S> initial(const Params<S>& params) {
+    return {.RISING = rises<S, slope_table_capacity>(params.P_TABLE, params.COUNT)};
+  }
+  template <class S, class In, class Out>
+  static void update(const Params<S>& /*params*/, State<S>& /*state*/, const In& /*in*/, const Out& /*out*/,
+                     const S& /*ts*/) {}
+};
 
 /// The slope at a momentum: straight between the points, held at both ends.
 template <class S>

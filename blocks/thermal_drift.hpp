@@ -40,11 +40,6 @@ struct ThermalDrift : OfClockTime {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     return {.XOUT = with_term<S>(in.XIN, params.SIZE * (S(1.0) - exp(-(clock_time(state, ts) / params.T1))))};
   }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& /*out*/,
-                     const S& /*ts*/) {
-    count(state);
-  }
 };
 
 }  // namespace hysteron

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "blocks/counting.hpp"
-#include "blocks/ports.hpp"
 
 namespace hysteron {
 
@@ -20,15 +19,7 @@ struct UpCounter {
   template <class S>
   using Params = NoFields<S>;
   template <class S>
-  struct State {
-    Int<S> COUNT;
-    Bool<S> LAST;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
-                        HY_FIELD(LAST).otherwise(0.0).means("CU of the step before")};
-    }
-  };
+  using State = CounterState<S, "CU of the step before">;
   template <class S>
   struct In {
     Bool<S> CU;
@@ -42,14 +33,7 @@ struct UpCounter {
     }
   };
   template <class S>
-  struct Out {
-    Bool<S> Q;
-    Int<S> CV;
-    using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(Q).means("TRUE where CV has reached PV"), HY_FIELD(CV).means("count")};
-    }
-  };
+  using Out = CounterOut<S, "TRUE where CV has reached PV">;
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "blocks/effect_term.hpp"
-#include "blocks/ports.hpp"
+#include "blocks/friction.hpp"
 
 namespace hysteron {
 
@@ -36,17 +36,9 @@ struct ViscousFriction {
     }
   };
   template <class S>
-  struct In {
-    S XIN;
-    S V;
-    using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
-                        HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; counts in the step after")};
-    }
-  };
+  using In = FrictionIn<S>;
   template <class S>
-  using Out = Xout<S, "'x", "force that is left for the motion">;
+  using Out = FrictionOut<S>;
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {

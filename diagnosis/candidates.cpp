@@ -11,22 +11,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// An instance of a FUNCTION_BLOCK of the file.
-struct Place {
-  std::uint32_t definition = 0;
-  std::string prefix{};
-};
-
-void add_places(const Definitions& definitions, std::uint32_t index, const std::string& prefix,
-                std::vector<Place>& places) {
-  places.push_back({.definition = index, .prefix = prefix});
-  for (const Declared& declared : definitions.list[index].variables) {
-    if (declared.kind == Declared::Kind::UserBlock) {
-      add_places(definitions, declared.definition, prefix + language::upper(declared.field.name) + ".", places);
-    }
-  }
-}
-
 const Node* find_node(const Graph& graph, std::string_view path) {
   const auto found = std::ranges::find_if(
       graph.nodes, [&](const Node& node) { return node.block != nullptr && language::same_name(node.path, path); });
@@ -42,6 +26,28 @@ Wire wire_of(const Graph& graph, const Node& node, std::string_view pin) {
   return {};
 }
 
+/// Whether a signal comes from another one, through blocks, delays and all.
+bool depends_on(const Graph& graph, const Wire& signal, const Wire& source) {
+  std::vector<bool> seen(graph.nodes.size(), false);
+  std::vector<Wire> left{signal};
+  while (!left.empty()) {
+    const Wire wire = left.back();
+    left.pop_back();
+    if (wire.from == source.from && wire.index == source.index) {
+      return true;
+    }
+    if (wire.from != Wire::From::Node || seen[wire.index]) {
+      continue;
+    }
+    seen[wire.index] = true;
+    const Node& node = graph.nodes[wire.index];
+    for (std::size_t i = 0; i < node.wire_count; ++i) {
+      left.push_back(graph.wire(node, i));
+    }
+  }
+  return false;
+}
+
 class Enumeration {
  public:
   Enumeration(const Variant& base, const std::string& top, const CandidateOptions& options)
@@ -51,7 +57,7 @@ class Enumeration {
     definitions_ = define(source_, diagnostics);
     index_ = top_definition(definitions_, base.program->graph.name);
     edges_ = edges_of(definitions_, index_);
-    add_places(definitions_, index_, {}, places_);
+    places_ = instances_of(definitions_, index_);
   }
 
   std::vector<Candidate> list() {
@@ -77,6 +83,11 @@ class Enumeration {
     return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.effect == effect; });
   }
 
+  /// Whether an instance is an effect that was added: no motion of the machine.
+  [[nodiscard]] bool added_before(const std::string& instance) const {
+    return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.instance == instance; });
+  }
+
   /// What may drive a further input: signals of the same block that come from a block with memory, another input of
   /// the diagram, a column of the records that nothing uses.
   [[nodiscard]] std::vector<std::string> drivers(const EffectKind& kind, const Edge& edge) const {
@@ -97,7 +108,7 @@ class Enumeration {
     for (const Declared& declared : definitions_.list[edge.definition].variables) {
       if (declared.kind != Declared::Kind::LibraryBlock || declared.block->states.empty() ||
           declared.block->about.group != Group::Dynamics || declared.block->about.name == "HY_DELAY" ||
-          declared.block->about.effect == "delay") {
+          declared.block->about.effect == "delay" || added_before(edge.prefix + language::upper(declared.field.name))) {
         continue;
       }
       for (const Field& output : declared.block->outputs) {
@@ -133,21 +144,12 @@ class Enumeration {
     Candidate candidate{.kind = kind, .variant = base_};
     Applied applied{
         .effect = kind.id, .block = kind.block, .edge = edge.name, .instance = edge.prefix + instance, .wires = wires};
-    const auto* text = source_.get();
-    language::SourceFile widened;
-    Edge here = edge;
+    Insertion insertion{
+        .block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires};
     if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
-      Diagnostics diagnostics;
-      widened = language::parse("text", with_input(*source_, index_, wires.front().second, {}), diagnostics);
-      const std::uint32_t shift = static_cast<std::uint32_t>(widened.text->size() - source_->text->size());
-      for (language::Span& read : here.reads) {
-        read.offset += shift;  // the declaration stands before all statements
-      }
-      text = &widened;
+      insertion.new_input = wires.front().second;
     }
-    candidate.variant.text = with_effect(
-        *text, here,
-        {.block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires});
+    candidate.variant.text = with_effect(*source_, edge, insertion);
     candidate.family = edge.name;
     for (const auto& [pin, driver] : wires) {
       candidate.family += "|" + driver;
@@ -156,7 +158,7 @@ class Enumeration {
   }
 
   void change_instances(const EffectKind& kind) {
-    for (const Place& place : places_) {
+    for (const BlockInstance& place : places_) {
       for (const Declared& declared : definitions_.list[place.definition].variables) {
         if (declared.kind != Declared::Kind::LibraryBlock) {
           continue;
@@ -208,8 +210,21 @@ class Enumeration {
       for (const std::string& pin : candidate.kind.auxiliaries) {
         candidate.auxiliary.push_back(wire_of(graph, *node, pin));
       }
+      const Wire changed{.from = Wire::From::Node, .index = static_cast<std::uint32_t>(node - graph.nodes.data())};
+      if (!makes_sense(graph, candidate, changed)) {
+        return;
+      }
     }
     candidates_.push_back(std::move(candidate));
+  }
+
+  /// A friction opposes the motion that it slows, so its velocity comes from what it changes; a coupling is of another
+  /// signal than the one that is there already.
+  [[nodiscard]] static bool makes_sense(const Graph& graph, const Candidate& candidate, const Wire& changed) {
+    return std::ranges::all_of(candidate.auxiliary, [&](const Wire& driver) {
+      return candidate.kind.fed_back ? depends_on(graph, driver, changed)
+                                     : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver);
+    });
   }
 
   const Variant& base_;
@@ -219,21 +234,24 @@ class Enumeration {
   Definitions definitions_{};
   std::uint32_t index_ = 0;
   std::vector<Edge> edges_{};
-  std::vector<Place> places_{};
+  std::vector<BlockInstance> places_{};
   std::vector<Candidate> candidates_{};
 };
 
 }  // namespace
+
+void set_parameter(Graph& graph, std::string_view path, double value) {
+  if (const std::int64_t found = find_parameter(graph, path); found >= 0) {
+    graph.parameters[static_cast<std::size_t>(found)].value.front() = value;
+  }
+}
 
 std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,
                                         const std::vector<Applied>& effects) {
   auto program = std::make_shared<Program>(compile_text(text, {.top = top, .any_order = true}));
   for (const Applied& applied : effects) {
     for (const auto& [path, value] : applied.settings) {
-      const std::int64_t found = find_parameter(program->graph, path);
-      if (found >= 0) {
-        program->graph.parameters[static_cast<std::size_t>(found)].value.front() = value;
-      }
+      set_parameter(program->graph, path, value);
     }
   }
   return program;

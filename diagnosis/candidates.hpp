@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct CandidateOptions {
 /// `base` compiles; candidates that do not are left out.
 [[nodiscard]] std::vector<Candidate> candidates_of(const Variant& base, const std::string& top,
                                                    const CandidateOptions& options);
+
+/// Sets the first element of a parameter by its path; nothing where there is none of that name.
+void set_parameter(Graph& graph, std::string_view path, double value);
 
 /// The program of a text, statements in any order, with the settings of its effects.
 [[nodiscard]] std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,

@@ -55,7 +55,9 @@ class Run {
     task_ = task_of(input_);
     result_.top = input_.program.graph.name;
     // With the file's values: an effect that it switches on is there already.
-    base_ = {.text = input_.text, .program = std::make_shared<Program>(nominal_program())};
+    auto program = std::make_shared<Program>(input_.program);
+    parameters::apply(task_.file, program->graph);
+    base_ = {.text = input_.text, .program = std::move(program)};
     Model model(task_, *base_.program);
     floors_.clear();
     for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
@@ -98,7 +100,7 @@ class Run {
     result_.tried = found.tried;
     const Judgement judgement = judge(task_, found, floor_cost_, searching.least_share);
     const Explanation& chosen = *judgement.chosen;
-    describe_gap(found.calibrated, chosen);
+    describe_gap(found.calibrated, judgement);
     decide(found, judgement);
     result_.edges = where(task_, found.calibrated, top, options_.threads);
     result_.maps = maps_of(task_, found.calibrated, chosen);
@@ -111,9 +113,8 @@ class Run {
     return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task_.scales[output];
   }
 
-  void describe_gap(const Explanation& calibrated, const Explanation& chosen) {
+  void describe_gap(const Explanation& calibrated, const Judgement& judgement) {
     const auto before = by_blocks(task_, nominal_);
-    const auto after = held_out(task_, chosen);
     double largest = -1.0;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
       const Port& port = *std::ranges::find_if(input_.program.graph.outputs, [&](const Port& one) {
@@ -123,9 +124,9 @@ class Run {
                      .unit = port.unit,
                      .nominal = rms(nominal_, output),
                      .calibrated = rms(calibrated.fit.residuals, output),
-                     .improved = rms(chosen.fit.residuals, output),
+                     .improved = rms(judgement.chosen->fit.residuals, output),
                      .floor = floors_[output]};
-      const Closure share = closure(before[output], after[output], 1.0, options_.seed);
+      const Closure share = closure(before[output], judgement.held_out[output], 1.0, options_.seed);
       gap.closed = share.closed;
       gap.closed_low = share.low;
       gap.closed_high = share.high;
@@ -315,7 +316,6 @@ class Run {
     }
     const double sample_time = task_.records.front().sample_time();
     const Program improved = fitted_program(task_, kept);
-    const Program nominal = nominal_program();
     const Feedforward feedforward = feedforward_of(improved, moving.front(), result_.gap.signal, sample_time);
     result_.feedforward_text = feedforward.text;
     result_.feedforward_notes = feedforward.notes;
@@ -324,16 +324,10 @@ class Run {
       return;
     }
     if (const auto tracking =
-            predicted_tracking(nominal, improved, moving.front(), result_.gap.signal, task_.records.front())) {
+            predicted_tracking(*base_.program, improved, moving.front(), result_.gap.signal, task_.records.front())) {
       result_.tracking_nominal = tracking->nominal;
       result_.tracking_improved = tracking->improved;
     }
-  }
-
-  [[nodiscard]] Program nominal_program() const {
-    Program program = input_.program;
-    parameters::apply(task_.file, program.graph);
-    return program;
   }
 
   const DiagnosisInput& input_;

@@ -36,7 +36,8 @@ struct DiagnosisOptions {
   std::uint64_t seed = 1;
   unsigned threads = 2;
   std::function<void(double fraction, std::string_view text)> progress{};
-  /// Called with each limit of the next experiment: largest |value| and rate of an input; ±∞ where there is none.
+  /// Of the next experiment, by name: "U" the largest |value| of an input, "U.low", "U.high", "U.rate" its ends and
+  /// its fastest change a second. What is not named is taken from the records.
   std::vector<std::pair<std::string, double>> limits{};
 };
 

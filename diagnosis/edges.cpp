@@ -223,35 +223,43 @@ class BlockEdges {
   std::map<std::string, Span> computed_{};
 };
 
-void add_edges(const Definitions& definitions, std::uint32_t index, const std::string& prefix,
-               std::set<std::string>& taken, std::vector<Edge>& edges) {
-  for (Edge& edge : BlockEdges(definitions, index).list()) {
-    edge.prefix = prefix;
-    edge.name.insert(0, prefix);
-    for (std::string& alias : edge.aliases) {
-      alias.insert(0, prefix);
-    }
-    // The pin of an instance, seen from outside, is the input of the block, seen from inside.
-    if (taken.contains(edge.name)) {
-      continue;
-    }
-    taken.insert(edge.name);
-    taken.insert(edge.aliases.begin(), edge.aliases.end());
-    edges.push_back(std::move(edge));
-  }
+void add_instances(const Definitions& definitions, std::uint32_t index, const std::string& prefix,
+                   std::vector<BlockInstance>& instances) {
+  instances.push_back({.definition = index, .prefix = prefix});
   for (const Declared& declared : definitions.list[index].variables) {
     if (declared.kind == Declared::Kind::UserBlock) {
-      add_edges(definitions, declared.definition, prefix + language::upper(declared.field.name) + ".", taken, edges);
+      add_instances(definitions, declared.definition, prefix + language::upper(declared.field.name) + ".", instances);
     }
   }
 }
 
 }  // namespace
 
+std::vector<BlockInstance> instances_of(const Definitions& definitions, std::uint32_t top) {
+  std::vector<BlockInstance> instances;
+  add_instances(definitions, top, {}, instances);
+  return instances;
+}
+
 std::vector<Edge> edges_of(const Definitions& definitions, std::uint32_t top) {
   std::vector<Edge> edges;
   std::set<std::string> taken;
-  add_edges(definitions, top, {}, taken, edges);
+  for (const BlockInstance& instance : instances_of(definitions, top)) {
+    for (Edge& edge : BlockEdges(definitions, instance.definition).list()) {
+      edge.prefix = instance.prefix;
+      edge.name.insert(0, instance.prefix);
+      for (std::string& alias : edge.aliases) {
+        alias.insert(0, instance.prefix);
+      }
+      // The pin of an instance, seen from outside, is the input of the block, seen from inside.
+      if (taken.contains(edge.name)) {
+        continue;
+      }
+      taken.insert(edge.name);
+      taken.insert(edge.aliases.begin(), edge.aliases.end());
+      edges.push_back(std::move(edge));
+    }
+  }
   return edges;
 }
 

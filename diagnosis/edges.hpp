@@ -25,6 +25,15 @@ struct Edge {
   std::vector<language::Span> reads{};  ///< the places in the text that are to read the changed signal instead
 };
 
+/// A FUNCTION_BLOCK of the file where it is used.
+struct BlockInstance {
+  std::uint32_t definition = 0;  ///< by its place in the file
+  std::string prefix{};          ///< "PLANT.", empty for the top block
+};
+
+/// A block and all that it contains, each where it is used, the outer ones first.
+[[nodiscard]] std::vector<BlockInstance> instances_of(const Definitions& definitions, std::uint32_t top);
+
 /// The edges of a block and of all that it contains, those of the outer blocks first. Only LREAL signals, and only
 /// those that something reads.
 [[nodiscard]] std::vector<Edge> edges_of(const Definitions& definitions, std::uint32_t top);

@@ -13,6 +13,9 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
   if (!strength && (name.ends_with("REFERENCE") || name.ends_with("CENTRE"))) {
     return Role::Reference;
   }
+  if (!strength && name == "PITCH") {
+    return Role::Period;
+  }
   if (unit == "s") {
     return !strength && field.preset == 0.0 && name.starts_with("T_") ? Role::Instant : Role::Duration;
   }
@@ -30,9 +33,6 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
   }
   if (unit == "'x/s") {
     return Role::Rate;
-  }
-  if (!strength && name == "PITCH") {
-    return Role::Period;
   }
   return Role::Other;
 }
@@ -79,6 +79,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       // X0 is where a block starts, no signal that drives the effect.
       if (input.type == Type::Real && input.name != kind.input && input.name != "X0" && input.unit != "'x") {
         kind.auxiliaries.emplace_back(input.name);
+        kind.fed_back = kind.fed_back || input.unit == "'v" || input.unit == "'p";
       }
     }
     kind.parameters = searched(block.params);
@@ -153,6 +154,15 @@ std::vector<EffectKind> effect_kinds(const Definitions& definitions) {
   }
   for (const Definition& definition : definitions.list) {
     add_own(definition, kinds);
+  }
+  for (EffectKind& kind : kinds) {
+    for (EffectParameter& one : kind.parameters) {
+      // With a velocity or a position beside it, it is the size of a force.
+      if (one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0 &&
+          kind.auxiliaries.empty()) {
+        one.role = Role::Gap;
+      }
+    }
   }
   std::ranges::stable_sort(kinds, {}, &EffectKind::id);
   return kinds;

@@ -16,11 +16,12 @@ namespace hysteron::diagnosis {
 /// What a parameter measures, and so on which grid it is searched.
 enum class Role : std::uint8_t {
   Level,      ///< in the unit of the signal
+  Gap,        ///< likewise, a width or a quantum: nothing at 0, never negative, and its place on the signal counts
   Rate,       ///< in that unit a second
   Duration,   ///< seconds
   Instant,    ///< seconds since the start: a default of 0 that is not neutral
   Frequency,  ///< of an oscillation, Hz
-  Period,     ///< in the unit of an auxiliary input
+  Period,     ///< in a position: of the signal or of an auxiliary input
   Share,      ///< dimensionless
   PerSecond,  ///< share a second
   Reference,  ///< a size that others are relative to: set from the signal, not fitted
@@ -51,6 +52,7 @@ struct EffectKind {
   std::string enriches{};                     ///< Enrich: the block that it can stand for; Free: the block itself
   std::vector<EffectParameter> parameters{};  ///< those that are searched
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
+  bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
 };
 
 /// Those of the catalogue and of the definitions of a file, each with at least one strength, sorted by identifier.

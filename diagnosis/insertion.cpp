@@ -74,6 +74,10 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   const language::FunctionBlock& block = source.blocks[edge.definition];
   const Ends ends = ends_of(source, block);
   std::vector<Edit> edits{declaration(block, ends, fmt::format("{} : {};", insertion.instance, insertion.block))};
+  if (!insertion.new_input.empty()) {
+    edits.push_back({.span = {ends.behind, 0},
+                     .text = fmt::format("\n  VAR_INPUT\n    {} : LREAL := 0.0;\n  END_VAR", insertion.new_input)});
+  }
   for (const Span& read : edge.reads) {
     edits.push_back({.span = read, .text = fmt::format("{}.{}", insertion.instance, insertion.output)});
   }
@@ -87,15 +91,6 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
 
 std::string with_block(const language::SourceFile& source, const language::Variable& instance, std::string_view block) {
   return edited(*source.text, {{.span = instance.type.span, .text = std::string(block)}});
-}
-
-std::string with_input(const language::SourceFile& source, std::uint32_t block, std::string_view name,
-                       std::string_view unit) {
-  const Ends ends = ends_of(source, source.blocks[block]);
-  const std::string annotation = unit.empty() ? std::string() : fmt::format("  (* @unit {} *)", unit);
-  return edited(*source.text,
-                {{.span = {ends.behind, 0},
-                  .text = fmt::format("\n  VAR_INPUT\n    {} : LREAL := 0.0;{}\n  END_VAR", name, annotation)}});
 }
 
 std::string free_name(const language::FunctionBlock& block, std::string_view wish) {

@@ -22,6 +22,7 @@ struct Insertion {
   std::string input = "XIN";
   std::string output = "XOUT";
   std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
+  std::string new_input{};  ///< an LREAL input that the block gets, with the default 0; empty: none
 };
 
 [[nodiscard]] std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion);
@@ -29,10 +30,6 @@ struct Insertion {
 /// With the type of an instance replaced. All instances declared in the same breath, X, Y : TYPE, change.
 [[nodiscard]] std::string with_block(const language::SourceFile& source, const language::Variable& instance,
                                      std::string_view block);
-
-/// With a further input of a block, `LREAL` with the default 0.
-[[nodiscard]] std::string with_input(const language::SourceFile& source, std::uint32_t block, std::string_view name,
-                                     std::string_view unit);
 
 /// A name that a block does not declare yet: the wish, or the wish with a number behind it.
 [[nodiscard]] std::string free_name(const language::FunctionBlock& block, std::string_view wish);

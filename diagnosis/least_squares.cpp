@@ -98,7 +98,6 @@ double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals,
 
 Fit fit(Model& model, VectorXd start, const FitOptions& options) {
   Fit best{.x = within_bounds(model, start), .cost = infinity};
-  best.evaluations = 1;
   if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
     return best;
   }
@@ -111,7 +110,6 @@ Fit fit(Model& model, VectorXd start, const FitOptions& options) {
     bool descended = false;
     for (int attempt = 0; attempt < 6 && !descended; ++attempt) {
       const VectorXd x = moved(model, best.x, step_of(model, normal, best.x, damping));
-      ++best.evaluations;
       const bool valued = model.residuals(x, residuals, nullptr);
       const double cost = valued ? cost_of(model, x, residuals, options.weights) : infinity;
       if (cost < best.cost) {
@@ -124,7 +122,6 @@ Fit fit(Model& model, VectorXd start, const FitOptions& options) {
         damping *= 8.0;
       }
     }
-    ++best.evaluations;
     if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
       best.cost = infinity;
       return best;

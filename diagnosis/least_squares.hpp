@@ -19,7 +19,6 @@ struct Fit {
   double cost = 0.0;  ///< ½ Σ w r² + prior; ∞ where the model has no value at the start
   VectorXd residuals{};
   MatrixXd jacobian{};
-  int evaluations = 0;
   bool converged = false;
 };
 

@@ -23,7 +23,7 @@ parameters::FitSetting fit_of(const Unknown& unknown) {
 }  // namespace
 
 Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
-    : left_out_(task.left_out), first_further_(std::ssize(task.known)), further_count_(std::ssize(further)) {
+    : left_out_(task.left_out), first_further_(std::ssize(task.known)) {
   parameters::ParameterFile file{.file = task.file.file, .values = task.file.values};
   for (const Unknown& unknown : task.known) {
     file.fits.push_back(fit_of(unknown));

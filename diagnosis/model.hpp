@@ -42,9 +42,8 @@ struct Task {
   std::vector<std::string> outputs{};  ///< the measured ones, by name
   std::vector<Unknown> known{};        ///< calibration parameters
   std::vector<std::string> initial_states{};
-  std::vector<double> scales{};
+  std::vector<double> scales{};   ///< of the residuals, by output
   std::vector<Index> left_out{};  ///< rows that do not count: glitches
-  ///< of the residuals, by output
 };
 
 class Model {
@@ -57,9 +56,8 @@ class Model {
 
   [[nodiscard]] Index rows() const { return rollout_->residual_count(); }
   [[nodiscard]] Index unknowns() const { return start_.size(); }
-  /// The first of the unknowns that were given as `further`, and how many they are.
+  /// The first of the unknowns that were given as `further`.
   [[nodiscard]] Index first_further() const { return first_further_; }
-  [[nodiscard]] Index further_count() const { return further_count_; }
 
   [[nodiscard]] const VectorXd& start() const { return start_; }
   [[nodiscard]] const VectorXd& lower() const { return lower_; }
@@ -84,7 +82,6 @@ class Model {
   std::vector<std::string> names_{};
   std::vector<Index> left_out_{};
   Index first_further_ = 0;
-  Index further_count_ = 0;
 };
 
 }  // namespace hysteron::diagnosis

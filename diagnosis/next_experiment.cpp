@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/excitations.hpp"
 #include "diagnosis/parallel.hpp"
+#include "diagnosis/projection.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
@@ -122,25 +122,10 @@ class Planner {
     return largest * task_.scales.front() / noise_;
   }
 
-  /// v less its projection onto the columns, which may depend on each other.
-  [[nodiscard]] static VectorXd projected(const MatrixXd& columns, const VectorXd& v) {
-    if (columns.cols() == 0) {
-      return v;
-    }
-    MatrixXd scaled = columns;
-    for (Index j = 0; j < scaled.cols(); ++j) {
-      const double norm = scaled.col(j).norm();
-      scaled.col(j) *= norm > 0.0 ? 1.0 / norm : 0.0;
-    }
-    MatrixXd normal = scaled.transpose() * scaled;
-    normal.diagonal().array() += 1e-9;
-    return v - scaled * normal.ldlt().solve(scaled.transpose() * v);
-  }
-
   [[nodiscard]] double left_between(const records::Record& command, const Contender& a, const Contender& b) const {
     VectorXd residuals;
     MatrixXd jacobian;
-    return compare(command, a, b, residuals, jacobian) ? over_noise(projected(jacobian, residuals)) : 0.0;
+    return compare(command, a, b, residuals, jacobian) ? over_noise(Projection(jacobian).rest(residuals)) : 0.0;
   }
 
   /// What the first strength of the last effect does to the output beyond what all other parameters can do.
@@ -162,7 +147,7 @@ class Planner {
     const VectorXd own = jacobian.col(column);
     MatrixXd others(jacobian.rows(), jacobian.cols() - 1);
     others << jacobian.leftCols(column), jacobian.rightCols(jacobian.cols() - column - 1);
-    return over_noise(projected(others, own)) * (size > 0.0 ? size : 1.0);
+    return over_noise(Projection(others).rest(own)) * (size > 0.0 ? size : 1.0);
   }
 
   /// The first strength of the last effect, among the unknowns.

@@ -1,10 +1,11 @@
 #include "diagnosis/screening.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -14,14 +15,23 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Outputs within this share of twice the change at half the strength: linear in it.
 constexpr double linear_within = 0.05;
 
-/// One setting of all shapes, for each combination of their grids.
+/// More settings of shapes than this are tried one shape at a time about the middle of each.
+constexpr std::size_t most_shapes = 12;
+
+bool is_searched_shape(const Applied& effect, const Grids& grids, std::size_t j) {
+  return !effect.parameters[j].strength && !grids.parameters[j].values.empty();
+}
+
+/// Every combination of the shapes' grids, or where these are many a star: one shape moved, the others in the middle.
 std::vector<VectorXd> shapes_of(const Applied& effect, const Grids& grids, const VectorXd& neutral) {
   std::vector<VectorXd> shapes{neutral};
+  VectorXd middle = neutral;
   for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
-    const std::vector<double>& values = grids.parameters[j].values;
-    if (effect.parameters[j].strength || values.empty()) {
+    if (!is_searched_shape(effect, grids, j)) {
       continue;
     }
+    const std::vector<double>& values = grids.parameters[j].values;
+    middle[static_cast<Index>(j)] = values[values.size() / 2];
     std::vector<VectorXd> more;
     for (const VectorXd& shape : shapes) {
       for (const double value : values) {
@@ -31,7 +41,33 @@ std::vector<VectorXd> shapes_of(const Applied& effect, const Grids& grids, const
     }
     shapes = std::move(more);
   }
+  if (shapes.size() <= most_shapes) {
+    return shapes;
+  }
+  shapes.assign(1, middle);
+  for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+    if (!is_searched_shape(effect, grids, j)) {
+      continue;
+    }
+    for (const double value : grids.parameters[j].values) {
+      if (value != middle[static_cast<Index>(j)]) {
+        shapes.push_back(middle);
+        shapes.back()[static_cast<Index>(j)] = value;
+      }
+    }
+  }
   return shapes;
+}
+
+/// The point of a grid that is nearest to a value.
+std::size_t nearest(const std::vector<double>& values, double value) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (std::abs(values[k] - value) < std::abs(values[best] - value)) {
+      best = k;
+    }
+  }
+  return best;
 }
 
 class Screening {
@@ -57,10 +93,7 @@ class Screening {
     }
     auto program = std::make_shared<Program>(*screened_.candidate.variant.program);
     for (const auto& [path, value] : own.settings) {
-      const std::int64_t found = find_parameter(program->graph, path);
-      if (found >= 0) {
-        program->graph.parameters[static_cast<std::size_t>(found)].value.front() = value;
-      }
+      set_parameter(program->graph, path, value);
     }
     screened_.candidate.variant.program = std::move(program);
     model_.emplace(task, *screened_.candidate.variant.program, further);
@@ -75,11 +108,35 @@ class Screening {
     for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
       try_shape(shape, starts);
     }
+    return finished(std::move(starts), keep);
+  }
+
+  /// The points of the grid about the starts that a thinner one has found; all of a grid that is jagged.
+  Screened run_about(const std::vector<Start>& coarse, std::size_t stride, std::size_t keep) {
+    std::vector<Start> starts;
+    for (const Start& start : coarse) {
+      VectorXd values = neutral_;
+      for (Index k = 0; k < std::ssize(free_); ++k) {
+        values[free_[static_cast<std::size_t>(k)]] = start.values[k];
+      }
+      starts.push_back({.values = values, .gain = start.gain});
+      for (const Index j : free_) {
+        if (!grids_.parameters[static_cast<std::size_t>(j)].jagged || &start == &coarse.front()) {
+          try_neighbours(values, j, stride, starts);
+        }
+      }
+    }
+    return finished(std::move(starts), keep);
+  }
+
+ private:
+  /// The best starts, with the free parameters alone.
+  Screened finished(std::vector<Start> starts, std::size_t keep) {
     std::ranges::stable_sort(starts, [](const Start& a, const Start& b) { return a.gain > b.gain; });
     if (starts.size() > keep) {
       starts.resize(keep);
     }
-    for (Start& start : starts) {  // the free ones only
+    for (Start& start : starts) {
       VectorXd values(std::ssize(free_));
       for (Index k = 0; k < std::ssize(free_); ++k) {
         values[k] = start.values[free_[static_cast<std::size_t>(k)]];
@@ -90,7 +147,40 @@ class Screening {
     return std::move(screened_);
   }
 
- private:
+  /// One parameter moved along its grid, the others where they are; a new shape takes its strengths anew where the
+  /// output is linear in them.
+  void try_neighbours(const VectorXd& values, Index j, std::size_t stride, std::vector<Start>& starts) {
+    const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+    const auto last = std::ssize(grid.values) - 1;
+    if (last < 1) {
+      return;
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(nearest(grid.values, values[j]));
+    const auto reach = grid.jagged ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
+    for (auto k = std::max<std::ptrdiff_t>(0, middle - reach); k <= std::min(last, middle + reach); ++k) {
+      if (k == middle) {
+        continue;
+      }
+      VectorXd moved = values;
+      moved[j] = grid.values[static_cast<std::size_t>(k)];
+      if (parameter(j).strength) {
+        try_point(moved, starts);
+        continue;
+      }
+      VectorXd shape = moved;
+      for (const Index strength : strengths()) {
+        shape[strength] = neutral_[strength];
+      }
+      const std::size_t before = starts.size();
+      if (is_linear_there(shape)) {
+        try_shape(shape, starts);
+      }
+      if (starts.size() == before) {
+        try_point(moved, starts);
+      }
+    }
+  }
+
   [[nodiscard]] const EffectParameter& parameter(Index j) const {
     return screened_.candidate.own().parameters[static_cast<std::size_t>(j)];
   }
@@ -135,36 +225,57 @@ class Screening {
     return double_change.size() > 0 && (double_change - 2.0 * change).norm() <= linear_within * double_change.norm();
   }
 
-  void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
+  /// Whether the output is linear in all strengths, asked at the first shape.
+  bool is_linear_there(const VectorXd& shape) {
     const std::vector<Index> list = strengths();
-    MatrixXd changes(background_.residuals().size(), std::ssize(list));
-    bool all_linear = true;
-    bool any_change = false;
-    VectorXd small = shape;
-    for (Index k = 0; k < std::ssize(list) && all_linear; ++k) {
+    for (Index k = std::ssize(linear_); k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
       VectorXd values = shape;
       values[j] = grids_.parameters[static_cast<std::size_t>(j)].values.front();
+      const VectorXd change = change_at(values);
+      linear_.push_back(change.size() > 0 && is_linear(j, values, change));
+    }
+    return std::ranges::all_of(linear_, [](bool one) { return one; });
+  }
+
+  void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
+    const std::vector<Index> list = strengths();
+    const bool linear = is_linear_there(shape);
+    if (!linear && !are_amplitudes(list)) {
+      try_grid(shape, list, starts);
+      return;
+    }
+    MatrixXd changes(background_.residuals().size(), std::ssize(list));
+    VectorXd small = shape;
+    for (Index k = 0; k < std::ssize(list); ++k) {
+      const Index j = list[static_cast<std::size_t>(k)];
+      const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
+      VectorXd values = shape;
+      values[j] = linear ? grid.front() : grid[grid.size() / 2];
       small[j] = values[j];
       const VectorXd change = change_at(values);
       if (change.size() == 0) {
         return;
       }
       changes.col(k) = change;
-      any_change = any_change || change.squaredNorm() > 0.0;
-      if (std::ssize(linear_) <= k) {
-        linear_.push_back(is_linear(j, values, change));
-      }
-      all_linear = linear_[static_cast<std::size_t>(k)];
     }
-    if (!all_linear) {
+    const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, starts);
+    if (!linear && !kept && !std::exchange(grid_tried_, true)) {
       try_grid(shape, list, starts);
-    } else if (any_change) {
-      try_linear(shape, small, list, changes, starts);
     }
   }
 
-  void try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
+  /// Whether all strengths are sizes of something that is added, so that a straight line is a guess for each of them.
+  [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
+    return std::ranges::all_of(list, [&](Index j) {
+      const EffectParameter& one = parameter(j);
+      return std::isfinite(one.field.neutral) && one.role != Role::Gap && one.role != Role::Rate &&
+             one.role != Role::Duration;
+    });
+  }
+
+  /// Whether the diagram keeps a part of what the straight line promises.
+  bool try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
                   std::vector<Start>& starts) {
     VectorXd low(std::ssize(list));
     VectorXd high(std::ssize(list));
@@ -184,17 +295,20 @@ class Screening {
       const Index j = list[static_cast<std::size_t>(k)];
       values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
     }
-    // What the straight line promises, held against the diagram itself, there and short of there.
+    // The promise is held against the diagram itself, there and short of there.
+    double best = 0.0;
     for (const double share : {1.0, 0.3, 0.1}) {
       VectorXd there = shape;
       for (const Index j : list) {
         there[j] += share * (values[j] - shape[j]);
       }
       try_point(there, starts);
-      if (!starts.empty() && starts.back().gain > 0.8 * gain) {
+      best = starts.empty() ? best : std::max(best, starts.back().gain);
+      if (best > 0.8 * gain) {
         break;
       }
     }
+    return best > 0.3 * gain;
   }
 
   /// Each strength by itself over its grid, and all of them at once.
@@ -243,26 +357,15 @@ class Screening {
   std::vector<Index> free_{};   ///< the parameters that are unknowns
   VectorXd neutral_{};          ///< by parameter: neutral, default or setting
   VectorXd base_{};             ///< of the model's unknowns
+  bool grid_tried_ = false;     ///< of amplitudes that are not linear, once
   std::vector<bool> linear_{};  ///< by strength
 };
 
 }  // namespace
 
-Background::Background(const Model& model, const Fit& at) : residuals_(at.residuals), jacobian_(at.jacobian) {
-  MatrixXd normal = jacobian_.transpose() * jacobian_;
-  normal.diagonal() += model.prior().cwiseAbs2();
-  for (Index j = 0; j < normal.rows(); ++j) {  // a parameter without influence, or two that cannot be told apart
-    normal(j, j) = normal(j, j) > 0.0 ? normal(j, j) * (1.0 + 1e-9) : 1.0;
-  }
-  normal_.compute(normal);
+Background::Background(const Model& model, const Fit& at)
+    : residuals_(at.residuals), projection_(at.jacobian, model.prior()) {
   unexplained_ = 0.5 * residuals_.dot(projected(residuals_));
-}
-
-VectorXd Background::projected(const VectorXd& v) const {
-  if (jacobian_.cols() == 0) {
-    return v;
-  }
-  return v - jacobian_ * normal_.solve(jacobian_.transpose() * v);
 }
 
 double Background::gain(const MatrixXd& changes, const VectorXd& low, const VectorXd& high, VectorXd& alpha) const {
@@ -282,6 +385,11 @@ double Background::gain(const MatrixXd& changes, const VectorXd& low, const Vect
 Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,
                   const Background& background, std::size_t keep) {
   return Screening(task, std::move(candidate), grids, at, background).run(keep);
+}
+
+Screened screened_about(const std::vector<Start>& coarse, std::size_t stride, const Task& task, Candidate candidate,
+                        const Grids& grids, const VectorXd& at, const Background& background, std::size_t keep) {
+  return Screening(task, std::move(candidate), grids, at, background).run_about(coarse, stride, keep);
 }
 
 }  // namespace hysteron::diagnosis

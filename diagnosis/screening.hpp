@@ -9,11 +9,11 @@
 // setting of its strengths for each of its shapes, and α is free; another one is tried on its whole grid with α = 1.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/least_squares.hpp"
+#include "diagnosis/projection.hpp"
 #include "diagnosis/starts.hpp"
 
 namespace hysteron::diagnosis {
@@ -27,14 +27,13 @@ class Background {
   [[nodiscard]] double unexplained() const { return unexplained_; }
   [[nodiscard]] const VectorXd& residuals() const { return residuals_; }
   /// P v
-  [[nodiscard]] VectorXd projected(const VectorXd& v) const;
+  [[nodiscard]] VectorXd projected(const VectorXd& v) const { return projection_.rest(v); }
   /// What is gained by the best r + D α with low ≤ α ≤ high; D as columns.
   [[nodiscard]] double gain(const MatrixXd& changes, const VectorXd& low, const VectorXd& high, VectorXd& alpha) const;
 
  private:
   VectorXd residuals_{};
-  MatrixXd jacobian_{};
-  Eigen::LDLT<MatrixXd> normal_{};
+  Projection projection_{};
   double unexplained_ = 0.0;
 };
 
@@ -54,5 +53,10 @@ struct Screened {
 /// `at` is the fit of the base; `base` its unknowns are the first ones of the candidate's model.
 [[nodiscard]] Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,
                                 const Background& background, std::size_t keep);
+
+/// On the whole grids, near the starts that grids with one point in `stride` have found.
+[[nodiscard]] Screened screened_about(const std::vector<Start>& coarse, std::size_t stride, const Task& task,
+                                      Candidate candidate, const Grids& grids, const VectorXd& at,
+                                      const Background& background, std::size_t keep);
 
 }  // namespace hysteron::diagnosis

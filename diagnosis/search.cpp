@@ -34,14 +34,17 @@ class Extents {
     std::vector<Signals> found(list.size());
     in_parallel(list.size(), threads, [&](std::size_t i) {
       const Candidate& candidate = *list[i].second;
-      Task task = task_;
-      task.initial_states.clear();
-      const Program& program = *candidate.variant.program;
-      found[i].input_values = wire_values(task, program, candidate.input, known_);
-      found[i].input = extent_of(found[i].input_values, task_.records.front().sample_time());
+      std::vector<Wire> wires{candidate.input};
       if (!candidate.auxiliary.empty()) {
-        found[i].auxiliary_values = wire_values(task, program, candidate.auxiliary.front(), known_);
-        found[i].auxiliary = extent_of(*found[i].auxiliary_values, task_.records.front().sample_time());
+        wires.push_back(candidate.auxiliary.front());
+      }
+      std::vector<RecordSignals> values = wire_signals(task_, *candidate.variant.program, wires, known_);
+      const double sample_time = task_.records.front().sample_time();
+      found[i].input_values = std::move(values.front());
+      found[i].input = extent_of(found[i].input_values, sample_time);
+      if (values.size() > 1) {
+        found[i].auxiliary_values = std::move(values.back());
+        found[i].auxiliary = extent_of(*found[i].auxiliary_values, sample_time);
       }
     });
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -50,9 +53,9 @@ class Extents {
   }
 
   struct Signals {
-    std::vector<std::vector<double>> input_values{};
+    RecordSignals input_values{};
     Extent input{};
-    std::optional<std::vector<std::vector<double>>> auxiliary_values{};
+    std::optional<RecordSignals> auxiliary_values{};
     std::optional<Extent> auxiliary{};
   };
 
@@ -67,8 +70,13 @@ class Extents {
   std::map<std::string, Signals> signals_{};
 };
 
-bool has_period(const Applied& effect) {
-  return std::ranges::any_of(effect.parameters, [](const EffectParameter& one) { return one.role == Role::Period; });
+/// So many of the best fits of a round go to the end in any case.
+constexpr std::size_t finished_always = 6;
+/// One point in so many of a long grid comes first.
+constexpr std::size_t stride = 3;
+
+bool has(const Applied& effect, Role role) {
+  return std::ranges::any_of(effect.parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
 class Searcher {
@@ -157,13 +165,14 @@ class Searcher {
         return;
       }
       std::vector<double> periods;
-      if (has_period(candidates[i].own())) {
+      if (has(candidates[i].own(), Role::Period)) {
         periods =
             strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
       }
       grids[i] = grids_of(candidates[i].own(), signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr,
                           hints, periods);
-      list[i] = screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], 3), from.fit.x, background, 3);
+      list[i] =
+          screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), from.fit.x, background, 3);
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
@@ -173,58 +182,42 @@ class Searcher {
     }
     std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
     std::ranges::stable_sort(list, [](const Screened& a, const Screened& b) { return a.gain() > b.gain(); });
-    if (from.variant.effects.empty()) {
-      for (const Screened& one : list) {
-        result.attempts.push_back(
-            {.effect = one.candidate.own().effect, .edge = one.candidate.own().edge, .gain = one.gain()});
-      }
-    }
     keep_best(list, fitted);
     std::vector<Explanation> fits(list.size());
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
-      fits[i] = fitted_from(list[i], from.fit.x);
-      if (from.variant.effects.empty()) {  // and about the calibrated ones
-        Screened best_start = list[i];
-        best_start.starts.resize(1);
-        Explanation other = fitted_from(best_start, result.calibrated.fit.x);
-        if (other.fit.cost < fits[i].fit.cost) {
-          fits[i] = std::move(other);
-        }
-      }
-      say(0.6 + 0.4 * static_cast<double>(++done) / static_cast<double>(list.size()),
+      fits[i] = begun_from(list[i], from);
+      say(0.6 + 0.3 * static_cast<double>(++done) / static_cast<double>(list.size()),
           list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
     });
-    for (Explanation& one : fits) {
-      if (std::isfinite(one.fit.cost)) {
-        found.push_back(std::move(one));
-      }
-    }
+    std::erase_if(fits, [](const Explanation& one) { return !std::isfinite(one.fit.cost); });
+    finish(fits, from.fit.cost);
+    std::ranges::move(fits, std::back_inserter(found));
   }
 
-  /// The whole grid for the candidates that the thin one has brought to the front.
+  /// To the end those fits that a few steps have brought to the front; one that closes a small part of what the best
+  /// closes is ranked well enough.
+  void finish(std::vector<Explanation>& fits, double cost_before) {
+    std::ranges::stable_sort(fits, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
+    std::atomic<std::size_t> done{0};
+    in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
+      const bool in_front = cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
+      if (i < finished_always || in_front) {
+        finish(fits[i], i < finished_always);
+      }
+      say(0.9 + 0.1 * static_cast<double>(++done) / static_cast<double>(fits.size()), "last steps of the fits");
+    });
+  }
+
+  /// The whole grid near the starts of those candidates that the thin one has brought to the front.
   void refine(std::vector<Screened>& list, const std::vector<Candidate>& candidates, const std::vector<Grids>& grids,
               const Explanation& from, const Background& background) {
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return list[a].gain() > list[b].gain(); });
-    // The front, and of each effect its two best edges: a quantum shows on a fine grid only.
-    std::map<std::string, int> taken;
-    std::vector<std::size_t> kept;
-    for (const std::size_t at : order) {
-      if (kept.size() < options_.fitted_first || ++taken[candidates[at].kind.id] <= 2) {
-        kept.push_back(at);
-      }
-    }
-    order = std::move(kept);
+    const std::vector<std::size_t> order = front_of(list, candidates, options_.fitted_first);
     std::atomic<std::size_t> done{0};
     in_parallel(order.size(), options_.threads, [&](std::size_t i) {
       const std::size_t at = order[i];
       if (!list[at].starts.empty()) {
-        Screened whole = screened(task_, candidates[at], grids[at], from.fit.x, background, 3);
-        if (whole.gain() > list[at].gain()) {
-          list[at] = std::move(whole);
-        }
+        list[at] = screened_about(list[at].starts, stride, task_, candidates[at], grids[at], from.fit.x, background, 3);
       }
       say(0.4 + 0.2 * static_cast<double>(++done) / static_cast<double>(order.size()), "finer grids");
     });
@@ -236,14 +229,21 @@ class Searcher {
                          const std::vector<Grids>& grids, const Explanation& calibrated) {
     Model model(task_, *calibrated.variant.program);
     const Background background(model, calibrated.fit);
+    std::vector<Screened> others(list.size());
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
-      const bool gap = std::ranges::any_of(candidates[i].own().parameters, [](const EffectParameter& one) {
-        return one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0;
-      });
-      if (!gap || grids[i].parameters.empty()) {
+      if (has(candidates[i].own(), Role::Gap) && !grids[i].parameters.empty()) {
+        others[i] = screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
+                             background, 2);
+      }
+    });
+    const std::vector<std::size_t> front = front_of(others, candidates, 0);
+    in_parallel(front.size(), options_.threads, [&](std::size_t k) {
+      const std::size_t i = front[k];
+      if (others[i].starts.empty()) {
         return;
       }
-      Screened other = screened(task_, candidates[i], grids[i], calibrated.fit.x, background, 2);
+      Screened other =
+          screened_about(others[i].starts, stride, task_, candidates[i], grids[i], calibrated.fit.x, background, 2);
       // Gains are held against each other by what is left: the calibrated residual is the smaller one.
       const double saved = nominal_cost_ - calibrated.fit.cost;
       for (Start& start : other.starts) {
@@ -256,6 +256,22 @@ class Searcher {
       }
       std::ranges::stable_sort(list[i].starts, [](const Start& a, const Start& b) { return a.gain > b.gain; });
     });
+  }
+
+  /// The best of a list by their gains, so many, and of each effect its two best edges.
+  [[nodiscard]] static std::vector<std::size_t> front_of(const std::vector<Screened>& list,
+                                                         const std::vector<Candidate>& candidates, std::size_t count) {
+    std::vector<std::size_t> order(list.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return list[a].gain() > list[b].gain(); });
+    std::map<std::string, int> taken;
+    std::vector<std::size_t> front;
+    for (const std::size_t at : order) {
+      if (front.size() < count || ++taken[candidates[at].kind.id] <= 2) {
+        front.push_back(at);
+      }
+    }
+    return front;
   }
 
   /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
@@ -324,9 +340,7 @@ class Searcher {
     start.conservativeResize(model.unknowns());
     start.tail(states) = whole.fit.x.tail(states);
     result.fit = fit(model, start, {.iterations = 30});
-    for (std::size_t j = 0; j < result.variant.further.size() && std::isfinite(result.fit.cost); ++j) {
-      result.variant.further[j].start = result.fit.x[model.first_further() + static_cast<Index>(j)];
-    }
+    keep_starts(result, model);
     return result;
   }
 
@@ -348,44 +362,63 @@ class Searcher {
     list = std::move(kept);
   }
 
-  /// From its best starts: a few steps each, then the best of them to the end.
-  [[nodiscard]] Explanation fitted_from(const Screened& one, const VectorXd& at) const {
+  /// A few steps from each of its best starts, with the known parameters as they stand and, on the bare diagram, as
+  /// calibrated.
+  [[nodiscard]] Explanation begun_from(const Screened& one, const Explanation& from) const {
     Explanation best{.variant = one.candidate.variant};
     best.fit.cost = std::numeric_limits<double>::infinity();
-    std::vector<Unknown> further = one.candidate.variant.further;
+    std::vector<Unknown>& further = best.variant.further;
     const std::size_t inherited = further.size();
     further.insert(further.end(), one.unknowns.begin(), one.unknowns.end());
     Model model(task_, *one.candidate.variant.program, further);
     const Index first = model.first_further() + static_cast<Index>(inherited);
     VectorXd x(model.unknowns());
-    x.head(first) = at.head(first);
-    x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = at.tail(at.size() - first);
-    for (const Start& start : one.starts) {
-      if (start.gain < 0.5 * one.gain() && &start != &one.starts.front()) {
-        continue;
-      }
-      if (start.about_calibration) {
-        x.head(first) = calibrated_.head(first);
-      }
+    const auto begin_at = [&](const VectorXd& known, const Start& start) {
+      x.head(first) = known.head(first);
       x.segment(first, std::ssize(one.unknowns)) = start.values;
+      x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = known.tail(known.size() - first);
       Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
       if (here.cost < best.fit.cost) {
         best.fit = std::move(here);
       }
+    };
+    for (const Start& start : one.starts) {
+      if (start.gain >= 0.5 * one.gain()) {
+        begin_at(start.about_calibration ? calibrated_ : from.fit.x, start);
+      }
     }
-    if (!std::isfinite(best.fit.cost)) {
-      return best;
+    if (from.variant.effects.empty()) {
+      begin_at(calibrated_, one.starts.front());
     }
-    scan(model, best.fit, first, std::ssize(one.unknowns));
-    best.fit = fit(model, best.fit.x, {.iterations = 20});
-    const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
-    pattern_search(model, best.fit, gap ? 0 : first, gap ? first + std::ssize(one.unknowns) : std::ssize(one.unknowns));
     for (std::size_t j = 0; j < further.size(); ++j) {
-      further[j].start = best.fit.x[model.first_further() + static_cast<Index>(j)];
       further[j].unit = model.problem().parameters[task_.known.size() + j].unit;
     }
-    best.variant.further = std::move(further);
+    keep_starts(best, model);
     return best;
+  }
+
+  void finish(Explanation& one, bool thoroughly) const {
+    Model model(task_, *one.variant.program, one.variant.further);
+    const Applied& own = one.variant.effects.back();
+    const Index count = std::ssize(own.parameters) - std::ssize(own.settings);
+    const Index first = model.first_further() + std::ssize(one.variant.further) - count;
+    if (has(own, Role::Gap)) {
+      scan(model, one.fit, first, count);
+    }
+    one.fit = fit(model, one.fit.x, {.iterations = 20});
+    if (has(own, Role::Gap)) {
+      pattern_search(model, one.fit, 0, first + count);
+    } else if (thoroughly) {
+      pattern_search(model, one.fit, first, count);
+    }
+    keep_starts(one, model);
+  }
+
+  /// What the effects were fitted to is where their next fit begins.
+  static void keep_starts(Explanation& one, const Model& model) {
+    for (std::size_t j = 0; j < one.variant.further.size() && std::isfinite(one.fit.cost); ++j) {
+      one.variant.further[j].start = one.fit.x[model.first_further() + static_cast<Index>(j)];
+    }
   }
 
   /// A quantum or a gap has its minimum in a slot narrower than the grid: each parameter by small steps about the

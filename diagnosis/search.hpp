@@ -37,17 +37,9 @@ struct Explanation {
   [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
 };
 
-/// How one candidate did, fitted or not.
-struct Attempt {
-  std::string effect{};
-  std::string edge{};
-  double gain = 0.0;  ///< of ½Σr², by screening
-};
-
 struct Search {
   Explanation calibrated{};                 ///< no effect, known parameters fitted
   std::vector<Explanation> explanations{};  ///< with effects, best first
-  std::vector<Attempt> attempts{};          ///< of the first round, best first
   std::size_t tried = 0;                    ///< candidates over all rounds
 };
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "codegen/interpreter/machine.hpp"
+#include "codegen/parameters/apply.hpp"
+#include "diagnosis/candidates.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -23,49 +24,45 @@ std::vector<double> percentiles(std::vector<double> values) {
 
 }  // namespace
 
-Extent extent_of(const std::vector<std::vector<double>>& values, double sample_time) {
+Extent extent_of(const RecordSignals& values, double sample_time) {
   Extent extent{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
-  std::vector<double> levels;
   std::vector<double> rates;
-  for (const std::vector<double>& record : values) {
+  for (const Signal& record : values) {
     for (std::size_t k = 0; k < record.size(); ++k) {
       extent.low = std::min(extent.low, record[k]);
       extent.high = std::max(extent.high, record[k]);
-      levels.push_back(record[k]);
       if (k > 0) {
         rates.push_back(std::abs(record[k] - record[k - 1]) / sample_time);
       }
     }
   }
-  if (levels.empty()) {
+  if (extent.low > extent.high) {
     return {};
   }
-  extent.levels = percentiles(std::move(levels));
   extent.rates = percentiles(std::move(rates));
   return extent;
 }
 
-std::vector<std::vector<double>> wire_values(const Task& task, const Program& program, const Wire& wire,
-                                             const VectorXd& known) {
-  Model model(task, program);
-  const OutputErrorProblem& problem = model.problem();
-  std::vector<std::vector<double>> result;
-  for (const Experiment& experiment : problem.experiments) {
-    Machine<double> machine(problem.program, experiment.drive.sample_time);
-    for (std::size_t j = 0; j < task.known.size(); ++j) {
-      machine.set_parameter(problem.parameters[j].parameter, known[static_cast<Index>(j)],
-                            problem.parameters[j].element);
+std::vector<RecordSignals> wire_signals(const Task& task, const Program& program, const std::vector<Wire>& wires,
+                                        const VectorXd& known) {
+  Program driven = program;
+  parameters::apply(task.file, driven.graph);
+  for (std::size_t j = 0; j < task.known.size(); ++j) {
+    set_parameter(driven.graph, task.known[j].path, known[static_cast<Index>(j)]);
+  }
+  std::vector<RecordSignals> result(wires.size());
+  for (const records::Record& record : task.records) {
+    Diagnostics diagnostics;
+    Program here = driven;
+    settle_sample_time(record, here, diagnostics);
+    const Drive drive = drive_from(record, here, {}, diagnostics);
+    if (diagnostics.has_errors()) {
+      throw InputError(std::move(diagnostics));
     }
-    machine.reset();
-    std::vector<double> values(experiment.drive.steps);
-    for (std::size_t k = 0; k < experiment.drive.steps; ++k) {
-      for (std::size_t i = 0; i < experiment.drive.inputs.size(); ++i) {
-        machine.set_input(i, at_step(experiment.drive.inputs[i], k));
-      }
-      machine.step();
-      values[k] = machine.value(wire);
+    std::vector<Signal> values = interpret(here, drive, wires, false);
+    for (std::size_t i = 0; i < wires.size(); ++i) {
+      result[i].push_back(std::move(values[i]));
     }
-    result.push_back(std::move(values));
   }
   return result;
 }

@@ -112,24 +112,26 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
     return {};
   }
   const std::size_t stride = std::max<std::size_t>(1, size / 3000);
-  std::vector<double> heights;
+  constexpr int first = 7;    // two turns at least; the one before is there to see a peak
   constexpr int steps = 600;  // of a quarter of a turn over the range: up to 150 turns
-  for (int step = 4; step < steps; ++step) {
-    const double turn = 2.0 * std::numbers::pi * 0.25 * step / range;
-    double a = 0.0;
-    double b = 0.0;
-    for (std::size_t k = 0; k < size; k += stride) {
-      const double r = residuals[static_cast<Eigen::Index>(k)];
-      const double phase = turn * (places[k] - low);
-      a += r * std::sin(phase);
-      b += r * std::cos(phase);
+  using Complex = std::complex<double>;
+  std::vector<Complex> sums(steps - first);
+  for (std::size_t k = 0; k < size; k += stride) {
+    const double quarter = 0.5 * std::numbers::pi * (places[k] - low) / range;
+    const Complex turn = std::polar(1.0, quarter);
+    Complex term = residuals[static_cast<Eigen::Index>(k)] * std::polar(1.0, first * quarter);
+    for (Complex& sum : sums) {
+      sum += term;
+      term = {term.real() * turn.real() - term.imag() * turn.imag(),
+              term.real() * turn.imag() + term.imag() * turn.real()};
     }
-    heights.push_back(a * a + b * b);
   }
+  std::vector<double> heights;
+  std::ranges::transform(sums, std::back_inserter(heights), [](const Complex& sum) { return std::norm(sum); });
   std::vector<Peak> peaks;
   for (std::size_t k = 1; k + 1 < heights.size(); ++k) {
     if (heights[k] > heights[k - 1] && heights[k] >= heights[k + 1]) {
-      peaks.push_back({.place = range / (0.25 * static_cast<double>(k + 4)), .height = heights[k]});
+      peaks.push_back({.place = range / (0.25 * static_cast<double>(k + first)), .height = heights[k]});
     }
   }
   return places_of(std::move(peaks), count);

@@ -46,13 +46,14 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       if (std::isinf(field.neutral)) {
         return levels_above(input, field.neutral);
       }
-      {
-        std::vector<double> values = geometric(0.003 * range, 0.4 * range, 1.07);
-        if (parameter.name == "QUANTUM") {
-          values.insert(values.begin(), hints.quanta.begin(), hints.quanta.end());
-        }
-        return values;
+      return scaled(range, {0.001, 0.003, 0.01, 0.03, 0.1, 0.3});
+    case Role::Gap: {
+      std::vector<double> values = geometric(0.003 * range, 0.4 * range, 1.07);
+      if (parameter.name == "QUANTUM") {
+        values.insert(values.begin(), hints.quanta.begin(), hints.quanta.end());
       }
+      return values;
+    }
     case Role::Rate:
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});
@@ -102,6 +103,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     case Role::Share:
       return {0.02, 0.1, 0.4};
     case Role::Level:
+    case Role::Gap:
       return scaled(range, {0.05, 0.15, 0.4});
     case Role::Rate:
     case Role::PerSecond:
@@ -145,9 +147,15 @@ Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxilia
     if (parameter.role == Role::Reference) {
       setting = reference(parameter, input);
     } else {
+      grid.jagged = parameter.name == "QUANTUM";
       grid.values = parameter.strength ? strength_grid(parameter, input, auxiliary, hints)
                                        : shape_grid(parameter, input, auxiliary, hints, periods);
-      std::erase_if(grid.values, [&](double value) { return !in_range(parameter.field, value); });
+      if (parameter.role == Role::Period) {
+        const double range = (auxiliary == nullptr ? input : *auxiliary).range();
+        grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
+      }
+      std::erase_if(grid.values,
+                    [&](double value) { return !in_range(parameter.field, value) || value > grid.highest; });
     }
     grids.parameters.push_back(std::move(grid));
     grids.settings.push_back(setting);
@@ -157,11 +165,16 @@ Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxilia
 
 Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
   constexpr std::size_t short_enough = 4;
+  constexpr std::size_t strongest = 4;  // of the periods, which stand in the order of their strength
   Grids result = grids;
   for (std::size_t j = 0; j < grids.parameters.size(); ++j) {
     const std::vector<double>& values = grids.parameters[j].values;
     const Role role = effect.parameters[j].role;
-    if (values.size() <= short_enough || role == Role::Frequency || role == Role::Period) {
+    if (values.size() <= short_enough || role == Role::Frequency) {
+      continue;
+    }
+    if (role == Role::Period) {
+      result.parameters[j].values.resize(std::min(values.size(), strongest));
       continue;
     }
     result.parameters[j].values.clear();
@@ -185,6 +198,8 @@ Unknown unknown_of(const EffectParameter& parameter, const std::string& path, co
   if (!grid.values.empty()) {
     unknown.typical = std::abs(grid.values[grid.values.size() / 2]);
   }
+  unknown.upper = std::min(unknown.upper, grid.highest);
+  unknown.start = std::clamp(unknown.start, std::min(unknown.lower, unknown.upper), unknown.upper);
   if (!(unknown.typical > 0.0)) {
     unknown.typical = 1.0;
   }

@@ -2,6 +2,7 @@
 // minima, laid by what each parameter measures and how large the signal is.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "diagnosis/candidates.hpp"
@@ -20,6 +21,8 @@ struct Hints {
 /// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.
 struct Grid {
   std::vector<double> values{};
+  double highest = std::numeric_limits<double>::infinity();  ///< beyond which the record does not show what it is
+  bool jagged = false;  ///< what lies between two points cannot be guessed from them: a quantum
 };
 
 struct Grids {

@@ -31,6 +31,7 @@ class Judge {
     samples_ = std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
     result.effective_samples = samples_;
     result.chosen = choose();
+    result.held_out = unseen(*result.chosen);
     for (const Explanation& one : search_.explanations) {
       result.fitted.push_back({.explanation = &one, .support = support(one) - support(*result.chosen)});
     }
@@ -86,9 +87,18 @@ class Judge {
     return smaller - one.fit.cost > least_share_ * std::max(gap(), 0.0);
   }
 
-  [[nodiscard]] bool holds_on_unseen(const Explanation& simple, const Explanation& rich) const {
-    const auto before = held_out(task_, simple);
-    const auto after = held_out(task_, rich);
+  /// Each set is refitted to halves of the record once.
+  const std::vector<HeldOut>& unseen(const Explanation& one) {
+    const auto [found, first] = unseen_.try_emplace(&one);
+    if (first) {
+      found->second = held_out(task_, one);
+    }
+    return found->second;
+  }
+
+  [[nodiscard]] bool holds_on_unseen(const Explanation& simple, const Explanation& rich) {
+    const std::vector<HeldOut>& before = unseen(simple);
+    const std::vector<HeldOut>& after = unseen(rich);
     for (std::size_t output = 0; output < before.size(); ++output) {
       if (gain_bound(before[output], after[output]) > 0.0) {
         return true;
@@ -98,7 +108,7 @@ class Judge {
   }
 
   /// The best set that deserves its size, from none upwards.
-  [[nodiscard]] const Explanation* choose() const {
+  [[nodiscard]] const Explanation* choose() {
     const Explanation* chosen = &search_.calibrated;
     for (std::size_t size = 1; size <= 4; ++size) {
       const Explanation* best = nullptr;
@@ -140,6 +150,7 @@ class Judge {
   double floor_cost_;
   double least_share_;
   double samples_ = 1.0;
+  std::map<const Explanation*, std::vector<HeldOut>> unseen_{};
 };
 
 }  // namespace

@@ -14,17 +14,15 @@
 namespace hysteron::diagnosis {
 namespace {
 
-using Values = std::vector<std::vector<double>>;  ///< by record
-
 constexpr double same_direction = 10.0 * std::numbers::pi / 180.0;
 
 /// The signals that are added to an edge, from the signal on it.
-std::vector<Values> probes_of(const Values& signal, double sample_time) {
+std::vector<RecordSignals> probes_of(const RecordSignals& signal, double sample_time) {
   const Extent extent = extent_of(signal, sample_time);
   const double range = extent.range() > 0.0 ? extent.range() : 1.0;
   const double middle = 0.5 * (extent.low + extent.high);
   const double fastest = extent.rates[99] > 0.0 ? extent.rates[99] * sample_time : range;
-  std::vector<Values> probes(9, signal);
+  std::vector<RecordSignals> probes(9, signal);
   for (std::size_t e = 0; e < signal.size(); ++e) {
     const std::vector<double>& x = signal[e];
     double slow = x.front();
@@ -62,20 +60,14 @@ Explained explain(const Task& task, const Explanation& calibrated, const std::st
                   const Background& background) {
   Explained result{.edge = edge.name};
   const std::string input = free_name(source.blocks[block], "ADDED_SIGNAL");
-  Diagnostics diagnostics;
-  const auto widened = language::parse("text", with_input(source, block, input, {}), diagnostics);
-  Edge here = edge;
-  const auto shift = static_cast<std::uint32_t>(widened.text->size() - source.text->size());
-  for (language::Span& read : here.reads) {
-    read.offset += shift;
-  }
   const std::string instance = free_name(source.blocks[block], "ADDED");
   std::shared_ptr<const Program> program;
   try {
-    program =
-        compiled(with_effect(widened, here,
-                             {.block = "HY_SUM", .instance = instance, .input = "IN1", .wires = {{"IN2", input}}}),
-                 top, {});
+    program = compiled(
+        with_effect(
+            source, edge,
+            {.block = "HY_SUM", .instance = instance, .input = "IN1", .wires = {{"IN2", input}}, .new_input = input}),
+        top, {});
   } catch (const InputError&) {
     return result;
   }
@@ -83,14 +75,12 @@ Explained explain(const Task& task, const Explanation& calibrated, const std::st
   if (node == program->graph.nodes.end()) {
     return result;
   }
-  Task probing = task;
-  probing.initial_states.clear();
   const VectorXd known = calibrated.fit.x.head(std::ssize(task.known));
-  const Values signal = wire_values(probing, *program, program->graph.wire(*node, 0), known);
+  const RecordSignals signal = wire_signals(task, *program, {program->graph.wire(*node, 0)}, known).front();
   const double sample_time = task.records.front().sample_time();
   const Extent extent = extent_of(signal, sample_time);
   const double size = 1e-3 * (extent.range() > 0.0 ? extent.range() : 1.0);
-  const std::vector<Values> probes = probes_of(signal, sample_time);
+  const std::vector<RecordSignals> probes = probes_of(signal, sample_time);
   MatrixXd changes(background.residuals().size(), std::ssize(probes));
   for (std::size_t j = 0; j < probes.size(); ++j) {
     Task driven = task;

@@ -5,10 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "support/markup.hpp"
+
 namespace hysteron::diagnosis::report {
 
-/// Text for HTML and SVG: &, <, > and quotes escaped.
-[[nodiscard]] std::string escaped(std::string_view text);
+using hysteron::escaped;
 
 /// A number with so many significant digits; a dash where it is not finite.
 [[nodiscard]] std::string figure(double value, int digits = 3);

@@ -203,7 +203,7 @@ TEST(EffectKinds, RolesFollowFromUnits) {
     }
     throw std::runtime_error("no parameter " + std::string(parameter));
   };
-  EXPECT_EQ(role("backlash", "WIDTH"), Role::Level);
+  EXPECT_EQ(role("backlash", "WIDTH"), Role::Gap);
   EXPECT_EQ(role("rate_limit", "RISE"), Role::Rate);
   EXPECT_EQ(role("delay", "DEAD_TIME"), Role::Duration);
   EXPECT_EQ(role("load", "T_ON"), Role::Instant);

@@ -70,12 +70,13 @@ TEST(WithEffect, ABlockWithoutVariablesGetsASection) {
   EXPECT_EQ(signals[0].back(), 7.0);
 }
 
-TEST(WithInput, AnInputOfDefaultZero) {
+TEST(WithEffect, AFurtherInputOfDefaultZeroDrivesIt) {
   const auto read = test::read_text(test::stack(), "STACK");
-  const Program program = test::program_of(with_input(source_of(read), read.top, "TEMP", "K"));
+  const Program program = test::program_of(with_effect(
+      source_of(read), *find_edge(read.edges, "HYST.XOUT"),
+      {.block = "HY_SUM", .instance = "ADDED", .input = "IN1", .wires = {{"IN2", "TEMP"}}, .new_input = "TEMP"}));
   ASSERT_EQ(program.graph.inputs.size(), 2U);
   EXPECT_EQ(program.graph.inputs[1].name, "TEMP");
-  EXPECT_EQ(program.graph.inputs[1].unit, "K");
   EXPECT_EQ(program.graph.inputs[1].preset, 0.0);
 }
 

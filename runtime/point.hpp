@@ -23,14 +23,14 @@ enum class PointKind {
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
 
 struct Point {
-  std::string name;  ///< as in the diagram: U, HYST.C1; status and commands as task.cycles
+  std::string name{};  ///< as in the diagram: U, HYST.C1; status and commands as task.cycles
   PointKind kind = PointKind::status;
   PointType type = PointType::real64;
-  std::string unit;  ///< "1" where it has none
+  std::string unit{};  ///< "1" where it has none
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool writable = false;
-  std::string meaning;
+  std::string meaning{};
 };
 
 struct PointWrite {

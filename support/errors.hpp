@@ -1,6 +1,6 @@
 // The numbers of all diagnostics and their titles. Each has a page docs/errors/HYnnn.md with a failing text and its
 // mend. 1xx syntax, 2xx names, types and wires, 3xx units, 4xx loops, rates and scheduling, 5xx records, 6xx
-// parameter files, 7xx tuning, tests and the command line.
+// parameter files, 7xx tuning, tests and the command line, 8xx the runtime and Modbus.
 #pragma once
 
 #include <array>
@@ -112,6 +112,31 @@ inline constexpr int generated_code_fails = 726;
 inline constexpr int no_test_selected = 727;
 inline constexpr int bad_usage = 730;
 inline constexpr int foreign_file = 731;
+inline constexpr int run_file_syntax = 801;
+inline constexpr int run_key_twice = 802;
+inline constexpr int unknown_run_key = 803;
+inline constexpr int wrong_run_value = 804;
+inline constexpr int run_value_out_of_range = 805;
+inline constexpr int no_safe_value = 806;
+inline constexpr int unknown_port_in_run_file = 807;
+inline constexpr int unfit_safe_value = 808;
+inline constexpr int wrong_period = 809;
+inline constexpr int unknown_device = 810;
+inline constexpr int retained_values_unfit = 811;
+inline constexpr int trace_not_writable = 812;
+inline constexpr int register_address_twice = 820;
+inline constexpr int lock_file_syntax = 821;
+inline constexpr int point_addressed_twice = 822;
+inline constexpr int no_address_left = 823;
+inline constexpr int malformed_address = 824;
+inline constexpr int unfit_address = 825;
+inline constexpr int address_of_unknown_point = 826;
+inline constexpr int port_in_use = 827;
+inline constexpr int privileged_port = 828;
+inline constexpr int unusable_listen_address = 829;
+inline constexpr int malformed_allow_list = 830;
+inline constexpr int broken_trace = 840;
+inline constexpr int replay_differs = 841;
 }  // namespace error
 
 inline constexpr std::array error_titles{
@@ -213,6 +238,31 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::no_test_selected, "No test case to run"},
     ErrorTitle{error::bad_usage, "Command line that is not understood"},
     ErrorTitle{error::foreign_file, "File that Hysteron did not write"},
+    ErrorTitle{error::run_file_syntax, "Run file is not TOML"},
+    ErrorTitle{error::run_key_twice, "Key given twice in a run file"},
+    ErrorTitle{error::unknown_run_key, "Unknown key in a run file"},
+    ErrorTitle{error::wrong_run_value, "Value of the wrong type in a run file"},
+    ErrorTitle{error::run_value_out_of_range, "Value out of range in a run file"},
+    ErrorTitle{error::no_safe_value, "Output without a safe value"},
+    ErrorTitle{error::unknown_port_in_run_file, "Input or output that the diagram does not have"},
+    ErrorTitle{error::unfit_safe_value, "Safe value that its limits do not allow"},
+    ErrorTitle{error::wrong_period, "Period that is not the diagram's"},
+    ErrorTitle{error::unknown_device, "Device that is not described"},
+    ErrorTitle{error::retained_values_unfit, "Retained values that do not fit"},
+    ErrorTitle{error::trace_not_writable, "Trace that cannot be written"},
+    ErrorTitle{error::register_address_twice, "Register address given twice"},
+    ErrorTitle{error::lock_file_syntax, "Line of a lock file that is not understood"},
+    ErrorTitle{error::point_addressed_twice, "Point with two addresses"},
+    ErrorTitle{error::no_address_left, "No register address left"},
+    ErrorTitle{error::malformed_address, "Register address that is not understood"},
+    ErrorTitle{error::unfit_address, "Register address that does not fit its point"},
+    ErrorTitle{error::address_of_unknown_point, "Register address of an unknown point"},
+    ErrorTitle{error::port_in_use, "Port in use"},
+    ErrorTitle{error::privileged_port, "Privileged port without the right"},
+    ErrorTitle{error::unusable_listen_address, "Address that cannot be listened on"},
+    ErrorTitle{error::malformed_allow_list, "Entry of an allow-list that is not understood"},
+    ErrorTitle{error::broken_trace, "Trace that cannot be replayed"},
+    ErrorTitle{error::replay_differs, "Replay that gives other bits"},
 };
 
 }  // namespace hysteron

@@ -4,6 +4,7 @@
 // bounds of the type; a value that is not a number becomes 0 in an integer and stays one in a real.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,10 @@
 #include "runtime/point.hpp"
 
 namespace hysteron::runtime::modbus {
+
+inline constexpr std::array<PointType, 9> point_types{PointType::boolean, PointType::int16,  PointType::uint16,
+                                                      PointType::int32,   PointType::uint32, PointType::int64,
+                                                      PointType::uint64,  PointType::real32, PointType::real64};
 
 /// How many registers hold a value of the type; a boolean has one where it stands among registers.
 constexpr std::size_t registers_of(PointType type) {

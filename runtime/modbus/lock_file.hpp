@@ -1,0 +1,26 @@
+// The lock file of a register map: the text that keeps addresses through edits of a diagram.
+//
+//   # Addresses of PIEZO_FF. Keep this file with the diagram.
+//   holding 0 real64 HYST.C1
+//   coil 0 boolean task.commit
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/modbus/register_map.hpp"
+
+namespace hysteron::runtime::modbus {
+
+struct LockLine {
+  std::string name{};
+  PointType type = PointType::boolean;
+  Stretch at{};
+  Place place{};
+};
+
+/// The lines of a lock file that are sound; the others become errors HY820 to HY822.
+[[nodiscard]] std::vector<LockLine> read_lock(const std::string& file, const std::string& text,
+                                              Diagnostics& diagnostics);
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,113 @@
+// The register map: where each point lies for a Modbus client.
+//
+// The map is derived from the points. Booleans are coils where they may be written and discrete inputs where not; other
+// values are holding or input registers, aligned to their width. A lock file keeps the addresses through edits of the
+// diagram: a point that stays keeps its address, and the address of a point that went is given to nobody else.
+// A map has a hash, by which a client knows that it speaks to the diagram that it was made for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/modbus/word_order.hpp"
+#include "runtime/point.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::runtime::modbus {
+
+enum class Area : std::uint8_t { coil, discrete_input, holding_register, input_register };
+
+inline constexpr std::array<Area, 4> areas{Area::coil, Area::discrete_input, Area::holding_register,
+                                           Area::input_register};
+
+/// As lock files write it: coil, discrete, holding, input.
+[[nodiscard]] std::string_view name_of(Area area);
+[[nodiscard]] constexpr bool holds_bits(Area area) {
+  return area == Area::coil || area == Area::discrete_input;
+}
+
+/// A stretch of addresses in one area.
+struct Stretch {
+  Area area = Area::holding_register;
+  std::uint32_t address = 0;
+  std::uint32_t count = 1;
+  friend bool operator==(const Stretch&, const Stretch&) = default;
+};
+
+struct MapEntry {
+  std::size_t point = 0;  ///< index into points()
+  Stretch at{};
+};
+
+/// An address that a lock file keeps for a point that is no longer there.
+struct RetiredAddress {
+  Stretch at{};
+  PointType type = PointType::boolean;
+  std::string name{};
+};
+
+enum class Placing : std::uint8_t {
+  compact,  ///< wide values first, from address 0, without holes
+  openplc,  ///< as OpenPLC does: %QX, %IX, %IW, %QW, %MW, then %MD and %ML for 32 and 64 bits
+};
+
+/// An address that the user gives: %QX0.3, %QW5, %MD2, or an area and a number as in a lock file: holding 16.
+struct GivenAddress {
+  std::string name{};
+  std::string address{};
+  Place place{};
+};
+
+struct MapRequest {
+  std::string title{};  ///< the diagram's name
+  Placing placing = Placing::compact;
+  WordOrder order = WordOrder::abcd;
+  std::vector<GivenAddress> given{};
+  std::string lock_file{};  ///< the path, for messages
+  std::string lock_text{};  ///< empty where there is none yet
+};
+
+/// Where the discovery chain starts, among the holding registers; the address is SunSpec's. Points lie below.
+inline constexpr std::uint32_t chain_address = 40000;
+
+class RegisterMap {
+ public:
+  [[nodiscard]] const std::string& title() const { return title_; }
+  [[nodiscard]] std::span<const Point> points() const { return points_; }
+  [[nodiscard]] WordOrder order() const { return order_; }
+  /// Sorted by area and address.
+  [[nodiscard]] std::span<const MapEntry> entries() const { return entries_; }
+  [[nodiscard]] std::span<const MapEntry> entries_in(Area area) const;
+  [[nodiscard]] std::span<const RetiredAddress> retired() const { return retired_; }
+  /// The entry that covers an address, or null.
+  [[nodiscard]] const MapEntry* find(Area area, std::uint32_t address) const;
+  [[nodiscard]] const Point& point_of(const MapEntry& entry) const { return points_[entry.point]; }
+  /// SHA-256 of names, types, units, limits, access, addresses and the word order.
+  [[nodiscard]] const std::string& hash() const { return hash_; }
+  /// The registers from chain_address on, in which a client can read this map (discovery.hpp).
+  [[nodiscard]] std::span<const std::uint16_t> chain() const { return chain_; }
+
+ private:
+  friend RegisterMap make_register_map(std::span<const Point> points, const MapRequest& request);
+  std::string title_;
+  std::vector<Point> points_;
+  WordOrder order_ = WordOrder::abcd;
+  std::vector<MapEntry> entries_;
+  std::array<std::size_t, 5> first_{};  ///< of each area in entries_
+  std::vector<RetiredAddress> retired_;
+  std::string hash_;
+  std::vector<std::uint16_t> chain_;
+};
+
+/// Gives every point its address. Throws InputError HY820 to HY826 with all that is wrong.
+[[nodiscard]] RegisterMap make_register_map(std::span<const Point> points, const MapRequest& request);
+
+/// The lock file of a map: a line for each point and for each retired address. It reads back to the same addresses.
+[[nodiscard]] std::string lock_text(const RegisterMap& map);
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,392 @@
+#include "runtime/modbus/responder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/modbus/value_bits.hpp"
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+// The limits of the specification, section 6: what fits a PDU of 253 bytes.
+constexpr std::uint32_t most_bits_read = 2000;
+constexpr std::uint32_t most_bits_written = 1968;
+constexpr std::uint32_t most_words_read = 125;
+constexpr std::uint32_t most_words_written = 123;
+constexpr std::uint32_t most_words_written_and_read = 121;
+
+constexpr std::uint8_t device_identification = 14;
+constexpr std::uint8_t conformity = 0x83;  // extended objects, as a stream and one by one
+constexpr std::size_t longest_object = 200;
+constexpr std::array<std::uint8_t, 6> object_ids{0x00, 0x01, 0x02, 0x04, 0x80, 0x81};
+
+constexpr std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(bytes[at] << 8U | bytes[at + 1]);
+}
+
+void put(Reply& reply, std::uint8_t byte) {
+  reply.bytes[reply.size++] = byte;
+}
+
+void put_word(Reply& reply, std::uint16_t word) {
+  put(reply, static_cast<std::uint8_t>(word >> 8U));
+  put(reply, static_cast<std::uint8_t>(word & 0xFFU));
+}
+
+/// The request's first bytes, which are the whole answer to a write.
+void echo(Reply& reply, std::span<const std::uint8_t> pdu, std::size_t count) {
+  std::copy_n(pdu.begin(), count, reply.bytes.begin());
+  reply.size = count;
+}
+
+constexpr bool writes(std::uint8_t function) {
+  return function == 5 || function == 6 || function == 15 || function == 16 || function == 22 || function == 23;
+}
+
+}  // namespace
+
+Responder::Responder(const RegisterMap& map, PointDoor& door, const Identity& identity)
+    : map_(map), door_(door), objects_{identity.vendor, identity.product, identity.revision,
+                                       map.title(),     map.hash(),       std::string(name_of(map.order()))} {
+  for (std::string& object : objects_) {
+    object.resize(std::min(object.size(), longest_object));
+  }
+}
+
+Reply Responder::answer(Pdu pdu, const Caller& caller) {
+  Reply reply;
+  const std::uint8_t function = pdu[0];
+  reply.exception = writes(function) && !caller.may_write ? Exception::illegal_function : serve(pdu, caller, reply);
+  if (reply.exception != Exception::none) {
+    reply.bytes[0] = function | 0x80U;
+    reply.bytes[1] = static_cast<std::uint8_t>(reply.exception);
+    reply.size = 2;
+  }
+  return reply;
+}
+
+Exception Responder::serve(Pdu pdu, const Caller& caller, Reply& reply) {
+  switch (pdu[0]) {
+    case 1:
+      return read_bits(pdu, Area::coil, reply);
+    case 2:
+      return read_bits(pdu, Area::discrete_input, reply);
+    case 3:
+      return read_words(pdu, Area::holding_register, reply);
+    case 4:
+      return read_words(pdu, Area::input_register, reply);
+    case 5:
+      return write_one_coil(pdu, caller, reply);
+    case 6:
+      return write_one_register(pdu, caller, reply);
+    case 15:
+      return write_coils(pdu, caller, reply);
+    case 16:
+      return write_registers(pdu, caller, reply);
+    case 22:
+      return mask_register(pdu, caller, reply);
+    case 23:
+      return write_and_read(pdu, caller, reply);
+    case 43:
+      return identify(pdu, reply);
+    default:
+      return Exception::illegal_function;
+  }
+}
+
+Exception Responder::read_bits(Pdu pdu, Area area, Reply& reply) {
+  if (pdu.size() != 5) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  const std::uint32_t count = word_at(pdu, 3);
+  if (count < 1 || count > most_bits_read) {
+    return Exception::illegal_value;
+  }
+  if (!covered(area, address, count)) {
+    return Exception::illegal_address;
+  }
+  door_.read(now_);
+  put(reply, pdu[0]);
+  put(reply, static_cast<std::uint8_t>((count + 7) / 8));
+  const MapEntry* entry = map_.find(area, address);
+  std::fill_n(reply.bytes.begin() + 2, (count + 7) / 8, std::uint8_t{0});
+  for (std::uint32_t i = 0; i < count; ++i, ++entry) {  // every bit has its entry, so they follow each other
+    if (bits_of(now_.values[entry->point], PointType::boolean) != 0) {
+      reply.bytes[2 + i / 8] |= static_cast<std::uint8_t>(1U << i % 8);
+    }
+  }
+  reply.size += (count + 7) / 8;
+  return Exception::none;
+}
+
+Exception Responder::read_words(Pdu pdu, Area area, Reply& reply) {
+  if (pdu.size() != 5) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  const std::uint32_t count = word_at(pdu, 3);
+  if (count < 1 || count > most_words_read) {
+    return Exception::illegal_value;
+  }
+  if (!covered(area, address, count)) {
+    return Exception::illegal_address;
+  }
+  door_.read(now_);
+  put(reply, pdu[0]);
+  put(reply, static_cast<std::uint8_t>(2 * count));
+  put_words(area, address, count, reply);
+  return Exception::none;
+}
+
+Exception Responder::write_one_coil(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() != 5 || (word_at(pdu, 3) != 0 && word_at(pdu, 3) != 0xFF00)) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  if (!writable(Area::coil, address, 1)) {
+    return Exception::illegal_address;
+  }
+  writes_.clear();
+  const std::size_t point = map_.find(Area::coil, address)->point;
+  if (const auto flaw = collect(map_.points()[point], point, word_at(pdu, 3)); flaw != Exception::none) {
+    return flaw;
+  }
+  echo(reply, pdu, 5);
+  return hand_over(caller, reply);
+}
+
+Exception Responder::write_one_register(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() != 5) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  if (!writable(Area::holding_register, address, 1)) {
+    return Exception::illegal_address;
+  }
+  writes_.clear();
+  if (const auto flaw = collect_words(address, pdu.subspan(3)); flaw != Exception::none) {
+    return flaw;
+  }
+  echo(reply, pdu, 5);
+  return hand_over(caller, reply);
+}
+
+Exception Responder::write_coils(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() < 6) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  const std::uint32_t count = word_at(pdu, 3);
+  if (count < 1 || count > most_bits_written || pdu[5] != (count + 7) / 8 || pdu.size() != 6U + pdu[5]) {
+    return Exception::illegal_value;
+  }
+  if (!writable(Area::coil, address, count)) {
+    return Exception::illegal_address;
+  }
+  writes_.clear();
+  const MapEntry* entry = map_.find(Area::coil, address);
+  for (std::uint32_t i = 0; i < count; ++i, ++entry) {
+    const auto bit = static_cast<std::uint64_t>(pdu[6 + i / 8]) >> i % 8 & 1U;
+    if (const auto flaw = collect(map_.point_of(*entry), entry->point, bit); flaw != Exception::none) {
+      return flaw;
+    }
+  }
+  echo(reply, pdu, 5);
+  return hand_over(caller, reply);
+}
+
+Exception Responder::write_registers(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() < 6) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  const std::uint32_t count = word_at(pdu, 3);
+  if (count < 1 || count > most_words_written || pdu[5] != 2 * count || pdu.size() != 6U + pdu[5]) {
+    return Exception::illegal_value;
+  }
+  if (!writable(Area::holding_register, address, count)) {
+    return Exception::illegal_address;
+  }
+  writes_.clear();
+  if (const auto flaw = collect_words(address, pdu.subspan(6)); flaw != Exception::none) {
+    return flaw;
+  }
+  echo(reply, pdu, 5);
+  return hand_over(caller, reply);
+}
+
+Exception Responder::mask_register(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() != 7) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t address = word_at(pdu, 1);
+  if (!writable(Area::holding_register, address, 1)) {
+    return Exception::illegal_address;
+  }
+  door_.read(now_);
+  const std::size_t point = map_.find(Area::holding_register, address)->point;
+  const Point& about = map_.points()[point];
+  const std::uint64_t keep = word_at(pdu, 3);
+  const std::uint64_t set = word_at(pdu, 5);
+  writes_.clear();
+  const std::uint64_t bits = (bits_of(now_.values[point], about.type) & keep) | (set & ~keep);
+  if (const auto flaw = collect(about, point, bits & 0xFFFFU); flaw != Exception::none) {
+    return flaw;
+  }
+  echo(reply, pdu, 7);
+  return hand_over(caller, reply);
+}
+
+Exception Responder::write_and_read(Pdu pdu, const Caller& caller, Reply& reply) {
+  if (pdu.size() < 10) {
+    return Exception::illegal_value;
+  }
+  const std::uint32_t read_address = word_at(pdu, 1);
+  const std::uint32_t read_count = word_at(pdu, 3);
+  const std::uint32_t write_address = word_at(pdu, 5);
+  const std::uint32_t write_count = word_at(pdu, 7);
+  if (read_count < 1 || read_count > most_words_read || write_count < 1 || write_count > most_words_written_and_read ||
+      pdu[9] != 2 * write_count || pdu.size() != 10U + pdu[9]) {
+    return Exception::illegal_value;
+  }
+  if (!covered(Area::holding_register, read_address, read_count) ||
+      !writable(Area::holding_register, write_address, write_count)) {
+    return Exception::illegal_address;
+  }
+  writes_.clear();
+  if (const auto flaw = collect_words(write_address, pdu.subspan(10)); flaw != Exception::none) {
+    return flaw;
+  }
+  if (const auto flaw = hand_over(caller, reply); flaw != Exception::none) {
+    return flaw;
+  }
+  door_.read(now_);
+  put(reply, pdu[0]);
+  put(reply, static_cast<std::uint8_t>(2 * read_count));
+  put_words(Area::holding_register, read_address, read_count, reply);
+  return Exception::none;
+}
+
+Exception Responder::identify(Pdu pdu, Reply& reply) const {
+  if (pdu.size() < 2) {
+    return Exception::illegal_value;
+  }
+  if (pdu[1] != device_identification) {
+    return Exception::illegal_function;
+  }
+  if (pdu.size() != 4 || pdu[2] < 1 || pdu[2] > 4) {
+    return Exception::illegal_value;
+  }
+  const std::uint8_t code = pdu[2];
+  const bool one = code == 4;
+  const std::uint8_t last = code == 1 ? 0x02 : code == 2 ? 0x7F : 0xFF;
+  std::size_t first = static_cast<std::size_t>(std::ranges::find(object_ids, pdu[3]) - object_ids.begin());
+  if (first == object_ids.size() || pdu[3] > last) {
+    if (one) {
+      return Exception::illegal_address;
+    }
+    first = 0;  // the specification: as if object 0 had been asked for
+  }
+  for (const unsigned byte : {43U, unsigned{device_identification}, unsigned{code}, unsigned{conformity}, 0U, 0U, 0U}) {
+    put(reply, static_cast<std::uint8_t>(byte));
+  }
+  std::uint8_t count = 0;
+  for (std::size_t i = first; i < object_ids.size() && object_ids[i] <= last && (!one || i == first); ++i) {
+    const std::string& text = objects_[i];
+    if (reply.size + 2 + text.size() > longest_pdu) {
+      reply.bytes[4] = 0xFF;  // more follows, from this object on
+      reply.bytes[5] = object_ids[i];
+      break;
+    }
+    put(reply, object_ids[i]);
+    put(reply, static_cast<std::uint8_t>(text.size()));
+    for (const char c : text) {
+      put(reply, static_cast<std::uint8_t>(c));
+    }
+    ++count;
+  }
+  reply.bytes[6] = count;
+  return Exception::none;
+}
+
+bool Responder::covered(Area area, std::uint32_t address, std::uint32_t count) const {
+  const std::uint32_t end = address + count;
+  const auto chain_end = chain_address + static_cast<std::uint32_t>(map_.chain().size());
+  for (std::uint32_t at = address; at < end;) {
+    if (const MapEntry* entry = map_.find(area, at)) {
+      at = entry->at.address + entry->at.count;
+    } else if (area == Area::holding_register && at >= chain_address && at < chain_end) {
+      at = chain_end;
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Responder::put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) const {
+  for (std::uint32_t at = address; at < address + count;) {
+    const MapEntry* entry = map_.find(area, at);
+    if (entry == nullptr) {
+      put_word(reply, map_.chain()[at - chain_address]);
+      ++at;
+      continue;
+    }
+    std::array<std::uint16_t, 4> words{};
+    const auto used = std::span(words).first(entry->at.count);
+    to_registers(bits_of(now_.values[entry->point], map_.point_of(*entry).type), map_.order(), used);
+    for (; at < std::min(address + count, entry->at.address + entry->at.count); ++at) {
+      put_word(reply, words[at - entry->at.address]);
+    }
+  }
+}
+
+bool Responder::writable(Area area, std::uint32_t address, std::uint32_t count) const {
+  const std::uint32_t end = address + count;
+  for (std::uint32_t at = address; at < end;) {
+    const MapEntry* entry = map_.find(area, at);
+    if (entry == nullptr || !map_.point_of(*entry).writable || entry->at.address != at || at + entry->at.count > end) {
+      return false;
+    }
+    at += entry->at.count;
+  }
+  return true;
+}
+
+Exception Responder::collect_words(std::uint32_t address, Pdu data) {
+  const auto end = address + static_cast<std::uint32_t>(data.size() / 2);
+  for (std::uint32_t at = address; at < end;) {
+    const MapEntry& entry = *map_.find(Area::holding_register, at);
+    std::array<std::uint16_t, 4> words{};
+    for (std::uint32_t i = 0; i < entry.at.count; ++i) {
+      words[i] = word_at(data, 2 * (at - address + i));
+    }
+    const std::uint64_t bits = from_registers(std::span(words).first(entry.at.count), map_.order());
+    if (const auto flaw = collect(map_.point_of(entry), entry.point, bits); flaw != Exception::none) {
+      return flaw;
+    }
+    at += entry.at.count;
+  }
+  return Exception::none;
+}
+
+Exception Responder::collect(const Point& point, std::size_t index, std::uint64_t bits) {
+  const auto value = value_of(bits, point.type);
+  if (!value || !std::isfinite(*value) || *value < point.low || *value > point.high) {
+    return Exception::illegal_value;
+  }
+  writes_.push_back({index, *value});
+  return Exception::none;
+}
+
+Exception Responder::hand_over(const Caller& caller, Reply& reply) {
+  if (caller.other_owns_writes) {
+    return Exception::device_busy;
+  }
+  refusal_ = door_.write(writes_);
+  reply.wrote = refusal_.empty();
+  return reply.wrote ? Exception::none : Exception::device_failure;
+}
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,97 @@
+// The answer to a request (PDU): a function of the request, the register map, the values behind the door and what the
+// client may do. No sockets, no time.
+//
+// A request is carried out whole or not at all. The first of these that fails is the exception:
+//   01 the function is none of ours, or the client may only read and the function writes
+//   03 the request has not the form of its function: its length, its quantity, its byte count, a coil's value
+//   02 an address is no point's, may not be written, or the request would write a part of a wide value
+//   03 a value is outside of its point's limits, or not a finite number
+//   06 another client owns the writes
+//   04 the program refuses
+// All values of one answer are of one cycle. A part of a wide value may be read; two reads may be of two cycles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/modbus/frame.hpp"
+#include "runtime/modbus/register_map.hpp"
+#include "runtime/point.hpp"
+
+namespace hysteron::runtime::modbus {
+
+enum class Exception : std::uint8_t {
+  none = 0,
+  illegal_function = 1,
+  illegal_address = 2,
+  illegal_value = 3,
+  device_failure = 4,
+  device_busy = 6,
+};
+
+/// What function 43/14 tells of the device; the map's title and hash are added.
+struct Identity {
+  std::string vendor = "Hysteron";
+  std::string product = "hysteron-runtime";
+  std::string revision = "0.1";
+};
+
+/// Of the client that asks.
+struct Caller {
+  bool may_write = true;
+  bool other_owns_writes = false;
+};
+
+struct Reply {
+  std::array<std::uint8_t, longest_pdu> bytes{};
+  std::size_t size = 0;
+  Exception exception = Exception::none;
+  bool wrote = false;  ///< values were handed to the door and taken
+
+  [[nodiscard]] std::span<const std::uint8_t> pdu() const { return std::span(bytes).first(size); }
+};
+
+class Responder {
+ public:
+  /// Map and door must outlive the responder. The map is of the door's points.
+  Responder(const RegisterMap& map, PointDoor& door, const Identity& identity);
+
+  /// The answer to a PDU of at least one byte.
+  [[nodiscard]] Reply answer(std::span<const std::uint8_t> pdu, const Caller& caller);
+
+  /// Why the door refused last; for logs.
+  [[nodiscard]] const std::string& last_refusal() const { return refusal_; }
+
+ private:
+  using Pdu = std::span<const std::uint8_t>;
+
+  Exception serve(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception read_bits(Pdu pdu, Area area, Reply& reply);
+  Exception read_words(Pdu pdu, Area area, Reply& reply);
+  Exception write_one_coil(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception write_one_register(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception write_coils(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception write_registers(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception mask_register(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception write_and_read(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception identify(Pdu pdu, Reply& reply) const;
+
+  [[nodiscard]] bool covered(Area area, std::uint32_t address, std::uint32_t count) const;
+  void put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) const;
+  [[nodiscard]] bool writable(Area area, std::uint32_t address, std::uint32_t count) const;
+  Exception collect_words(std::uint32_t address, Pdu data);
+  Exception collect(const Point& point, std::size_t index, std::uint64_t bits);
+  Exception hand_over(const Caller& caller, Reply& reply);
+
+  const RegisterMap& map_;
+  PointDoor& door_;
+  std::array<std::string, 6> objects_;  ///< of function 43/14, as object_ids
+  Snapshot now_;
+  std::vector<PointWrite> writes_;
+  std::string refusal_;
+};
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,376 @@
+#include "runtime/config/run_config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "runtime/config/toml_reader.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t many = 1'000'000'000'000;
+
+using Keys = std::string_view;
+constexpr std::array<Keys, 8> top_keys{"task", "watchdog", "outputs", "inputs", "devices", "retain", "trace", "modbus"};
+constexpr std::array<Keys, 8> task_keys{"period",     "missed",   "catch_up",  "tolerance",
+                                        "scheduling", "priority", "processor", "lock_memory"};
+constexpr std::array<Keys, 4> watchdog_keys{"time", "sensitivity", "guard", "silence"};
+constexpr std::array<Keys, 9> output_keys{"safe", "on_fault", "hold_cycles", "ramp",    "low",
+                                          "high", "slew",     "device",      "register"};
+constexpr std::array<Keys, 3> input_keys{"device", "register", "longest_age"};
+constexpr std::array<Keys, 5> device_keys{"host", "port", "unit", "cycle", "timeout"};
+constexpr std::array<Keys, 3> retain_keys{"folder", "every", "mismatch"};
+constexpr std::array<Keys, 4> trace_keys{"file", "trigger", "before", "after"};
+constexpr std::array<Keys, 7> modbus_keys{"listen",    "port",       "allow",    "connections",
+                                          "read_only", "word_order", "lock_file"};
+
+std::vector<std::string> names_of(const std::vector<ProgramSignal>& signals) {
+  std::vector<std::string> names;
+  for (const ProgramSignal& signal : signals) {
+    names.push_back(signal.name);
+  }
+  return names;
+}
+
+std::optional<std::size_t> index_of(std::string_view name, const std::vector<ProgramSignal>& signals) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (equal_ignoring_case(signals[i].name, name)) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, std::string_view text, const ProgramShape& shape)
+      : file_(file), shape_(shape), root_(parse_run_toml(file, text)) {}
+
+  RunConfig read() {
+    const TomlReader top(file_, "a run file", root_, top_keys, found_);
+    config_.task.loop.period = shape_.period;
+    config_.task.loop.tolerance = shape_.period / 10;
+    config_.task.inputs.resize(shape_.inputs.size());
+    config_.task.outputs.resize(shape_.outputs.size());
+    config_.input_links.resize(shape_.inputs.size());
+    config_.output_links.resize(shape_.outputs.size());
+    has_safe_value_.resize(shape_.outputs.size(), false);
+    if (const auto* const table = table_at(root_, "task")) {
+      read_task({file_, "[task]", *table, task_keys, found_});
+    }
+    if (const auto* const table = table_at(root_, "watchdog")) {
+      read_watchdog({file_, "[watchdog]", *table, watchdog_keys, found_});
+    }
+    each_below("devices", [&](const toml::key& key, const toml::table& table) { read_device(key, table); });
+    each_below("outputs", [&](const toml::key& key, const toml::table& table) { read_output(key, table); });
+    each_below("inputs", [&](const toml::key& key, const toml::table& table) { read_input(key, table); });
+    if (const auto* const table = table_at(root_, "retain")) {
+      read_retain({file_, "[retain]", *table, retain_keys, found_});
+    }
+    if (const auto* const table = table_at(root_, "trace")) {
+      read_trace({file_, "[trace]", *table, trace_keys, found_});
+    }
+    if (const auto* const table = table_at(root_, "modbus")) {
+      read_modbus({file_, "[modbus]", *table, modbus_keys, found_});
+    }
+    for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
+      if (!has_safe_value_[i]) {
+        const std::string& name = shape_.outputs[i].name;
+        found_.error(
+            error::no_safe_value, {.file = file_}, "The output " + name + " has no safe value.",
+            "write what it shall be when something is wrong: [outputs." + name + "], and below it safe = 0.0.");
+      }
+    }
+    if (found_.has_errors()) {
+      throw InputError(sorted());
+    }
+    return std::move(config_);
+  }
+
+ private:
+  const toml::table* table_at(const toml::table& parent, std::string_view key) {
+    const auto* const node = parent.get(key);
+    if (node != nullptr && !node->is_table()) {
+      found_.error(error::wrong_run_value, place_of(file_, node->source()), std::string(key) + " must be a table.",
+                   "write it as [" + std::string(key) + "], and its keys below.");
+    }
+    return node == nullptr ? nullptr : node->as_table();
+  }
+
+  template <class Read>
+  void each_below(std::string_view group, const Read& read) {
+    const auto* const parent = table_at(root_, group);
+    if (parent == nullptr) {
+      return;
+    }
+    for (const auto& [key, node] : *parent) {
+      if (const auto* const table = table_at(*parent, key.str())) {
+        read(key, *table);
+      }
+    }
+  }
+
+  void read_task(TomlReader table) {
+    std::int64_t period = shape_.period;
+    table.read_duration("period", period, 1, many);
+    if (period != shape_.period) {
+      found_.error(error::wrong_period, table.place("period"),
+                   "The period is not the sample time of " + shape_.name + ", which is " +
+                       number_text(static_cast<double>(shape_.period) * 1e-6) + "ms.",
+                   "leave the key out, or state another sample time in the diagram: (* @ts 1ms *).");
+    }
+    std::size_t policy = 0;
+    table.read_choice("missed", policy, std::array<Keys, 3>{"skip", "catch_up", "stop"});
+    config_.task.loop.policy = static_cast<MissedPolicy>(policy);
+    table.read_whole("catch_up", config_.task.loop.catch_up, 1, 1000);
+    table.read_duration("tolerance", config_.task.loop.tolerance, 1, shape_.period);
+    std::size_t scheduling = 0;
+    table.read_choice("scheduling", scheduling, std::array<Keys, 3>{"fifo", "deadline", "other"});
+    constexpr std::array classes{Scheduling::fifo, Scheduling::deadline, Scheduling::other};
+    config_.scheduling.scheduling = classes[scheduling];
+    table.read_whole("priority", config_.scheduling.priority, 1, 99);
+    table.read_whole("processor", config_.scheduling.processor, 0, 1023);
+    table.read("lock_memory", config_.scheduling.lock_memory);
+  }
+
+  void read_watchdog(TomlReader table) {
+    table.read_duration("time", config_.task.watchdog.time, 1000, 1000 * second);
+    table.read_whole("sensitivity", config_.task.watchdog.sensitivity, 1, 1000);
+    table.read("guard", config_.guard);
+    table.read_duration("silence", config_.silence, std::max<std::int64_t>(2 * shape_.period, 1'000'000),
+                        1000 * second);
+  }
+
+  void read_device(const toml::key& key, const toml::table& node) {
+    TomlReader table(file_, "[devices." + std::string(key.str()) + "]", node, device_keys, found_);
+    DeviceConfig device{.name = std::string(key.str()), .place = place_of(file_, key.source())};
+    table.read("host", device.host);
+    table.read_whole("port", device.port, 1, 65535);
+    table.read_whole("unit", device.unit, 0, 247);
+    table.read_duration("cycle", device.cycle, 100'000, 3600 * second);
+    table.read_duration("timeout", device.timeout, 1'000'000, 60 * second);
+    config_.devices.push_back(std::move(device));
+  }
+
+  /// The port that a table is about; nothing, with an error, where the diagram has none of that name.
+  std::optional<std::size_t> port_of(const toml::key& key, std::string_view kind,
+                                     const std::vector<ProgramSignal>& signals) {
+    const auto index = index_of(key.str(), signals);
+    if (!index) {
+      const auto names = names_of(signals);
+      const auto near = nearest_name(key.str(), names);
+      found_.error(error::unknown_port_in_run_file, place_of(file_, key.source()),
+                   shape_.name + " has no " + std::string(kind) + " " + std::string(key.str()) + ".",
+                   near.empty() ? "name one that the diagram declares, or remove the table."
+                                : "did you mean " + std::string(near) + "?");
+    } else if (!ports_seen_.insert(&signals[*index]).second) {
+      found_.error(error::run_key_twice, place_of(file_, key.source()),
+                   "The " + std::string(kind) + " " + signals[*index].name + " has been given before.",
+                   "keep one of the two; case makes no difference.");
+    }
+    return index;
+  }
+
+  std::optional<DeviceLink> read_link(TomlReader& table) {
+    std::string name;
+    table.read("device", name);
+    DeviceLink link;
+    table.read_whole("register", link.address, 0, 65532);
+    if (name.empty()) {
+      if (table.has("register")) {
+        found_.error(error::unknown_device, table.place("register"), "A register is given, and no device.",
+                     "name the device: device = \"stage\", and describe it under [devices.stage].");
+      }
+      return std::nullopt;
+    }
+    const auto found = std::ranges::find(config_.devices, name, &DeviceConfig::name);
+    if (found == config_.devices.end()) {
+      found_.error(error::unknown_device, table.place("device"), "There is no device " + name + ".",
+                   "describe it under [devices." + name + "].");
+      return std::nullopt;
+    }
+    link.device = static_cast<std::size_t>(found - config_.devices.begin());
+    return link;
+  }
+
+  void read_output(const toml::key& key, const toml::table& node) {
+    const auto index = port_of(key, "output", shape_.outputs);
+    if (!index) {
+      return;
+    }
+    TomlReader table(file_, "[outputs." + std::string(key.str()) + "]", node, output_keys, found_);
+    OutputSafety& output = config_.task.outputs[*index];
+    output.low = shape_.outputs[*index].low;
+    output.high = shape_.outputs[*index].high;
+    table.read("low", output.low, -infinity, infinity);
+    table.read("high", output.high, -infinity, infinity);
+    table.read("safe", output.value, -infinity, infinity);
+    table.read("slew", output.slew, std::numeric_limits<double>::min(), infinity);
+    table.read("ramp", output.ramp, std::numeric_limits<double>::min(), infinity);
+    table.read_whole("hold_cycles", output.hold_cycles, 0, many);
+    std::size_t action = 0;
+    table.read_choice("on_fault", action, std::array<Keys, 3>{"value", "ramp", "hold"});
+    output.action = static_cast<SafeAction>(action);
+    has_safe_value_[*index] = has_safe_value_[*index] || table.has("safe");
+    if (!(output.low <= output.high) || output.value < output.low || output.value > output.high) {
+      found_.error(error::unfit_safe_value, table.place(table.has("safe") ? "safe" : "low"),
+                   "The safe value " + number_text(output.value) + " of " + shape_.outputs[*index].name +
+                       " is not within its limits, " + number_text(output.low) + " to " + number_text(output.high) +
+                       ".",
+                   "choose a safe value that the output may have, or widen the limits.");
+    }
+    if (output.action == SafeAction::ramp && !table.has("ramp")) {
+      found_.error(error::unfit_safe_value, table.place("on_fault"), "A ramp is asked for, and no rate is given.",
+                   "write the change a second: ramp = 20.0.");
+    }
+    config_.output_links[*index] = read_link(table);
+  }
+
+  void read_input(const toml::key& key, const toml::table& node) {
+    const auto index = port_of(key, "input", shape_.inputs);
+    if (!index) {
+      return;
+    }
+    TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, input_keys, found_);
+    InputSettings& input = config_.task.inputs[*index];
+    std::int64_t age = 0;
+    table.read_duration("longest_age", age, shape_.period, 1000 * second);
+    config_.input_links[*index] = read_link(table);
+    input.from_device = config_.input_links[*index].has_value();
+    input.longest_age = static_cast<std::uint64_t>(age / shape_.period);
+  }
+
+  void missing(const TomlReader& table, const std::string& key, const std::string& example) {
+    if (!table.has(key)) {
+      found_.error(error::wrong_run_value, table.place(), table.name() + " needs the key " + key + ".",
+                   "write it as in " + key + " = " + example + ", or remove the table.");
+    }
+  }
+
+  void read_retain(TomlReader table) {
+    RetainConfig retain{.place = table.place()};
+    missing(table, "folder", "\"retained\"");
+    table.read("folder", retain.folder);
+    table.read_whole("every", config_.task.retain_every, 1, many);
+    std::size_t mismatch = 0;
+    table.read_choice("mismatch", mismatch, std::array<Keys, 2>{"refuse", "cold"});
+    retain.mismatch = static_cast<MismatchPolicy>(mismatch);
+    config_.retain = std::move(retain);
+  }
+
+  void read_trace(TomlReader table) {
+    TraceSettings trace;
+    std::string file;
+    missing(table, "file", "\"run.trace\"");
+    table.read("file", file);
+    trace.file = file;
+    std::string trigger;
+    table.read("trigger", trigger);
+    if (!trigger.empty()) {
+      trace.trigger = parse_trigger(trigger, shape_);
+      if (!trace.trigger) {
+        found_.error(error::wrong_run_value, table.place("trigger"),
+                     "The trigger \"" + trigger + "\" is not understood.",
+                     "write an input or output, < or >, and a number: \"U > 5.0\"; or \"fault\".");
+      } else {
+        table.read_whole("before", trace.trigger->before, 0, many);
+        table.read_whole("after", trace.trigger->after, 0, many);
+      }
+    }
+    config_.trace = std::move(trace);
+    config_.trace_place = table.place("file");
+  }
+
+  void read_modbus(TomlReader table) {
+    ModbusConfig modbus{.place = table.place()};
+    table.read("listen", modbus.listen);
+    table.read_whole("port", modbus.port, 0, 65535);
+    table.read("allow", modbus.allow);
+    table.read_whole("connections", modbus.connections, 1, 1000);
+    table.read("read_only", modbus.read_only);
+    constexpr std::array<Keys, 4> orders{"abcd", "badc", "cdab", "dcba"};
+    std::size_t order = 0;
+    table.read_choice("word_order", order, orders);
+    modbus.word_order = orders[order];
+    table.read("lock_file", modbus.lock_file);
+    config_.modbus = std::move(modbus);
+  }
+
+  /// In the order of the file; the library gives keys in that of their names.
+  [[nodiscard]] Diagnostics sorted() const {
+    auto list = found_.all();
+    std::ranges::stable_sort(list, {},
+                             [](const Diagnostic& one) { return std::tuple(one.place.line, one.place.column); });
+    Diagnostics result;
+    for (Diagnostic& one : list) {
+      result.add(std::move(one));
+    }
+    return result;
+  }
+
+  std::string file_;
+  const ProgramShape& shape_;
+  toml::table root_;
+  RunConfig config_{};
+  std::vector<bool> has_safe_value_{};
+  std::set<const ProgramSignal*> ports_seen_{};
+  Diagnostics found_{};
+};
+
+}  // namespace
+
+RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape) {
+  return Reader(file, text, shape).read();
+}
+
+std::optional<std::int64_t> parse_duration(std::string_view text) {
+  const auto unit = text.find_first_not_of("0123456789.");
+  if (unit == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const auto number = parse_number(text.substr(0, unit));
+  const auto name = text.substr(unit);
+  const double scale = name == "ns" ? 1.0 : name == "us" ? 1e3 : name == "ms" ? 1e6 : name == "s" ? 1e9 : 0.0;
+  const double value = number.value * scale;
+  if (number.status != NumberStatus::Finite || scale == 0.0 || value > 1e15 || value != std::round(value)) {
+    return std::nullopt;
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+std::optional<TraceTrigger> parse_trigger(std::string_view text, const ProgramShape& shape) {
+  if (equal_ignoring_case(text, "fault")) {
+    return TraceTrigger{};
+  }
+  const auto sign = text.find_first_of("<>");
+  if (sign == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const auto trimmed = [](std::string_view part) {
+    const auto begin = std::min(part.find_first_not_of(' '), part.size());
+    return part.substr(begin, part.find_last_not_of(' ') + 1 - begin);
+  };
+  const auto name = trimmed(text.substr(0, sign));
+  const auto level = parse_number(trimmed(text.substr(sign + 1)));
+  const auto output = index_of(name, shape.outputs);
+  const auto input = index_of(name, shape.inputs);
+  if (level.status != NumberStatus::Finite || (!output && !input)) {
+    return std::nullopt;
+  }
+  return TraceTrigger{.signal = output ? TraceTrigger::Signal::output : TraceTrigger::Signal::input,
+                      .index = output ? *output : *input,
+                      .above = text[sign] == '>',
+                      .level = level.value};
+}
+
+}  // namespace hysteron::runtime

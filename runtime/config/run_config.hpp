@@ -1,0 +1,133 @@
+// The run file beside a diagram: how it is run. Every key but the safe values may be left out.
+//
+//   [task]
+//   period = "1ms"             # must be the diagram's; for the reader
+//   missed = "skip"            # or "catch_up", "stop"
+//   catch_up = 3
+//   tolerance = "100us"        # a start later than this is late
+//   scheduling = "fifo"        # or "deadline", "other"
+//   priority = 80
+//   processor = 1
+//   lock_memory = true
+//
+//   [watchdog]
+//   time = "5ms"
+//   sensitivity = 2
+//   guard = true               # a process of its own holds the outputs safe
+//   silence = "50ms"
+//
+//   [outputs.U]                # one for each output
+//   safe = 0.0
+//   on_fault = "ramp"          # or "value", "hold"
+//   hold_cycles = 10
+//   ramp = 20.0                # a second
+//   low = -10.0
+//   high = 10.0
+//   slew = 1000.0              # a second
+//   device = "stage"           # where it goes, as a name in [devices]
+//   register = 0
+//
+//   [inputs.Y]
+//   device = "stage"
+//   register = 4
+//   longest_age = "20ms"
+//
+//   [devices.stage]
+//   host = "127.0.0.1"
+//   port = 1502
+//   unit = 1
+//   cycle = "5ms"
+//   timeout = "200ms"
+//
+//   [retain]
+//   folder = "/var/lib/piezo"
+//   every = 1000               # cycles
+//   mismatch = "refuse"        # or "cold"
+//
+//   [trace]
+//   file = "run.trace"
+//   trigger = "U > 5.0"        # or "fault"
+//   before = 1000              # cycles
+//   after = 1000
+//
+//   [modbus]
+//   listen = "127.0.0.1"
+//   port = 1502
+//   allow = ["192.168.10.0/24"]
+//   connections = 32
+//   read_only = false
+//   word_order = "abcd"        # or "badc", "cdab", "dcba"
+//   lock_file = "piezo.lock"
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/task/guard.hpp"
+#include "runtime/task/retain.hpp"
+#include "runtime/task/scheduling.hpp"
+#include "runtime/task/task.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::runtime {
+
+/// A value on a device: four registers that hold a 64-bit float, in the order abcd.
+struct DeviceLink {
+  std::size_t device = 0;
+  std::uint16_t address = 0;
+};
+
+struct DeviceConfig {
+  std::string name{};
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 502;
+  std::uint8_t unit = 1;
+  std::int64_t cycle = 5'000'000;
+  std::int64_t timeout = 200'000'000;
+  Place place{};
+};
+
+struct RetainConfig {
+  std::string folder{};
+  MismatchPolicy mismatch = MismatchPolicy::refuse;
+  Place place{};
+};
+
+struct ModbusConfig {
+  std::string listen = "127.0.0.1";
+  std::uint16_t port = 1502;
+  std::vector<std::string> allow{};
+  std::size_t connections = 32;
+  bool read_only = false;
+  std::string word_order = "abcd";
+  std::string lock_file{};
+  Place place{};
+};
+
+struct RunConfig {
+  TaskSettings task{};  ///< inputs and outputs in the order of the diagram
+  SchedulingRequest scheduling{};
+  bool guard = true;
+  std::int64_t silence = 50'000'000;
+  std::optional<RetainConfig> retain{};
+  std::optional<TraceSettings> trace{};
+  Place trace_place{};
+  std::optional<ModbusConfig> modbus{};
+  std::vector<DeviceConfig> devices{};
+  std::vector<std::optional<DeviceLink>> input_links{};   ///< by input
+  std::vector<std::optional<DeviceLink>> output_links{};  ///< by output
+};
+
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810; `file` stands in places.
+[[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
+
+/// A length of time as "5ms": a number and one of ns, us, ms, s. In nanoseconds; nothing where it is none.
+[[nodiscard]] std::optional<std::int64_t> parse_duration(std::string_view text);
+
+/// A trigger as "U > 5.0", "Y_REF < -1", or "fault"; nothing where it is none of the program's.
+[[nodiscard]] std::optional<TraceTrigger> parse_trigger(std::string_view text, const ProgramShape& shape);
+
+}  // namespace hysteron::runtime

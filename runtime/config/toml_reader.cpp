@@ -1,0 +1,186 @@
+#include "runtime/config/toml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "runtime/config/run_config.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+/// Dots in one key. The library frees nested tables by recursion; a key of many dots would overrun the stack.
+constexpr int most_dots = 32;
+
+std::string listed(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) {
+    text += (text.empty() ? "" : ", ") + std::string(word);
+  }
+  return text;
+}
+
+std::string duration_text(std::int64_t nanoseconds) {
+  return number_text(static_cast<double>(nanoseconds) * 1e-6) + "ms";
+}
+
+}  // namespace
+
+Place place_of(const std::string& file, const toml::source_region& region) {
+  const bool one_line = region.end.line == region.begin.line && region.end.column > region.begin.column;
+  return {.file = file,
+          .line = region.begin.line,
+          .column = region.begin.column,
+          .length = one_line ? region.end.column - region.begin.column : 1};
+}
+
+toml::table parse_run_toml(const std::string& file, std::string_view text) {
+  int dots = 0;
+  for (const char c : text) {
+    dots = c == '.' ? dots + 1 : std::string_view("=,[]{}\n").find(c) != std::string_view::npos ? 0 : dots;
+    if (dots > most_dots) {
+      throw InputError(error::run_file_syntax, {.file = file}, "There are more than 32 dots in a row.",
+                       "shorten the key or the comment.");
+    }
+  }
+  try {
+    return toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& said) {
+    const std::string description(said.description());
+    if (description.find("cannot redefine") != std::string::npos) {
+      const Place line{.file = file, .line = said.source().begin.line};
+      throw InputError(error::run_key_twice, line, "This key or table has been given before.",
+                       "keep one of the two; a table may be opened only once.");
+    }
+    throw InputError(error::run_file_syntax, place_of(file, said.source()), "This is no TOML: " + description + ".",
+                     "write a table as [outputs.U] and a value as safe = 0.0; toml.io has the rules.");
+  }
+}
+
+TomlReader::TomlReader(const std::string& file, std::string name, const toml::table& table,
+                       std::span<const std::string_view> known, Diagnostics& diagnostics)
+    : file_(&file), name_(std::move(name)), table_(&table), diagnostics_(&diagnostics) {
+  for (const auto& [key, node] : table) {
+    if (std::ranges::find(known, key.str()) == known.end()) {
+      const auto near = nearest_name(key.str(), known);
+      diagnostics.error(
+          error::unknown_run_key, place_of(file, key.source()),
+          "There is no key " + std::string(key.str()) + " in " + name_ + ".",
+          near.empty() ? "use one of: " + listed(known) + "." : "did you mean " + std::string(near) + "?");
+    }
+  }
+}
+
+Place TomlReader::place(std::string_view key) const {
+  const auto* const node = table_->get(key);
+  return place_of(*file_, node == nullptr ? table_->source() : node->source());
+}
+
+void TomlReader::wrong_type(std::string_view key, const std::string& wanted, const std::string& example) {
+  diagnostics_->error(error::wrong_run_value, place(key), std::string(key) + " must be " + wanted + ".",
+                      "write it as in " + std::string(key) + " = " + example + ".");
+}
+
+void TomlReader::out_of_range(std::string_view key, const std::string& range) {
+  diagnostics_->error(error::run_value_out_of_range, place(key), std::string(key) + " must be " + range + ".",
+                      "choose a value in that range, or leave the key out.");
+}
+
+void TomlReader::read(std::string_view key, bool& into) {
+  if (const auto* const node = table_->get(key)) {
+    if (!node->is_boolean()) {
+      return wrong_type(key, "true or false", "true");
+    }
+    into = node->as_boolean()->get();
+  }
+}
+
+void TomlReader::read(std::string_view key, std::string& into) {
+  if (const auto* const node = table_->get(key)) {
+    if (!node->is_string() || node->as_string()->get().empty()) {
+      return wrong_type(key, "a text", "\"name\"");
+    }
+    into = node->as_string()->get();
+  }
+}
+
+void TomlReader::read(std::string_view key, std::vector<std::string>& into) {
+  const auto* const node = table_->get(key);
+  if (node == nullptr) {
+    return;
+  }
+  const auto* const list = node->as_array();
+  if (list == nullptr || !list->is_homogeneous<std::string>()) {
+    return wrong_type(key, "a list of texts", "[\"192.168.10.0/24\"]");
+  }
+  for (const toml::node& one : *list) {
+    into.push_back(one.as_string()->get());
+  }
+}
+
+void TomlReader::read(std::string_view key, double& into, double low, double high) {
+  const auto* const node = table_->get(key);
+  if (node == nullptr) {
+    return;
+  }
+  const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!value) {
+    return wrong_type(key, "a number", "1.5");
+  }
+  if (!std::isfinite(*value) || *value < low || *value > high) {
+    return out_of_range(key, std::isinf(low) && std::isinf(high) ? std::string("a finite number")
+                             : std::isinf(high)                  ? "a finite number, " + number_text(low) + " or above"
+                                                : "from " + number_text(low) + " to " + number_text(high));
+  }
+  into = *value;
+}
+
+std::optional<std::int64_t> TomlReader::whole(std::string_view key, std::int64_t low, std::int64_t high) {
+  const auto* const node = table_->get(key);
+  if (node == nullptr) {
+    return std::nullopt;
+  }
+  if (!node->is_integer()) {
+    wrong_type(key, "a whole number", std::to_string(low + 1));
+    return std::nullopt;
+  }
+  const std::int64_t value = node->as_integer()->get();
+  if (value < low || value > high) {
+    out_of_range(key, "from " + std::to_string(low) + " to " + std::to_string(high));
+    return std::nullopt;
+  }
+  return value;
+}
+
+void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high) {
+  const auto* const node = table_->get(key);
+  if (node == nullptr) {
+    return;
+  }
+  const auto value = node->is_string() ? parse_duration(node->as_string()->get()) : std::nullopt;
+  if (!value) {
+    return wrong_type(key, "a length of time in ns, us, ms or s", "\"5ms\"");
+  }
+  if (*value < low || *value > high) {
+    return out_of_range(key, "from " + duration_text(low) + " to " + duration_text(high));
+  }
+  into = *value;
+}
+
+void TomlReader::read_choice(std::string_view key, std::size_t& into, std::span<const std::string_view> words) {
+  const auto* const node = table_->get(key);
+  if (node == nullptr) {
+    return;
+  }
+  const auto text = node->value<std::string_view>();
+  const auto found = text ? std::ranges::find(words, *text) : words.end();
+  if (found == words.end()) {
+    return wrong_type(key, "one of: " + listed(words), "\"" + std::string(words.front()) + "\"");
+  }
+  into = static_cast<std::size_t>(found - words.begin());
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,61 @@
+// Reading TOML into the house's errors: every key is known and read once, every value of its type and range, or there
+// is an error with its place. Only the files of this folder see the library.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/diagnostic.hpp"
+
+namespace hysteron::runtime {
+
+/// Throws InputError HY801 or HY802.
+[[nodiscard]] toml::table parse_run_toml(const std::string& file, std::string_view text);
+
+[[nodiscard]] Place place_of(const std::string& file, const toml::source_region& region);
+
+/// One table of the file. What is asked for and not there leaves the value as it was.
+class TomlReader {
+ public:
+  /// Reports every key that is not among `known`.
+  TomlReader(const std::string& file, std::string name, const toml::table& table,
+             std::span<const std::string_view> known, Diagnostics& diagnostics);
+
+  void read(std::string_view key, bool& into);
+  void read(std::string_view key, std::string& into);
+  void read(std::string_view key, std::vector<std::string>& into);
+  void read(std::string_view key, double& into, double low, double high);
+  void read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high);
+  /// The index of the word that stands there.
+  void read_choice(std::string_view key, std::size_t& into, std::span<const std::string_view> words);
+  template <class Integer>
+  void read_whole(std::string_view key, Integer& into, std::int64_t low, std::int64_t high) {
+    if (const auto value = whole(key, low, high)) {
+      into = static_cast<Integer>(*value);
+    }
+  }
+
+  [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
+  /// Of a value; of the table where the key is not there.
+  [[nodiscard]] Place place(std::string_view key) const;
+  [[nodiscard]] Place place() const { return place_of(*file_, table_->source()); }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::optional<std::int64_t> whole(std::string_view key, std::int64_t low, std::int64_t high);
+  void wrong_type(std::string_view key, const std::string& wanted, const std::string& example);
+  void out_of_range(std::string_view key, const std::string& range);
+
+  const std::string* file_;
+  std::string name_;
+  const toml::table* table_;
+  Diagnostics* diagnostics_;
+};
+
+}  // namespace hysteron::runtime

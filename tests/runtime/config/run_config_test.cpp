@@ -1,0 +1,185 @@
+// The run file: what it says arrives, and what it must not say is refused at its place.
+#include "runtime/config/run_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/errors.hpp"
+#include "tests/support/error_page.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+ProgramShape plant() {
+  ProgramShape shape;
+  shape.name = "PLANT";
+  shape.period = 1'000'000;
+  shape.inputs = {{.name = "X"}, {.name = "Z"}};
+  shape.outputs = {{.name = "Y", .low = -10.0, .high = 10.0}};
+  return shape;
+}
+
+/// Number, line and column of every error.
+std::string errors_of(std::string_view text) {
+  std::string list;
+  try {
+    (void)parse_run_config("RUN.toml", text, plant());
+  } catch (const InputError& refused) {
+    for (const Diagnostic& one : refused.diagnostics().all()) {
+      list += std::to_string(one.number) + "@" + std::to_string(one.place.line) + ":" +
+              std::to_string(one.place.column) + " ";
+    }
+  }
+  return list;
+}
+
+TEST(RunConfig, SaysEverything) {
+  const auto config = parse_run_config("RUN.toml", R"(
+[task]
+period = "1ms"
+missed = "catch_up"
+catch_up = 5
+tolerance = "50us"
+scheduling = "deadline"
+processor = 1
+lock_memory = false
+[watchdog]
+time = "5ms"
+sensitivity = 2
+guard = false
+silence = "0.1s"
+[outputs.y]
+safe = -1
+on_fault = "ramp"
+ramp = 20.0
+hold_cycles = 10
+low = -5.0
+slew = 1000.0
+device = "stage"
+register = 8
+[inputs.X]
+device = "stage"
+register = 4
+[inputs.Z]
+longest_age = "20ms"
+[devices.stage]
+host = "10.0.0.7"
+port = 1502
+unit = 3
+cycle = "2ms"
+timeout = "150ms"
+[retain]
+folder = "kept"
+every = 100
+mismatch = "cold"
+[trace]
+file = "run.trace"
+trigger = "Y > 2.5"
+before = 7
+after = 9
+[modbus]
+listen = "0.0.0.0"
+port = 1600
+allow = ["10.0.0.0/8"]
+connections = 4
+read_only = true
+word_order = "cdab"
+lock_file = "plant.lock"
+)",
+                                       plant());
+  EXPECT_EQ(config.task.loop.policy, MissedPolicy::catch_up);
+  EXPECT_EQ(config.task.loop.catch_up, 5U);
+  EXPECT_EQ(config.task.loop.tolerance, 50'000);
+  EXPECT_EQ(config.scheduling.scheduling, Scheduling::deadline);
+  EXPECT_EQ(config.scheduling.processor, 1);
+  EXPECT_FALSE(config.scheduling.lock_memory);
+  EXPECT_EQ(config.task.watchdog.longest(), 10'000'000);
+  EXPECT_FALSE(config.guard);
+  EXPECT_EQ(config.silence, 100'000'000);
+  const OutputSafety& y = config.task.outputs[0];
+  EXPECT_EQ(y.value, -1.0);
+  EXPECT_EQ(y.action, SafeAction::ramp);
+  EXPECT_EQ(y.ramp, 20.0);
+  EXPECT_EQ(y.hold_cycles, 10U);
+  EXPECT_EQ(y.low, -5.0);
+  EXPECT_EQ(y.high, 10.0);  // the diagram's
+  EXPECT_EQ(y.slew, 1000.0);
+  EXPECT_EQ(config.output_links[0]->address, 8);
+  EXPECT_TRUE(config.task.inputs[0].from_device);
+  EXPECT_FALSE(config.task.inputs[1].from_device);
+  EXPECT_EQ(config.task.inputs[1].longest_age, 20U);
+  EXPECT_FALSE(config.input_links[1]);
+  EXPECT_EQ(config.devices[0].host, "10.0.0.7");
+  EXPECT_EQ(config.devices[0].unit, 3);
+  EXPECT_EQ(config.devices[0].cycle, 2'000'000);
+  EXPECT_EQ(config.retain->mismatch, MismatchPolicy::cold);
+  EXPECT_EQ(config.task.retain_every, 100U);
+  EXPECT_EQ(config.trace->trigger->level, 2.5);
+  EXPECT_EQ(config.trace->trigger->before, 7U);
+  EXPECT_EQ(config.modbus->port, 1600);
+  EXPECT_EQ(config.modbus->word_order, "cdab");
+  EXPECT_TRUE(config.modbus->read_only);
+}
+
+TEST(RunConfig, NeedsTheSafeValuesAndNothingElse) {
+  const auto config = parse_run_config("RUN.toml", "[outputs.Y]\nsafe = 0.0\n", plant());
+  EXPECT_EQ(config.task.loop.policy, MissedPolicy::skip);
+  EXPECT_TRUE(config.guard);
+  EXPECT_TRUE(std::isinf(config.task.outputs[0].slew));
+  EXPECT_FALSE(config.modbus || config.trace || config.retain);
+  EXPECT_EQ(errors_of(""), "806@0:0 ");
+}
+
+TEST(RunConfig, CollectsErrorsInTheOrderOfTheFile) {
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = \"0\"\nslow = 1\n[task]\npriority = 0\nmissed = \"skipp\"\n[extra]\n"),
+            "804@2:8 803@3:1 805@5:12 804@6:10 803@7:2 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = inf\n"), "805@2:8 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\nslew = 0.0\n"), "805@3:8 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\nsafe = 1\n"), "802@3:0 ");
+  EXPECT_EQ(errors_of("outputs = 3\n"), "806@0:0 804@1:11 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\non_fault = \"ramp\"\n"), "808@3:12 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[inputs.X]\nregister = 3\n"), "810@4:12 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[retain]\nevery = 5\n"), "804@3:1 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[modbus]\nallow = [1]\n"), "804@4:9 ");
+}
+
+TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[outputs.y]\nsafe = 1\n"), "802@3:10 ");
+}
+
+TEST(RunConfig, DurationsAreWholeNanoseconds) {
+  EXPECT_EQ(parse_duration("5ms"), 5'000'000);
+  EXPECT_EQ(parse_duration("0.25us"), 250);
+  EXPECT_EQ(parse_duration("2s"), 2'000'000'000);
+  for (const char* const wrong : {"", "5", "ms", "5 ms", "-5ms", "0.5ns", "5min", "1e3ms", "99999999s"}) {
+    EXPECT_FALSE(parse_duration(wrong)) << wrong;
+  }
+}
+
+TEST(RunConfig, TriggersNameASignalOfTheProgram) {
+  const auto trigger = parse_trigger(" x<-1.5 ", plant());
+  ASSERT_TRUE(trigger);
+  EXPECT_EQ(trigger->signal, TraceTrigger::Signal::input);
+  EXPECT_FALSE(trigger->above);
+  EXPECT_EQ(trigger->level, -1.5);
+  EXPECT_EQ(parse_trigger("FAULT", plant())->signal, TraceTrigger::Signal::fault);
+  for (const char* const wrong : {"", "Y", "Y >", "> 1", "Q > 1", "Y > one", "Y >= 1"}) {
+    EXPECT_FALSE(parse_trigger(wrong, plant())) << wrong;
+  }
+}
+
+class RunFilePages : public testing::TestWithParam<int> {};
+
+TEST_P(RunFilePages, FailAndMend) {
+  const auto page = hysteron::test::read_error_page("HY" + std::to_string(GetParam()));
+  EXPECT_TRUE(errors_of(page.fails.text).starts_with(std::to_string(GetParam()) + "@")) << errors_of(page.fails.text);
+  EXPECT_EQ(std::ranges::count(errors_of(page.fails.text), '@'), 1);
+  EXPECT_EQ(errors_of(page.mended.text), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, RunFilePages, testing::Range(801, 811));
+
+}  // namespace
+}  // namespace hysteron::runtime

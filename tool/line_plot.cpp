@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/markup.hpp"
+
 namespace hysteron::tool {
 namespace {
 
@@ -84,29 +86,6 @@ std::string path_of(const Line& line, const Axis& x, const Axis& y) {
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string line_plot(const PlotLabels& labels, std::span<const Line> lines) {
   Axis x;

@@ -24,7 +24,4 @@ struct PlotLabels {
 /// the least and the largest y among neighbours.
 [[nodiscard]] std::string line_plot(const PlotLabels& labels, std::span<const Line> lines);
 
-/// Text for HTML and SVG: &, <, > and quotes escaped.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 }  // namespace hysteron::tool

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "support/markup.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::tool {
@@ -34,38 +35,13 @@ std::size_t failed_in(const FileResult& result) {
 }
 
 /// Text for XML, attributes included. Control characters but for tab and line feed cannot stand in XML at all.
-std::string escaped(std::string_view text) {
+std::string xml_text(std::string_view text) {
   std::string result;
-  std::string safe;
-  for (const char c : text) {
-    safe += c;
-    if (c == '\n') {
-      safe.pop_back();
-      result += printable(safe) + "\n";
-      safe.clear();
-    }
+  for (auto end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    result += printable(text.substr(0, end)) + "\n";
+    text.remove_prefix(end + 1);
   }
-  result += printable(safe);
-  safe.clear();
-  for (const char c : result) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
+  return escaped(result + printable(text));
 }
 
 }  // namespace
@@ -108,16 +84,16 @@ std::string junit_text(const std::vector<FileResult>& results) {
       seconds += one.seconds;
     }
     text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n",
-                        escaped(result.file), result.cases.size(), failed_in(result), seconds);
+                        xml_text(result.file), result.cases.size(), failed_in(result), seconds);
     for (const CaseResult& one : result.cases) {
-      text += fmt::format(R"(    <testcase name="{}" classname="{}" time="{:.3f}")", escaped(one.name),
-                          escaped(result.file), one.seconds);
+      text += fmt::format(R"(    <testcase name="{}" classname="{}" time="{:.3f}")", xml_text(one.name),
+                          xml_text(result.file), one.seconds);
       if (one.failures.empty()) {
         text += "/>\n";
         continue;
       }
       text += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                          escaped(one.failures.front().cause), escaped(failures_text(one, "")));
+                          xml_text(one.failures.front().cause), xml_text(failures_text(one, "")));
     }
     text += "  </testsuite>\n";
   }

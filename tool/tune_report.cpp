@@ -11,6 +11,7 @@
 #include "records/csv.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
+#include "support/markup.hpp"
 #include "tool/line_plot.hpp"
 
 namespace hysteron::tool {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/numbers.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
@@ -54,13 +56,11 @@ struct Options {
 /// INPUT=VALUE as a limit of the next experiment.
 std::pair<std::string, double> limit_of(const std::string& text) {
   const auto equals = text.find('=');
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(text.substr(equals == std::string::npos ? text.size() : equals + 1), &used);
-    if (equals != std::string::npos && equals > 0 && equals + 1 + used == text.size()) {
-      return {text.substr(0, equals), value};
+  if (equals != std::string::npos && equals > 0) {
+    const ParsedNumber number = parse_number(std::string_view(text).substr(equals + 1));
+    if (number.status == NumberStatus::Finite) {
+      return {text.substr(0, equals), number.value};
     }
-  } catch (const std::exception&) {  // falls through: no number
   }
   throw InputError(error::bad_usage, {}, fmt::format("--limit {} is no limit.", text),
                    "write --limit U=5.0: the input and its largest size.");

@@ -1,0 +1,75 @@
+// The Modbus TCP server: one thread, one bounded event loop, beside the cyclic task and never in its way.
+//
+// No client can hold up another: nothing in the loop waits for a client, every connection has bounded buffers and
+// deadlines (connection.hpp), there are at most `connections` of them, and one turn takes at most one buffer of each.
+// It listens on loopback unless told otherwise.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/modbus/connection.hpp"
+#include "runtime/modbus/heartbeat.hpp"
+#include "runtime/modbus/register_map.hpp"
+#include "runtime/modbus/responder.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::runtime::modbus {
+
+struct ServerOptions {
+  std::string listen = "127.0.0.1";  ///< a numeric address
+  std::uint16_t port = 1502;         ///< 0 takes any that is free
+  std::vector<std::string> allow{};  ///< networks in CIDR notation; none: whoever can reach the port
+  std::size_t connections = 32;
+  bool read_only = false;
+  ConnectionLimits limits{};
+  HeartbeatOptions heartbeat{};
+  Identity identity{};
+  /// Called in the server's thread when the client is lost, and when it is back. Must return at once.
+  std::function<void(bool lost)> client_lost{};
+  Place place{};  ///< of these settings, for errors
+};
+
+/// Counted since the start.
+struct ServerStatus {
+  std::uint64_t open = 0;  ///< connections now
+  std::uint64_t accepted = 0;
+  std::uint64_t refused_full = 0;     ///< beyond the connections allowed at once
+  std::uint64_t refused_address = 0;  ///< not in the allow-list
+  std::uint64_t requests = 0;
+  std::uint64_t exceptions = 0;
+  std::uint64_t writes = 0;  ///< requests that wrote
+  std::uint64_t closed_by_client = 0;
+  std::uint64_t frame_late = 0;  ///< dropped, as Ending says, and so on
+  std::uint64_t idle = 0;
+  std::uint64_t unread = 0;
+  std::uint64_t wrong_protocol = 0;
+  std::uint64_t wrong_length = 0;
+  bool client_lost = false;
+};
+
+class Server {
+ public:
+  /// Listens and serves from here on. The door must outlive the server. Throws InputError HY827 to HY830.
+  Server(RegisterMap map, PointDoor& door, const ServerOptions& options);
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  Server(Server&&) = delete;
+  Server& operator=(Server&&) = delete;
+  /// Closes all connections.
+  ~Server();
+
+  [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] const RegisterMap& map() const;
+  [[nodiscard]] ServerStatus status() const;
+
+ private:
+  class Loop;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,134 @@
+// A TCP client on loopback for tests of servers: sends what it likes, well-formed or not.
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+#include "runtime/modbus/descriptor.hpp"
+
+namespace hysteron::test {
+
+using Bytes = std::vector<std::uint8_t>;
+
+class ClientSocket {
+ public:
+  explicit ClientSocket(std::uint16_t port, std::chrono::milliseconds patience = std::chrono::seconds(5))
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), patience_(patience) {
+    sockaddr_in peer{};
+    peer.sin_family = AF_INET;
+    peer.sin_port = htons(port);
+    peer.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int on = 1;
+    ::setsockopt(socket_.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(patience);
+    const timeval limit{seconds.count(), std::chrono::microseconds(patience - seconds).count()};
+    ::setsockopt(socket_.number(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);  // of connect, too
+    connected_ = ::connect(socket_.number(), reinterpret_cast<const sockaddr*>(&peer), sizeof peer) == 0;
+  }
+
+  [[nodiscard]] bool connected() const { return connected_; }
+
+  /// False where the server has closed.
+  bool send(std::span<const std::uint8_t> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t sent = ::send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent < 0 && errno != EINTR) {
+        return false;
+      }
+      bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
+    }
+    return true;
+  }
+
+  /// What can be sent without waiting; false where the server has closed.
+  bool send_without_waiting(std::span<const std::uint8_t> bytes) const {
+    const ssize_t sent = ::send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    return sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
+  }
+
+  /// Exactly so many bytes; fewer where the server closed or the patience is at an end.
+  [[nodiscard]] Bytes receive(std::size_t count) const {
+    Bytes bytes(count);
+    std::size_t have = 0;
+    const auto until = std::chrono::steady_clock::now() + patience_;
+    while (have < count && readable(until)) {
+      const ssize_t got = ::recv(socket_.number(), bytes.data() + have, count - have, 0);
+      if (got <= 0) {
+        break;
+      }
+      have += static_cast<std::size_t>(got);
+    }
+    bytes.resize(have);
+    return bytes;
+  }
+
+  /// An answer with its header; shorter where none came.
+  [[nodiscard]] Bytes receive_frame() const {
+    Bytes frame = receive(6);
+    if (frame.size() == 6) {
+      const Bytes rest = receive(frame[4] * 256U + frame[5]);
+      frame.insert(frame.end(), rest.begin(), rest.end());
+    }
+    return frame;
+  }
+
+  /// Waits until the server closes; what it sends before is dropped. False where it does not.
+  [[nodiscard]] bool sees_the_end() const {
+    const auto until = std::chrono::steady_clock::now() + patience_;
+    while (readable(until)) {
+      Bytes bytes(4096);
+      const ssize_t got = ::recv(socket_.number(), bytes.data(), bytes.size(), 0);
+      if (got == 0 || (got < 0 && errno != EINTR)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Closes with a reset instead of an end.
+  void reset() {
+    const linger now{1, 0};
+    ::setsockopt(socket_.number(), SOL_SOCKET, SO_LINGER, &now, sizeof now);
+    socket_ = runtime::modbus::Descriptor();
+  }
+
+ private:
+  [[nodiscard]] bool readable(std::chrono::steady_clock::time_point until) const {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
+    pollfd one{socket_.number(), POLLIN, 0};
+    return left > 0 && ::poll(&one, 1, static_cast<int>(left)) > 0;
+  }
+
+  runtime::modbus::Descriptor socket_;
+  std::chrono::milliseconds patience_;
+  bool connected_ = false;
+};
+
+/// A request with its header.
+inline Bytes framed(std::uint16_t transaction, std::initializer_list<int> pdu) {
+  Bytes bytes{static_cast<std::uint8_t>(transaction >> 8U),
+              static_cast<std::uint8_t>(transaction & 0xFFU),
+              0,
+              0,
+              0,
+              static_cast<std::uint8_t>(pdu.size() + 1),
+              1};
+  for (const int byte : pdu) {
+    bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return bytes;
+}
+
+}  // namespace hysteron::test

@@ -1,0 +1,236 @@
+#include "runtime/modbus/server.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "runtime/modbus/listen.hpp"
+#include "support/errors.hpp"
+#include "tests/runtime/modbus/client_socket.hpp"
+#include "tests/runtime/modbus/hostile_clients.hpp"
+#include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/error_page.hpp"
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+using test::Bytes;
+using test::ClientSocket;
+using test::framed;
+
+struct Bench {
+  explicit Bench(ServerOptions options = {})
+      : door(test::registers_to_serve()), server(map_of(door), door, free_port(std::move(options))) {}
+  static RegisterMap map_of(const PointDoor& door) { return make_register_map(door.points(), {.title = "T"}); }
+  static ServerOptions free_port(ServerOptions options) {
+    options.port = 0;
+    return options;
+  }
+  /// Waits for what the server's thread will do soon.
+  static bool soon(const std::function<bool()>& holds) {
+    for (int i = 0; i < 2000 && !holds(); ++i) {
+      std::this_thread::sleep_for(milliseconds(5));
+    }
+    return holds();
+  }
+  test::MemoryDoor door;
+  Server server;
+};
+
+Bytes ask(const ClientSocket& client, const Bytes& request) {
+  client.send(request);
+  return client.receive_frame();
+}
+
+const Bytes read_one = framed(1, {3, 0, 0, 0, 1});
+const Bytes write_one = framed(2, {6, 0, 3, 0, 9});
+
+TEST(Server, AnswersAndCounts) {
+  Bench bench;
+  {
+    const ClientSocket client(bench.server.port());
+    EXPECT_EQ(ask(client, write_one), write_one);
+    EXPECT_EQ(ask(client, framed(3, {3, 0, 3, 0, 1})), framed(3, {3, 2, 0, 9}));
+    EXPECT_EQ(ask(client, framed(4, {99})), framed(4, {227, 1}));
+  }
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 0; }));
+  const ServerStatus status = bench.server.status();
+  EXPECT_EQ(status.accepted, 1U);
+  EXPECT_EQ(status.requests, 3U);
+  EXPECT_EQ(status.exceptions, 1U);
+  EXPECT_EQ(status.writes, 1U);
+  EXPECT_EQ(status.closed_by_client, 1U);
+}
+
+TEST(Server, ListensOnLoopbackUnlessToldOtherwise) {
+  EXPECT_EQ(ServerOptions{}.listen, "127.0.0.1");
+}
+
+TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
+  Bench bench;
+  std::vector<std::unique_ptr<ClientSocket>> clients;
+  for (int i = 0; i < 32; ++i) {
+    clients.push_back(std::make_unique<ClientSocket>(bench.server.port()));
+    ASSERT_EQ(ask(*clients.back(), read_one).size(), 11U);
+  }
+  EXPECT_TRUE(ClientSocket(bench.server.port()).sees_the_end());
+  for (const auto& client : clients) {
+    EXPECT_EQ(ask(*client, read_one).size(), 11U);
+  }
+  EXPECT_EQ(bench.server.status().refused_full, 1U);
+  clients.pop_back();
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 31; }));
+  EXPECT_EQ(ask(ClientSocket(bench.server.port()), read_one).size(), 11U) << "a place that is free is given again";
+}
+
+TEST(Server, TheAllowListIsAskedBeforeAByteIsRead) {
+  Bench bench({.allow = {"10.0.0.0/8"}});
+  const ClientSocket client(bench.server.port());
+  client.send(write_one);
+  EXPECT_TRUE(client.sees_the_end());
+  EXPECT_EQ(bench.server.status().refused_address, 1U);
+  EXPECT_EQ(bench.server.status().requests, 0U);
+  EXPECT_EQ(bench.door.writes(), 0U);
+  Bench open({.allow = {"10.0.0.0/8", "127.0.0.1"}});
+  EXPECT_EQ(ask(ClientSocket(open.server.port()), write_one), write_one);
+}
+
+TEST(Server, ReadOnly) {
+  Bench bench({.read_only = true});
+  const ClientSocket client(bench.server.port());
+  EXPECT_EQ(ask(client, write_one), framed(2, {134, 1}));
+  EXPECT_EQ(ask(client, read_one), framed(1, {3, 2, 0, 0}));
+  EXPECT_EQ(bench.door.writes(), 0U);
+}
+
+TEST(Server, DeadlinesEndAConnection) {
+  Bench bench({.limits = {.frame_deadline = milliseconds(50), .idle = milliseconds(300)}});
+  const ClientSocket slow(bench.server.port());
+  slow.send(std::span(read_one).first(5));
+  EXPECT_TRUE(slow.sees_the_end());
+  EXPECT_EQ(bench.server.status().frame_late, 1U);
+  EXPECT_TRUE(ClientSocket(bench.server.port()).sees_the_end());
+  EXPECT_EQ(bench.server.status().idle, 1U);
+}
+
+TEST(Server, WhatIsNoFrameEndsAConnectionAndWritesNothing) {
+  Bench bench;
+  for (const auto& [at, value] : {std::pair{3, 1}, {2, 9}, {4, 1}, {5, 0}, {5, 1}, {5, 255}}) {
+    Bytes frame = write_one;
+    frame[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(value);
+    const ClientSocket client(bench.server.port());
+    client.send(frame);
+    EXPECT_TRUE(client.sees_the_end()) << at << " " << value;
+  }
+  EXPECT_EQ(bench.server.status().wrong_protocol, 2U);
+  EXPECT_EQ(bench.server.status().wrong_length, 4U);
+  EXPECT_EQ(bench.door.writes(), 0U);
+}
+
+TEST(Server, OneClientOwnsTheWrites) {
+  Bench bench({.heartbeat = {.own_writes = true}});
+  const ClientSocket guest(bench.server.port());
+  {
+    const ClientSocket owner(bench.server.port());
+    EXPECT_EQ(ask(owner, write_one), write_one);
+    EXPECT_EQ(ask(guest, write_one), framed(2, {134, 6}));
+    EXPECT_EQ(ask(guest, read_one).size(), 11U);
+  }
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 1; }));
+  EXPECT_EQ(ask(guest, write_one), write_one);
+}
+
+TEST(Server, ALostClientIsTold) {
+  std::atomic<int> lost{0};
+  std::atomic<int> back{0};
+  Bench bench({.heartbeat = {.mode = HeartbeatMode::write_telegram, .time = milliseconds(100)},
+               .client_lost = [&](bool is_lost) { ++(is_lost ? lost : back); }});
+  const ClientSocket client(bench.server.port());
+  EXPECT_EQ(ask(client, write_one), write_one);
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().client_lost; }));
+  EXPECT_EQ(lost, 1);
+  EXPECT_EQ(ask(client, write_one), write_one);
+  EXPECT_TRUE(Bench::soon([&] { return back == 1; }));
+}
+
+std::ptrdiff_t open_descriptors() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
+}
+
+TEST(Server, ConnectAndCloseLosesNoDescriptor) {
+  const auto before = open_descriptors();
+  {
+    Bench bench;
+    const auto serving = open_descriptors();
+    for (int i = 0; i < 2000; ++i) {
+      ClientSocket client(bench.server.port());
+      ASSERT_TRUE(client.connected());
+      if (i % 2 == 0) {
+        client.reset();
+      }
+    }
+    EXPECT_TRUE(Bench::soon([&] {
+      const ServerStatus status = bench.server.status();
+      return status.open == 0 && open_descriptors() == serving;
+    }));
+  }
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+int number_of_refusal(const ServerOptions& options) {
+  test::MemoryDoor door(test::registers_to_serve());
+  try {
+    const Server server(Bench::map_of(door), door, options);
+    return 0;
+  } catch (const InputError& refused) {
+    return refused.diagnostics().all().front().number;
+  }
+}
+
+/// What a page says in TOML. Ports of pages are those of real servers; here any that is free does.
+ServerOptions options_of(const test::FencedBlock& block, std::uint16_t busy) {
+  const auto table = toml::parse(block.text);
+  ServerOptions options{.port = 0};
+  options.listen = table["server"]["listen"].value_or(options.listen);
+  const auto port = table["server"]["port"].value_or(std::int64_t{0});
+  options.port = port == 502 ? 502 : port == 1502 ? busy : 0;
+  if (const auto* allow = table["server"]["allow"].as_array()) {
+    for (const auto& one : *allow) {
+      options.allow.push_back(one.value<std::string>().value());
+    }
+  }
+  return options;
+}
+
+TEST(ServerErrorPages, FailAndMend) {
+  const Descriptor other = listen_on("127.0.0.1", 0, {});
+  for (const int number : {error::port_in_use, error::unusable_listen_address, error::malformed_allow_list}) {
+    const auto page = test::read_error_page("HY" + std::to_string(number));
+    EXPECT_EQ(number_of_refusal(options_of(page.fails, port_of(other))), number);
+    EXPECT_EQ(number_of_refusal(options_of(page.mended, port_of(other))), 0) << number;
+  }
+  EXPECT_EQ(number_of_refusal({.listen = "localhost"}), error::unusable_listen_address) << "a name is no address";
+}
+
+/// In a process without rights, since tests may be run by root.
+TEST(ServerErrorPages, APrivilegedPort) {
+  const auto page = test::read_error_page("HY828");
+  const ServerOptions fails = options_of(page.fails, 0);
+  const ServerOptions mended = options_of(page.mended, 0);
+  EXPECT_EXIT(
+      {
+        const bool unprivileged = ::getuid() != 0 || (::setgid(65534) == 0 && ::setuid(65534) == 0);
+        const bool as_said = number_of_refusal(fails) == error::privileged_port && number_of_refusal(mended) == 0;
+        ::_exit(unprivileged && as_said ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace hysteron::runtime::modbus

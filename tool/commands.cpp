@@ -13,6 +13,9 @@ std::span<const Command> commands() {
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},
       Command{"generate", "Generates code from a diagram.", add_generate},
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
+      Command{"serve", "Runs a diagram as a cyclic task, and serves it over Modbus.", add_serve},
+      Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
+      Command{"map", "Prints the registers of a served diagram.", add_map},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
   };
   return list;

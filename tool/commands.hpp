@@ -38,6 +38,9 @@ Action add_generate(CLI::App& app);
 Action add_tune(CLI::App& app);
 Action add_diagnose(CLI::App& app);
 Action add_test(CLI::App& app);
+Action add_serve(CLI::App& app);
+Action add_replay(CLI::App& app);
+Action add_map(CLI::App& app);
 Action add_blocks(CLI::App& app);
 
 }  // namespace hysteron::tool

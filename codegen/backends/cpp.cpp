@@ -57,6 +57,14 @@ class CppHeader {
     }
   }
 
+  std::vector<std::string> parameter_members() const {
+    std::vector<std::string> members;
+    for (const CppMember& member : expressions_.parameters) {
+      members.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") + std::string(member.name));
+    }
+    return members;
+  }
+
   GeneratedFile run() {
     // What stands before the functions is written while they are: both only read what they share.
     auto before = std::async(std::launch::async, [this] { return declarations(); });
@@ -466,6 +474,11 @@ void require_sample_time(const Graph& graph) {
 GeneratedFile generate_cpp_header(const Program& program, const CppOptions& options) {
   require_sample_time(program.graph);
   return CppHeader(program, options).run();
+}
+
+std::vector<std::string> cpp_parameter_members(const Program& program) {
+  require_sample_time(program.graph);
+  return CppHeader(program, {}).parameter_members();
 }
 
 std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions& options) {

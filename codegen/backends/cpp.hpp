@@ -29,4 +29,7 @@ std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions
 /// The header alone.
 GeneratedFile generate_cpp_header(const Program& program, const CppOptions& options = {});
 
+/// The members of the header's Params, by parameter of the graph: inv.c1.
+std::vector<std::string> cpp_parameter_members(const Program& program);
+
 }  // namespace hysteron

@@ -27,7 +27,7 @@ constexpr std::array<Keys, 8> task_keys{"period",     "missed",   "catch_up",  "
 constexpr std::array<Keys, 4> watchdog_keys{"time", "sensitivity", "guard", "silence"};
 constexpr std::array<Keys, 9> output_keys{"safe", "on_fault", "hold_cycles", "ramp",    "low",
                                           "high", "slew",     "device",      "register"};
-constexpr std::array<Keys, 3> input_keys{"device", "register", "longest_age"};
+constexpr std::array<Keys, 4> input_keys{"device", "register", "area", "longest_age"};
 constexpr std::array<Keys, 5> device_keys{"host", "port", "unit", "cycle", "timeout"};
 constexpr std::array<Keys, 3> retain_keys{"folder", "every", "mismatch"};
 constexpr std::array<Keys, 4> trace_keys{"file", "trigger", "before", "after"};
@@ -246,6 +246,11 @@ class Reader {
     std::int64_t age = 0;
     table.read_duration("longest_age", age, shape_.period, 1000 * second);
     config_.input_links[*index] = read_link(table);
+    std::size_t area = 0;
+    table.read_choice("area", area, std::array<Keys, 2>{"holding", "input"});
+    if (config_.input_links[*index]) {
+      config_.input_links[*index]->input_register = area == 1;
+    }
     input.from_device = config_.input_links[*index].has_value();
     input.longest_age = static_cast<std::uint64_t>(age / shape_.period);
   }

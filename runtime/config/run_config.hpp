@@ -30,6 +30,7 @@
 //   [inputs.Y]
 //   device = "stage"
 //   register = 4
+//   area = "input"             # input registers; default: "holding"
 //   longest_age = "20ms"
 //
 //   [devices.stage]
@@ -78,6 +79,7 @@ namespace hysteron::runtime {
 struct DeviceLink {
   std::size_t device = 0;
   std::uint16_t address = 0;
+  bool input_register = false;  ///< of an input: read by function 4, else by function 3
 };
 
 struct DeviceConfig {

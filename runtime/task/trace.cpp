@@ -88,7 +88,8 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
       parameters_(parameters_of(program)),
       state_(program.state_size()),
       state_every_(settings.trigger ? std::max<std::uint64_t>(1, settings.trigger->before)
-                                    : std::numeric_limits<std::uint64_t>::max()) {
+                                    : std::numeric_limits<std::uint64_t>::max()),
+      waits_(settings.waits) {
   if (!file_) {
     throw std::system_error(errno, std::generic_category(), settings.file.string());
   }
@@ -118,7 +119,13 @@ bool Trace::push(TraceKind kind, std::span<const std::span<const std::byte>> con
   std::memcpy(head.data(), &length, sizeof(length));
   head[4] = static_cast<std::byte>(kind);
   parts[0] = head;
-  return ring_.push(std::span(parts).first(contents.size() + 1));
+  const auto record = std::span(parts).first(contents.size() + 1);
+  bool pushed = ring_.push(record);
+  while (!pushed && waits_) {
+    std::this_thread::yield();
+    pushed = ring_.push(record);
+  }
+  return pushed;
 }
 
 void Trace::before_step(std::uint64_t number, const StepProgram& program) noexcept {

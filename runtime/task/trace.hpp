@@ -37,6 +37,7 @@ struct TraceSettings {
   std::filesystem::path file{};
   std::size_t ring_bytes = std::size_t{4} << 20;
   std::optional<TraceTrigger> trigger{};
+  bool waits = false;  ///< for room in the ring: on the virtual clock, where nothing is late and nothing need be lost
 };
 
 /// Chooses which records of a stream are written. Pure: bytes in, bytes out.
@@ -100,6 +101,7 @@ class Trace {
   std::uint64_t state_every_;
   std::uint64_t since_state_ = 0;
   bool needs_state_ = true;
+  bool waits_;
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> failures_{0};
   std::atomic<bool> stop_{false};

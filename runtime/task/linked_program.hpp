@@ -1,0 +1,51 @@
+// A generated step behind plain functions, linked into the host or opened as a library, as a program of a task.
+#pragma once
+
+#include <cstring>
+#include <utility>
+
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+/// As NAME_step.cpp has them.
+struct StepFunctions {
+  void (*reset)() = nullptr;
+  void (*step)(const double* inputs, double* outputs) = nullptr;
+  void (*set_parameter)(std::size_t index, double value) = nullptr;
+  double (*parameter)(std::size_t index) = nullptr;
+  void* (*state)() = nullptr;
+  std::size_t (*state_size)() = nullptr;
+};
+
+/// There is one state behind the functions, and so only one such program of a kind in a process.
+class LinkedProgram final : public StepProgram {
+ public:
+  LinkedProgram(ProgramShape shape, const StepFunctions& functions) : shape_(std::move(shape)), functions_(functions) {
+    functions_.reset();
+  }
+  [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
+  void reset() noexcept override { functions_.reset(); }
+  void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
+    functions_.step(inputs.data(), outputs.data());
+  }
+  void set_parameter(std::size_t parameter, double value) noexcept override {
+    functions_.set_parameter(parameter, value);
+  }
+  [[nodiscard]] double parameter(std::size_t parameter) const noexcept override {
+    return functions_.parameter(parameter);
+  }
+  [[nodiscard]] std::size_t state_size() const noexcept override { return functions_.state_size(); }
+  void save(std::span<std::byte> bytes) const noexcept override {
+    std::memcpy(bytes.data(), functions_.state(), bytes.size());
+  }
+  void restore(std::span<const std::byte> bytes) noexcept override {
+    std::memcpy(functions_.state(), bytes.data(), bytes.size());
+  }
+
+ private:
+  ProgramShape shape_;
+  StepFunctions functions_;
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,72 @@
+// hysteron map: the registers under which a served diagram shows itself.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "runtime/modbus/map_text.hpp"
+#include "runtime/task/task_door.hpp"
+#include "support/text_file.hpp"
+#include "tool/commands.hpp"
+#include "tool/diagram.hpp"
+#include "tool/serve_modbus.hpp"
+#include "tool/serve_program.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron map feedforward.st
+  hysteron map feedforward.st --format csv
+  hysteron map feedforward.st --format cpp --config RUN.toml
+
+Without a run file the map is that of a task without devices: every input is a register that clients write. With one,
+its limits, devices, word order and lock file count, as in `hysteron serve`.
+Exit codes: 0 done; 2 an error in the diagram, the run file or the lock file.
+)";
+
+struct Options {
+  DiagramOptions diagram;
+  std::string format = "markdown";
+  std::string config;
+};
+
+runtime::RunConfig run_config_or_default(const std::string& file, const runtime::ProgramShape& shape) {
+  if (!file.empty()) {
+    return runtime::parse_run_config(file, read_text_file(file), shape);
+  }
+  runtime::RunConfig config;
+  config.task.inputs.resize(shape.inputs.size());
+  config.task.outputs.resize(shape.outputs.size());
+  return config;
+}
+
+}  // namespace
+
+Action add_map(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  add_diagram_options(app, options->diagram);
+  app.add_option("--format", options->format, "markdown, csv, json or cpp.")
+      ->check(CLI::IsMember({"markdown", "csv", "json", "cpp"}))
+      ->option_text("NAME");
+  app.add_option("--config", options->config, "The run file.")->option_text("RUN.toml");
+  app.footer(std::string(examples));
+  return [options](Console& console) {
+    Diagnostics warnings;
+    const Program diagram = load_diagram(options->diagram, warnings);
+    const auto program = step_program(diagram, Engine::interpreter, options->diagram.float32);
+    const runtime::RunConfig config = run_config_or_default(options->config, program->shape());
+    std::vector<bool> from_device;
+    for (const runtime::InputSettings& input : config.task.inputs) {
+      from_device.push_back(input.from_device);
+    }
+    runtime::TaskDoor door(*program, from_device, config.task.outputs);
+    const auto map = register_map_of(config.modbus.value_or(runtime::ModbusConfig{}), program->shape().name, door);
+    console.report(warnings);
+    console.print(options->format == "csv"    ? runtime::modbus::as_csv(map)
+                  : options->format == "json" ? runtime::modbus::as_json(map)
+                  : options->format == "cpp"  ? runtime::modbus::as_cpp(map)
+                                              : runtime::modbus::as_markdown(map));
+    return exit_ok;
+  };
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,215 @@
+#include "tool/serve_program.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp_step.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "codegen/program_hash.hpp"
+#include "runtime/task/linked_program.hpp"
+#include "support/errors.hpp"
+#include "support/sha256.hpp"
+#include "support/text_file.hpp"
+#include "tool/build_cache.hpp"
+#include "tool/compiled.hpp"
+#include "tool/process.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using runtime::PointType;
+using runtime::ProgramShape;
+using runtime::ProgramSignal;
+
+PointType point_type(Type type) {
+  switch (type) {
+    case Type::Bool:
+      return PointType::boolean;
+    case Type::Int:
+      return PointType::int32;
+    case Type::Word:
+      return PointType::uint16;
+    default:
+      return PointType::real64;
+  }
+}
+
+/// A unit of the catalogue may stand for that of a signal, as 'x; it says nothing outside.
+std::string plain_unit(std::string_view unit) {
+  return unit.find('\'') == std::string_view::npos ? std::string(unit) : std::string();
+}
+
+ProgramSignal signal_of(const Port& port) {
+  return {.name = port.name,
+          .unit = port.unit,
+          .meaning = port.meaning,
+          .type = point_type(port.type),
+          .preset = port.preset,
+          .low = port.minimum,
+          .high = port.maximum};
+}
+
+template <class S>
+class InterpretedProgram final : public runtime::StepProgram {
+ public:
+  InterpretedProgram(const Program& program, ProgramShape shape) : shape_(std::move(shape)), machine_(program) {
+    const auto& parameters = program.graph.parameters;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      for (std::size_t element = 0; element < parameters[i].value.size(); ++element) {
+        places_.emplace_back(i, element);
+      }
+    }
+    state_size_ = machine_.save().size();
+  }
+  [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
+  void reset() noexcept override { machine_.reset(); }
+  void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      machine_.set_input(i, static_cast<S>(inputs[i]));
+    }
+    machine_.step();
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      outputs[i] = static_cast<double>(machine_.output(i));
+    }
+  }
+  void set_parameter(std::size_t parameter, double value) noexcept override {
+    machine_.set_parameter(places_[parameter].first, static_cast<S>(value), places_[parameter].second);
+  }
+  [[nodiscard]] double parameter(std::size_t parameter) const noexcept override {
+    return static_cast<double>(machine_.parameter(places_[parameter].first, places_[parameter].second));
+  }
+  [[nodiscard]] std::size_t state_size() const noexcept override { return state_size_; }
+  /// Allocates: the machine gives its state as a vector of its own. A compiled program does not.
+  void save(std::span<std::byte> bytes) const noexcept override {
+    const auto state = machine_.save();
+    std::memcpy(bytes.data(), state.data(), bytes.size());
+  }
+  void restore(std::span<const std::byte> bytes) noexcept override { machine_.restore(bytes); }
+
+ private:
+  ProgramShape shape_;
+  Machine<S> machine_;
+  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< parameter and element
+  std::size_t state_size_ = 0;
+};
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+}
+
+void build_library(const Program& program, bool float32, const std::vector<std::string>& compiler,
+                   const fs::path& path) {
+  const GeneratedFile header = generate_cpp_header(program, {.float32 = float32});
+  const GeneratedFile step = generate_cpp_step(program);
+  const fs::path folder = path.parent_path();
+  write_text(folder / header.name, header.text);
+  write_text(folder / step.name, step.text);
+  auto command = compiler;
+  std::istringstream words("-std=c++20 -O2 -shared -fPIC " + std::string(cpp_numeric_flags));
+  for (std::string word; words >> word;) {
+    command.push_back(word);
+  }
+  command.insert(command.end(), {(folder / step.name).string(), "-o", path.string(), "-lm"});
+  const fs::path errors = folder / "errors";
+  if (const int code = run_program(command, {.errors = errors}); code != 0) {
+    throw InputError(error::generated_code_fails, {},
+                     fmt::format("The compiler {} refuses the generated code (exit code {}):\n{}", compiler.front(),
+                                 code, read_text_file(errors.string()).substr(0, 1000)),
+                     "set CXX to a compiler for C++20, or run it with --engine interpreter.");
+  }
+}
+
+template <class Function>
+Function function_of(void* library, const char* name) {
+  return reinterpret_cast<Function>(dlsym(library, name));
+}
+
+std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, ProgramShape shape, bool float32) {
+  const auto compiler = compiler_command();
+  BuildCache cache;
+  const auto text = generate_cpp_header(program, {.float32 = float32}).text + generate_cpp_step(program).text;
+  const auto path = cache.find_or_build(sha256("library " + compiler.front() + text),
+                                        [&](const fs::path& to) { build_library(program, float32, compiler, to); });
+  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    throw InputError(error::generated_code_fails, {},
+                     fmt::format("The compiled program cannot be opened: {}.", dlerror()),
+                     "see whether programs may be run from the folder for temporary files; TMPDIR sets another.");
+  }
+  // Never closed: it runs for as long as this process does.
+  return std::make_unique<runtime::LinkedProgram>(
+      std::move(shape),
+      runtime::StepFunctions{
+          .reset = function_of<void (*)()>(library, "hysteron_reset"),
+          .step = function_of<void (*)(const double*, double*)>(library, "hysteron_step"),
+          .set_parameter = function_of<void (*)(std::size_t, double)>(library, "hysteron_set_parameter"),
+          .parameter = function_of<double (*)(std::size_t)>(library, "hysteron_parameter"),
+          .state = function_of<void* (*)()>(library, "hysteron_state"),
+          .state_size = function_of<std::size_t (*)()>(library, "hysteron_state_size")});
+}
+
+}  // namespace
+
+ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
+  const Graph& graph = program.graph;
+  if (graph.sample_time_ns <= 0) {
+    throw InputError(error::missing_sample_time, {.file = graph.source ? graph.source->path : std::string()},
+                     "The diagram states no sample time.",
+                     fmt::format("write it behind the name: FUNCTION_BLOCK {} (* @ts 1ms *).", graph.name));
+  }
+  ProgramShape shape{.name = graph.name, .period = graph.sample_time_ns};
+  for (const Port& port : graph.inputs) {
+    shape.inputs.push_back(signal_of(port));
+  }
+  for (const Port& port : graph.outputs) {
+    shape.outputs.push_back(signal_of(port));
+  }
+  Program plain = program;
+  for (Parameter& parameter : plain.graph.parameters) {
+    for (std::size_t element = 0; element < parameter.value.size(); ++element) {
+      shape.parameters.push_back(
+          {.name = parameter.field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
+           .unit = plain_unit(parameter.field.unit),
+           .meaning = std::string(parameter.field.meaning),
+           .type = point_type(parameter.field.type),
+           .preset = parameter.value[element],
+           .low = parameter.field.minimum,
+           .high = parameter.field.maximum,
+           .low_excluded = parameter.field.above_minimum});
+    }
+    std::ranges::fill(parameter.value, 0.0);  // the values do not belong to the layout
+  }
+  shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",
+                             float32 ? "-float32" : "");
+  return shape;
+}
+
+std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32) {
+  auto shape = shape_of(program, engine, float32);
+  if (engine == Engine::compiled) {
+    return compiled_program(program, std::move(shape), float32);
+  }
+  if (float32) {
+    return std::make_unique<InterpretedProgram<float>>(program, std::move(shape));
+  }
+  return std::make_unique<InterpretedProgram<double>>(program, std::move(shape));
+}
+
+Engine best_engine() {
+  try {
+    (void)compiler_command();
+    return Engine::compiled;
+  } catch (const InputError&) {
+    return Engine::interpreter;
+  }
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,27 @@
+// A diagram as the program of a task: interpreted, or compiled on the fly. Both give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "codegen/compile.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::tool {
+
+enum class Engine : std::uint8_t { interpreter, compiled };
+
+/// Ports and parameters; elements of array parameters count one by one, as TABLE.X[2]. Throws InputError HY404 where
+/// the diagram states no sample time.
+[[nodiscard]] runtime::ProgramShape shape_of(const Program& program, Engine engine, bool float32);
+
+/// Throws InputError HY725 or HY726 where it cannot be compiled.
+[[nodiscard]] std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32);
+
+/// Compiled where there is a compiler.
+[[nodiscard]] Engine best_engine();
+/// Of the option --engine; empty: the best.
+[[nodiscard]] Engine engine_of(const std::string& name);
+
+}  // namespace hysteron::tool

@@ -7,7 +7,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/backends/cpp.hpp"
@@ -76,9 +78,20 @@ std::uint64_t interpreted(const Program& program) {
   return hash;
 }
 
-std::string compiler_says(const std::string& path) {
+std::string text_of(const std::string& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What the program of main.cpp in the folder prints, compiled with these flags beside those of a numeric target.
+/// Where it does not compile or run, the test fails and shows what the compiler says.
+std::string printed_by_main(const test::ScratchFolder& folder, std::string_view flags) {
+  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
+  const std::string compile = fmt::format("c++ -std=c++20 -O1 {} {} {} -o {} 2> {}", flags, cpp_numeric_flags,
+                                          at("main.cpp"), at("run"), at("log"));
+  EXPECT_EQ(std::system(compile.c_str()), 0) << text_of(at("log"));
+  EXPECT_EQ(std::system(fmt::format("{} > {}", at("run"), at("out")).c_str()), 0);
+  return text_of(at("out"));
 }
 
 template <class Real>
@@ -132,13 +145,7 @@ void run(Reset reset, Step step) {
 int main() {
 )" + calls + "}\n";
   std::ofstream(folder.path() / "main.cpp") << main_text;
-  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
-  const std::string compile =
-      fmt::format("c++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-tautological-compare {} {} -o {} 2> {}",
-                  cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
-  ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
-  ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("hashes")).c_str()), 0);
-  std::ifstream hashes(at("hashes"));
+  std::istringstream hashes(printed_by_main(folder, "-Wall -Wextra -Werror -Wno-tautological-compare"));
   for (int i = 0; i < programs; ++i) {
     std::uint64_t got = 0;
     hashes >> got;
@@ -184,18 +191,12 @@ int main() {{
 }}
 )",
                                                            header.name, first % period);
-  const auto at = [&](const char* name) { return (folder.path() / name).string(); };
-  const std::string compile =
-      fmt::format("c++ -std=c++20 -O1 -fsanitize=undefined -fno-sanitize-recover=all {} {} -o {} 2> {}",
-                  cpp_numeric_flags, at("main.cpp"), at("run"), at("log"));
-  ASSERT_EQ(std::system(compile.c_str()), 0) << compiler_says(at("log"));
-  ASSERT_EQ(std::system(fmt::format("{} > {}", at("run"), at("out")).c_str()), 0);
+  std::istringstream out(printed_by_main(folder, "-fsanitize=undefined -fno-sanitize-recover=all"));
 
   Machine<double> machine(program);
   auto bytes = machine.save();  // its last eight bytes are the count of steps
   std::memcpy(bytes.data() + bytes.size() - sizeof(first), &first, sizeof(first));
   machine.restore(bytes);
-  std::ifstream out(at("out"));
   std::vector<double> values;
   for (int k = 0; k < 6; ++k) {
     std::int64_t counter = -1;

@@ -1,0 +1,182 @@
+// hysteron serve, replay and map as a user runs them: the same bits by both engines, and safe outputs at the end.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "runtime/task/task.hpp"
+#include "tests/support/error_page.hpp"
+#include "tests/tool/workbench.hpp"
+#include "tool/serve_program.hpp"
+
+namespace hysteron {
+namespace {
+
+constexpr const char* plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+  VAR_INPUT
+    X : LREAL := 1.0;  (* @unit V *)
+    RESET : BOOL;
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;  (* @unit um *)
+    SLOW : LREAL;  (* @unit um *)
+  END_VAR
+  VAR
+    HYST : HY_HYSTERESIS_RO := (C1 := 1.5, C2 := 0.1, C3 := 0.7);
+    WAVE : HY_SINE := (AMPLITUDE := 3.0, FREQUENCY := 7.0);
+    AT4 : HY_SAMPLE;  (* @every 4 *)
+    BACK : HY_HOLD;
+  END_VAR
+
+  WAVE();
+  HYST(XIN := X * WAVE.XOUT);
+  AT4(XIN := HYST.XOUT);
+  BACK(XIN := AT4.XOUT);
+  Y := HYST.XOUT;
+  SLOW := BACK.XOUT;
+END_FUNCTION_BLOCK
+)";
+constexpr const char* run_file = "[outputs.Y]\nsafe = -1.0\n[outputs.SLOW]\nsafe = 0.0\n";
+
+TEST(Serve, BothEnginesGiveTheSameBitsThroughNewParameters) {
+  const Program program = compile_text(plant);
+  std::vector<std::vector<double>> results;
+  for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
+    const auto step = tool::step_program(program, engine, false);
+    std::vector<double> inputs{1.0, 0.0};
+    std::vector<double> outputs(2);
+    std::vector<double> all;
+    std::vector<std::byte> state(step->state_size());
+    for (int k = 0; k < 4000; ++k) {
+      inputs[0] = 1.0 + 0.001 * k;
+      if (k == 1234) {
+        step->set_parameter(0, 1.75);  // the memory of the hysteresis is kept
+      }
+      if (k == 2000) {
+        step->save(state);
+      }
+      if (k == 3000) {
+        step->restore(state);
+      }
+      step->step(inputs, outputs);
+      all.insert(all.end(), outputs.begin(), outputs.end());
+    }
+    results.push_back(std::move(all));
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
+TEST(Serve, AParameterKeepsTheMemoryOfTheHysteresis) {
+  const Program program = compile_text(plant);
+  const auto changed = tool::step_program(program, tool::Engine::interpreter, false);
+  const auto plain = tool::step_program(program, tool::Engine::interpreter, false);
+  std::vector<double> inputs{1.0, 0.0};
+  std::vector<double> a(2);
+  std::vector<double> b(2);
+  const double value = changed->parameter(0);
+  for (int k = 0; k < 500; ++k) {
+    if (k == 250) {
+      changed->set_parameter(0, 2.0 * value);
+      changed->set_parameter(0, value);
+    }
+    changed->step(inputs, a);
+    plain->step(inputs, b);
+    ASSERT_EQ(a, b) << k;
+  }
+}
+
+TEST(Serve, RunsOnTheVirtualClockAndReplaysToTheBit) {
+  const test::Workbench bench;
+  bench.write("plant.st", plant);
+  bench.write("RUN.toml", std::string(run_file) + "[trace]\nfile = \"run.trace\"\n[retain]\nfolder = \"kept\"\n");
+  for (const std::string engine : {"interpreter", "compiled"}) {
+    const auto served =
+        bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 20000 --engine " + engine);
+    EXPECT_EQ(served.code, 0) << served.err;
+    EXPECT_NE(served.out.find("20000 cycles, 0 skipped"), std::string::npos) << served.out;
+    const auto replayed = bench.shell("hysteron replay plant.st --trace run.trace --out record.csv --engine " + engine);
+    EXPECT_EQ(replayed.code, 0) << replayed.err;
+    EXPECT_EQ(replayed.out, "20000 steps replayed, 0 with other bits; 0 dropped while recording\n");
+    const auto run = bench.shell("hysteron run plant.st --in record.csv --out again.csv");
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(bench.shell("rm -r kept").code, 0);
+  }
+}
+
+TEST(Serve, GoesOnFromWhatItRetained) {
+  const test::Workbench bench;
+  bench.write("plant.st", plant);
+  bench.write("RUN.toml", std::string(run_file) + "[retain]\nfolder = \"kept\"\n");
+  const std::string command = "hysteron serve plant.st --config RUN.toml --virtual --cycles 1000";
+  EXPECT_EQ(bench.shell(command).code, 0);
+  EXPECT_NE(bench.shell(command).out.find("from retained state"), std::string::npos);
+}
+
+TEST(Serve, EndsInSafeOutputsAtSigterm) {
+  const test::Workbench bench;
+  bench.write("plant.st", plant);
+  bench.write("RUN.toml", std::string(run_file) + "[task]\nscheduling = \"other\"\nlock_memory = false\n");
+  const auto served = bench.shell("timeout --preserve-status -s TERM 1 hysteron serve plant.st --config RUN.toml");
+  EXPECT_EQ(served.code, 0) << served.err;
+  EXPECT_NE(served.out.find("PLANT: stopped; "), std::string::npos) << served.out;
+  EXPECT_NE(served.out.find("fault: stop\n"), std::string::npos) << served.out;
+}
+
+TEST(Serve, PrintsTheMapOfItsPoints) {
+  const test::Workbench bench;
+  bench.write("plant.st", plant);
+  const auto map = bench.shell("hysteron map plant.st --format csv");
+  EXPECT_EQ(map.code, 0) << map.err;
+  for (const char* const name : {",X,V,", ",RESET,", ",Y,um,", ",HYST.C1,", ",task.commit,", ",task.cycles,"}) {
+    EXPECT_NE(map.out.find(name), std::string::npos) << name;
+  }
+}
+
+TEST(Serve, RefusesAnOutputWithoutASafeValueAtItsPlace) {
+  const test::Workbench bench;
+  bench.write("plant.st", plant);
+  bench.write("RUN.toml", "[outputs.Y]\nsafe = 0.0\n");
+  const auto served = bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 10");
+  EXPECT_EQ(served.code, 2);
+  EXPECT_TRUE(served.err.starts_with("HY806 error: RUN.toml: The output SLOW has no safe value.")) << served.err;
+}
+
+/// Runs a page's run file, or its command.
+test::Outcome run_page(const test::Workbench& bench, const test::FencedBlock& block) {
+  if (block.kind == "sh") {
+    return bench.shell(block.text.substr(0, block.text.find('\n')));
+  }
+  bench.write("RUN.toml", block.text);
+  return bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 100");
+}
+
+TEST(Serve, ErrorPagesKeepTheirWord) {
+  constexpr const char* small =
+      "FUNCTION_BLOCK PLANT (* @ts 1ms *)\n  VAR_INPUT X : LREAL := 1.0; END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "  VAR A : HY_GAIN := (K := 2.0); END_VAR\n  A(XIN := X);\n  Y := A.XOUT;\nEND_FUNCTION_BLOCK\n";
+  for (const int number : {811, 812, 840, 841}) {
+    const test::Workbench bench;
+    bench.write("plant.st", plant);
+    bench.write("RUN.toml", std::string(run_file) + "[retain]\nfolder = \"of_another_diagram\"\n");
+    EXPECT_EQ(bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 10").code, 0);
+    bench.write("plant.st", small);
+    bench.write("RUN.toml", "[outputs.Y]\nsafe = 0.0\n[trace]\nfile = \"good.trace\"\n");
+    EXPECT_EQ(bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 10").code, 0);
+    auto bytes = bench.read("good.trace");
+    // The lowest bit of what step 5 of 10 computed: a record has 20 + 3 · 8 bytes behind its head, the end 16.
+    auto& bit = bytes[bytes.size() - 21 - 5 * (5 + 44) + 5 + 20 + 8];
+    bit = static_cast<char>(bit ^ 1);
+    bench.write("changed.trace", bytes);
+    const auto page = test::read_error_page("HY" + std::to_string(number));
+    const auto failed = run_page(bench, page.fails);
+    EXPECT_NE(failed.code, 0);
+    EXPECT_TRUE(failed.err.starts_with("HY" + std::to_string(number) + " error: ")) << failed.err;
+    const auto mended = run_page(bench, page.mended);
+    EXPECT_EQ(mended.code, 0) << mended.err;
+    EXPECT_EQ(mended.err, "");
+  }
+}
+
+}  // namespace
+}  // namespace hysteron

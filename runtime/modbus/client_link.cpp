@@ -1,0 +1,158 @@
+#include "runtime/modbus/client_link.hpp"
+
+#include <modbus/modbus.h>
+#include <sys/select.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "runtime/modbus/frame.hpp"
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+template <class Pointer>
+modbus_t* of(const Pointer& context) {
+  return static_cast<modbus_t*>(context.get());
+}
+
+modbus_t* new_context(const std::variant<TcpLink, SerialLink>& to) {
+  if (const auto* tcp = std::get_if<TcpLink>(&to)) {
+    return ::modbus_new_tcp_pi(tcp->host.c_str(), std::to_string(tcp->port).c_str());
+  }
+  const auto& line = std::get<SerialLink>(to);
+  return ::modbus_new_rtu(line.path.c_str(), line.baud, line.parity, line.data_bits, line.stop_bits);
+}
+
+constexpr std::size_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return static_cast<std::size_t>(bytes[at]) << 8U | bytes[at + 1];
+}
+
+}  // namespace
+
+void ClientLink::Free::operator()(void* context) const {
+  ::modbus_free(static_cast<modbus_t*>(context));
+}
+
+ClientLink::ClientLink(const std::variant<TcpLink, SerialLink>& to, std::uint8_t unit,
+                       std::chrono::milliseconds response)
+    : context_(new_context(to)), serial_(std::holds_alternative<SerialLink>(to)), unit_(unit) {
+  if (context_ != nullptr) {
+    ::modbus_set_slave(of(context_), unit);
+    const auto microseconds = static_cast<std::uint32_t>(std::chrono::microseconds(response).count());
+    ::modbus_set_response_timeout(of(context_), microseconds / 1'000'000, microseconds % 1'000'000);
+    ::modbus_set_byte_timeout(of(context_), 0, 0);  // the response time is for the whole answer, however it drips
+  }
+}
+
+ClientLink::~ClientLink() {
+  close();
+}
+
+bool ClientLink::open() {
+  if (context_ == nullptr || ::modbus_connect(of(context_)) != 0) {
+    return false;
+  }
+  const std::scoped_lock lock(socket_lock_);
+  // libmodbus waits by select, which has room for descriptors below FD_SETSIZE alone.
+  open_ = !interrupted_ && ::modbus_get_socket(of(context_)) < FD_SETSIZE;
+  if (!open_) {
+    ::modbus_close(of(context_));
+  }
+  return open_;
+}
+
+void ClientLink::close() {
+  const std::scoped_lock lock(socket_lock_);
+  if (open_) {
+    ::modbus_close(of(context_));
+    open_ = false;
+  }
+}
+
+void ClientLink::interrupt() {
+  const std::scoped_lock lock(socket_lock_);
+  interrupted_ = true;
+  if (open_ && !serial_) {
+    ::shutdown(::modbus_get_socket(of(context_)), SHUT_RDWR);
+  }
+}
+
+Exchange ClientLink::exchange(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer) {
+  if (!open_) {
+    return Exchange::no_link;
+  }
+  const Exchange outcome = transfer(request, answer);
+  if (outcome != Exchange::answered && outcome != Exchange::exception) {
+    close();
+  }
+  return outcome;
+}
+
+Exchange ClientLink::send(std::span<const std::uint8_t> request) {
+  if (serial_) {
+    ::modbus_flush(of(context_));  // noise between two transactions
+    std::vector<std::uint8_t> raw{unit_};
+    raw.insert(raw.end(), request.begin(), request.end());
+    return ::modbus_send_raw_request(of(context_), raw.data(), static_cast<int>(raw.size())) > 0 ? Exchange::answered
+                                                                                                 : Exchange::closed;
+  }
+  const int socket = ::modbus_get_socket(of(context_));
+  char unasked = 0;
+  const ssize_t pending = ::recv(socket, &unasked, 1, MSG_PEEK | MSG_DONTWAIT);
+  if (pending >= 0) {
+    return pending == 0 ? Exchange::closed : Exchange::wrong_answer;
+  }
+  const auto header = header_of({.transaction = ++transaction_, .unit = unit_}, request.size());
+  std::vector<std::uint8_t> frame(header.begin(), header.end());
+  frame.insert(frame.end(), request.begin(), request.end());
+  const ssize_t sent = ::send(socket, frame.data(), frame.size(), MSG_NOSIGNAL);
+  return sent == static_cast<ssize_t>(frame.size()) ? Exchange::answered : Exchange::closed;
+}
+
+Exchange ClientLink::transfer(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer) {
+  if (const Exchange flaw = send(request); flaw != Exchange::answered) {
+    return flaw;
+  }
+  std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
+  const int size = ::modbus_receive_confirmation(of(context_), bytes.data());
+  if (size < 0) {
+    return errno == ETIMEDOUT                                      ? Exchange::timeout
+           : errno == ECONNRESET || errno == EBADF || errno == EIO ? Exchange::closed
+                                                                   : Exchange::wrong_answer;
+  }
+  const std::span<const std::uint8_t> got(bytes.data(), static_cast<std::size_t>(size));
+  if (serial_) {
+    if (got.size() < 5 || got[0] != unit_) {
+      return Exchange::wrong_answer;
+    }
+    answer.assign(got.begin() + 1, got.end() - 2);
+  } else {
+    const FrameScan scan = scan_frame(got);
+    if (scan.status != FrameStatus::complete || scan.size != got.size() || scan.frame.transaction != transaction_ ||
+        scan.frame.unit != unit_) {
+      return Exchange::wrong_answer;
+    }
+    answer.assign(scan.frame.pdu.begin(), scan.frame.pdu.end());
+  }
+  if (answer.size() == 2 && answer[0] == (request[0] | 0x80U)) {
+    return Exchange::exception;
+  }
+  return answers_request(request, answer) ? Exchange::answered : Exchange::wrong_answer;
+}
+
+bool answers_request(std::span<const std::uint8_t> request, std::span<const std::uint8_t> answer) {
+  if (answer.size() < 2 || answer[0] != request[0]) {
+    return false;
+  }
+  if (request[0] <= 4) {
+    const std::size_t count = word_at(request, 3);
+    const std::size_t bytes = request[0] <= 2 ? (count + 7) / 8 : 2 * count;
+    return answer[1] == bytes && answer.size() == 2 + bytes;
+  }
+  return answer.size() == 5 && std::equal(answer.begin(), answer.end(), request.begin());
+}
+
+}  // namespace hysteron::runtime::modbus

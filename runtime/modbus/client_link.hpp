@@ -1,0 +1,79 @@
+// One connection of the Modbus client to one device, over TCP or a serial line.
+//
+// libmodbus opens the link, keeps its timeouts and, on a serial line, its checksums. The answer is checked here, to the
+// byte: transaction, protocol, length, unit, function and size. Its own client takes a late answer for the next one and
+// then stays off by one for ever; here whatever is not the exact answer ends the connection.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace hysteron::runtime::modbus {
+
+struct TcpLink {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 502;
+};
+
+struct SerialLink {
+  std::string path{};
+  int baud = 19200;
+  char parity = 'E';
+  int data_bits = 8;
+  int stop_bits = 1;
+};
+
+enum class Exchange : std::uint8_t {
+  answered,
+  exception,     ///< the device refuses; the link is sound
+  no_link,       ///< cannot be opened
+  timeout,       ///< no whole answer in time
+  closed,        ///< ended by the device
+  wrong_answer,  ///< bytes that are not the answer
+};
+
+class ClientLink {
+ public:
+  ClientLink(const std::variant<TcpLink, SerialLink>& to, std::uint8_t unit, std::chrono::milliseconds response);
+  ClientLink(const ClientLink&) = delete;
+  ClientLink& operator=(const ClientLink&) = delete;
+  ClientLink(ClientLink&&) = delete;
+  ClientLink& operator=(ClientLink&&) = delete;
+  ~ClientLink();
+
+  [[nodiscard]] bool is_open() const { return open_; }
+  /// False where the device is not there within the response time.
+  bool open();
+  void close();
+  /// Sends a request and waits for its answer, at most the response time. All but answered and exception close the
+  /// link.
+  Exchange exchange(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
+  /// From another thread: ends a wait for an answer at once.
+  void interrupt();
+
+ private:
+  struct Free {
+    void operator()(void* context) const;
+  };
+  Exchange transfer(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
+  [[nodiscard]] Exchange send(std::span<const std::uint8_t> request);
+
+  std::unique_ptr<void, Free> context_;
+  bool serial_;
+  std::uint8_t unit_;
+  std::uint16_t transaction_ = 0;
+  bool open_ = false;
+  std::mutex socket_lock_;  ///< of open, close and interrupt
+  bool interrupted_ = false;
+};
+
+/// Whether an answer has the form that its request calls for: the same function with the bytes asked for, or the echo.
+[[nodiscard]] bool answers_request(std::span<const std::uint8_t> request, std::span<const std::uint8_t> answer);
+
+}  // namespace hysteron::runtime::modbus

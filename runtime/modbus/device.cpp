@@ -1,0 +1,307 @@
+#include "runtime/modbus/device.hpp"
+
+#include <algorithm>
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <tuple>
+
+#include "runtime/modbus/value_bits.hpp"
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Values that lie side by side and go in one request.
+struct Block {
+  Area area = Area::holding_register;
+  bool written = false;
+  std::uint32_t address = 0;
+  std::uint32_t count = 0;
+  std::vector<std::size_t> values{};
+};
+
+std::uint32_t most_of(const Block& block) {
+  return holds_bits(block.area) ? (block.written ? 1968U : 2000U) : (block.written ? 123U : 125U);
+}
+
+void check(const RemoteValue& value) {
+  if (holds_bits(value.at.area) != (value.type == PointType::boolean)) {
+    throw std::invalid_argument("booleans lie among bits, other values among registers");
+  }
+  if (value.written && value.at.area != Area::coil && value.at.area != Area::holding_register) {
+    throw std::invalid_argument("inputs of a device are not written");
+  }
+  if (value.at.address + registers_of(value.type) > 0x10000) {
+    throw std::invalid_argument("a value lies behind the last address");
+  }
+}
+
+std::vector<Block> blocks_of(const std::vector<RemoteValue>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(
+      order, {}, [&](std::size_t i) { return std::tuple(values[i].written, values[i].at.area, values[i].at.address); });
+  std::vector<Block> blocks;
+  for (const std::size_t i : order) {
+    const RemoteValue& value = values[i];
+    check(value);
+    const auto width = static_cast<std::uint32_t>(registers_of(value.type));
+    const bool fits = !blocks.empty() && blocks.back().area == value.at.area &&
+                      blocks.back().written == value.written &&
+                      blocks.back().address + blocks.back().count == value.at.address &&
+                      blocks.back().count + width <= most_of(blocks.back());
+    if (!fits) {
+      blocks.push_back({.area = value.at.area, .written = value.written, .address = value.at.address});
+    }
+    blocks.back().count += width;
+    blocks.back().values.push_back(i);
+  }
+  return blocks;
+}
+
+void put_word(std::vector<std::uint8_t>& bytes, std::uint32_t word) {
+  bytes.push_back(static_cast<std::uint8_t>(word >> 8U & 0xFFU));
+  bytes.push_back(static_cast<std::uint8_t>(word & 0xFFU));
+}
+
+}  // namespace
+
+class Device::Worker {
+ public:
+  explicit Worker(const DeviceOptions& options)
+      : options_(options),
+        blocks_(blocks_of(options.values)),
+        cells_(options.values.size()),
+        link_(options.link, options.unit, options.response),
+        thread_([this](const std::stop_token& stop) { run(stop); }) {}
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+  Worker(Worker&&) = delete;
+  Worker& operator=(Worker&&) = delete;
+  ~Worker() {
+    thread_.request_stop();
+    link_.interrupt();
+  }
+
+  [[nodiscard]] RemoteReading read(std::size_t value) const {
+    const std::scoped_lock lock(mutex_);
+    const Cell& cell = cells_.at(value);
+    RemoteReading reading{.value = cell.value, .quality = cell.quality};
+    if (cell.good_at) {
+      reading.age = Clock::now() - *cell.good_at;
+      if (reading.quality == Quality::good && reading.age > options_.old_after) {
+        reading.quality = Quality::old;
+      }
+    }
+    return reading;
+  }
+
+  void write(std::size_t value, double number) {
+    const std::scoped_lock lock(mutex_);
+    cells_.at(value).to_write = number;
+  }
+
+  [[nodiscard]] DeviceStatus status() const {
+    const std::scoped_lock lock(mutex_);
+    return status_;
+  }
+
+ private:
+  struct Cell {
+    double value = 0.0;
+    Quality quality = Quality::never;
+    std::optional<Clock::time_point> good_at{};
+    std::optional<double> to_write{};
+  };
+
+  void run(const std::stop_token& stop) {
+    auto wait = options_.first_wait;
+    while (!stop.stop_requested()) {
+      const auto begin = Clock::now();
+      if (!link_.is_open() && !connect()) {
+        wait = pause(stop, wait);
+        continue;
+      }
+      bool sound = true;
+      for (const Block& block : blocks_) {
+        const Exchange outcome = serve(block);
+        sound = outcome == Exchange::answered || outcome == Exchange::exception;
+        if (!sound || stop.stop_requested()) {
+          break;
+        }
+        wait = options_.first_wait;
+      }
+      if (sound) {
+        sleep_until(stop, begin + options_.period);
+      } else {
+        wait = pause(stop, wait);
+      }
+    }
+  }
+
+  bool connect() {
+    set_state(LinkState::connecting);
+    if (!link_.open()) {
+      count(Exchange::no_link);
+      return false;
+    }
+    const std::scoped_lock lock(mutex_);
+    status_.state = LinkState::running;
+    ++status_.connections;
+    return true;
+  }
+
+  /// Marks all values lost and waits; the next wait.
+  std::chrono::milliseconds pause(const std::stop_token& stop, std::chrono::milliseconds wait) {
+    {
+      const std::scoped_lock lock(mutex_);
+      status_.state = LinkState::waiting;
+      for (Cell& cell : cells_) {
+        cell.quality = cell.good_at ? Quality::lost : Quality::never;
+      }
+    }
+    sleep_until(stop, Clock::now() + wait);
+    return std::min(2 * wait, options_.longest_wait);
+  }
+
+  void sleep_until(const std::stop_token& stop, Clock::time_point until) {
+    std::unique_lock lock(mutex_);
+    woken_.wait_until(lock, stop, until, [] { return false; });
+  }
+
+  void set_state(LinkState state) {
+    const std::scoped_lock lock(mutex_);
+    status_.state = state;
+  }
+
+  void count(Exchange outcome) {
+    const std::scoped_lock lock(mutex_);
+    switch (outcome) {
+      case Exchange::answered:
+        ++status_.answers;
+        break;
+      case Exchange::exception:
+        ++status_.exceptions;
+        break;
+      case Exchange::no_link:
+        ++status_.no_link;
+        break;
+      case Exchange::timeout:
+        ++status_.timeouts;
+        break;
+      case Exchange::closed:
+        ++status_.closed;
+        break;
+      case Exchange::wrong_answer:
+        ++status_.wrong_answers;
+        break;
+    }
+  }
+
+  Exchange serve(const Block& block) {
+    const auto request = block.written ? write_request(block) : read_request(block);
+    if (request.empty()) {
+      return Exchange::answered;  // not all of its values have been given yet
+    }
+    std::vector<std::uint8_t> answer;
+    const Exchange outcome = link_.exchange(request, answer);
+    count(outcome);
+    const std::scoped_lock lock(mutex_);
+    for (const std::size_t i : block.values) {
+      Cell& cell = cells_[i];
+      if (outcome == Exchange::exception) {
+        cell.quality = Quality::refused;
+      } else if (outcome == Exchange::answered) {
+        const auto value = block.written ? cell.to_write : decoded(block, options_.values[i], answer);
+        cell.quality = value ? Quality::good : Quality::refused;  // an integer beyond 2^53 is no value that we can hold
+        cell.value = value.value_or(cell.value);
+        cell.good_at = value ? Clock::now() : cell.good_at;
+      }
+    }
+    return outcome;
+  }
+
+  static std::vector<std::uint8_t> read_request(const Block& block) {
+    constexpr std::array<std::uint8_t, 4> functions{1, 2, 3, 4};
+    std::vector<std::uint8_t> request{functions.at(static_cast<std::size_t>(block.area))};
+    put_word(request, block.address);
+    put_word(request, block.count);
+    return request;
+  }
+
+  [[nodiscard]] std::vector<std::uint8_t> write_request(const Block& block) {
+    const bool bits = holds_bits(block.area);
+    std::vector<std::uint8_t> request{static_cast<std::uint8_t>(bits ? 15 : 16)};
+    put_word(request, block.address);
+    put_word(request, block.count);
+    const std::uint32_t bytes = bits ? (block.count + 7) / 8 : 2 * block.count;
+    request.push_back(static_cast<std::uint8_t>(bytes));
+    request.resize(6 + bytes);
+    const std::scoped_lock lock(mutex_);
+    for (const std::size_t i : block.values) {
+      const RemoteValue& value = options_.values[i];
+      if (!cells_[i].to_write) {
+        return {};
+      }
+      const std::uint64_t pattern = bits_of(*cells_[i].to_write, value.type);
+      const std::uint32_t offset = value.at.address - block.address;
+      if (bits) {
+        request[6 + offset / 8] |= static_cast<std::uint8_t>(pattern << offset % 8);
+        continue;
+      }
+      std::array<std::uint16_t, 4> words{};
+      const auto used = std::span(words).first(registers_of(value.type));
+      to_registers(pattern, options_.order, used);
+      for (std::size_t word = 0; word < used.size(); ++word) {
+        request[6 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] >> 8U);
+        request[7 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] & 0xFFU);
+      }
+    }
+    return request;
+  }
+
+  [[nodiscard]] std::optional<double> decoded(const Block& block, const RemoteValue& value,
+                                              const std::vector<std::uint8_t>& answer) const {
+    const std::uint32_t offset = value.at.address - block.address;
+    if (holds_bits(block.area)) {
+      return answer[2 + offset / 8] >> offset % 8 & 1U;
+    }
+    std::array<std::uint16_t, 4> words{};
+    const auto used = std::span(words).first(registers_of(value.type));
+    for (std::size_t word = 0; word < used.size(); ++word) {
+      const std::size_t at = 2 + 2 * (offset + word);
+      used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
+    }
+    return value_of(from_registers(used, options_.order), value.type);
+  }
+
+  const DeviceOptions options_;
+  const std::vector<Block> blocks_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any woken_;
+  std::vector<Cell> cells_;
+  DeviceStatus status_;
+  ClientLink link_;
+  std::jthread thread_;
+};
+
+Device::Device(const DeviceOptions& options) : worker_(std::make_unique<Worker>(options)) {}
+Device::~Device() = default;
+
+RemoteReading Device::read(std::size_t value) const {
+  return worker_->read(value);
+}
+void Device::write(std::size_t value, double number) {
+  worker_->write(value, number);
+}
+DeviceStatus Device::status() const {
+  return worker_->status();
+}
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,91 @@
+// A remote Modbus device whose values the task reads and writes: a thread of its own, so that a device that is slow or
+// dead delays nobody but itself.
+//
+//   connecting → running → (anything but the exact answer) → waiting → connecting …
+//
+// The wait before the next attempt doubles up to a limit and is short again after an exchange that went well. Every
+// value has an age and a quality; the last good value stays readable, and it is for the task to say what it does
+// without.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/modbus/client_link.hpp"
+#include "runtime/modbus/register_map.hpp"
+
+namespace hysteron::runtime::modbus {
+
+struct RemoteValue {
+  Stretch at{};  ///< the count follows from the type
+  PointType type = PointType::uint16;
+  bool written = false;  ///< sent to the device every period, once it has a value; else read from it
+};
+
+struct DeviceOptions {
+  std::string name{};
+  std::variant<TcpLink, SerialLink> link{};
+  std::uint8_t unit = 1;
+  WordOrder order = WordOrder::abcd;
+  std::vector<RemoteValue> values{};
+  std::chrono::milliseconds period{100};
+  std::chrono::milliseconds response{500};    ///< for a whole answer, and for a connection
+  std::chrono::milliseconds first_wait{100};  ///< before the second attempt; doubled for each further one
+  std::chrono::milliseconds longest_wait{5000};
+  std::chrono::milliseconds old_after{1000};
+};
+
+enum class Quality : std::uint8_t {
+  never,    ///< not read since the start
+  good,     ///< read, or taken by the device, and not old
+  old,      ///< the link is up, but the value did not come for `old_after`
+  refused,  ///< the device answered the last request with an exception
+  lost,     ///< no link
+};
+
+struct RemoteReading {
+  double value = 0.0;
+  Quality quality = Quality::never;
+  std::chrono::nanoseconds age{0};  ///< since it was good
+};
+
+enum class LinkState : std::uint8_t { connecting, running, waiting };
+
+struct DeviceStatus {
+  LinkState state = LinkState::connecting;
+  std::uint64_t connections = 0;
+  std::uint64_t answers = 0;
+  std::uint64_t exceptions = 0;
+  std::uint64_t no_link = 0;
+  std::uint64_t timeouts = 0;
+  std::uint64_t closed = 0;
+  std::uint64_t wrong_answers = 0;
+};
+
+class Device {
+ public:
+  /// Begins at once. Throws std::invalid_argument where a value is written to an area that can only be read, or is no
+  /// boolean among bits.
+  explicit Device(const DeviceOptions& options);
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  Device(Device&&) = delete;
+  Device& operator=(Device&&) = delete;
+  /// Ends within the response time.
+  ~Device();
+
+  [[nodiscard]] RemoteReading read(std::size_t value) const;
+  void write(std::size_t value, double number);
+  [[nodiscard]] DeviceStatus status() const;
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace hysteron::runtime::modbus

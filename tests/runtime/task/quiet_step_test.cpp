@@ -1,0 +1,183 @@
+// A running cycle allocates nothing, meets no missing page after its warm-up, and calls nothing of the system but sleep
+// and clock: held by the allocator's own count, the kernel's, and a filter of system calls that kills at the first
+// other.
+#include <gtest/gtest.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <thread>
+
+#include "runtime/task/scheduling.hpp"
+#include "runtime/task/task.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace {
+thread_local std::uint64_t allocations = 0;
+
+/// Every new of this program comes here.
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size);
+}
+void* operator new[](std::size_t size) {
+  return counted(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr std::uint64_t warm_up = 200;
+constexpr std::uint64_t cycles = 1000;
+
+/// A task with everything attached that has a thread of its own.
+void run_task(const std::string& folder, const std::function<void(std::uint64_t)>& in_step, bool orders) {
+  test::Accumulator program;
+  RetainFolder files(folder);
+  Retainer retainer(files, program, {});
+  Trace trace({.file = folder + ".trace"}, program);
+  Task task(program, {.loop = {.cycles = warm_up + cycles}, .inputs = {{}}, .outputs = {{}, {}}, .retain_every = 10},
+            {.retainer = &retainer, .trace = &trace});
+  std::uint64_t cycle = 0;
+  program.during_step = [&](std::span<double> /*outputs*/) { in_step(cycle++); };
+  std::atomic<bool> stop{false};
+  std::atomic<bool> done{false};
+  std::thread cyclic([&] {
+    default_floating_point();
+    touch_stack();
+    MonotonicClock clock;
+    (void)task.run(clock, stop);
+    done.store(true);
+  });
+  double value = 0.0;
+  while (!done.load()) {
+    if (orders) {
+      value += 1.0;
+      const std::array<PointWrite, 3> set{{{test::point(task.door(), "G.A"), value},
+                                           {test::point(task.door(), "X"), value},
+                                           {test::point(task.door(), "task.commit"), 1.0}}};
+      EXPECT_EQ(task.door().write(set), "");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  cyclic.join();
+}
+
+TEST(QuietStep, AllocatesNothingAndMeetsNoMissingPage) {
+  const hysteron::test::ScratchFolder scratch;
+  std::uint64_t allocated = 0;
+  rusage before{};
+  rusage after{};
+  run_task(
+      scratch / "kept",
+      [&](std::uint64_t cycle) {
+        if (cycle == warm_up) {
+          (void)getrusage(RUSAGE_THREAD, &before);
+          allocated = allocations;
+        } else if (cycle == warm_up + cycles - 1) {
+          (void)getrusage(RUSAGE_THREAD, &after);
+          allocated = allocations - allocated;
+        }
+      },
+      true);
+  EXPECT_EQ(allocated, 0U);
+  EXPECT_EQ(after.ru_majflt, before.ru_majflt);
+  // The ring of the trace is written for the first time as the run goes on; its pages are there already.
+  EXPECT_EQ(after.ru_minflt, before.ru_minflt);
+}
+
+TEST(QuietStep, TheAllocatorIsWatched) {
+  const std::uint64_t before = allocations;
+  delete new volatile int(3);
+  EXPECT_EQ(allocations, before + 1);
+}
+
+/// From here on, the calling thread may sleep and ask for the time; anything else kills the process.
+bool allow_only_sleep_and_clock() {
+  const auto allow = [](std::uint32_t number) {
+    return std::array<sock_filter, 2>{
+        {BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
+  };
+  const auto sleep = allow(SYS_clock_nanosleep);
+  const auto clock = allow(SYS_clock_gettime);
+  std::array<sock_filter, 6> filter{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)), sleep[0], sleep[1],
+                                     clock[0], clock[1], BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS)}};
+  const sock_fprog program{.len = static_cast<unsigned short>(filter.size()), .filter = filter.data()};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program) == 0;
+}
+
+/// Runs in a process of its own; its end says whether the filter struck.
+int end_of_filtered_run(const std::string& folder, bool with_a_forbidden_call) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::atomic<bool> finished{false};
+    std::thread runner([&] {
+      run_task(
+          folder,
+          [&](std::uint64_t cycle) {
+            if (cycle == warm_up && !allow_only_sleep_and_clock()) {
+              _exit(2);
+            }
+            if (cycle == warm_up + 100 && with_a_forbidden_call) {
+              (void)syscall(SYS_getppid);
+            }
+            if (cycle == warm_up + cycles - 2) {
+              finished.store(true);
+            }
+          },
+          false);
+    });
+    // The end of a thread needs other calls; the process ends from here.
+    while (!finished.load()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    _exit(0);
+  }
+  int status = 0;
+  (void)waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST(QuietStep, CallsNothingOfTheSystemButSleepAndClock) {
+  const hysteron::test::ScratchFolder scratch;
+  EXPECT_EQ(end_of_filtered_run(scratch / "kept", false), 0);
+  EXPECT_EQ(end_of_filtered_run(scratch / "kept", true), 128 + SIGSYS);  // the filter strikes
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

@@ -26,8 +26,8 @@ Wire wire_of(const Graph& graph, const Node& node, std::string_view pin) {
   return {};
 }
 
-/// Whether a signal comes from another one, through blocks, delays and all.
-bool depends_on(const Graph& graph, const Wire& signal, const Wire& source) {
+/// Whether a signal comes from another one, through blocks, delays and all, but not through `barrier`.
+bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, const Wire& barrier) {
   std::vector<bool> seen(graph.nodes.size(), false);
   std::vector<Wire> left{signal};
   while (!left.empty()) {
@@ -36,7 +36,7 @@ bool depends_on(const Graph& graph, const Wire& signal, const Wire& source) {
     if (wire.from == source.from && wire.index == source.index) {
       return true;
     }
-    if (wire.from != Wire::From::Node || seen[wire.index]) {
+    if (wire.from != Wire::From::Node || seen[wire.index] || wire.index == barrier.index) {
       continue;
     }
     seen[wire.index] = true;
@@ -222,8 +222,9 @@ class Enumeration {
   /// signal than the one that is there already.
   [[nodiscard]] static bool makes_sense(const Graph& graph, const Candidate& candidate, const Wire& changed) {
     return std::ranges::all_of(candidate.auxiliary, [&](const Wire& driver) {
-      return candidate.kind.fed_back ? depends_on(graph, driver, changed)
-                                     : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver);
+      return candidate.kind.fed_back
+                 ? depends_on(graph, driver, changed, changed)
+                 : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver, changed);
     });
   }
 

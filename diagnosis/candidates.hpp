@@ -15,10 +15,11 @@ namespace hysteron::diagnosis {
 
 /// An effect that is part of a diagram.
 struct Applied {
-  std::string effect{};    ///< creep
-  std::string block{};     ///< HY_CREEP
-  std::string edge{};      ///< HYST.XOUT; of a richer block, its output
-  std::string instance{};  ///< path of the block that carries it
+  std::string effect{};              ///< creep
+  std::string block{};               ///< HY_CREEP
+  std::string edge{};                ///< HYST.XOUT; of a richer block, its output
+  std::vector<std::string> twins{};  ///< edges on which it gained as much: not told apart, and not fitted
+  std::string instance{};            ///< path of the block that carries it
   std::vector<EffectParameter> parameters{};
   std::vector<std::string> paths{};                          ///< of the parameters, beside them
   std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
@@ -39,6 +40,7 @@ struct Candidate {
   Variant variant{};
   Wire input{};                   ///< what drives the effect's XIN
   std::vector<Wire> auxiliary{};  ///< what drives its further inputs
+  bool about_zero = false;        ///< its centre is 0, not the middle of the signal
   std::string family{};           ///< candidates with the same signals: name of edge and wires
 
   [[nodiscard]] const Applied& own() const { return variant.effects.back(); }

@@ -17,7 +17,8 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
     return Role::Period;
   }
   if (unit == "s") {
-    return !strength && field.preset == 0.0 && name.starts_with("T_") ? Role::Instant : Role::Duration;
+    return !strength && (field.preset == 0.0 || std::isinf(field.preset)) && name.starts_with("T_") ? Role::Instant
+                                                                                                    : Role::Duration;
   }
   if (unit == "Hz") {
     return Role::Frequency;
@@ -45,13 +46,14 @@ std::vector<EffectParameter> searched(std::span<const Field> fields) {
       continue;
     }
     const bool strength = field.has_neutral();
-    if (!strength && !std::isfinite(field.preset)) {
-      continue;  // an end that need not come
+    const Role role = role_of(field, field.unit, strength);
+    if (!strength && !std::isfinite(field.preset) && role != Role::Instant) {
+      continue;
     }
     result.push_back({.name = std::string(field.name),
                       .field = field,
                       .unit = std::string(field.unit),
-                      .role = role_of(field, field.unit, strength),
+                      .role = role,
                       .strength = strength});
   }
   return result;

@@ -19,7 +19,7 @@ enum class Role : std::uint8_t {
   Gap,        ///< likewise, a width or a quantum: nothing at 0, never negative, and its place on the signal counts
   Rate,       ///< in that unit a second
   Duration,   ///< seconds
-  Instant,    ///< seconds since the start: a default of 0 that is not neutral
+  Instant,    ///< seconds since the start: a default of 0 that is not neutral, or of ∞ for an end that need not come
   Frequency,  ///< of an oscillation, Hz
   Period,     ///< in a position: of the signal or of an auxiliary input
   Share,      ///< dimensionless

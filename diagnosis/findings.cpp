@@ -149,7 +149,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
     }
-    std::set<std::string> same;
+    std::set<std::string> same(applied.twins.begin(), applied.twins.end());
     for (const Weighed& other : findings.judgement.same) {
       for (const Applied& there : other.explanation->variant.effects) {
         if (there.effect == applied.effect && there.edge != applied.edge) {

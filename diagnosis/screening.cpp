@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double linear_within = 0.05;
 
 /// More settings of shapes than this are tried one shape at a time about the middle of each.
-constexpr std::size_t most_shapes = 12;
+constexpr std::size_t most_shapes = 16;
 
 bool is_searched_shape(const Applied& effect, const Grids& grids, std::size_t j) {
   return !effect.parameters[j].strength && !grids.parameters[j].values.empty();
@@ -57,6 +57,12 @@ std::vector<VectorXd> shapes_of(const Applied& effect, const Grids& grids, const
     }
   }
   return shapes;
+}
+
+/// Whether two starts would lead to the same place: no parameter differs by a twentieth.
+bool is_near(const VectorXd& a, const VectorXd& b) {
+  constexpr double near = 0.05;
+  return ((a - b).array().abs() <= near * a.array().abs().max(b.array().abs())).all();
 }
 
 /// The point of a grid that is nearest to a value.
@@ -133,17 +139,21 @@ class Screening {
   /// The best starts, with the free parameters alone.
   Screened finished(std::vector<Start> starts, std::size_t keep) {
     std::ranges::stable_sort(starts, [](const Start& a, const Start& b) { return a.gain > b.gain; });
-    if (starts.size() > keep) {
-      starts.resize(keep);
-    }
+    std::vector<Start> kept;
     for (Start& start : starts) {
+      if (kept.size() < keep &&
+          std::ranges::none_of(kept, [&](const Start& other) { return is_near(start.values, other.values); })) {
+        kept.push_back(std::move(start));
+      }
+    }
+    for (Start& start : kept) {
       VectorXd values(std::ssize(free_));
       for (Index k = 0; k < std::ssize(free_); ++k) {
         values[k] = start.values[free_[static_cast<std::size_t>(k)]];
       }
       start.values = std::move(values);
     }
-    screened_.starts = std::move(starts);
+    screened_.starts = std::move(kept);
     return std::move(screened_);
   }
 
@@ -259,7 +269,7 @@ class Screening {
       }
       changes.col(k) = change;
     }
-    const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, starts);
+    const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, linear, starts);
     if (!linear && !kept && !std::exchange(grid_tried_, true)) {
       try_grid(shape, list, starts);
     }
@@ -276,7 +286,7 @@ class Screening {
 
   /// Whether the diagram keeps a part of what the straight line promises.
   bool try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
-                  std::vector<Start>& starts) {
+                  bool linear, std::vector<Start>& starts) {
     VectorXd low(std::ssize(list));
     VectorXd high(std::ssize(list));
     for (Index k = 0; k < std::ssize(list); ++k) {
@@ -295,9 +305,9 @@ class Screening {
       const Index j = list[static_cast<std::size_t>(k)];
       values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
     }
-    // The promise is held against the diagram itself, there and short of there.
+    // The promise is held against the diagram itself, there, short of there and, where the line is bent, beyond.
     double best = 0.0;
-    for (const double share : {1.0, 0.3, 0.1}) {
+    for (const double share : linear ? std::vector{1.0, 0.3, 0.1} : std::vector{1.0, 0.5, 0.1, 1.5, 2.2}) {
       VectorXd there = shape;
       for (const Index j : list) {
         there[j] += share * (values[j] - shape[j]);

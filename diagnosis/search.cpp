@@ -72,6 +72,10 @@ class Extents {
 
 /// So many of the best fits of a round go to the end in any case.
 constexpr std::size_t finished_always = 6;
+/// Of what a straight line leaves of the tuned parameters' part, a bent one leaves less than this where it is bent.
+constexpr double straight_enough = 0.5;
+/// Gains of one effect on two edges that differ by less, relatively, are of the same signal.
+constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
 
@@ -90,14 +94,17 @@ class Searcher {
     result.calibrated.variant = std::move(base);
     Model model(task_, *result.calibrated.variant.program);
     result.calibrated.fit = fit(model, model.start(), {.iterations = 40, .tolerance = 1e-7});
-    // The first candidates are tried about the parameters as tuned: a large effect bends a calibration far away.
     Explanation nominal = result.calibrated;
     nominal.fit.x = model.start();
     (void)model.residuals(nominal.fit.x, nominal.fit.residuals, &nominal.fit.jacobian);
     nominal.fit.cost = cost_of(model, nominal.fit.x, nominal.fit.residuals, nullptr);
     nominal_cost_ = Background(model, nominal.fit).unexplained();
+    nominal_ = nominal.fit.x;
     calibrated_ = result.calibrated.fit.x;
-    std::vector<Explanation> beam{nominal};
+    // The first candidates are tried about the parameters as tuned, since a large effect bends a calibration far away;
+    // but where these are so far off that a straight line does not calibrate them, about the calibrated ones.
+    about_nominal_ = Background(model, result.calibrated.fit).unexplained() > straight_enough * nominal_cost_;
+    std::vector<Explanation> beam{about_nominal_ ? nominal : result.calibrated};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
       begin_ = static_cast<double>(round) / options_.most_effects;
       width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
@@ -112,7 +119,7 @@ class Searcher {
       if (round > 0) {
         without_each(found, result);
       }
-      beam = next_beam(found, result);
+      beam = next_beam(found, result, round == 0 ? options_.beam : 1);
       std::ranges::move(found, std::back_inserter(result.explanations));
     }
     std::ranges::stable_sort(result.explanations,
@@ -147,9 +154,16 @@ class Searcher {
 
   void expand(const Explanation& from, std::size_t fitted, Search& result, std::vector<Explanation>& found) {
     std::vector<Candidate> candidates = candidates_of(from.variant, top_, options_.candidates);
-    result.tried += candidates.size();
     Extents extents(task_, from.fit.x);
     extents.measure(candidates, options_.threads);
+    for (std::size_t i = 0, count = candidates.size(); i < count; ++i) {
+      const Extents::Signals* const signals = extents.find(candidates[i]);
+      if (signals != nullptr && has_other_centre(candidates[i].own(), signals->input)) {
+        candidates.push_back(candidates[i]);
+        candidates.back().about_zero = true;
+      }
+    }
+    result.tried += candidates.size();
     // Lines and periods show best where a calibration has taken off what is none.
     const VectorXd& shown = from.variant.effects.empty() ? result.calibrated.fit.residuals : from.fit.residuals;
     const Hints hints = hints_of(shown);
@@ -169,15 +183,15 @@ class Searcher {
         periods =
             strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
       }
-      grids[i] = grids_of(candidates[i].own(), signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr,
-                          hints, periods);
+      grids[i] =
+          grids_of(candidates[i], signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);
       list[i] =
           screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), from.fit.x, background, 3);
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
     refine(list, candidates, grids, from, background);
-    if (from.variant.effects.empty()) {
+    if (from.variant.effects.empty() && about_nominal_) {
       about_calibration(list, candidates, grids, result.calibrated);
     }
     std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
@@ -352,6 +366,15 @@ class Searcher {
     std::map<std::string, int> taken;
     std::vector<Screened> kept;
     for (Screened& one : list) {
+      // Two edges with nothing but a gain between them are one: the other one gets the place.
+      const auto twin = std::ranges::find_if(kept, [&](const Screened& other) {
+        return other.candidate.own().effect == one.candidate.own().effect &&
+               std::abs(other.gain() - one.gain()) <= same_gain * other.gain();
+      });
+      if (twin != kept.end()) {
+        twin->candidate.variant.effects.back().twins.push_back(one.candidate.own().edge);
+        continue;
+      }
       int& times = taken[one.candidate.own().effect];
       const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
       if (times < 3 && (kept.size() < count || (gap && times < 2))) {
@@ -388,7 +411,7 @@ class Searcher {
       }
     }
     if (from.variant.effects.empty()) {
-      begin_at(calibrated_, one.starts.front());
+      begin_at(about_nominal_ ? calibrated_ : nominal_, one.starts.front());
     }
     for (std::size_t j = 0; j < further.size(); ++j) {
       further[j].unit = model.problem().parameters[task_.known.size() + j].unit;
@@ -474,7 +497,8 @@ class Searcher {
   }
 
   /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
-  [[nodiscard]] std::vector<Explanation> next_beam(std::vector<Explanation>& found, const Search& result) const {
+  [[nodiscard]] std::vector<Explanation> next_beam(std::vector<Explanation>& found, const Search& result,
+                                                   std::size_t width) const {
     std::ranges::stable_sort(found, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
     std::vector<Explanation> beam;
     std::set<std::vector<std::string>> taken;
@@ -485,7 +509,7 @@ class Searcher {
       if (closed || correlation_time(found.front().fit.residuals) < 1.5) {
         break;  // nothing notable is left for another effect, or nothing but white noise
       }
-      if (beam.size() < options_.beam && left < gap && taken.insert(one.names()).second) {
+      if (beam.size() < width && left < gap && taken.insert(one.names()).second) {
         beam.push_back(one);
       }
     }
@@ -496,7 +520,9 @@ class Searcher {
   const std::string& top_;
   double floor_cost_;
   double nominal_cost_ = 0.0;
+  VectorXd nominal_{};
   VectorXd calibrated_{};
+  bool about_nominal_ = true;
   const SearchOptions& options_;
   std::mutex mutex_{};
   double begin_ = 0.0;

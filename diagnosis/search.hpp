@@ -23,7 +23,7 @@ struct SearchOptions {
   int most_effects = 3;
   std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
   std::size_t fitted_later = 10;  ///< and after each further one
-  std::size_t beam = 3;
+  std::size_t beam = 3;       ///< sets that a second effect is added to; a further one is added to the best set alone
   double least_share = 0.05;  ///< of the gap that a further effect has to close
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};

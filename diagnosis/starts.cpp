@@ -91,7 +91,8 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     }
     case Role::Instant: {
       std::vector<double> values;
-      for (int k = 1; k < 8; ++k) {
+      const int later = std::isinf(parameter.field.preset) ? 1 : 0;  // an end comes after a beginning, or not at all
+      for (int k = 1 + later; k < 8 + later; ++k) {
         values.push_back(0.125 * k * hints.duration);
       }
       return values;
@@ -115,21 +116,24 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     return scaled(across, {0.01, 0.05, 0.2});
   }
   if (parameter.unit == "'v*s") {  // a travel: what the fastest motion covers in so many samples
-    return scaled(across * hints.sample_time, {0.5, 5.0, 50.0});
+    return scaled(across * hints.sample_time, {0.05, 0.5, 5.0});
   }
   return {parameter.field.preset};
 }
 
-/// What a reference is set to: about the middle or half the width of what it refers to.
-double reference(const EffectParameter& parameter, const Extent& input) {
-  const std::string_view name = parameter.name;
-  if (name.ends_with("CENTRE")) {
-    return 0.5 * (input.low + input.high);
+bool is_centre(const EffectParameter& parameter) {
+  return parameter.role == Role::Reference && parameter.name.ends_with("CENTRE");
+}
+
+/// What a reference is set to: about the middle, or half the width of what it refers to, seen from the centre.
+double reference(const EffectParameter& parameter, const Extent& input, bool about_zero) {
+  if (is_centre(parameter)) {
+    return about_zero ? 0.0 : 0.5 * (input.low + input.high);
   }
   if (parameter.unit == "'x/s") {
     return size_or(input.rates.empty() ? 0.0 : input.rates[50], 1.0);
   }
-  return size_or(0.5 * input.range(), 1.0);
+  return size_or(about_zero ? std::max(std::abs(input.low), std::abs(input.high)) : 0.5 * input.range(), 1.0);
 }
 
 bool in_range(const Field& field, double value) {
@@ -138,14 +142,18 @@ bool in_range(const Field& field, double value) {
 
 }  // namespace
 
-Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxiliary, const Hints& hints,
+bool has_other_centre(const Applied& effect, const Extent& input) {
+  return std::ranges::any_of(effect.parameters, is_centre) && std::abs(input.low + input.high) > 0.1 * input.range();
+}
+
+Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary, const Hints& hints,
                const std::vector<double>& periods) {
   Grids grids;
-  for (const EffectParameter& parameter : effect.parameters) {
+  for (const EffectParameter& parameter : candidate.own().parameters) {
     Grid grid;
     double setting = std::numeric_limits<double>::quiet_NaN();
     if (parameter.role == Role::Reference) {
-      setting = reference(parameter, input);
+      setting = reference(parameter, input, candidate.about_zero);
     } else {
       grid.jagged = parameter.name == "QUANTUM";
       grid.values = parameter.strength ? strength_grid(parameter, input, auxiliary, hints)
@@ -178,7 +186,8 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
       continue;
     }
     result.parameters[j].values.clear();
-    for (std::size_t k = 0; k < values.size(); k += stride) {
+    const std::size_t step = role == Role::Instant ? 2 : stride;
+    for (std::size_t k = 0; k < values.size(); k += step) {
       result.parameters[j].values.push_back(values[k]);
     }
   }

@@ -31,8 +31,11 @@ struct Grids {
 };
 
 /// `input` is the signal that the effect changes, `auxiliary` what drives its first further input.
-[[nodiscard]] Grids grids_of(const Applied& effect, const Extent& input, const Extent* auxiliary, const Hints& hints,
-                             const std::vector<double>& periods);
+[[nodiscard]] Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary,
+                             const Hints& hints, const std::vector<double>& periods);
+
+/// Whether an effect has a centre for which 0 is another guess than the middle of the signal.
+[[nodiscard]] bool has_other_centre(const Applied& effect, const Extent& input);
 
 /// With one point in so many of each long grid: enough to see which candidates deserve the whole of it.
 /// Lines and periods stay: each is a guess of its own.

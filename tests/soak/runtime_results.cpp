@@ -5,7 +5,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -167,9 +169,11 @@ int main(int count, char** arguments) {
   hysteron::soak::print_attacks(std::chrono::seconds(number(1, 10)));
   hysteron::soak::print_throughput(std::chrono::seconds(number(2, 60)));
   hysteron::soak::print_connects(number(3, 100'000));
+  std::array<double, 3> load{};
+  ::getloadavg(load.data(), 3);
   fmt::print(
-      "\nThe host kept {:.2f} % of the processor time from this machine meanwhile, and other work ran on it; "
-      "latencies hold for\nsuch a machine.\n",
-      steal.percent());
+      "\nThe host kept {:.2f} % of the processor time from this machine meanwhile. The load of its {} processors, "
+      "averaged over 5 minutes, was {:.1f} at the end:\nlatencies and requests a second hold for such a machine.\n",
+      steal.percent(), std::thread::hardware_concurrency(), load[1]);
   return 0;
 }

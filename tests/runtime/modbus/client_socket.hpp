@@ -97,6 +97,12 @@ class ClientSocket {
     return false;
   }
 
+  /// So that answers that are not read soon fill what the system keeps for this client.
+  void keep_little() const {
+    const int bytes = 2048;
+    ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+  }
+
   /// Closes with a reset instead of an end.
   void reset() {
     const linger now{1, 0};

@@ -77,6 +77,7 @@ void never_reads(std::uint16_t port, const std::stop_token& stop) {
   }
   while (!stop.stop_requested()) {
     const ClientSocket socket(port, milliseconds(500));
+    socket.keep_little();
     while (!stop.stop_requested() && socket.send_without_waiting(many)) {
       std::this_thread::sleep_for(milliseconds(1));
     }

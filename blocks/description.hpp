@@ -30,6 +30,7 @@ struct Field {
   std::string_view unit;
   std::string_view meaning;
   std::string_view effect;  ///< the physical effect that this parameter switches on by itself; empty for none
+  double effect_maximum = std::numeric_limits<double>::infinity();  ///< above it, the block is another effect
   double preset = 0.0;
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
@@ -92,6 +93,12 @@ struct BoundField : Field {
   [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
     auto copy = *this;
     copy.Field::effect = identifier;
+    return copy;
+  }
+  /// Up to where the block is what its effect is called: a resonance rings, above critical damping it lags.
+  [[nodiscard]] constexpr BoundField effect_up_to(double value) const {
+    auto copy = *this;
+    copy.effect_maximum = value;
     return copy;
   }
 };

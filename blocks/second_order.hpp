@@ -36,7 +36,12 @@ struct SecondOrder {
       return std::tuple{
           HY_FIELD(K).in("'y/'x").otherwise(1.0).neutral_at(1.0).means("gain at rest"),
           HY_FIELD(T).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("1/ω, of the undamped oscillation"),
-          HY_FIELD(ZETA).in("1").within(0.0, 100.0).otherwise(0.7).means("damping ratio; 1 is critical"),
+          HY_FIELD(ZETA)
+              .in("1")
+              .within(0.0, 100.0)
+              .effect_up_to(0.8)
+              .otherwise(0.7)
+              .means("damping ratio; 1 is critical"),
           HY_FIELD(SETTLED).otherwise(1.0).means("starts as if the first input had stood for ever; FALSE: at X0")};
     }
   };

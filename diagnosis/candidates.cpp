@@ -26,16 +26,15 @@ Wire wire_of(const Graph& graph, const Node& node, std::string_view pin) {
   return {};
 }
 
-/// Whether a signal comes from another one, through blocks, delays and all, but not through `barrier`.
-bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, const Wire& barrier) {
+/// What a signal comes from: inputs and nodes, through blocks, delays and all, but not through the node `barrier`.
+std::vector<Wire> sources_of(const Graph& graph, const Wire& signal, const Wire& barrier) {
   std::vector<bool> seen(graph.nodes.size(), false);
+  std::vector<Wire> sources;
   std::vector<Wire> left{signal};
   while (!left.empty()) {
     const Wire wire = left.back();
     left.pop_back();
-    if (wire.from == source.from && wire.index == source.index) {
-      return true;
-    }
+    sources.push_back(wire);
     if (wire.from != Wire::From::Node || seen[wire.index] || wire.index == barrier.index) {
       continue;
     }
@@ -45,7 +44,12 @@ bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, cons
       left.push_back(graph.wire(node, i));
     }
   }
-  return false;
+  return sources;
+}
+
+bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, const Wire& barrier) {
+  return std::ranges::any_of(sources_of(graph, signal, barrier),
+                             [&](const Wire& wire) { return wire.from == source.from && wire.index == source.index; });
 }
 
 class Enumeration {
@@ -211,6 +215,7 @@ class Enumeration {
         candidate.auxiliary.push_back(wire_of(graph, *node, pin));
       }
       const Wire changed{.from = Wire::From::Node, .index = static_cast<std::uint32_t>(node - graph.nodes.data())};
+      candidate.upstream = sources_of(graph, candidate.input, changed).size();
       if (!makes_sense(graph, candidate, changed)) {
         return;
       }
@@ -256,6 +261,10 @@ std::shared_ptr<const Program> compiled(const std::string& text, const std::stri
     }
   }
   return program;
+}
+
+bool Applied::has(Role role) const {
+  return std::ranges::any_of(parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
 std::vector<Candidate> candidates_of(const Variant& base, const std::string& top, const CandidateOptions& options) {

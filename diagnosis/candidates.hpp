@@ -24,6 +24,8 @@ struct Applied {
   std::vector<std::string> paths{};                          ///< of the parameters, beside them
   std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
   std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
+
+  [[nodiscard]] bool has(Role role) const;
 };
 
 /// A diagram with the effects added so far.
@@ -40,6 +42,7 @@ struct Candidate {
   Variant variant{};
   Wire input{};                   ///< what drives the effect's XIN
   std::vector<Wire> auxiliary{};  ///< what drives its further inputs
+  std::size_t upstream = 0;       ///< how many blocks its input comes from
   bool about_zero = false;        ///< its centre is 0, not the middle of the signal
   std::string family{};           ///< candidates with the same signals: name of edge and wires
 

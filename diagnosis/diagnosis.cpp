@@ -26,6 +26,8 @@
 namespace hysteron::diagnosis {
 namespace {
 
+/// A floor is an estimate: that of slow noise is off by a tenth. Less above it is no claim that something is unknown.
+constexpr double above_floor = 1.2;
 /// A calibrated residual of this many floors is no noise, whether or not anything predicts it.
 constexpr double far_above_floor = 3.0;
 
@@ -172,7 +174,7 @@ class Run {
       } else {
         result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
       }
-    } else if (gap_calibrated && (predictable || size > far_above_floor)) {
+    } else if (gap_calibrated && size > above_floor && (predictable || size > far_above_floor)) {
       result_.verdict = Verdict::Unknown;
     } else if (gap_before && calibration_matters(found.calibrated)) {
       result_.verdict = Verdict::Calibration;

@@ -32,7 +32,7 @@ struct DiagnosisOptions {
       0.0;  ///< smallest gap that matters, RMS in the output's unit; a quarter of the floor counts at least
   std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
   int most_effects = 3;
-  double budget = 25.0;  ///< seconds after which no further effect is added
+  double budget = 60.0;  ///< seconds after which no further effect is added
   std::uint64_t seed = 1;
   unsigned threads = 2;
   std::function<void(double fraction, std::string_view text)> progress{};

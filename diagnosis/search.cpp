@@ -74,14 +74,12 @@ class Extents {
 constexpr std::size_t finished_always = 6;
 /// Of what a straight line leaves of the tuned parameters' part, a bent one leaves less than this where it is bent.
 constexpr double straight_enough = 0.5;
+/// Of one effect so many edges are fitted in a round.
+constexpr int most_edges = 5;
 /// Gains of one effect on two edges that differ by less, relatively, are of the same signal.
 constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
-
-bool has(const Applied& effect, Role role) {
-  return std::ranges::any_of(effect.parameters, [&](const EffectParameter& one) { return one.role == role; });
-}
 
 class Searcher {
  public:
@@ -99,11 +97,11 @@ class Searcher {
     (void)model.residuals(nominal.fit.x, nominal.fit.residuals, &nominal.fit.jacobian);
     nominal.fit.cost = cost_of(model, nominal.fit.x, nominal.fit.residuals, nullptr);
     nominal_cost_ = Background(model, nominal.fit).unexplained();
-    nominal_ = nominal.fit.x;
-    calibrated_ = result.calibrated.fit.x;
     // The first candidates are tried about the parameters as tuned, since a large effect bends a calibration far away;
     // but where these are so far off that a straight line does not calibrate them, about the calibrated ones.
     about_nominal_ = Background(model, result.calibrated.fit).unexplained() > straight_enough * nominal_cost_;
+    known_starts_ = {.calibrated = result.calibrated.fit.x,
+                     .other = about_nominal_ ? result.calibrated.fit.x : nominal.fit.x};
     std::vector<Explanation> beam{about_nominal_ ? nominal : result.calibrated};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
       begin_ = static_cast<double>(round) / options_.most_effects;
@@ -179,7 +177,7 @@ class Searcher {
         return;
       }
       std::vector<double> periods;
-      if (has(candidates[i].own(), Role::Period)) {
+      if (candidates[i].own().has(Role::Period)) {
         periods =
             strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
       }
@@ -200,24 +198,24 @@ class Searcher {
     std::vector<Explanation> fits(list.size());
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
-      fits[i] = begun_from(list[i], from);
+      fits[i] = begun_from(task_, list[i], from, known_starts_);
       say(0.6 + 0.3 * static_cast<double>(++done) / static_cast<double>(list.size()),
           list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
     });
     std::erase_if(fits, [](const Explanation& one) { return !std::isfinite(one.fit.cost); });
-    finish(fits, from.fit.cost);
+    finish_front(fits, from.fit.cost);
     std::ranges::move(fits, std::back_inserter(found));
   }
 
   /// To the end those fits that a few steps have brought to the front; one that closes a small part of what the best
   /// closes is ranked well enough.
-  void finish(std::vector<Explanation>& fits, double cost_before) {
+  void finish_front(std::vector<Explanation>& fits, double cost_before) {
     std::ranges::stable_sort(fits, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
     std::atomic<std::size_t> done{0};
     in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
       const bool in_front = cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
       if (i < finished_always || in_front) {
-        finish(fits[i], i < finished_always);
+        finish(task_, fits[i], i < finished_always);
       }
       say(0.9 + 0.1 * static_cast<double>(++done) / static_cast<double>(fits.size()), "last steps of the fits");
     });
@@ -245,7 +243,7 @@ class Searcher {
     const Background background(model, calibrated.fit);
     std::vector<Screened> others(list.size());
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
-      if (has(candidates[i].own(), Role::Gap) && !grids[i].parameters.empty()) {
+      if (candidates[i].own().has(Role::Gap) && !grids[i].parameters.empty()) {
         others[i] = screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
                              background, 2);
       }
@@ -361,7 +359,8 @@ class Searcher {
   /// An edge behind an effect that was put on an edge before is that edge: HYST_CREEP.XOUT is HYST.XOUT.
   [[nodiscard]] static std::string root_of(const std::string& edge) { return edge.substr(0, edge.find_first_of("._")); }
 
-  /// The best ones, but of no effect so many that others do not get their turn.
+  /// The best ones, but of no effect so many that others do not get their turn; each effect gets one: what a grid
+  /// promises of a level says little of what a fit finds.
   static void keep_best(std::vector<Screened>& list, std::size_t count) {
     std::map<std::string, int> taken;
     std::vector<Screened> kept;
@@ -372,128 +371,21 @@ class Searcher {
                std::abs(other.gain() - one.gain()) <= same_gain * other.gain();
       });
       if (twin != kept.end()) {
+        if (one.candidate.upstream < twin->candidate.upstream) {  // the first place where it can be
+          one.candidate.variant.effects.back().twins = std::move(twin->candidate.variant.effects.back().twins);
+          std::swap(*twin, one);
+        }
         twin->candidate.variant.effects.back().twins.push_back(one.candidate.own().edge);
         continue;
       }
       int& times = taken[one.candidate.own().effect];
       const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
-      if (times < 3 && (kept.size() < count || (gap && times < 2))) {
+      if (times < most_edges && (kept.size() < count || times == 0 || (gap && times < 2))) {
         ++times;
         kept.push_back(std::move(one));
       }
     }
     list = std::move(kept);
-  }
-
-  /// A few steps from each of its best starts, with the known parameters as they stand and, on the bare diagram, as
-  /// calibrated.
-  [[nodiscard]] Explanation begun_from(const Screened& one, const Explanation& from) const {
-    Explanation best{.variant = one.candidate.variant};
-    best.fit.cost = std::numeric_limits<double>::infinity();
-    std::vector<Unknown>& further = best.variant.further;
-    const std::size_t inherited = further.size();
-    further.insert(further.end(), one.unknowns.begin(), one.unknowns.end());
-    Model model(task_, *one.candidate.variant.program, further);
-    const Index first = model.first_further() + static_cast<Index>(inherited);
-    VectorXd x(model.unknowns());
-    const auto begin_at = [&](const VectorXd& known, const Start& start) {
-      x.head(first) = known.head(first);
-      x.segment(first, std::ssize(one.unknowns)) = start.values;
-      x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = known.tail(known.size() - first);
-      Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
-      if (here.cost < best.fit.cost) {
-        best.fit = std::move(here);
-      }
-    };
-    for (const Start& start : one.starts) {
-      if (start.gain >= 0.5 * one.gain()) {
-        begin_at(start.about_calibration ? calibrated_ : from.fit.x, start);
-      }
-    }
-    if (from.variant.effects.empty()) {
-      begin_at(about_nominal_ ? calibrated_ : nominal_, one.starts.front());
-    }
-    for (std::size_t j = 0; j < further.size(); ++j) {
-      further[j].unit = model.problem().parameters[task_.known.size() + j].unit;
-    }
-    keep_starts(best, model);
-    return best;
-  }
-
-  void finish(Explanation& one, bool thoroughly) const {
-    Model model(task_, *one.variant.program, one.variant.further);
-    const Applied& own = one.variant.effects.back();
-    const Index count = std::ssize(own.parameters) - std::ssize(own.settings);
-    const Index first = model.first_further() + std::ssize(one.variant.further) - count;
-    if (has(own, Role::Gap)) {
-      scan(model, one.fit, first, count);
-    }
-    one.fit = fit(model, one.fit.x, {.iterations = 20});
-    if (has(own, Role::Gap)) {
-      pattern_search(model, one.fit, 0, first + count);
-    } else if (thoroughly) {
-      pattern_search(model, one.fit, first, count);
-    }
-    keep_starts(one, model);
-  }
-
-  /// What the effects were fitted to is where their next fit begins.
-  static void keep_starts(Explanation& one, const Model& model) {
-    for (std::size_t j = 0; j < one.variant.further.size() && std::isfinite(one.fit.cost); ++j) {
-      one.variant.further[j].start = one.fit.x[model.first_further() + static_cast<Index>(j)];
-    }
-  }
-
-  /// A quantum or a gap has its minimum in a slot narrower than the grid: each parameter by small steps about the
-  /// start.
-  static void scan(Model& model, Fit& best, Index first, Index count) {
-    VectorXd residuals;
-    for (Index j = first; j < first + count; ++j) {
-      const double middle = best.x[j];
-      for (int step = -9; step <= 9; ++step) {
-        VectorXd x = best.x;
-        x[j] = std::clamp(middle * (1.0 + 0.004 * step), model.lower()[j], model.upper()[j]);
-        if (step == 0 || !model.residuals(x, residuals)) {
-          continue;
-        }
-        const double cost = cost_of(model, x, residuals, nullptr);
-        if (cost < best.cost) {
-          best.x = x;
-          best.cost = cost;
-        }
-      }
-    }
-  }
-
-  /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
-  static void pattern_search(Model& model, Fit& best, Index first, Index count) {
-    VectorXd residuals;
-    bool moved = false;
-    for (const double share : {0.08, 0.03, 0.01, 0.003}) {
-      for (Index j = first; j < first + count; ++j) {
-        for (const double sign : {1.0, -1.0}) {
-          VectorXd x = best.x;
-          x[j] = std::clamp(x[j] * (1.0 + sign * share), model.lower()[j], model.upper()[j]);
-          if (!model.residuals(x, residuals)) {
-            continue;
-          }
-          const double cost = cost_of(model, x, residuals, nullptr);
-          if (cost < best.cost * (1.0 - 1e-6)) {
-            best.x = x;
-            best.cost = cost;
-            moved = true;
-          }
-        }
-      }
-    }
-    if (moved) {
-      Fit again = fit(model, best.x, {.iterations = 12});
-      if (again.cost <= best.cost) {
-        best = std::move(again);
-      } else {
-        (void)model.residuals(best.x, best.residuals, &best.jacobian);
-      }
-    }
   }
 
   /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
@@ -520,8 +412,7 @@ class Searcher {
   const std::string& top_;
   double floor_cost_;
   double nominal_cost_ = 0.0;
-  VectorXd nominal_{};
-  VectorXd calibrated_{};
+  KnownStarts known_starts_{};
   bool about_nominal_ = true;
   const SearchOptions& options_;
   std::mutex mutex_{};
@@ -530,15 +421,6 @@ class Searcher {
 };
 
 }  // namespace
-
-std::vector<std::string> Explanation::names() const {
-  std::vector<std::string> names;
-  for (const Applied& applied : variant.effects) {
-    names.push_back(applied.effect);
-  }
-  std::ranges::sort(names);
-  return names;
-}
 
 Search search(const Task& task, Variant base, const std::string& top, double floor_cost, const SearchOptions& options) {
   return Searcher(task, top, floor_cost, options).run(std::move(base));

@@ -11,9 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnosis/candidates.hpp"
-#include "diagnosis/least_squares.hpp"
-#include "diagnosis/screening.hpp"
+#include "diagnosis/fitting.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -27,14 +25,6 @@ struct SearchOptions {
   double least_share = 0.05;  ///< of the gap that a further effect has to close
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
-};
-
-/// A set of effects, fitted.
-struct Explanation {
-  Variant variant{};
-  Fit fit{};
-  [[nodiscard]] std::vector<std::string> names() const;  ///< identifiers, sorted
-  [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
 };
 
 struct Search {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -36,8 +37,14 @@ double size_or(double size, double otherwise) {
   return std::isfinite(size) && size > 0.0 ? size : otherwise;
 }
 
-std::vector<double> strength_grid(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
-                                  const Hints& hints) {
+/// Whether an effect is an oscillation, which has a frequency that the residual shows.
+bool is_oscillation(const Applied& effect) {
+  return std::ranges::any_of(effect.parameters,
+                             [](const EffectParameter& one) { return std::isfinite(one.field.effect_maximum); });
+}
+
+std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, const Extent& input,
+                                  const Extent* auxiliary, const Hints& hints) {
   const Field& field = parameter.field;
   const double range = size_or(input.range(), 1.0);
   const double fastest = size_or(input.rates.empty() ? 0.0 : input.rates[99], range / hints.duration);
@@ -58,6 +65,14 @@ std::vector<double> strength_grid(const EffectParameter& parameter, const Extent
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});
     case Role::Duration:
+      if (rings && !hints.frequencies.empty()) {
+        std::vector<double> values;
+        for (const double frequency : hints.frequencies) {
+          values.push_back(0.5 * std::numbers::inv_pi / frequency);
+        }
+        std::ranges::sort(values);
+        return values;
+      }
       return geometric(0.5 * hints.sample_time, std::min(0.2 * hints.duration, 4000.0 * hints.sample_time), 2.5);
     case Role::PerSecond:
       return {0.05 / hints.duration};
@@ -156,8 +171,10 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
       setting = reference(parameter, input, candidate.about_zero);
     } else {
       grid.jagged = parameter.name == "QUANTUM";
-      grid.values = parameter.strength ? strength_grid(parameter, input, auxiliary, hints)
-                                       : shape_grid(parameter, input, auxiliary, hints, periods);
+      grid.values = parameter.strength
+                        ? strength_grid(parameter, is_oscillation(candidate.own()), input, auxiliary, hints)
+                        : shape_grid(parameter, input, auxiliary, hints, periods);
+      grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Period) {
         const double range = (auxiliary == nullptr ? input : *auxiliary).range();
         grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
@@ -178,7 +195,8 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
   for (std::size_t j = 0; j < grids.parameters.size(); ++j) {
     const std::vector<double>& values = grids.parameters[j].values;
     const Role role = effect.parameters[j].role;
-    if (values.size() <= short_enough || role == Role::Frequency) {
+    if (values.size() <= short_enough || role == Role::Frequency ||
+        (role == Role::Duration && is_oscillation(effect))) {
       continue;
     }
     if (role == Role::Period) {

@@ -1,0 +1,38 @@
+// The fit of one candidate: from the starts that the screening has found, first a few steps, then to the end.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/screening.hpp"
+
+namespace hysteron::diagnosis {
+
+/// A set of effects, fitted.
+struct Explanation {
+  Variant variant{};
+  Fit fit{};
+  [[nodiscard]] std::vector<std::string> names() const;  ///< identifiers, sorted
+  [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
+};
+
+/// Where the known parameters of the bare diagram may stand when a fit begins.
+struct KnownStarts {
+  VectorXd calibrated{};
+  VectorXd other{};  ///< the tuned ones where the screening was about the calibrated ones, else these
+};
+
+/// A few steps from each of its best starts, with the known parameters as in `from` and, on the bare diagram, as in
+/// `known.other` too. The cost is ∞ where none has a value.
+[[nodiscard]] Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,
+                                     const KnownStarts& known);
+
+/// To the end, where it stands. `thoroughly`: with single steps by trial where a derivative may not see the way.
+void finish(const Task& task, Explanation& one, bool thoroughly);
+
+/// What the effects were fitted to is where their next fit begins.
+void keep_starts(Explanation& one, const Model& model);
+
+}  // namespace hysteron::diagnosis

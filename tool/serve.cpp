@@ -130,7 +130,9 @@ int serve(const Options& options, Console& console) {
   }
   Task task(*program, config.task,
             {.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
-  const auto server = config.modbus ? serve_modbus(*config.modbus, program->shape().name, task.door()) : nullptr;
+  const auto server = config.modbus ? serve_modbus(*config.modbus, program->shape().name, task.door(),
+                                                   [&](bool lost) { task.client_lost(lost); })
+                                    : nullptr;
   how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
 
   stop_asked.store(false);

@@ -1,6 +1,7 @@
 #include "tool/serve_modbus.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
@@ -30,13 +31,15 @@ RegisterMap register_map_of(const runtime::ModbusConfig& config, const std::stri
 }
 
 std::unique_ptr<Server> serve_modbus(const runtime::ModbusConfig& config, const std::string& title,
-                                     runtime::PointDoor& door) {
+                                     runtime::PointDoor& door, std::function<void(bool)> client_lost) {
   return std::make_unique<Server>(register_map_of(config, title, door), door,
                                   runtime::modbus::ServerOptions{.listen = config.listen,
                                                                  .port = config.port,
                                                                  .allow = config.allow,
                                                                  .connections = config.connections,
                                                                  .read_only = config.read_only,
+                                                                 .heartbeat = config.heartbeat,
+                                                                 .client_lost = std::move(client_lost),
                                                                  .place = config.place});
 }
 

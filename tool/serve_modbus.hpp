@@ -1,6 +1,7 @@
 // The Modbus server of a served diagram, as the run file asks for it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -14,8 +15,9 @@ namespace hysteron::tool {
 [[nodiscard]] runtime::modbus::RegisterMap register_map_of(const runtime::ModbusConfig& config,
                                                            const std::string& title, runtime::PointDoor& door);
 
-/// Listens and serves from here on.
+/// Listens and serves from here on. `client_lost` is called in the server's thread, as the heartbeat says.
 [[nodiscard]] std::unique_ptr<runtime::modbus::Server> serve_modbus(const runtime::ModbusConfig& config,
-                                                                    const std::string& title, runtime::PointDoor& door);
+                                                                    const std::string& title, runtime::PointDoor& door,
+                                                                    std::function<void(bool)> client_lost);
 
 }  // namespace hysteron::tool

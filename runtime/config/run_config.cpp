@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -31,8 +32,9 @@ constexpr std::array<Keys, 4> input_keys{"device", "register", "area", "longest_
 constexpr std::array<Keys, 5> device_keys{"host", "port", "unit", "cycle", "timeout"};
 constexpr std::array<Keys, 3> retain_keys{"folder", "every", "mismatch"};
 constexpr std::array<Keys, 4> trace_keys{"file", "trigger", "before", "after"};
-constexpr std::array<Keys, 7> modbus_keys{"listen",    "port",       "allow",    "connections",
-                                          "read_only", "word_order", "lock_file"};
+constexpr std::array<Keys, 11> modbus_keys{"listen",         "port",       "allow",     "connections",
+                                           "read_only",      "word_order", "lock_file", "heartbeat",
+                                           "heartbeat_time", "after_loss", "own_writes"};
 
 std::vector<std::string> names_of(const std::vector<ProgramSignal>& signals) {
   std::vector<std::string> names;
@@ -308,7 +310,26 @@ class Reader {
     table.read_choice("word_order", order, orders);
     modbus.word_order = orders[order];
     table.read("lock_file", modbus.lock_file);
+    read_heartbeat(table, modbus);
     config_.modbus = std::move(modbus);
+  }
+
+  void read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
+    std::size_t mode = 0;
+    table.read_choice("heartbeat", mode, std::array<Keys, 3>{"off", "any", "write"});
+    modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
+    std::int64_t time = std::chrono::nanoseconds(modbus.heartbeat.time).count();
+    table.read_duration("heartbeat_time", time, 1'000'000, 3600 * second);
+    modbus.heartbeat.time = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
+    std::size_t after = 0;
+    table.read_choice("after_loss", after, std::array<Keys, 2>{"resume", "reset"});
+    config_.task.reset_after_lost_client = after == 1;
+    table.read("own_writes", modbus.heartbeat.own_writes);
+    if (modbus.read_only && (modbus.heartbeat.mode == modbus::HeartbeatMode::write_telegram || after == 1)) {
+      found_.error(error::wrong_run_value, table.place(after == 1 ? "after_loss" : "heartbeat"),
+                   "Writes of a client are waited for, and read_only refuses them.",
+                   "write heartbeat = \"any\" and after_loss = \"resume\", or read_only = false.");
+    }
   }
 
   /// In the order of the file; the library gives keys in that of their names.

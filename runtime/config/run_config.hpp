@@ -59,6 +59,10 @@
 //   read_only = false
 //   word_order = "abcd"        # or "badc", "cdab", "dcba"
 //   lock_file = "piezo.lock"
+//   heartbeat = "write"        # or "any", "off": the telegrams that show that the client lives
+//   heartbeat_time = "1s"      # without one for so long after the first, the outputs become safe
+//   after_loss = "resume"      # when the client is back; or "reset": when it then writes task.reset
+//   own_writes = true          # while a client that writes is there, no other may
 #pragma once
 
 #include <cstdint>
@@ -67,6 +71,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/modbus/heartbeat.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/scheduling.hpp"
@@ -106,6 +111,7 @@ struct ModbusConfig {
   bool read_only = false;
   std::string word_order = "abcd";
   std::string lock_file{};
+  modbus::HeartbeatOptions heartbeat{};
   Place place{};
 };
 

@@ -21,8 +21,8 @@ double towards(double from, double target, double step) noexcept {
 }  // namespace
 
 std::string_view name_of(Fault fault) {
-  constexpr std::array<std::string_view, 8> names{"none",        "hang",      "crash",        "not finite",
-                                                  "stale input", "lost link", "missed cycle", "stop"};
+  constexpr std::array<std::string_view, 9> names{"none",      "hang",         "crash", "not finite", "stale input",
+                                                  "lost link", "missed cycle", "stop",  "lost client"};
   return names[static_cast<std::size_t>(fault)];
 }
 

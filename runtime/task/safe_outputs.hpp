@@ -23,6 +23,7 @@ enum class Fault : std::uint8_t {
   lost_link,     ///< a device does not answer
   missed_cycle,  ///< and the policy is to stop
   stop,          ///< the task ends as asked
+  lost_client,   ///< the Modbus client that has to be heard is silent
 };
 [[nodiscard]] std::string_view name_of(Fault fault);
 

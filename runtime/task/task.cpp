@@ -43,6 +43,13 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
   last_good_ = inputs_;
 }
 
+void Task::client_lost(bool lost) noexcept {
+  if (lost && settings_.reset_after_lost_client) {
+    client_was_lost_.store(true, std::memory_order_relaxed);
+  }
+  client_is_lost_.store(lost, std::memory_order_relaxed);
+}
+
 LoopEnd Task::run(Clock& clock, const std::atomic<bool>& stop) {
   status_.state = TaskState::running;
   const LoopEnd end = run_loop(settings_.loop, clock, *this, stop, statistics_);
@@ -103,6 +110,7 @@ void Task::take_orders() noexcept {
   if (orders->resets != resets_seen_) {
     resets_seen_ = orders->resets;
     tripped_ = false;
+    client_was_lost_.store(false, std::memory_order_relaxed);
     status_.state = TaskState::running;
     watchdog_ = Watchdog(settings_.watchdog);
     program_->reset();
@@ -115,6 +123,10 @@ void Task::take_orders() noexcept {
 
 Fault Task::read_inputs() noexcept {
   Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(inputs_);
+  if (fault == Fault::none &&
+      (client_is_lost_.load(std::memory_order_relaxed) || client_was_lost_.load(std::memory_order_relaxed))) {
+    fault = Fault::lost_client;
+  }
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
     // A number that is none would stay in the program's state for ever.

@@ -32,6 +32,8 @@ struct TaskSettings {
   std::vector<OutputSafety> outputs{};
   std::uint64_t retain_every = 1000;           ///< cycles
   std::int64_t longest_stop = 10'000'000'000;  ///< for the way to the safe values at the end
+  /// After a lost client the outputs stay safe until task.reset, not only until it is back.
+  bool reset_after_lost_client = false;
 };
 
 /// Each may be null.
@@ -52,6 +54,8 @@ class Task final : private CycleBody {
   LoopEnd run(Clock& clock, const std::atomic<bool>& stop);
 
   [[nodiscard]] TaskDoor& door() noexcept { return door_; }
+  /// From a server's thread: the client that has to be heard is lost, or is back. Counts from the next cycle on.
+  void client_lost(bool lost) noexcept;
   /// Not while it runs; then, points() of the door say the same.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
   [[nodiscard]] Fault fault() const noexcept { return status_.fault; }
@@ -85,6 +89,8 @@ class Task final : private CycleBody {
   std::vector<std::uint64_t> ages_;
   std::vector<double> parameters_;
   std::uint64_t resets_seen_ = 0;
+  std::atomic<bool> client_is_lost_{false};
+  std::atomic<bool> client_was_lost_{false};  ///< and no reset came since; only where one is asked for
   bool tripped_ = false;
   bool guard_took_over_ = false;
 };

@@ -145,6 +145,19 @@ TEST(RunConfig, CollectsErrorsInTheOrderOfTheFile) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[modbus]\nallow = [1]\n"), "804@4:9 ");
 }
 
+TEST(RunConfig, AHeartbeatOfWritesNeedsWrites) {
+  const std::string start = "[outputs.Y]\nsafe = 0.0\n[modbus]\nheartbeat_time = \"250ms\"\nown_writes = true\n";
+  const auto config = parse_run_config("RUN.toml", start + "heartbeat = \"write\"\nafter_loss = \"reset\"\n", plant());
+  EXPECT_EQ(config.modbus->heartbeat.mode, modbus::HeartbeatMode::write_telegram);
+  EXPECT_EQ(config.modbus->heartbeat.time, std::chrono::milliseconds(250));
+  EXPECT_TRUE(config.modbus->heartbeat.own_writes);
+  EXPECT_TRUE(config.task.reset_after_lost_client);
+  EXPECT_FALSE(parse_run_config("RUN.toml", start, plant()).task.reset_after_lost_client);
+  EXPECT_EQ(errors_of(start + "read_only = true\nheartbeat = \"any\"\n"), "");
+  EXPECT_EQ(errors_of(start + "read_only = true\nheartbeat = \"write\"\n"), "804@7:13 ");
+  EXPECT_EQ(errors_of(start + "read_only = true\nafter_loss = \"reset\"\n"), "804@7:14 ");
+}
+
 TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[outputs.y]\nsafe = 1\n"), "802@3:10 ");
 }

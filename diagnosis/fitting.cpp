@@ -112,7 +112,7 @@ void finish(const Task& task, Explanation& one, bool thoroughly) {
   if (own.has(Role::Gap)) {
     scan(model, one.fit, first, count);
   }
-  one.fit = fit(model, one.fit.x, {.iterations = 20});
+  one.fit = fit(model, one.fit.x, {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5});
   if (own.has(Role::Gap)) {
     pattern_search(model, one.fit, 0, first + count);
   } else if (thoroughly) {

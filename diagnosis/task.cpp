@@ -13,6 +13,8 @@ namespace hysteron::diagnosis {
 namespace {
 
 constexpr double prior_share = 0.3;
+/// A tuning that ran into a bound has bent the parameter to make up for something else: it says less of its value.
+constexpr double at_bound = 5.0;
 
 bool starts_something(const Field& field) {
   return field.preset == 0.0 && field.name.ends_with("0") && field.unit != "1";
@@ -54,6 +56,10 @@ Task task_of(const DiagnosisInput& input) {
       unknown.typical = setting.scale->value;
     }
     unknown.start = std::clamp(unknown.start, unknown.lower, unknown.upper);
+    const double margin = 1e-3 * std::abs(unknown.start);
+    if (unknown.start - unknown.lower <= margin || unknown.upper - unknown.start <= margin) {
+      unknown.deviation *= at_bound;
+    }
     task.known.push_back(std::move(unknown));
   }
   for (const Parameter& parameter : graph.parameters) {

@@ -81,6 +81,16 @@ constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
 
+/// What a candidate gains; no starts where the diagram refuses it: it is not the user's mistake.
+template <class Screen>
+Screened unless_refused(const Screen& screen) {
+  try {
+    return screen();
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 class Searcher {
  public:
   Searcher(const Task& task, const std::string& top, double floor_cost, const SearchOptions& options)
@@ -183,8 +193,10 @@ class Searcher {
       }
       grids[i] =
           grids_of(candidates[i], signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);
-      list[i] =
-          screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), from.fit.x, background, 3);
+      list[i] = unless_refused([&] {
+        return screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), from.fit.x, background,
+                        3);
+      });
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
@@ -244,8 +256,10 @@ class Searcher {
     std::vector<Screened> others(list.size());
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
       if (candidates[i].own().has(Role::Gap) && !grids[i].parameters.empty()) {
-        others[i] = screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
-                             background, 2);
+        others[i] = unless_refused([&] {
+          return screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
+                          background, 2);
+        });
       }
     });
     const std::vector<std::size_t> front = front_of(others, candidates, 0);

@@ -158,6 +158,10 @@ int end_of_filtered_run(const std::string& folder, bool with_a_forbidden_call) {
             }
             if (cycle == warm_up + cycles - 2) {
               finished.store(true);
+              while (finished.load()) {
+                // Until the process ends: the end of the run needs other calls, and may come before the process is
+                // asked.
+              }
             }
           },
           false);

@@ -43,12 +43,16 @@ inline KillResult kill_while_retaining(const std::filesystem::path& folder, std:
     }
   }
   (void)close(pipe_ends[1]);
+  // From the first slot on, so that a slow machine kills no child that has not begun.
+  KillResult result;
+  std::uint64_t number = 0;
+  if (read(pipe_ends[0], &number, 8) == 8) {
+    result.confirmed = number;
+  }
   const timespec wait{.tv_sec = 0, .tv_nsec = static_cast<long>(after)};
   (void)nanosleep(&wait, nullptr);
   (void)kill(child, SIGKILL);
   (void)waitpid(child, nullptr, 0);
-  KillResult result;
-  std::uint64_t number = 0;
   while (read(pipe_ends[0], &number, 8) == 8) {
     result.confirmed = number;
   }

@@ -12,10 +12,10 @@
 #include <tuple>
 #include <utility>
 
-#include "codegen/parameters/toml_text.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/text_file.hpp"
+#include "support/toml_text.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -25,6 +25,8 @@ constexpr std::array<std::string_view, 12> case_keys{"name",   "block",  "params
 /// As many steps as a day has at 1 ms; a mistyped number would fill the memory.
 constexpr std::int64_t most_steps = 86'400'000;
 constexpr double float32_relative = 1e-5;
+constexpr TomlKind test_file{error::test_file_syntax, error::test_file_syntax,
+                             "a case as [[case]] and its settings as steps = 10"};
 
 /// A step as a key: 0, 5, 100.
 std::optional<std::size_t> step_of(std::string_view key) {
@@ -32,19 +34,6 @@ std::optional<std::size_t> step_of(std::string_view key) {
   const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), step);
   const bool whole = problem == std::errc{} && end == key.data() + key.size();
   return whole && step < static_cast<std::size_t>(most_steps) ? std::optional(step) : std::nullopt;
-}
-
-/// A syntax error is the same as in a parameter file, the advice is not.
-InputError renumbered(const Diagnostics& found) {
-  Diagnostics result;
-  for (Diagnostic one : found.all()) {
-    one.number = error::test_file_syntax;
-    if (one.mend.find("[parameters") != std::string::npos) {
-      one.mend = "write a case as [[case]] and its settings as steps = 10; toml.io has the rules.";
-    }
-    result.add(std::move(one));
-  }
-  return InputError(std::move(result));
 }
 
 /// In the order of the file; the library gives keys in that of their names.
@@ -60,17 +49,11 @@ Diagnostics sorted(const Diagnostics& found) {
   return result;
 }
 
-toml::table parsed(const std::string& file, std::string_view text) {
-  try {
-    return parameters::parse_toml(file, text);
-  } catch (const InputError& refused) {
-    throw renumbered(refused.diagnostics());
-  }
-}
-
 class Reader {
  public:
-  Reader(const std::string& file, std::string_view text) : root_(parsed(file, text)) { result_.path = file; }
+  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text, test_file)) {
+    result_.path = file;
+  }
 
   TestFile read() {
     for (const auto& [key, node] : root_) {
@@ -98,8 +81,8 @@ class Reader {
   }
 
  private:
-  [[nodiscard]] Place at(const toml::node& node) const { return parameters::place_of(result_.path, node.source()); }
-  [[nodiscard]] Place at(const toml::key& key) const { return parameters::place_of(result_.path, key.source()); }
+  [[nodiscard]] Place at(const toml::node& node) const { return place_of(result_.path, node.source()); }
+  [[nodiscard]] Place at(const toml::key& key) const { return place_of(result_.path, key.source()); }
 
   void wrong(const toml::node& node, std::string_view what, std::string_view wanted, std::string_view example) {
     diagnostics_.error(error::wrong_test_value, at(node), fmt::format("{} must be {}.", what, wanted),

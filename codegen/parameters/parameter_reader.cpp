@@ -11,11 +11,11 @@
 
 #include "codegen/parameters/parameter_file.hpp"
 #include "codegen/parameters/toml_comments.hpp"
-#include "codegen/parameters/toml_text.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/text_file.hpp"
+#include "support/toml_text.hpp"
 
 namespace hysteron::parameters {
 namespace {
@@ -53,6 +53,9 @@ std::string_view kind_of(const toml::node& node) {
   }
 }
 
+constexpr TomlKind parameter_file{error::parameter_file_syntax, error::duplicate_key,
+                                  "a table as [parameters.INV] and a value as C1 = 0.05"};
+
 template <class Item>
 void sort_by_place(std::vector<Item>& items) {
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
@@ -62,7 +65,7 @@ void sort_by_place(std::vector<Item>& items) {
 
 class Reader {
  public:
-  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text)) {
+  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text, parameter_file)) {
     result_.file = file;
     result_.comments = comments_of(text);
   }

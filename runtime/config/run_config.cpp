@@ -20,6 +20,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t many = 1'000'000'000'000;
+constexpr TomlKind run_file{error::run_file_syntax, error::run_key_twice,
+                            "a table as [outputs.U] and a value as safe = 0.0"};
 
 using Keys = std::string_view;
 constexpr std::array<Keys, 8> top_keys{"task", "watchdog", "outputs", "inputs", "devices", "retain", "trace", "modbus"};
@@ -56,7 +58,7 @@ std::optional<std::size_t> index_of(std::string_view name, const std::vector<Pro
 class Reader {
  public:
   Reader(const std::string& file, std::string_view text, const ProgramShape& shape)
-      : file_(file), shape_(shape), root_(parse_run_toml(file, text)) {}
+      : file_(file), shape_(shape), root_(parse_toml(file, text, run_file)) {}
 
   RunConfig read() {
     const TomlReader top(file_, "a run file", root_, top_keys, found_);

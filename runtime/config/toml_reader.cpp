@@ -12,9 +12,6 @@
 namespace hysteron::runtime {
 namespace {
 
-/// Dots in one key. The library frees nested tables by recursion; a key of many dots would overrun the stack.
-constexpr int most_dots = 32;
-
 std::string listed(std::span<const std::string_view> words) {
   std::string text;
   for (const std::string_view word : words) {
@@ -28,37 +25,6 @@ std::string duration_text(std::int64_t nanoseconds) {
 }
 
 }  // namespace
-
-Place place_of(const std::string& file, const toml::source_region& region) {
-  const bool one_line = region.end.line == region.begin.line && region.end.column > region.begin.column;
-  return {.file = file,
-          .line = region.begin.line,
-          .column = region.begin.column,
-          .length = one_line ? region.end.column - region.begin.column : 1};
-}
-
-toml::table parse_run_toml(const std::string& file, std::string_view text) {
-  int dots = 0;
-  for (const char c : text) {
-    dots = c == '.' ? dots + 1 : std::string_view("=,[]{}\n").find(c) != std::string_view::npos ? 0 : dots;
-    if (dots > most_dots) {
-      throw InputError(error::run_file_syntax, {.file = file}, "There are more than 32 dots in a row.",
-                       "shorten the key or the comment.");
-    }
-  }
-  try {
-    return toml::parse(text, std::string_view(file));
-  } catch (const toml::parse_error& said) {
-    const std::string description(said.description());
-    if (description.find("cannot redefine") != std::string::npos) {
-      const Place line{.file = file, .line = said.source().begin.line};
-      throw InputError(error::run_key_twice, line, "This key or table has been given before.",
-                       "keep one of the two; a table may be opened only once.");
-    }
-    throw InputError(error::run_file_syntax, place_of(file, said.source()), "This is no TOML: " + description + ".",
-                     "write a table as [outputs.U] and a value as safe = 0.0; toml.io has the rules.");
-  }
-}
 
 TomlReader::TomlReader(const std::string& file, std::string name, const toml::table& table,
                        std::span<const std::string_view> known, Diagnostics& diagnostics)

@@ -2,8 +2,6 @@
 // is an error with its place. Only the files of this folder see the library.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,13 +10,9 @@
 #include <vector>
 
 #include "support/diagnostic.hpp"
+#include "support/toml_text.hpp"
 
 namespace hysteron::runtime {
-
-/// Throws InputError HY801 or HY802.
-[[nodiscard]] toml::table parse_run_toml(const std::string& file, std::string_view text);
-
-[[nodiscard]] Place place_of(const std::string& file, const toml::source_region& region);
 
 /// One table of the file. What is asked for and not there leaves the value as it was.
 class TomlReader {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <new>
 #include <set>
 #include <string>
 #include <string_view>
@@ -17,38 +16,7 @@
 #include "tests/blocks/explicit_double.hpp"
 #include "tests/blocks/random_io.hpp"
 #include "tests/blocks/stepper.hpp"
-
-namespace {
-// Counts what is allocated in this program, so that a step can be shown to allocate nothing.
-std::size_t allocations = 0;
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return allocate(size);
-}
-void* operator new[](std::size_t size) {
-  return allocate(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
+#include "tests/support/counted_new.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -211,15 +179,15 @@ TEST(Contract, AStepAllocatesNothing) {
     RandomIo random(1, 1e-3);
     Stepper<B> block(1e-3, random.make<DoubleParams<B>>());
     const auto in = random.make<DoubleIn<B>>();
-    const std::size_t before = allocations;
+    const std::size_t before = hysteron::test::allocations;
     block.reset();
     block(in);
     block(in);
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(hysteron::test::allocations, before);
   });
-  const std::size_t before = allocations;
+  const std::size_t before = hysteron::test::allocations;
   delete new int(1);
-  EXPECT_EQ(allocations, before + 1) << "the counter counts";
+  EXPECT_EQ(hysteron::test::allocations, before + 1) << "the counter counts";
 }
 
 template <class B, class S>

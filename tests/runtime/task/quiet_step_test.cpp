@@ -19,45 +19,13 @@
 #include <cstddef>
 #include <cstdlib>
 #include <functional>
-#include <new>
 #include <thread>
 
 #include "runtime/task/scheduling.hpp"
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/counted_new.hpp"
 #include "tests/support/scratch_folder.hpp"
-
-namespace {
-thread_local std::uint64_t allocations = 0;
-
-/// Every new of this program comes here.
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
 
 namespace hysteron::runtime {
 namespace {
@@ -108,10 +76,10 @@ TEST(QuietStep, AllocatesNothingAndMeetsNoMissingPage) {
       [&](std::uint64_t cycle) {
         if (cycle == warm_up) {
           (void)getrusage(RUSAGE_THREAD, &before);
-          allocated = allocations;
+          allocated = hysteron::test::allocations;
         } else if (cycle == warm_up + cycles - 1) {
           (void)getrusage(RUSAGE_THREAD, &after);
-          allocated = allocations - allocated;
+          allocated = hysteron::test::allocations - allocated;
         }
       },
       true);
@@ -122,9 +90,9 @@ TEST(QuietStep, AllocatesNothingAndMeetsNoMissingPage) {
 }
 
 TEST(QuietStep, TheAllocatorIsWatched) {
-  const std::uint64_t before = allocations;
+  const std::uint64_t before = hysteron::test::allocations;
   delete new volatile int(3);
-  EXPECT_EQ(allocations, before + 1);
+  EXPECT_EQ(hysteron::test::allocations, before + 1);
 }
 
 /// From here on, the calling thread may sleep and ask for the time; anything else kills the process.

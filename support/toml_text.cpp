@@ -1,21 +1,20 @@
-#include "codegen/parameters/toml_text.hpp"
+#include "support/toml_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "support/errors.hpp"
 #include "support/render.hpp"
 #include "support/utf8.hpp"
 
-namespace hysteron::parameters {
+namespace hysteron {
 namespace {
 
 /// Dots in one key. The library frees nested tables by recursion, so a key of 10^5 dots would overrun the stack.
 constexpr int most_dots = 32;
 
-void refuse_deep_keys(const std::string& file, std::string_view text) {
+void refuse_deep_keys(const std::string& file, std::string_view text, int number) {
   Place place{.file = file, .line = 1, .column = 1};
   int dots = 0;
   for (const char c : text) {
@@ -25,9 +24,8 @@ void refuse_deep_keys(const std::string& file, std::string_view text) {
       dots = 0;
     }
     if (dots > most_dots) {
-      throw InputError(error::parameter_file_syntax, place,
-                       fmt::format("There are more than {} dots in a row.", most_dots),
-                       "nest instances less deeply, or shorten the comment.");
+      throw InputError(number, place, fmt::format("There are more than {} dots in a row.", most_dots),
+                       "nest less deeply, or shorten the comment.");
     }
     place.line += c == '\n' ? 1 : 0;
     place.column = c == '\n' ? 1 : place.column + ((static_cast<unsigned char>(c) & 0xC0U) != 0x80 ? 1 : 0);
@@ -54,7 +52,8 @@ constexpr std::array known_mistakes{
     KnownMistake{"saw ':'", "write an equals sign between name and value: C1 = 0.05."},
 };
 
-InputError translated(const std::string& file, std::string_view text, const toml::parse_error& said) {
+InputError translated(const std::string& file, std::string_view text, const TomlKind& kind,
+                      const toml::parse_error& said) {
   Place place = place_of(file, said.source());
   const std::string description = printable(said.description());
   if (description.find("cannot redefine") != std::string::npos) {
@@ -66,7 +65,7 @@ InputError translated(const std::string& file, std::string_view text, const toml
       place.column = static_cast<std::uint32_t>(begin) + 1;
       place.length = static_cast<std::uint32_t>(std::max<std::size_t>(1, character_count(line->substr(begin))));
     }
-    return {error::duplicate_key, place, "This key or table has been given before.",
+    return {kind.key_twice, place, "This key or table has been given before.",
             "keep one of the two; a table may be opened only once."};
   }
   const auto colon = description.find(": ");
@@ -77,10 +76,9 @@ InputError translated(const std::string& file, std::string_view text, const toml
   const auto* const known =
       std::find_if(known_mistakes.begin(), known_mistakes.end(),
                    [&](const KnownMistake& mistake) { return description.find(mistake.said) != std::string::npos; });
-  return {error::parameter_file_syntax, place, fmt::format("This is no TOML: {}.", reason),
-          known != known_mistakes.end()
-              ? std::string(known->mend)
-              : "write a table as [parameters.INV] and a value as C1 = 0.05; toml.io has the rules."};
+  return {kind.no_toml, place, fmt::format("This is no TOML: {}.", reason),
+          known != known_mistakes.end() ? std::string(known->mend)
+                                        : fmt::format("write {}; toml.io has the rules.", kind.looks)};
 }
 
 }  // namespace
@@ -93,13 +91,13 @@ Place place_of(const std::string& file, const toml::source_region& region) {
           .length = one_line ? region.end.column - region.begin.column : 1};
 }
 
-toml::table parse_toml(const std::string& file, std::string_view text) {
-  refuse_deep_keys(file, text);
+toml::table parse_toml(const std::string& file, std::string_view text, const TomlKind& kind) {
+  refuse_deep_keys(file, text, kind.no_toml);
   try {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& said) {
-    throw translated(file, text, said);
+    throw translated(file, text, kind, said);
   }
 }
 
-}  // namespace hysteron::parameters
+}  // namespace hysteron

@@ -1,0 +1,39 @@
+// Counts what the calling thread of a test program allocates. It replaces operator new, so that one source of a program
+// includes it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+namespace hysteron::test {
+inline thread_local std::uint64_t allocations = 0;
+
+inline void* counted_new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+}  // namespace hysteron::test
+
+void* operator new(std::size_t size) {
+  return hysteron::test::counted_new(size);
+}
+void* operator new[](std::size_t size) {
+  return hysteron::test::counted_new(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}

@@ -137,7 +137,7 @@ TEST(RunConfig, CollectsErrorsInTheOrderOfTheFile) {
             "804@2:8 803@3:1 805@5:12 804@6:10 803@7:2 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = inf\n"), "805@2:8 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\nslew = 0.0\n"), "805@3:8 ");
-  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\nsafe = 1\n"), "802@3:0 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\nsafe = 1\n"), "802@3:1 ");
   EXPECT_EQ(errors_of("outputs = 3\n"), "806@0:0 804@1:11 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\non_fault = \"ramp\"\n"), "808@3:12 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[inputs.X]\nregister = 3\n"), "810@4:12 ");

@@ -13,6 +13,7 @@ from trials.generator import excitation, noise
 from trials.generator.grid import Grid
 from trials.generator.piezo import Piezo
 from trials.generator.plant import Injection, Plant, numbers
+from trials.generator.search import find_size
 from trials.generator.servo import ClosedLoop, Servo
 from trials.generator.tanks import Tanks
 from trials.generator.thermal import Thermal
@@ -182,24 +183,12 @@ class Builder:
 
     def size(self, one: Injection, wanted: float) -> float:
         """Searches the size that gives the wanted ratio at the present noise; returns the ratio reached."""
-        least, most = np.log(one.realisation.smallest), np.log(one.realisation.largest)
-        low = high = None  # sizes whose ratios lie below and above
-        at, reached, before = np.log(one.size), 0.0, None
-        for _ in range(8):
-            one.size = float(np.exp(at))
-            reached = max(self.ratio(self.change([one]), self.sigma), 1e-12)
-            miss = float(np.log(wanted / reached))
-            if abs(miss) < 0.4 or (at >= most and miss > 0.0) or (at <= least and miss < 0.0):
-                break
-            low, high = ((at, miss), high) if miss > 0.0 else (low, (at, miss))
-            if low and high:
-                share = np.clip(low[1] / (low[1] - high[1]), 0.2, 0.8)
-                step = low[0] + share * (high[0] - low[0]) - at
-            else:
-                slope = 1.0 if before is None else float(np.clip((before[1] - miss) / (at - before[0]), 0.4, 3.0))
-                step = float(np.clip(miss / slope, -4.0, 4.0))
-            before = (at, miss)
-            at = float(np.clip(at + step, least, most))
+
+        def reached_by(size: float) -> float:
+            one.size = size
+            return self.ratio(self.change([one]), self.sigma)
+
+        one.size, reached = find_size(reached_by, wanted, one.size, one.realisation.smallest, one.realisation.largest)
         return reached
 
     def inject(self) -> list[Injection]:

@@ -26,6 +26,15 @@ def resolve(program: str) -> str:
     return str(Path(found).resolve())
 
 
+def read_json(path: Path) -> dict | None:
+    """What stands in a file, if it can be read; a broken verdict is no verdict."""
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
 def run_case(
     case: Path, out: Path, program: str, options: list[str], timeout: float, user: str | None, keep: bool = False
 ) -> bool:

@@ -17,8 +17,9 @@ struct SourceText {
   [[nodiscard]] bool is_header() const { return path.ends_with(".hpp"); }
 };
 
-/// Every .hpp and .cpp below the folders, sorted by path.
-inline std::vector<SourceText> source_files(const std::vector<std::string>& folders) {
+/// Every file of C++, or of other languages by their extensions, below the folders, sorted by path.
+inline std::vector<SourceText> source_files(const std::vector<std::string>& folders,
+                                            const std::vector<std::string>& extensions = {".hpp", ".cpp"}) {
   const std::filesystem::path root = HYSTERON_SOURCE_DIR;
   std::vector<SourceText> files;
   for (const auto& folder : folders) {
@@ -26,8 +27,8 @@ inline std::vector<SourceText> source_files(const std::vector<std::string>& fold
       continue;
     }
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-      const auto extension = entry.path().extension();
-      if (!entry.is_regular_file() || (extension != ".hpp" && extension != ".cpp")) {
+      const std::string extension = entry.path().extension().string();
+      if (!entry.is_regular_file() || std::ranges::find(extensions, extension) == extensions.end()) {
         continue;
       }
       SourceText text{.path = entry.path().lexically_relative(root).generic_string(), .lines = {}};

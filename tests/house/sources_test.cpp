@@ -42,7 +42,8 @@ constexpr std::array<Allowed, 7> allowed_words{{
 
 std::vector<SourceText> all_sources() {
   return source_files({"bench", "blocks", "codegen", "diagnosis", "docs", "examples", "records", "runtime", "support",
-                       "tests", "tool", "tuning"});
+                       "tests", "tool", "trials", "tuning"},
+                      {".hpp", ".cpp", ".py"});
 }
 
 TEST(Sources, AreShortEnoughToBeRead) {

@@ -108,8 +108,8 @@ def verdict(record: Record, answer: Answer, seconds: float) -> dict:
     }  # fmt: skip
 
 
-def main(title: str, solve: Callable[[Record], Answer]) -> int:
-    """The command line of a peer: that of `hysteron diagnose`."""
+def arguments(title: str) -> argparse.Namespace:
+    """The command line of `hysteron diagnose`, and where the product is."""
     parser = argparse.ArgumentParser(description=title)
     parser.add_argument("command", choices=["diagnose"])
     parser.add_argument("diagram", type=Path)
@@ -117,11 +117,19 @@ def main(title: str, solve: Callable[[Record], Answer]) -> int:
     parser.add_argument("--params", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--hysteron", default="hysteron", help="the product, for its run of the nominal model")
-    given = parser.parse_args()
+    return parser.parse_args()
+
+
+def leave(out: Path, result: dict) -> int:
+    """Writes the verdict. Returns the exit code."""
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "verdict.json").write_text(json.dumps(result, indent=1))
+    return 0
+
+
+def main(title: str, solve: Callable[[Record], Answer]) -> int:
+    """A peer that works on the residual alone."""
+    given = arguments(title)
     started = time.monotonic()
     record = load(given.diagram, given.log[0], given.params, given.hysteron)
-    answer = solve(record)
-    given.out.mkdir(parents=True, exist_ok=True)
-    result = verdict(record, answer, time.monotonic() - started)
-    (given.out / "verdict.json").write_text(json.dumps(result, indent=1))
-    return 0
+    return leave(given.out, verdict(record, solve(record), time.monotonic() - started))

@@ -1,0 +1,1 @@
+"""The trial on measured records: effects injected by software, blocks taken out of models, published causes withheld."""

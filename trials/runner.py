@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -24,15 +25,6 @@ def resolve(program: str) -> str:
     if found is None:
         raise SystemExit(f"{program}: no such program; build it, or name it with --product")
     return str(Path(found).resolve())
-
-
-def read_json(path: Path) -> dict | None:
-    """What stands in a file, if it can be read; a broken verdict is no verdict."""
-    try:
-        found = json.loads(path.read_text())
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) else None
 
 
 def run_case(
@@ -78,12 +70,27 @@ def run_case(
         return found
 
 
+def fingerprint(program: str, options: list[str]) -> str:
+    """SHA-256 of a diagnoser: its program, its options, and the programs that these name."""
+    digest = hashlib.sha256(Path(program).read_bytes())
+    for option in options:
+        digest.update(option.encode())
+        named = Path(option.partition("=")[2])
+        if named.is_file():
+            digest.update(named.read_bytes())
+    return digest.hexdigest()
+
+
 def run_set(
     cases: Path, out: Path, product: str, options: list[str], jobs: int, timeout: float, user: str | None, keep: bool
 ) -> int:
     """Runs what has not been run yet. Returns the number of cases without a verdict."""
     program = resolve(product)
     out.mkdir(parents=True, exist_ok=True)
+    whose, mark = fingerprint(program, options), out / "diagnoser.sha256"
+    if mark.exists() and mark.read_text().strip() != whose:
+        raise SystemExit(f"The verdicts in {out} are of another {Path(program).name}, or of other options; remove the folder, or name another with --out")
+    mark.write_text(whose + "\n")
     wanted = sorted(path for path in cases.iterdir() if (path / "plant.st").exists())
     missing = [case for case in wanted if not (out / case.name / "run.json").exists()]
     progress = Progress("run", len(wanted), len(wanted) - len(missing))

@@ -15,7 +15,7 @@ from trials.generator.effects import Context
 from trials.measured import commands
 from trials.measured.bases import data_folder
 from trials.measured.make import jobs, make_set
-from trials.measured.results import judged, mark, whole
+from trials.measured.results import mark, whole
 from trials.scoring.judge import judge
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,7 +67,7 @@ class Worth(unittest.TestCase):
                 self.assertEqual(mark(judge("0", LABEL, answer, {})), wanted)
 
     def test_the_table_counts_a_missing_verdict_as_no_name(self) -> None:
-        printed = whole(judged({"cases": {"0": LABEL}}, {"0": (None, {})}), "head")
+        printed = whole([judge("0", LABEL, None, {})], "head")
         self.assertIn("missing", printed)
         self.assertRegex(printed, r"published cause named first .*0 of 1")
 

@@ -43,6 +43,8 @@ class Specification:
     substeps: int = 20
     noise: str = ""
     """Kind of noise, where it is prescribed."""
+    length: float = 1.0
+    """Share of the plant's usual number of samples."""
 
 
 @dataclass
@@ -64,7 +66,7 @@ PLANS: dict[str, list[tuple[excitation.Section, float]]] = {
 }
 
 
-def grid_of(plant: str, rng: np.random.Generator, substeps: int) -> Grid:
+def grid_of(plant: str, rng: np.random.Generator, substeps: int, length: float) -> Grid:
     """Sample time and length that suit the plant."""
     ts, samples = {
         "piezo": (float(rng.choice((0.001, 0.002))), 6000),
@@ -72,7 +74,7 @@ def grid_of(plant: str, rng: np.random.Generator, substeps: int) -> Grid:
         "tanks": (float(rng.choice((0.5, 1.0))), 5000),
         "closed_loop": (0.001, 3500),
     }.get(plant, (0.001, 4500))
-    return Grid(ts, samples, substeps)
+    return Grid(ts, round(length * samples), substeps)
 
 
 def make_plant(name: str, grid: Grid, rng: np.random.Generator, drive: np.ndarray, other: np.ndarray | None) -> Plant:
@@ -134,7 +136,7 @@ class Builder:
         self.specification = specification
         self.rng = np.random.default_rng(specification.seed)
         rng = self.rng
-        self.grid = grid_of(specification.plant, rng, specification.substeps)
+        self.grid = grid_of(specification.plant, rng, specification.substeps, specification.length)
         self.plan = PLANS[specification.plan]
         drive = excitation.join(rng, self.grid, self.plan)
         needs_other = any(effect == "cross_coupling" for effect, _ in specification.effects)

@@ -33,9 +33,9 @@ def make_one(specification: Specification, folder: str, label_file: str) -> None
     os.replace(label_file + ".part", label_file)
 
 
-def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int, quiet: bool = False) -> int:
+def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int, quiet: bool = False, **more: float) -> int:
     """Makes what is missing of a set, then joins the labels into the key. Returns the number of cases."""
-    specifications = plan(seed, sizes)
+    specifications = plan(seed, sizes, **more)
     names = [case_name(seed, number) for number in range(len(specifications))]
     labels = key.with_suffix(".labels")
     labels.mkdir(parents=True, exist_ok=True, mode=0o700)

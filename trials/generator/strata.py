@@ -88,13 +88,13 @@ def seed_of(text: str) -> int:
     return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") >> 1
 
 
-def plan(seed: str, sizes: dict[str, int]) -> list[Specification]:
+def plan(seed: str, sizes: dict[str, int], **more: float) -> list[Specification]:
     """All specifications of a set, in random order."""
     rng = np.random.default_rng(seed_of(seed))
     cases: list[Specification] = []
 
-    def add(stratum: str, plant: str, effects: tuple[tuple[str, str], ...], ratio: float, **more) -> None:
-        cases.append(Specification(stratum, plant, effects, ratio, int(rng.integers(2**62)), **more))
+    def add(stratum: str, plant: str, effects: tuple[tuple[str, str], ...], ratio: float, **others) -> None:
+        cases.append(Specification(stratum, plant, effects, ratio, int(rng.integers(2**62)), **others, **more))
 
     for stratum, cousin in (("single", False), ("cousin", True)):
         # Effects take turns, so that effects with many realisations or plants count no more than others.

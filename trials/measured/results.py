@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from trials.scoring.judge import NAMES, Judgement, judge
+from trials.scoring.judge import NAMES, Judgement
 from trials.scoring.statistics import Share, share
 
 SURE = 0.9
 """A confidence from which on a wrong name is a false one."""
-
-
-def judged(key: dict[str, Any], verdicts: dict[str, tuple[dict | None, dict]]) -> list[Judgement]:
-    """Judgements of all cases, in the order of the key."""
-    return [judge(name, label, *verdicts[name]) for name, label in key["cases"].items()]
 
 
 def mark(case: Judgement) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 ACCUSES = frozenset({"named", "group", "partial", "unknown"})
@@ -147,3 +149,20 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         realisations=tuple(e["realisation"] for e in label["effects"]),
         label=label,
     )
+
+
+def read_json(path: Path) -> dict | None:
+    """What stands in a file, if it can be read; a broken verdict is no verdict."""
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def judged(labels: dict[str, dict[str, Any]], verdicts: Path) -> list[Judgement]:
+    """A diagnoser's verdicts, as trials/run has left them, against the labels of a key."""
+    return [
+        judge(name, label, read_json(verdicts / name / "verdict.json"), read_json(verdicts / name / "run.json") or {})
+        for name, label in labels.items()
+    ]

@@ -7,6 +7,10 @@
 // with + upwards and − downwards, and m the middle of the branch so far, (u_i + u)/2, from the origin. Since m is the
 // same for the way up and the way down, a loop that closes without b closes with it. B is 0 at the branching point and
 // again far from it, and highest at p = DEPTH: Y(p), whose slope is monotone, cannot have that shape.
+// With Duhem's form of the bias, y' = f(u)·M(p)·u', f = 1 + h·(u − origin), the slope follows the input itself, and
+// the rise has in addition
+//   h·((u_i − origin)·(C1·d + G(d)) + d²·(C1/2 + C2·p^C3/(C3+2)))
+// which differs on the way up and the way down: such a loop wanders by the difference in each cycle.
 // The growth is faster by the share R·log10(1 + |u'|/r) of what it grows within a sample.
 #pragma once
 
@@ -19,6 +23,7 @@ template <class S>
 struct LoopEffects {
   S asymmetry;
   S bias;    ///< b, over the unit of the input
+  S duhem;   ///< h, over the unit of the input
   S origin;  ///< where the bias is 0
   S shape;
   S depth;
@@ -32,6 +37,8 @@ struct RichParams : Enriched {
   S RATE_REFERENCE;
   S BIAS;
   S BIAS_REFERENCE;
+  S DUHEM;
+  S DUHEM_REFERENCE;
   S SHAPE;
   S SHAPE_DEPTH;
   using Self = RichParams;
@@ -69,6 +76,17 @@ struct RichParams : Enriched {
                 .above(0.0)
                 .otherwise(1.0)
                 .means("distance at which BIAS is that share"),
+            HY_FIELD(DUHEM)
+                .in("1")
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("bias_dependence")
+                .means(joined<"share by which the slope is larger where the input is DUHEM_REFERENCE above ", origin>),
+            HY_FIELD(DUHEM_REFERENCE)
+                .in(distance_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("distance at which DUHEM is that share"),
             HY_FIELD(SHAPE)
                 .in("1")
                 .within(-0.5, 0.5)
@@ -86,6 +104,7 @@ struct RichParams : Enriched {
   [[nodiscard]] LoopEffects<S> effects(const S& origin_of_bias) const {
     return {.asymmetry = ASYMMETRY,
             .bias = BIAS / BIAS_REFERENCE,
+            .duhem = DUHEM / DUHEM_REFERENCE,
             .origin = origin_of_bias,
             .shape = SHAPE,
             .depth = SHAPE_DEPTH};
@@ -96,9 +115,9 @@ struct RichParams : Enriched {
 template <class S>
 struct RichRise {
   S plain;         ///< C1·d + G(d), as the paper has it, one branch from its start
-  S excess;        ///< what asymmetry, bias and shape add to that
+  S excess;        ///< what asymmetry, bias of either form and shape add to that
   S growth;        ///< the part that grows with rate
-  S slope;         ///< what asymmetry, bias and shape add to M
+  S slope;         ///< what they add to M
   S growth_slope;  ///< the derivative of `growth`
 };
 
@@ -118,10 +137,14 @@ RichRise<S> rich_rise(const LoopConstants<S>& loop, const LoopEffects<S>& effect
   const S m_skewed = m_growth * (S(1.0) + skew);
   const S whole = loop.c1 * distance + skewed + bend;
   const S half = S(0.5) * effects.bias;
+  const S from = start - effects.origin;
+  const S wander = effects.duhem * (from * (loop.c1 * distance + growth) +
+                                    distance * distance * (S(0.5) * loop.c1 + m_growth / (loop.c3 + S(2.0))));
   return {.plain = distance * slopes.chord,
-          .excess = growth * skew + bend + whole * middle,
+          .excess = growth * skew + bend + whole * middle + wander,
           .growth = skewed * (S(1.0) + middle),
-          .slope = m_growth * skew + m_bend + (loop.c1 + m_skewed + m_bend) * middle + whole * half,
+          .slope = m_growth * skew + m_bend + (loop.c1 + m_skewed + m_bend) * middle + whole * half +
+                   effects.duhem * (from + distance) * slopes.tangent,
           .growth_slope = m_skewed * (S(1.0) + middle) + skewed * half};
 }
 

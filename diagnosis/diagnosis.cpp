@@ -14,6 +14,7 @@
 #include "diagnosis/findings.hpp"
 #include "diagnosis/glitches.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/inner_signals.hpp"
 #include "diagnosis/inverse.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/next_experiment.hpp"
@@ -28,14 +29,21 @@ namespace {
 
 /// A floor is an estimate: that of slow noise is off by a tenth. Less above it is no claim that something is unknown.
 constexpr double above_floor = 1.2;
-/// A calibrated residual of this many floors is no noise, whether or not anything predicts it.
+/// A calibrated residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
+/// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
+constexpr double far_above_fast_floor = 4.0;
+/// So many floors may be noise after all, where the floor sees its fast part alone.
+constexpr double hidden_noise = 1.5;
+/// The confidence of a verdict on a record that holds one motion only is no higher.
+constexpr double sure_of_one_motion = 0.8;
 
 using Clock = std::chrono::steady_clock;
 
 class Run {
  public:
-  Run(const DiagnosisInput& input, const DiagnosisOptions& options) : input_(input), options_(options) {}
+  Run(const DiagnosisInput& input, const DiagnosisOptions& options)
+      : input_(with_inner_signals(input, inner_)), options_(options) {}
 
   Diagnosis run() {
     const auto begun = Clock::now();
@@ -75,9 +83,10 @@ class Run {
     if (!scaled.residuals(scaled.start(), nominal_)) {
       throw InputError(error_of_start(input_));
     }
-    auto [refusals, warnings] = check_records(task_, scaled, nominal_);
-    result_.refusals = std::move(refusals);
-    result_.warnings = std::move(warnings);
+    RecordCheck checked = check_records(task_, scaled, nominal_);
+    result_.refusals = std::move(checked.refusals);
+    result_.warnings = std::move(checked.warnings);
+    one_motion_ = checked.one_motion;
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
         result_.warnings.push_back(fmt::format(
@@ -103,6 +112,7 @@ class Run {
     const Judgement judgement = judge(task_, found, floor_cost_, searching.least_share);
     const Explanation& chosen = *judgement.chosen;
     describe_gap(found.calibrated, judgement);
+    describe_cuts();
     decide(found, judgement);
     result_.edges = where(task_, found.calibrated, top, options_.threads);
     result_.maps = maps_of(task_, found.calibrated, chosen);
@@ -117,6 +127,7 @@ class Run {
 
   void describe_gap(const Explanation& calibrated, const Judgement& judgement) {
     const auto before = by_blocks(task_, nominal_);
+    const auto after = by_blocks(task_, judgement.held_out);
     double largest = -1.0;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
       const Port& port = *std::ranges::find_if(input_.program.graph.outputs, [&](const Port& one) {
@@ -128,7 +139,8 @@ class Run {
                      .calibrated = rms(calibrated.fit.residuals, output),
                      .improved = rms(judgement.chosen->fit.residuals, output),
                      .floor = floors_[output]};
-      const Closure share = closure(before[output], judgement.held_out[output], 1.0, options_.seed);
+      const double left = gap.improved / task_.scales[output];
+      const Closure share = closure(before[output], after[output], left * left, noise_range(left), options_.seed);
       gap.closed = share.closed;
       gap.closed_low = share.low;
       gap.closed_high = share.high;
@@ -140,17 +152,36 @@ class Run {
     }
   }
 
-  /// Whether something remains of the residuals, beyond the floor, that matters to the user.
+  /// Whether something remains of an output's residuals, beyond the floor, that matters to the user.
+  [[nodiscard]] bool material(const VectorXd& residuals, std::size_t output) const {
+    const double floor = floors_[output].value;
+    const double here = rms(residuals, output);
+    const double excess = std::sqrt(std::max(0.0, here * here - floor * floor));
+    return excess > std::max(0.35 * floor, options_.material);
+  }
   [[nodiscard]] bool material(const VectorXd& residuals) const {
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const double floor = floors_[output].value;
-      const double here = rms(residuals, output);
-      const double excess = std::sqrt(std::max(0.0, here * here - floor * floor));
-      if (excess > std::max(0.35 * floor, options_.material)) {
+      if (material(residuals, output)) {
         return true;
       }
     }
     return false;
+  }
+
+  /// A cut agrees where the diagram before it, with its parameters refitted to this signal alone, explains it.
+  void describe_cuts() {
+    Model model(task_, *base_.program);
+    const Index rows = model.rows() / std::ssize(task_.outputs);
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      if (std::ranges::find(inner_, task_.outputs[output]) == inner_.end()) {
+        continue;
+      }
+      VectorXd weights = VectorXd::Zero(model.rows());
+      weights.segment(static_cast<Index>(output) * rows, rows).setOnes();
+      const Fit alone = fit(model, model.start(), {.iterations = 20, .weights = &weights});
+      result_.cuts.push_back(
+          {.signal = task_.outputs[output], .agrees = std::isfinite(alone.cost) && !material(alone.residuals, output)});
+    }
   }
 
   void decide(const Search& found, const Judgement& judgement) {
@@ -164,23 +195,35 @@ class Run {
     const Discrepancy left = discrepancy_of(model, chosen.fit.residuals);
     const double size = chosen.fit.residuals.norm() / std::sqrt(static_cast<double>(chosen.fit.residuals.size()));
     const bool predictable = left.share_low > 0.02 && left.rms > 0.25 * std::min(size, 4.0);
-    const double gap = found.calibrated.fit.cost - floor_cost_;
-    const double open = gap > 0.0 ? std::clamp((chosen.fit.cost - floor_cost_) / gap, 0.0, 1.0) : 0.0;
-    result_.unknown_score = gap_left ? std::clamp(std::max(left.share, 0.0) * (0.3 + 0.7 * open), 0.0, 1.0) : 0.0;
+    predictable_ = gap_left ? std::max(left.share, 0.0) : 0.0;
+    const double open = open_share(found, chosen);
+    const double excess = std::max(0.0, 1.0 - std::pow(hidden_noise / std::max(size, hidden_noise), 2));
+    result_.unknown_score = std::sqrt(open) * excess;
 
     if (has_effect && gap_calibrated) {
-      if (gap_left && predictable && open > 0.5) {
+      const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > 5.0;
+      if (gap_left && much_left) {
         result_.verdict = Verdict::Partial;
       } else {
         result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
       }
-    } else if (gap_calibrated && size > above_floor && (predictable || size > far_above_floor)) {
+    } else if (gap_calibrated && size > above_floor && (predictable || size > far_above())) {
       result_.verdict = Verdict::Unknown;
     } else if (gap_before && calibration_matters(found.calibrated)) {
       result_.verdict = Verdict::Calibration;
     } else {
       result_.verdict = Verdict::None;
     }
+  }
+
+  [[nodiscard]] double far_above() const {
+    return result_.gap.floor.evidence == "differences" ? far_above_fast_floor : far_above_floor;
+  }
+
+  /// Of the gap that calibration leaves, what the verdict leaves open.
+  [[nodiscard]] double open_share(const Search& found, const Explanation& chosen) const {
+    const double gap = found.calibrated.fit.cost - floor_cost_;
+    return gap > 0.0 ? std::clamp((chosen.fit.cost - floor_cost_) / gap, 0.0, 1.0) : 0.0;
   }
 
   [[nodiscard]] Discrepancy discrepancy_of(const Model& model, const VectorXd& residuals) const {
@@ -210,7 +253,8 @@ class Run {
   }
 
   void describe(const Search& found, const Judgement& judgement) {
-    const Findings findings{.task = task_, .search = found, .judgement = judgement, .floor_cost = floor_cost_};
+    const Findings findings{
+        .task = task_, .search = found, .judgement = judgement, .floor_cost = floor_cost_, .predictable = predictable_};
     result_.calibration = calibration_findings(findings);
     result_.nominal = nominal_findings(task_);
     const bool named =
@@ -222,6 +266,9 @@ class Run {
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     add_glitches(chosen_edges());
+    if (one_motion_) {
+      result_.confidence = std::min(result_.confidence, sure_of_one_motion);
+    }
     for (std::string& reason : structural_reasons(result_)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
@@ -332,7 +379,8 @@ class Run {
     }
   }
 
-  const DiagnosisInput& input_;
+  std::vector<std::string> inner_{};  ///< outputs that are inner signals of the user's diagram
+  DiagnosisInput input_;
   const DiagnosisOptions& options_;
   Task task_{};
   Variant base_{};
@@ -340,6 +388,8 @@ class Run {
   std::vector<Glitches> glitches_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
+  double predictable_ = 0.0;  ///< see Findings
+  bool one_motion_ = false;   ///< see RecordCheck
   Diagnosis result_{};
 };
 

@@ -94,6 +94,12 @@ struct EdgeFinding {
   std::vector<std::string> group{};  ///< edges that the record cannot tell from it
 };
 
+/// A measured inner signal, which cuts the diagram: where it agrees with its column the gap lies behind it.
+struct CutFinding {
+  std::string signal{};
+  bool agrees = false;
+};
+
 /// Where a residual depends on something: its mean or size in bins of it.
 struct MapFinding {
   std::string over{};  ///< "amplitude", "rate", "depth", …
@@ -144,6 +150,7 @@ struct Diagnosis {
   GapFinding gap{};                ///< of the output with the largest gap over its floor
   std::vector<GapFinding> gaps{};  ///< of all outputs
   std::vector<EdgeFinding> edges{};
+  std::vector<CutFinding> cuts{};
   std::vector<MapFinding> maps{};
   std::vector<std::string> cannot_tell{};
   NextExperiment next{};

@@ -189,7 +189,8 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
 }
 
 double confidence(const Findings& findings, const Diagnosis& so_far) {
-  const double sure = 1.0 - 0.5 * so_far.unknown_score;
+  // An effect as large as the noise can hide in what depends on the machine's motion and is called noise.
+  const double no_effect = 0.95 - 0.3 * findings.predictable;
   switch (so_far.verdict) {
     case Verdict::Named:
     case Verdict::Group:
@@ -198,10 +199,10 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double strength = 1.0 - std::exp(-0.2 * std::max(0.0, findings.judgement.significance));
       const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
-      return std::clamp(first * strength * whole * sure, 0.0, 0.99);
+      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score), 0.0, 0.99);
     }
     case Verdict::None:
-      return 0.95;
+      return no_effect;
     case Verdict::Calibration: {
       // A parameter that has run far from its tuned value is no recalibration but another machine.
       double farthest = 0.0;
@@ -211,7 +212,7 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
           farthest = std::max(farthest, std::abs(so_far.calibration[j].value / tuned - 1.0));
         }
       }
-      return farthest > 0.6 ? 0.6 : 0.95;
+      return farthest > 0.6 ? std::min(0.6, no_effect) : no_effect;
     }
     case Verdict::Unknown:
       return 0.7;

@@ -14,6 +14,7 @@ struct Findings {
   const Search& search;
   const Judgement& judgement;
   double floor_cost = 0.0;
+  double predictable = 0.0;  ///< share of what is left that depends on what the machine did; 0 where nothing is left
 };
 
 [[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
+
+#include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
 constexpr Index blocks = 24;
+/// Where the floor may be higher than what is left: more would be no share.
+constexpr double most_closed = 1.05;
 
 Index rows_of_output(const Task& task) {
   Index rows = 0;
@@ -22,27 +27,6 @@ Index block_of(Index row, Index rows) {
   return std::min(blocks - 1, row * blocks / rows);
 }
 
-void take(const Task& task, const VectorXd& residuals, Index parity, std::vector<HeldOut>& result) {
-  const Index rows = rows_of_output(task);
-  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-    for (Index k = 0; k < rows; ++k) {
-      const Index block = block_of(k, rows);
-      if (parity >= 0 && block % 2 != parity) {
-        continue;
-      }
-      const double r = residuals[static_cast<Index>(output) * rows + k];
-      result[output].squares[static_cast<std::size_t>(block)] += r * r;
-      result[output].counts[static_cast<std::size_t>(block)] += 1.0;
-    }
-  }
-}
-
-std::vector<HeldOut> empty(const Task& task) {
-  const auto count = static_cast<std::size_t>(blocks);
-  return std::vector<HeldOut>(task.outputs.size(),
-                              {.squares = std::vector<double>(count, 0.0), .counts = std::vector<double>(count, 0.0)});
-}
-
 double mean_square(const HeldOut& one) {
   const double count = std::accumulate(one.counts.begin(), one.counts.end(), 0.0);
   return count > 0.0 ? std::accumulate(one.squares.begin(), one.squares.end(), 0.0) / count : 0.0;
@@ -50,37 +34,51 @@ double mean_square(const HeldOut& one) {
 
 }  // namespace
 
-std::vector<HeldOut> held_out(const Task& task, const Explanation& explanation) {
-  std::vector<HeldOut> result = empty(task);
+VectorXd held_out(const Task& task, const Explanation& explanation) {
   const Index rows = rows_of_output(task);
   Model model(task, *explanation.variant.program, explanation.variant.further);
+  VectorXd unseen = explanation.fit.residuals;
   for (Index parity = 0; parity < 2; ++parity) {
     VectorXd weights(model.rows());
     for (Index row = 0; row < model.rows(); ++row) {
       weights[row] = block_of(row % rows, rows) % 2 == parity ? 0.0 : 1.0;
     }
     const Fit trained = fit(model, explanation.fit.x, {.iterations = 6, .weights = &weights});
-    take(task, std::isfinite(trained.cost) ? trained.residuals : explanation.fit.residuals, parity, result);
+    if (std::isfinite(trained.cost)) {
+      unseen = weights.array().select(unseen, trained.residuals);
+    }
+  }
+  return unseen;
+}
+
+std::vector<HeldOut> by_blocks(const Task& task, const VectorXd& residuals) {
+  const Index rows = rows_of_output(task);
+  const auto count = static_cast<std::size_t>(blocks);
+  std::vector<HeldOut> result(task.outputs.size(),
+                              {.squares = std::vector<double>(count, 0.0), .counts = std::vector<double>(count, 0.0)});
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    for (Index k = 0; k < rows; ++k) {
+      const auto block = static_cast<std::size_t>(block_of(k, rows));
+      const double r = residuals[static_cast<Index>(output) * rows + k];
+      result[output].squares[block] += r * r;
+      result[output].counts[block] += 1.0;
+    }
   }
   return result;
 }
 
-std::vector<HeldOut> by_blocks(const Task& task, const VectorXd& residuals) {
-  std::vector<HeldOut> result = empty(task);
-  take(task, residuals, -1, result);
-  return result;
-}
-
-Closure closure(const HeldOut& before, const HeldOut& after, double floor, std::uint64_t seed) {
-  const double noise = floor * floor;
-  const auto share = [&](double first, double second) {
-    const double gap = first - noise;
-    return gap > 0.0 ? std::clamp(1.0 - (second - noise) / gap, -1.0, 1.0) : 0.0;
+Closure closure(const HeldOut& before, const HeldOut& after, double fitted, const NoiseRange& noise,
+                std::uint64_t seed) {
+  const auto share = [](double first, double second, double deviation) {
+    const double variance = deviation * deviation;
+    const double gap = first - variance;
+    return gap > 0.0 ? std::clamp(1.0 - (second - variance) / gap, -1.0, most_closed) : 0.0;
   };
-  Closure result{.closed = share(mean_square(before), mean_square(after))};
+  Closure result{.closed = std::min(1.0, share(mean_square(before), mean_square(after), noise.floor))};
   constexpr int draws = 600;
   std::mt19937_64 random(seed);
-  std::vector<double> shares;
+  std::vector<double> low;
+  std::vector<double> high;
   const std::size_t count = before.squares.size();
   for (int draw = 0; draw < draws; ++draw) {
     HeldOut first{.squares = {0.0}, .counts = {0.0}};
@@ -92,11 +90,14 @@ Closure closure(const HeldOut& before, const HeldOut& after, double floor, std::
       second.squares[0] += after.squares[block];
       second.counts[0] += after.counts[block];
     }
-    shares.push_back(share(mean_square(first), mean_square(second)));
+    low.push_back(share(mean_square(first), mean_square(second), noise.low));
+    high.push_back(share(mean_square(first), mean_square(second), noise.high));
   }
-  std::ranges::sort(shares);
-  result.low = std::min(result.closed, shares[static_cast<std::size_t>(0.025 * draws)]);
-  result.high = std::max(result.closed, shares[static_cast<std::size_t>(0.975 * draws)]);
+  std::ranges::sort(low);
+  std::ranges::sort(high);
+  result.low = std::min(result.closed, low[static_cast<std::size_t>(0.025 * draws)]);
+  result.high = std::max(
+      {result.closed, high[static_cast<std::size_t>(0.975 * draws)], share(mean_square(before), fitted, noise.high)});
   return result;
 }
 
@@ -119,6 +120,13 @@ double gain_bound(const HeldOut& before, const HeldOut& after) {
     variance += (gain - mean) * (gain - mean) / (count - 1.0);
   }
   return (mean - 1.71 * std::sqrt(variance / count)) * count / size;
+}
+
+double gain_score(const VectorXd& before, const VectorXd& after) {
+  const double gain = before.squaredNorm() - after.squaredNorm();
+  const double deviation = after.norm() / std::sqrt(static_cast<double>(std::max<Index>(1, after.size())));
+  const double chance = 2.0 * deviation * std::sqrt(std::max(1.0, correlation_time(after))) * (before - after).norm();
+  return chance > 0.0 ? gain / chance : (gain > 0.0 ? std::numeric_limits<double>::infinity() : 0.0);
 }
 
 }  // namespace hysteron::diagnosis

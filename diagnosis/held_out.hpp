@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnosis/least_squares.hpp"
+#include "diagnosis/noise_floor.hpp"
 #include "diagnosis/search.hpp"
 
 namespace hysteron::diagnosis {
@@ -19,10 +20,10 @@ struct HeldOut {
   std::vector<double> counts{};
 };
 
-/// For each measured output.
-[[nodiscard]] std::vector<HeldOut> held_out(const Task& task, const Explanation& explanation);
+/// The residuals of all rows, each by a fit that has not seen its block.
+[[nodiscard]] VectorXd held_out(const Task& task, const Explanation& explanation);
 
-/// The same for residuals that no fit has seen: those of the nominal diagram.
+/// Residuals by blocks, for each measured output.
 [[nodiscard]] std::vector<HeldOut> by_blocks(const Task& task, const VectorXd& residuals);
 
 struct Closure {
@@ -31,11 +32,19 @@ struct Closure {
   double high = 0.0;
 };
 
-/// 1 − (MSE − floor²)/(MSE₀ − floor²) with its 95 % interval by a bootstrap of blocks.
-[[nodiscard]] Closure closure(const HeldOut& before, const HeldOut& after, double floor, std::uint64_t seed);
+/// 1 − (MSE − floor²)/(MSE₀ − floor²) with its 95 % interval: a bootstrap of blocks at the low end of the noise for the
+/// lower bound and at its high end for the upper one. The upper one is at least the share that the whole record's fit
+/// closes, `fitted` being its mean square. It may lie above 1 where the floor may be higher than what is left.
+[[nodiscard]] Closure closure(const HeldOut& before, const HeldOut& after, double fitted, const NoiseRange& noise,
+                              std::uint64_t seed);
 
 /// The lower 95 % bound of what `after` closes of `before` in the mean of the blocks, over its mean size; above 0: the
 /// effect holds on data that it was not fitted to.
 [[nodiscard]] double gain_bound(const HeldOut& before, const HeldOut& after);
+
+/// What `after` gains on `before` over what chance gives, where the two differ by d and `after` is noise of the
+/// deviation s that is correlated over τ samples: (Σ before² − Σ after²)/(2·s·√τ·‖d‖). An effect that acts for a short
+/// time only shows here, and not in the mean of the blocks.
+[[nodiscard]] double gain_score(const VectorXd& before, const VectorXd& after);
 
 }  // namespace hysteron::diagnosis

@@ -89,6 +89,13 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   return edited(*source.text, std::move(edits));
 }
 
+std::string with_output(const language::SourceFile& source, const Edge& edge, std::string_view name) {
+  const Ends ends = ends_of(source, source.blocks[edge.definition]);
+  return edited(*source.text,
+                {{.span = {ends.behind, 0}, .text = fmt::format("\n  VAR_OUTPUT\n    {} : LREAL;\n  END_VAR", name)},
+                 {.span = {ends.block, 0}, .text = fmt::format("  {} := {};\n", name, edge.source)}});
+}
+
 std::string with_block(const language::SourceFile& source, const language::Variable& instance, std::string_view block) {
   return edited(*source.text, {{.span = instance.type.span, .text = std::string(block)}});
 }

@@ -27,6 +27,9 @@ struct Insertion {
 
 [[nodiscard]] std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion);
 
+/// With an output that gives the signal of an edge. The name is one that the block does not declare yet.
+[[nodiscard]] std::string with_output(const language::SourceFile& source, const Edge& edge, std::string_view name);
+
 /// With the type of an instance replaced. All instances declared in the same breath, X, Y : TYPE, change.
 [[nodiscard]] std::string with_block(const language::SourceFile& source, const language::Variable& instance,
                                      std::string_view block);

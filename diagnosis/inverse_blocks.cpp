@@ -262,9 +262,10 @@ std::string backlash(InverseText& text, const BlockStage& stage) {
   const std::string held = text.instance(stage.name + "_HELD", "HY_DELAY");
   text.call(motion, "XIN := " + stage.wanted);
   const double half = 0.5 * stage.value("WIDTH");
-  const std::string gap =
-      text.signal(stage.name + "_GAP", fmt::format("SEL({0}.XOUT > 0.0, SEL({0}.XOUT < 0.0, {1}.XOUT, {2}), {3})",
-                                                   motion, held, real_literal(-half), real_literal(half)));
+  const double middle = half * stage.value("START");
+  const std::string gap = text.signal(
+      stage.name + "_GAP", fmt::format("SEL({0}.XOUT > 0.0, SEL({0}.XOUT < 0.0, {1}.XOUT, {2}), {3})", motion, held,
+                                       real_literal(middle - half), real_literal(middle + half)));
   text.call(held, "XIN := " + gap);
   text.note(fmt::format("the input jumps by {} at each reversal, across the gap of {}", number_text(2.0 * half),
                         stage.node.path));
@@ -297,7 +298,7 @@ std::string hysteresis(InverseText& text, const BlockStage& stage) {
 /// One Newton step a sample on a model that is driven by the result: x(k) = x(k−1) + (y(k) − model(k−1))/slope(k−1).
 /// With return points the slope is at least that of the last step, since SLOPE is that of the last branching point.
 std::string hysteresis_general(InverseText& text, const BlockStage& stage) {
-  constexpr std::array<std::string_view, 5> extras{"ASYMMETRY", "RATE", "BIAS", "SHAPE", "RETURN_POINT"};
+  constexpr std::array<std::string_view, 6> extras{"ASYMMETRY", "RATE", "BIAS", "DUHEM", "SHAPE", "RETURN_POINT"};
   if (std::ranges::all_of(extras, [&](std::string_view one) { return stage.value(one) == 0.0; })) {
     return hysteresis(text, stage);
   }

@@ -25,6 +25,17 @@ struct NoiseFloor {
 /// For one measured output over all records.
 [[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output);
 
+/// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is
+/// no more than what is left; where less is left than the floor, this counted a fast effect as noise.
+struct NoiseRange {
+  double low = 1.0;
+  double floor = 1.0;
+  double high = 1.0;
+};
+
+/// `left`: RMS of the residual of the verdict's fit, over the floor.
+[[nodiscard]] NoiseRange noise_range(double left);
+
 /// The period of the inputs in samples, 0 where they do not repeat themselves at least twice.
 [[nodiscard]] std::size_t input_period(const Experiment& experiment);
 

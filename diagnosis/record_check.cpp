@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <vector>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -60,6 +62,79 @@ double clipped_share(const std::vector<double>& values) {
   return static_cast<double>(count) / static_cast<double>(values.size());
 }
 
+/// Where a signal turns, with reversals below a hundredth of its range left out, and how long each way takes.
+struct Turns {
+  std::vector<double> levels{};
+  std::vector<double> ways{};  ///< samples from one turn to the next
+};
+
+Turns turns_of(const Signal& signal, double range) {
+  const double band = 0.01 * range;
+  Turns turns;
+  std::size_t extreme = 0;
+  std::size_t last = 0;
+  double heading = 0.0;
+  for (std::size_t k = 1; k < signal.size(); ++k) {
+    const double from_extreme = signal[k] - signal[extreme];
+    if (heading * from_extreme > 0.0) {
+      extreme = k;
+    } else if (std::abs(from_extreme) > band) {
+      if (heading != 0.0) {
+        turns.ways.push_back(static_cast<double>(extreme - last));
+      }
+      turns.levels.push_back(signal[extreme]);
+      last = extreme;
+      extreme = k;
+      heading = from_extreme;
+    }
+  }
+  turns.levels.push_back(signal[extreme]);
+  return turns;
+}
+
+/// Whether all input signals go to and fro between two levels in one time, or from one level to another once: a sine,
+/// a triangle, a step. Each effect then shows as one shape of the response, and many have it.
+bool is_one_motion(const std::vector<Experiment>& experiments) {
+  constexpr double same_level = 0.03;
+  constexpr double same_time = 0.1;
+  const std::size_t count = experiments.front().drive.inputs.size();
+  for (std::size_t input = 0; input < count; ++input) {
+    Turns all;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Experiment& experiment : experiments) {
+      const Signal& signal = experiment.drive.inputs[input];
+      if (signal.empty()) {
+        continue;
+      }
+      const auto [least, most] = std::ranges::minmax(signal);
+      low = std::min(low, least);
+      high = std::max(high, most);
+      if (most > least) {
+        const Turns turns = turns_of(signal, most - least);
+        all.levels.insert(all.levels.end(), turns.levels.begin(), turns.levels.end());
+        // The first way begins anywhere.
+        all.ways.insert(all.ways.end(), turns.ways.begin() + (turns.ways.empty() ? 0 : 1), turns.ways.end());
+      }
+    }
+    if (!(high > low)) {
+      continue;
+    }
+    std::size_t between = 0;
+    for (const double level : all.levels) {
+      between += std::min(level - low, high - level) > same_level * (high - low) ? 1 : 0;
+    }
+    // Where the record begins and ends may be anywhere between.
+    const bool two_levels = between <= 2 * experiments.size();
+    const bool one_time =
+        all.ways.empty() || std::ranges::max(all.ways) <= (1.0 + same_time) * std::ranges::min(all.ways);
+    if (!two_levels || !one_time) {
+      return false;
+    }
+  }
+  return true;
+}
+
 class Check {
  public:
   Check(const Task& task, const Model& model, const VectorXd& nominal)
@@ -94,6 +169,13 @@ class Check {
       check_output(problem_.program.graph.outputs[problem_.outputs[output]], measured, model);
     }
     check_swap();
+    result_.one_motion = is_one_motion(problem_.experiments);
+    if (result_.one_motion) {
+      warn(
+          "The inputs make one motion only, a step or to and fro between two levels in one time: many effects have "
+          "such "
+          "a response. Record several amplitudes and rates.");
+    }
     return std::move(result_);
   }
 

@@ -11,6 +11,7 @@ namespace hysteron::diagnosis {
 struct RecordCheck {
   std::vector<std::string> refusals{};  ///< why no diagnosis is given
   std::vector<std::string> warnings{};  ///< what weakens it
+  bool one_motion = false;              ///< the inputs make one motion only, and repeat it
 };
 
 /// `nominal`: residuals of the diagram with its parameters as given, in standard deviations of the floor.

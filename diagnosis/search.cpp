@@ -80,6 +80,15 @@ constexpr int most_edges = 5;
 constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
+/// What a fit has to gain, in nats, to be followed further: a verdict asks for 6 beyond the penalties, which are as
+/// many.
+constexpr double more_than_chance = 10.0;
+
+/// What a fit gains in log likelihood with the noise left open, on as many samples as its residuals are worth.
+double nats_gained(double cost_before, const Fit& fit) {
+  const double samples = static_cast<double>(fit.residuals.size()) / std::max(1.0, correlation_time(fit.residuals));
+  return 0.5 * samples * std::log(cost_before / std::max(fit.cost, 1e-300));
+}
 
 /// What a candidate gains; no starts where the diagram refuses it: it is not the user's mistake.
 template <class Screen>
@@ -223,9 +232,10 @@ class Searcher {
   /// closes is ranked well enough.
   void finish_front(std::vector<Explanation>& fits, double cost_before) {
     std::ranges::stable_sort(fits, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
+    const bool decides = !fits.empty() && nats_gained(cost_before, fits.front().fit) > more_than_chance;
     std::atomic<std::size_t> done{0};
     in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
-      const bool in_front = cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
+      const bool in_front = decides && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
       if (i < finished_always || in_front) {
         finish(task_, fits[i], i < finished_always);
       }
@@ -409,6 +419,9 @@ class Searcher {
     std::vector<Explanation> beam;
     std::set<std::vector<std::string>> taken;
     const double gap = result.calibrated.fit.cost - floor_cost_;
+    if (found.empty() || nats_gained(result.calibrated.fit.cost, found.front().fit) < more_than_chance) {
+      return beam;
+    }
     for (const Explanation& one : found) {
       const double left = one.fit.cost - floor_cost_;
       const bool closed = found.front().fit.cost - floor_cost_ < options_.least_share * gap;

@@ -117,7 +117,8 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     case Role::Period:
       return periods;
     case Role::Share:
-      return {0.02, 0.1, 0.4};
+      // A share to both sides is a place: the middle, and near the ends.
+      return parameter.field.minimum < 0.0 ? std::vector{0.0, 0.9, -0.9} : std::vector{0.02, 0.1, 0.4};
     case Role::Level:
     case Role::Gap:
       return scaled(range, {0.05, 0.15, 0.4});

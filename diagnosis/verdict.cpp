@@ -16,6 +16,8 @@ constexpr double rival_within = 4.0;
 constexpr double same_within = 3.0;
 /// What a set has to gain over calibration beyond its penalties, nats.
 constexpr double least_significance = 6.0;
+/// What an effect has to gain on data held out, over what chance gives, where the mean of the blocks is no evidence.
+constexpr double least_score = 4.0;
 /// What a record is worth at least: what another formula of the same physics leaves is slow, but no noise.
 constexpr double fewest_samples = 60.0;
 
@@ -88,7 +90,7 @@ class Judge {
   }
 
   /// Each set is refitted to halves of the record once.
-  const std::vector<HeldOut>& unseen(const Explanation& one) {
+  const VectorXd& unseen(const Explanation& one) {
     const auto [found, first] = unseen_.try_emplace(&one);
     if (first) {
       found->second = held_out(task_, one);
@@ -96,11 +98,17 @@ class Judge {
     return found->second;
   }
 
+  /// On data that it was not fitted to: in the mean of the blocks, or by more than chance gives.
   [[nodiscard]] bool holds_on_unseen(const Explanation& simple, const Explanation& rich) {
-    const std::vector<HeldOut>& before = unseen(simple);
-    const std::vector<HeldOut>& after = unseen(rich);
-    for (std::size_t output = 0; output < before.size(); ++output) {
-      if (gain_bound(before[output], after[output]) > 0.0) {
+    const VectorXd& before = unseen(simple);
+    const VectorXd& after = unseen(rich);
+    const std::vector<HeldOut> blocks_before = by_blocks(task_, before);
+    const std::vector<HeldOut> blocks_after = by_blocks(task_, after);
+    const Index rows = before.size() / std::ssize(task_.outputs);
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const Index first = static_cast<Index>(output) * rows;
+      if (gain_bound(blocks_before[output], blocks_after[output]) > 0.0 ||
+          gain_score(before.segment(first, rows), after.segment(first, rows)) > least_score) {
         return true;
       }
     }
@@ -150,7 +158,7 @@ class Judge {
   double floor_cost_;
   double least_share_;
   double samples_ = 1.0;
-  std::map<const Explanation*, std::vector<HeldOut>> unseen_{};
+  std::map<const Explanation*, VectorXd> unseen_{};
 };
 
 }  // namespace

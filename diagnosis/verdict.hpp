@@ -30,8 +30,8 @@ struct Judgement {
   std::vector<Weighed> fitted{};        ///< all sets, best first
   std::vector<Weighed> same{};          ///< other edges for the chosen set
   double effective_samples = 0.0;
-  std::vector<HeldOut> held_out{};  ///< of the chosen set, by output
-  double significance = 0.0;        ///< of the chosen set against the calibrated diagram, nats
+  VectorXd held_out{};        ///< residuals of the chosen set on what its fits have not seen
+  double significance = 0.0;  ///< of the chosen set against the calibrated diagram, nats
 };
 
 /// `floor_cost` as in search().

@@ -52,6 +52,10 @@ Json where_of(const Diagnosis& found) {
   for (const EdgeFinding& edge : found.edges) {
     edges.push_back({{"edge", edge.edge}, {"share", number(edge.share)}, {"group", edge.group}});
   }
+  Json cuts = Json::array();
+  for (const CutFinding& cut : found.cuts) {
+    cuts.push_back({{"signal", cut.signal}, {"agrees", cut.agrees}});
+  }
   Json regions = Json::array();
   Json bands = Json::array();
   Json times = Json::array();
@@ -61,6 +65,7 @@ Json where_of(const Diagnosis& found) {
     (map.over == "frequency" ? bands : map.over == "run time" ? times : regions).push_back(std::move(one));
   }
   return {{"edges", std::move(edges)},
+          {"cuts", std::move(cuts)},
           {"regions", std::move(regions)},
           {"bands", std::move(bands)},
           {"times", std::move(times)}};

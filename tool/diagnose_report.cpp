@@ -88,6 +88,11 @@ std::string diagnosis_text(const Diagnosis& found) {
         "  edge {:<20} {:.0f} %{}\n", found.edges[i].edge, 100.0 * found.edges[i].share,
         found.edges[i].group.empty() ? "" : fmt::format("  (as {})", fmt::join(found.edges[i].group, ", ")));
   }
+  for (const diagnosis::CutFinding& cut : found.cuts) {
+    text += fmt::format("  {} {}\n", cut.signal,
+                        cut.agrees ? "agrees with its column: the gap lies behind it"
+                                   : "does not agree with its column: a gap lies before it");
+  }
   if (found.tracking_improved > 0.0) {
     text +=
         fmt::format("  feedforward: predicted tracking error {:.3g} with the model as it was, {:.3g} improved (RMS)\n",

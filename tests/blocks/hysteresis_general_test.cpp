@@ -73,7 +73,7 @@ class SteppedLoop {
     const double by_middle = p_.BIAS / p_.BIAS_REFERENCE;
     const double rise = d * (p_.C1 + growth / (p_.C3 + 1.0) + bump * z);
     return (p_.C1 + growth + bump * 2.0 * z * (1.0 - z)) * (1.0 + by_middle * (0.5 * (x + start_) - p_.U0)) +
-           rise * by_middle / 2.0;
+           rise * by_middle / 2.0 + p_.DUHEM / p_.DUHEM_REFERENCE * (x - p_.U0) * (p_.C1 + p_.C2 * std::pow(p, p_.C3));
   }
   Params p_;
   double ts_;
@@ -118,6 +118,10 @@ TEST(HysteresisGeneral, EachEffectIsItsDifferentialEquation) {
     params.BIAS_REFERENCE = 0.8;
     expect_stepped(params, seed);
     params = loop_params();
+    params.DUHEM = 0.3;
+    params.DUHEM_REFERENCE = 0.7;
+    expect_stepped(params, seed);
+    params = loop_params();
     params.SHAPE = -0.3;
     params.SHAPE_DEPTH = 0.4;
     expect_stepped(params, seed);
@@ -131,6 +135,7 @@ TEST(HysteresisGeneral, SoAreAllTogether) {
     params.RATE = 0.1;
     params.RATE_REFERENCE = 2.0;
     params.BIAS = -0.3;
+    params.DUHEM = 0.15;
     params.SHAPE = 0.4;
     params.SHAPE_DEPTH = 0.7;
     expect_stepped(params, seed);
@@ -162,6 +167,26 @@ TEST(HysteresisGeneral, ALoopClosesWithBiasAndWithShape) {
     (middle < 0.0 ? rise_low : rise_high) = top - bottom;
   }
   EXPECT_NEAR(rise_low / rise_high, (1.0 - 0.4 * 2.0) / (1.0 + 0.4 * 2.0), 1e-12) << "equal loops differ with bias";
+}
+
+TEST(HysteresisGeneral, WithDuhemsBiasALoopWandersByWhatItsTwoWaysDiffer) {
+  // Up from a to b and down again: h times the difference of the integrals of M(p)·u, 2·h·C2·L^(C3+2)·(1/(C3+2) −
+  // 1/(2·(C3+1))) where the middle is 0 and L = b − a.
+  auto params = loop_params();
+  params.DUHEM = 0.2;
+  params.START = 1;
+  params.U0 = 0.0;
+  Stepper<HysteresisGeneral> block(1.0, params);
+  double before = 0.0;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    block({.XIN = 0.5, .R1 = false});
+    const double bottom = block({.XIN = -0.5, .R1 = false}).XOUT;
+    if (cycle > 1) {
+      const double wander = 2.0 * params.DUHEM * params.C2 * (1.0 / (params.C3 + 2.0) - 0.5 / (params.C3 + 1.0));
+      EXPECT_NEAR(bottom - before, wander, 1e-13);
+    }
+    before = bottom;
+  }
 }
 
 /// Return points as a bank of play operators: with C3 = 1 the loop C1·p + C2·p²/2 is C1·x and plays of all widths 2r,
@@ -281,6 +306,7 @@ TEST(SlopeMGeneral, FromPrimitivesItIsTheSameHysteresis) {
   params.RATE = 0.1;
   params.RATE_REFERENCE = 0.3;
   params.BIAS = 0.3;
+  params.DUHEM = -0.2;
   params.SHAPE = 0.3;
   params.SHAPE_DEPTH = 0.6;
   const double ts = 1e-5;
@@ -293,6 +319,7 @@ TEST(SlopeMGeneral, FromPrimitivesItIsTheSameHysteresis) {
   slope_params.RATE = params.RATE;
   slope_params.RATE_REFERENCE = params.RATE_REFERENCE;
   slope_params.BIAS = params.BIAS;
+  slope_params.DUHEM = params.DUHEM;
   slope_params.SHAPE = params.SHAPE;
   slope_params.SHAPE_DEPTH = params.SHAPE_DEPTH;
   Stepper<SlopeMGeneral> slope(ts, slope_params);

@@ -151,6 +151,19 @@ TEST(Backlash, FollowsHalfAGapBehindAndRestsInTheGap) {
   EXPECT_EQ(play({.XIN = 0.0}).XOUT, 0.25);
 }
 
+TEST(Backlash, StartsWhereItIsToldInTheGap) {
+  Stepper<Backlash> at_the_edge(1.0, {.WIDTH = 0.5, .START = 1.0});
+  EXPECT_EQ(at_the_edge({.XIN = 1.0}).XOUT, 1.0) << "the first sample passes as it is";
+  EXPECT_EQ(at_the_edge({.XIN = 0.75}).XOUT, 0.75) << "followed at once downwards";
+  EXPECT_EQ(at_the_edge({.XIN = 1.25}).XOUT, 0.75) << "the whole gap upwards";
+  EXPECT_EQ(at_the_edge({.XIN = 2.0}).XOUT, 1.5);
+  Stepper<Backlash> a_quarter(1.0, {.WIDTH = 0.5, .START = -0.5});
+  EXPECT_EQ(a_quarter({.XIN = 1.0}).XOUT, 1.0);
+  EXPECT_EQ(a_quarter({.XIN = 1.125}).XOUT, 1.0);
+  EXPECT_EQ(a_quarter({.XIN = 2.0}).XOUT, 1.875);
+  EXPECT_EQ(a_quarter({.XIN = 0.0}).XOUT, 0.375);
+}
+
 TEST(Backlash, LoopNarrowerThanTheGapMovesNothingAndAWiderOneEnclosesItsArea) {
   const double width = 0.5;
   const int count = 4000;

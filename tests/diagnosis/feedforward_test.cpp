@@ -125,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"odd_falling", "HY_ODD_NONLINEARITY := (SIZE := -0.2, REFERENCE := 2.0)", 1e-13},
         Case{"ripple", "HY_PERIODIC_ERROR := (SINE := 0.02, COSINE := 0.03, PITCH := 0.5)", 1e-13},
         Case{"backlash", "HY_BACKLASH := (WIDTH := 0.3)", 1e-14},
+        Case{"backlash_from_its_edge", "HY_BACKLASH := (WIDTH := 0.3, START := 1.0)", 1e-14},
         Case{"dead_zone", "HY_DEAD_BAND := (WIDTH := 0.3)", 1e-14},
         Case{"loop", "HY_HYSTERESIS_RO := (" + loop + ")", 1e-13}, Case{"lag", "HY_LAG := (T1 := 0.02)", 5e-6},
         Case{"lead_lag", "HY_LEAD_LAG := (T1 := 0.02, T2 := 0.05)", 5e-6},
@@ -134,6 +135,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"asymmetry", "HY_HYSTERESIS_GENERAL := (" + loop + ", ASYMMETRY := 0.3)", 1e-5},
         Case{"rate_dependence", "HY_HYSTERESIS_GENERAL := (" + loop + ", RATE := 0.3, RATE_REFERENCE := 0.1)", 1e-5},
         Case{"bias_dependence", "HY_HYSTERESIS_GENERAL := (" + loop + ", BIAS := 0.1, BIAS_REFERENCE := 2.0)", 1e-5},
+        Case{"bias_of_duhem", "HY_HYSTERESIS_GENERAL := (" + loop + ", DUHEM := 0.1, DUHEM_REFERENCE := 2.0)", 1e-5},
         Case{"curve_shape", "HY_HYSTERESIS_GENERAL := (" + loop + ", SHAPE := 0.2, SHAPE_DEPTH := 1.0)", 1e-5},
         Case{"return_point", "HY_HYSTERESIS_GENERAL := (" + loop + ", RETURN_POINT := 1.0)", 5e-4}),
     [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });

@@ -150,5 +150,16 @@ TEST(NoiseFloor, OfSeveralRecordsTakesAll) {
   EXPECT_NEAR(noise_floor(both, 0).value, std::sqrt(0.5 * (0.03 * 0.03 + 0.04 * 0.04)), 0.003);
 }
 
+TEST(NoiseRange, HoldsTheFloorAndWhatSlowNoiseMayHide) {
+  for (const double left : {0.2, 0.99, 1.0, 1.2, 7.0}) {
+    const NoiseRange range = noise_range(left);
+    EXPECT_LT(range.low, 1.0) << left;
+    EXPECT_LE(range.low, left);
+    EXPECT_GT(range.high, 1.0) << left;
+    EXPECT_LT(range.high, 1.6) << "a large remainder is no noise";
+  }
+  EXPECT_GT(noise_range(1.2).high, 1.2);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

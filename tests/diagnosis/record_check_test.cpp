@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/diagnosis/simulated_machine.hpp"
 
@@ -185,6 +188,46 @@ TEST(RecordCheck, ARecordOfAnotherMachineGetsNoName) {
   const Diagnosis found = of_stack(record);
   EXPECT_THAT(found.warnings, Contains(HasSubstr("little in common")));
   EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
+}
+
+std::vector<double> sine(double amplitude, std::size_t period, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < count; ++k) {
+    values.push_back(amplitude *
+                     std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(period)));
+  }
+  return values;
+}
+
+/// Whether the diagnosis remarks that the inputs make one motion only.
+bool one_motion(const std::vector<double>& voltage) {
+  const auto record = test::measured(test::program_of(test::stack()), test::record_of("U", voltage), 0.05);
+  const Diagnosis found = of_stack(record);
+  const auto said = Contains(HasSubstr("one motion only"));
+  if (testing::Matches(said)(found.cannot_tell)) {
+    EXPECT_LE(found.confidence, 0.8);
+    return true;
+  }
+  return false;
+}
+
+TEST(RecordCheck, OneSineOrOneStepIsRemarked) {
+  EXPECT_TRUE(one_motion(sine(3.0, 150, 1000)));
+  std::vector<double> step(1000, 0.0);
+  std::fill(step.begin() + 100, step.end(), 2.0);
+  EXPECT_TRUE(one_motion(step));
+}
+
+TEST(RecordCheck, TwoAmplitudesOrTwoRatesAreMoreThanOneMotion) {
+  std::vector<double> amplitudes = sine(3.0, 150, 600);
+  const std::vector<double> smaller = sine(1.5, 150, 600);
+  amplitudes.insert(amplitudes.end(), smaller.begin(), smaller.end());
+  EXPECT_FALSE(one_motion(amplitudes));
+  std::vector<double> rates = sine(3.0, 150, 600);
+  const std::vector<double> faster = sine(3.0, 60, 600);
+  rates.insert(rates.end(), faster.begin(), faster.end());
+  EXPECT_FALSE(one_motion(rates));
+  EXPECT_FALSE(one_motion(test::rich_voltage(1000)));
 }
 
 TEST(RecordCheck, AMissingColumnIsAnError) {

@@ -43,8 +43,9 @@ struct Backlash : LastOutput {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
     const S half = S(0.5) * params.WIDTH;
     const S last = state.before(in.XIN);
-    const S middle = in.XIN - params.START * half;
-    return {.XOUT = max(middle - half, min(middle + half, last))};
+    const S low = in.XIN - (S(1.0) + params.START) * half;
+    const S high = in.XIN + (S(1.0) - params.START) * half;
+    return {.XOUT = max(low, min(high, last))};
   }
 };
 

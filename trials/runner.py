@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -9,9 +10,12 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from trials.progress import Progress
 
@@ -27,10 +31,48 @@ def resolve(program: str) -> str:
     return str(Path(found).resolve())
 
 
+class Stopped(Exception):
+    """The set was interrupted; what has run is kept."""
+
+
+@dataclass
+class Running:
+    """The diagnosers that run now, so that an interrupt ends them too: each has a session of its own."""
+
+    processes: set[subprocess.Popen] = field(default_factory=set)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    stopped: bool = False
+
+    def start(self, command: list[str], **options: Any) -> subprocess.Popen:
+        """Starts one, unless the set was interrupted."""
+        with self.lock:
+            if self.stopped:
+                raise Stopped
+            process = subprocess.Popen(command, start_new_session=True, **options)
+            self.processes.add(process)
+            return process
+
+    def end(self, process: subprocess.Popen) -> None:
+        """One has ended."""
+        with self.lock:
+            self.processes.discard(process)
+            if self.stopped:
+                raise Stopped
+
+    def stop(self) -> None:
+        """Ends all of them, and lets no further one begin."""
+        with self.lock:
+            self.stopped = True
+            for process in self.processes:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+
+
 def run_case(
-    case: Path, out: Path, program: str, options: list[str], timeout: float, user: str | None, keep: bool = False
+    case: Path, out: Path, program: str, options: list[str], timeout: float, user: str | None, keep: bool = False, running: Running | None = None
 ) -> bool:
     """Runs one case. Returns whether there is a verdict."""
+    running = running or Running()
     with tempfile.TemporaryDirectory(prefix="trial-") as name:
         scratch = Path(name)
         for file in VISIBLE:
@@ -43,8 +85,8 @@ def run_case(
         logs = [part for file in ("log.csv", "log2.csv") if (scratch / file).exists() for part in ("--log", file)]
         command = [program, "diagnose", "plant.st", *logs, "--params", "params.toml", "--out", "result", *options]
         started = time.monotonic()
-        process = subprocess.Popen(
-            command, cwd=scratch, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, user=user, start_new_session=True,
+        process = running.start(
+            command, cwd=scratch, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, user=user,
             env={"PATH": "/usr/bin:/bin", "HOME": name, "LANG": "C.UTF-8"},
         )  # fmt: skip
         try:
@@ -53,6 +95,7 @@ def run_case(
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             messages, code = process.communicate()[1], "time limit"
+        running.end(process)
         seconds = time.monotonic() - started
         folder = out / case.name
         folder.mkdir(parents=True, exist_ok=True)
@@ -94,9 +137,16 @@ def run_set(
     wanted = sorted(path for path in cases.iterdir() if (path / "plant.st").exists())
     missing = [case for case in wanted if not (out / case.name / "run.json").exists()]
     progress = Progress("run", len(wanted), len(wanted) - len(missing))
-    with ThreadPoolExecutor(jobs) as pool:
-        futures = [pool.submit(run_case, case, out, program, options, timeout, user, keep) for case in missing]
+    running = Running()
+    pool = ThreadPoolExecutor(jobs)
+    futures = [pool.submit(run_case, case, out, program, options, timeout, user, keep, running) for case in missing]
+    try:
         for future in as_completed(futures):
             future.result()
             progress.step()
+    except BaseException:
+        running.stop()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
     return sum(not json.loads((out / case.name / "run.json").read_text())["verdict"] for case in wanted)

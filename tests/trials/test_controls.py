@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -15,6 +18,7 @@ from trials.scoring.beside import SHOWN, beside
 from trials.scoring.controls import always, coarse, peeking, shuffled, table
 from trials.scoring.figures import score
 
+ROOT = Path(__file__).resolve().parents[2]
 KEYS = {f"{int(name) * 7919 % 2**47:012x}": label for name, label in keys("controls").items()}
 RIGHT = {name: truth(label) for name, label in KEYS.items()}
 
@@ -101,6 +105,28 @@ class Resumed(unittest.TestCase):
             self.assertEqual(runs.read_text().count("ran"), 4)
             with self.assertRaises(SystemExit):
                 run(["--other"])
+
+    def test_an_interrupt_ends_what_runs_and_keeps_what_has_run(self) -> None:
+        with tempfile.TemporaryDirectory() as name:
+            top = Path(name)
+            for case in ("1a", "2b", "3c"):
+                (top / "cases" / case).mkdir(parents=True)
+                (top / "cases" / case / "plant.st").write_text("x")
+            program, runs = top / "program", top / "runs"
+            program.write_text(PROGRAM % str(runs) + f"import time\nif open({str(runs)!r}).read().count('ran') == 2:\n    time.sleep(600)\n")
+            program.chmod(0o755)
+            command = ["env", "--default-signal=INT", str(ROOT / "trials" / "run"), str(top / "cases"), "--out", str(top / "out"), "--product", str(program)]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as trial:
+                while not (runs.exists() and runs.read_text().count("ran") == 2):
+                    time.sleep(0.02)
+                trial.send_signal(signal.SIGINT)
+                said = trial.communicate(timeout=60)[1]
+            self.assertEqual(trial.returncode, 130)
+            self.assertIn("1 cases have run", said)
+            self.assertFalse((top / "out" / "2b" / "run.json").exists())
+            done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+            self.assertIn("3 cases run, 0 of them without a verdict", done.stdout)
+            self.assertEqual(runs.read_text().count("ran"), 4)
 
     def test_a_program_that_an_option_names_counts(self) -> None:
         with tempfile.TemporaryDirectory() as name:

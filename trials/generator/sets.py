@@ -49,6 +49,9 @@ def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int
         for i, future in zip(missing, futures):
             try:
                 future.result()
+            except KeyboardInterrupt:
+                pool.shutdown(cancel_futures=True)
+                raise
             except Exception as error:
                 print(f"{names[i]}: {specifications[i]}: {error!r}", file=sys.stderr)
                 pool.shutdown(cancel_futures=True)

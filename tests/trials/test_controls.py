@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.trials.labels import judged, keys, named, truth
+from trials.peers.largest import verdict
 from trials.runner import fingerprint, run_set
 from trials.scoring.beside import SHOWN, beside
 from trials.scoring.controls import always, coarse, peeking, shuffled, table
@@ -73,6 +74,19 @@ class Peers(unittest.TestCase):
         printed = beside({"hysteron": score(judged(KEYS, RIGHT)), "always": score(judged(KEYS, half_right()))})
         self.assertEqual(len(printed.splitlines()), 2 + len(SHOWN))
         self.assertRegex(printed, r"single effect named first, R ≥ 10 .*100\.0 % +\d\d\.\d %")
+
+
+    def test_the_largest_single_fit_wins_whatever_else_is_known(self) -> None:
+        gap = {"nominal_rms": 5.0, "floor_rms": 1.0, "improved_rms": 1.0, "closed": 0.9, "closed_low": 0.8, "closed_high": 1.0}
+        fitted = [
+            {"effects": ["creep", "lag"], "edges": ["A", "B"], "improved_rms": 1.0},
+            {"effects": ["delay"], "edges": ["B"], "improved_rms": 3.0},
+            {"effects": ["backlash"], "edges": ["A"], "improved_rms": 2.0},
+        ]
+        found = verdict({"verdict": "none", "gap": gap, "fitted": fitted}, 1.0)
+        self.assertEqual((found["verdict"], found["effects"][0]["id"], found["effects"][0]["edge"]), ("named", "backlash", "A"))
+        self.assertAlmostEqual(found["gap"]["closed"], 1 - 3 / 24)
+        self.assertEqual(verdict({"gap": gap, "fitted": []}, 1.0)["verdict"], "none")
 
 
 PROGRAM = """#!/usr/bin/python3

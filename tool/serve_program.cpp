@@ -3,13 +3,13 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "codegen/backends/cpp.hpp"
 #include "codegen/backends/cpp_step.hpp"
+#include "codegen/graph/units.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/program_hash.hpp"
 #include "runtime/task/linked_program.hpp"
@@ -41,11 +41,6 @@ PointType point_type(Type type) {
   }
 }
 
-/// A unit of the catalogue may stand for that of a signal, as 'x; it says nothing outside.
-std::string plain_unit(std::string_view unit) {
-  return unit.find('\'') == std::string_view::npos ? std::string(unit) : std::string();
-}
-
 ProgramSignal signal_of(const Port& port) {
   return {.name = port.name,
           .unit = port.unit,
@@ -66,7 +61,6 @@ class InterpretedProgram final : public runtime::StepProgram {
         places_.emplace_back(i, element);
       }
     }
-    state_size_ = machine_.save().size();
   }
   [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
   void reset() noexcept override { machine_.reset(); }
@@ -85,19 +79,14 @@ class InterpretedProgram final : public runtime::StepProgram {
   [[nodiscard]] double parameter(std::size_t parameter) const noexcept override {
     return static_cast<double>(machine_.parameter(places_[parameter].first, places_[parameter].second));
   }
-  [[nodiscard]] std::size_t state_size() const noexcept override { return state_size_; }
-  /// Allocates: the machine gives its state as a vector of its own. A compiled program does not.
-  void save(std::span<std::byte> bytes) const noexcept override {
-    const auto state = machine_.save();
-    std::memcpy(bytes.data(), state.data(), bytes.size());
-  }
+  [[nodiscard]] std::size_t state_size() const noexcept override { return machine_.saved_size(); }
+  void save(std::span<std::byte> bytes) const noexcept override { machine_.save(bytes); }
   void restore(std::span<const std::byte> bytes) noexcept override { machine_.restore(bytes); }
 
  private:
   ProgramShape shape_;
   Machine<S> machine_;
   std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< parameter and element
-  std::size_t state_size_ = 0;
 };
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -172,12 +161,14 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   for (const Port& port : graph.outputs) {
     shape.outputs.push_back(signal_of(port));
   }
+  const auto units = units::of_parameters(graph, program.schedule);
+  std::size_t index = 0;
   Program plain = program;
   for (Parameter& parameter : plain.graph.parameters) {
     for (std::size_t element = 0; element < parameter.value.size(); ++element) {
       shape.parameters.push_back(
           {.name = parameter.field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
-           .unit = plain_unit(parameter.field.unit),
+           .unit = units[index],
            .meaning = std::string(parameter.field.meaning),
            .type = point_type(parameter.field.type),
            .preset = parameter.value[element],
@@ -185,6 +176,7 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
            .high = parameter.field.maximum,
            .low_excluded = parameter.field.above_minimum});
     }
+    ++index;
     std::ranges::fill(parameter.value, 0.0);  // the values do not belong to the layout
   }
   shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",

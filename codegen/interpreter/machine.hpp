@@ -46,9 +46,10 @@ class Machine {
   /// A state of type LREAL, to be read or set between steps; null where there is none of that name.
   [[nodiscard]] S* real_state(std::string_view path);
 
-  /// The whole state as bytes: to be kept, and put back into this machine later.
-  [[nodiscard]] std::vector<std::byte> save() const;
-  void restore(std::span<const std::byte> bytes);
+  /// The whole state as saved_size() bytes: to be kept, and put back into this machine later. Allocates nothing.
+  [[nodiscard]] std::size_t saved_size() const noexcept { return live_size_ + sizeof(steps_); }
+  void save(std::span<std::byte> bytes) const noexcept;
+  void restore(std::span<const std::byte> bytes) noexcept;
 
   [[nodiscard]] const Program& program() const { return *program_; }
   [[nodiscard]] double sample_time() const { return sample_time_; }

@@ -335,15 +335,13 @@ S* Machine<S>::real_state(std::uint32_t node, std::uint32_t state) {
 }
 
 template <class S>
-std::vector<std::byte> Machine<S>::save() const {
-  std::vector<std::byte> bytes(live_size_ + sizeof(steps_));
+void Machine<S>::save(std::span<std::byte> bytes) const noexcept {
   std::memcpy(bytes.data(), memory_.get(), live_size_);
   std::memcpy(bytes.data() + live_size_, &steps_, sizeof(steps_));
-  return bytes;
 }
 
 template <class S>
-void Machine<S>::restore(std::span<const std::byte> bytes) {
+void Machine<S>::restore(std::span<const std::byte> bytes) noexcept {
   std::memcpy(memory_.get(), bytes.data(), live_size_);
   std::memcpy(&steps_, bytes.data() + live_size_, sizeof(steps_));
 }

@@ -194,7 +194,8 @@ int main() {{
   std::istringstream out(printed_by_main(folder, "-fsanitize=undefined -fno-sanitize-recover=all"));
 
   Machine<double> machine(program);
-  auto bytes = machine.save();  // its last eight bytes are the count of steps
+  std::vector<std::byte> bytes(machine.saved_size());
+  machine.save(bytes);  // its last eight bytes are the count of steps
   std::memcpy(bytes.data() + bytes.size() - sizeof(first), &first, sizeof(first));
   machine.restore(bytes);
   std::vector<double> values;

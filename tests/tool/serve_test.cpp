@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/task/task.hpp"
+#include "tests/support/counted_new.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/tool/workbench.hpp"
 #include "tool/serve_program.hpp"
@@ -65,6 +66,22 @@ TEST(Serve, BothEnginesGiveTheSameBitsThroughNewParameters) {
     results.push_back(std::move(all));
   }
   EXPECT_EQ(results[0], results[1]);
+}
+
+TEST(Serve, SavingTheStateAllocatesNothing) {
+  const Program program = compile_text(plant);
+  for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
+    const auto step = tool::step_program(program, engine, false);
+    std::vector<std::byte> state(step->state_size());
+    const auto before = test::allocations;
+    step->save(state);
+    step->restore(state);
+    EXPECT_EQ(test::allocations, before);
+    std::vector<std::byte> again(step->state_size());
+    step->save(again);
+    EXPECT_EQ(again, state);
+    EXPECT_GT(test::allocations, before) << "the count counts";
+  }
 }
 
 TEST(Serve, AParameterKeepsTheMemoryOfTheHysteresis) {
@@ -128,7 +145,8 @@ TEST(Serve, PrintsTheMapOfItsPoints) {
   bench.write("plant.st", plant);
   const auto map = bench.shell("hysteron map plant.st --format csv");
   EXPECT_EQ(map.code, 0) << map.err;
-  for (const char* const name : {",X,V,", ",RESET,", ",Y,um,", ",HYST.C1,", ",task.commit,", ",task.cycles,"}) {
+  for (const char* const name :
+       {",X,V,", ",RESET,", ",HYST.C1,um/V,", ",Y,um,", ",HYST.C1,", ",task.commit,", ",task.cycles,"}) {
     EXPECT_NE(map.out.find(name), std::string::npos) << name;
   }
 }

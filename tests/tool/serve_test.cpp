@@ -146,7 +146,7 @@ TEST(Serve, PrintsTheMapOfItsPoints) {
   const auto map = bench.shell("hysteron map plant.st --format csv");
   EXPECT_EQ(map.code, 0) << map.err;
   for (const char* const name :
-       {",X,V,", ",RESET,", ",HYST.C1,um/V,", ",Y,um,", ",HYST.C1,", ",task.commit,", ",task.cycles,"}) {
+       {",X,V,", ",RESET,", ",HYST.Y0,um,", ",Y,um,", ",HYST.C1,", ",task.commit,", ",task.cycles,"}) {
     EXPECT_NE(map.out.find(name), std::string::npos) << name;
   }
 }

@@ -124,6 +124,7 @@ inline constexpr int wrong_period = 809;
 inline constexpr int unknown_device = 810;
 inline constexpr int retained_values_unfit = 811;
 inline constexpr int trace_not_writable = 812;
+inline constexpr int device_register_twice = 813;
 inline constexpr int register_address_twice = 820;
 inline constexpr int lock_file_syntax = 821;
 inline constexpr int point_addressed_twice = 822;

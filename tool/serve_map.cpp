@@ -2,12 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "runtime/host/host.hpp"
 #include "runtime/modbus/map_text.hpp"
-#include "runtime/task/task_door.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
-#include "tool/serve_modbus.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::tool {
@@ -54,12 +53,7 @@ Action add_map(CLI::App& app) {
     const Program diagram = load_diagram(options->diagram, warnings);
     const auto program = step_program(diagram, Engine::interpreter, options->diagram.float32);
     const runtime::RunConfig config = run_config_or_default(options->config, program->shape());
-    std::vector<bool> from_device;
-    for (const runtime::InputSettings& input : config.task.inputs) {
-      from_device.push_back(input.from_device);
-    }
-    runtime::TaskDoor door(*program, from_device, config.task.outputs);
-    const auto map = register_map_of(config.modbus.value_or(runtime::ModbusConfig{}), program->shape().name, door);
+    const auto map = runtime::register_map_of(config, *program);
     console.report(warnings);
     console.print(options->format == "csv"    ? runtime::modbus::as_csv(map)
                   : options->format == "json" ? runtime::modbus::as_json(map)

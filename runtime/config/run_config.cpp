@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "runtime/config/device_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -28,10 +29,12 @@ constexpr std::array<Keys, 8> top_keys{"task", "watchdog", "outputs", "inputs", 
 constexpr std::array<Keys, 8> task_keys{"period",     "missed",   "catch_up",  "tolerance",
                                         "scheduling", "priority", "processor", "lock_memory"};
 constexpr std::array<Keys, 4> watchdog_keys{"time", "sensitivity", "guard", "silence"};
-constexpr std::array<Keys, 9> output_keys{"safe", "on_fault", "hold_cycles", "ramp",    "low",
-                                          "high", "slew",     "device",      "register"};
-constexpr std::array<Keys, 4> input_keys{"device", "register", "area", "longest_age"};
-constexpr std::array<Keys, 5> device_keys{"host", "port", "unit", "cycle", "timeout"};
+constexpr std::array<Keys, 13> output_keys{"safe",   "on_fault", "hold_cycles", "ramp", "low",     "high",       "slew",
+                                           "device", "register", "area",        "type", "on_loss", "longest_age"};
+constexpr std::array<Keys, 8> input_keys{"device",  "register",    "area",   "type",
+                                         "on_loss", "longest_age", "age_of", "quality_of"};
+constexpr std::array<Keys, 10> device_keys{"host",      "port", "serial",     "baud",  "parity",
+                                           "stop_bits", "unit", "word_order", "cycle", "timeout"};
 constexpr std::array<Keys, 3> retain_keys{"folder", "every", "mismatch"};
 constexpr std::array<Keys, 4> trace_keys{"file", "trigger", "before", "after"};
 constexpr std::array<Keys, 11> modbus_keys{"listen",         "port",       "allow",     "connections",
@@ -66,8 +69,6 @@ class Reader {
     config_.task.loop.tolerance = shape_.period / 10;
     config_.task.inputs.resize(shape_.inputs.size());
     config_.task.outputs.resize(shape_.outputs.size());
-    config_.input_links.resize(shape_.inputs.size());
-    config_.output_links.resize(shape_.outputs.size());
     has_safe_value_.resize(shape_.outputs.size(), false);
     if (const auto* const table = table_at(root_, "task")) {
       read_task({file_, "[task]", *table, task_keys, found_});
@@ -75,9 +76,13 @@ class Reader {
     if (const auto* const table = table_at(root_, "watchdog")) {
       read_watchdog({file_, "[watchdog]", *table, watchdog_keys, found_});
     }
-    each_below("devices", [&](const toml::key& key, const toml::table& table) { read_device(key, table); });
+    each_below("devices", [&](const toml::key& key, const toml::table& table) {
+      const std::string name(key.str());
+      devices_.read_device(name, {file_, "[devices." + name + "]", table, device_keys, found_});
+    });
     each_below("outputs", [&](const toml::key& key, const toml::table& table) { read_output(key, table); });
     each_below("inputs", [&](const toml::key& key, const toml::table& table) { read_input(key, table); });
+    devices_.finish();
     if (const auto* const table = table_at(root_, "retain")) {
       read_retain({file_, "[retain]", *table, retain_keys, found_});
     }
@@ -155,17 +160,6 @@ class Reader {
                         1000 * second);
   }
 
-  void read_device(const toml::key& key, const toml::table& node) {
-    TomlReader table(file_, "[devices." + std::string(key.str()) + "]", node, device_keys, found_);
-    DeviceConfig device{.name = std::string(key.str()), .place = place_of(file_, key.source())};
-    table.read("host", device.host);
-    table.read_whole("port", device.port, 1, 65535);
-    table.read_whole("unit", device.unit, 0, 247);
-    table.read_duration("cycle", device.cycle, 100'000, 3600 * second);
-    table.read_duration("timeout", device.timeout, 1'000'000, 60 * second);
-    config_.devices.push_back(std::move(device));
-  }
-
   /// The port that a table is about; nothing, with an error, where the diagram has none of that name.
   std::optional<std::size_t> port_of(const toml::key& key, std::string_view kind,
                                      const std::vector<ProgramSignal>& signals) {
@@ -183,28 +177,6 @@ class Reader {
                    "keep one of the two; case makes no difference.");
     }
     return index;
-  }
-
-  std::optional<DeviceLink> read_link(TomlReader& table) {
-    std::string name;
-    table.read("device", name);
-    DeviceLink link;
-    table.read_whole("register", link.address, 0, 65532);
-    if (name.empty()) {
-      if (table.has("register")) {
-        found_.error(error::unknown_device, table.place("register"), "A register is given, and no device.",
-                     "name the device: device = \"stage\", and describe it under [devices.stage].");
-      }
-      return std::nullopt;
-    }
-    const auto found = std::ranges::find(config_.devices, name, &DeviceConfig::name);
-    if (found == config_.devices.end()) {
-      found_.error(error::unknown_device, table.place("device"), "There is no device " + name + ".",
-                   "describe it under [devices." + name + "].");
-      return std::nullopt;
-    }
-    link.device = static_cast<std::size_t>(found - config_.devices.begin());
-    return link;
   }
 
   void read_output(const toml::key& key, const toml::table& node) {
@@ -225,6 +197,7 @@ class Reader {
     std::size_t action = 0;
     table.read_choice("on_fault", action, std::array<Keys, 3>{"value", "ramp", "hold"});
     output.action = static_cast<SafeAction>(action);
+    devices_.read_output(*index, read_longest_age(table), table);
     has_safe_value_[*index] = has_safe_value_[*index] || table.has("safe");
     if (!(output.low <= output.high) || output.value < output.low || output.value > output.high) {
       found_.error(error::unfit_safe_value, table.place(table.has("safe") ? "safe" : "low"),
@@ -237,7 +210,6 @@ class Reader {
       found_.error(error::unfit_safe_value, table.place("on_fault"), "A ramp is asked for, and no rate is given.",
                    "write the change a second: ramp = 20.0.");
     }
-    config_.output_links[*index] = read_link(table);
   }
 
   void read_input(const toml::key& key, const toml::table& node) {
@@ -246,17 +218,13 @@ class Reader {
       return;
     }
     TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, input_keys, found_);
-    InputSettings& input = config_.task.inputs[*index];
+    devices_.read_input(*index, read_longest_age(table), table);
+  }
+
+  std::int64_t read_longest_age(TomlReader& table) {
     std::int64_t age = 0;
     table.read_duration("longest_age", age, shape_.period, 1000 * second);
-    config_.input_links[*index] = read_link(table);
-    std::size_t area = 0;
-    table.read_choice("area", area, std::array<Keys, 2>{"holding", "input"});
-    if (config_.input_links[*index]) {
-      config_.input_links[*index]->input_register = area == 1;
-    }
-    input.from_device = config_.input_links[*index].has_value();
-    input.longest_age = static_cast<std::uint64_t>(age / shape_.period);
+    return age;
   }
 
   void missing(const TomlReader& table, const std::string& key, const std::string& example) {
@@ -307,10 +275,9 @@ class Reader {
     table.read("allow", modbus.allow);
     table.read_whole("connections", modbus.connections, 1, 1000);
     table.read("read_only", modbus.read_only);
-    constexpr std::array<Keys, 4> orders{"abcd", "badc", "cdab", "dcba"};
     std::size_t order = 0;
-    table.read_choice("word_order", order, orders);
-    modbus.word_order = orders[order];
+    table.read_choice("word_order", order, word_order_words);
+    modbus.word_order = modbus::word_orders[order];
     table.read("lock_file", modbus.lock_file);
     read_heartbeat(table, modbus);
     config_.modbus = std::move(modbus);
@@ -353,6 +320,7 @@ class Reader {
   std::vector<bool> has_safe_value_{};
   std::set<const ProgramSignal*> ports_seen_{};
   Diagnostics found_{};
+  DeviceReader devices_{file_, shape_, config_, found_};
 };
 
 }  // namespace

@@ -26,19 +26,34 @@
 //   slew = 1000.0              # a second
 //   device = "stage"           # where it goes, as a name in [devices]
 //   register = 0
+//   area = "holding"           # or "coil"
+//   type = "real64"            # or "int16", "uint16", "int32", "uint32", "int64", "uint64", "real32"; a coil:
+//   "boolean" on_loss = "fault"          # or "keep": the diagram looks after it
 //
 //   [inputs.Y]
 //   device = "stage"
 //   register = 4
-//   area = "input"             # input registers; default: "holding"
+//   area = "input"             # or "holding", "coil", "discrete"
+//   type = "real64"
+//   on_loss = "fault"
 //   longest_age = "20ms"
+//
+//   [inputs.Y_AGE]
+//   age_of = "Y"               # seconds since Y came from its device; or quality_of
 //
 //   [devices.stage]
 //   host = "127.0.0.1"
 //   port = 1502
 //   unit = 1
+//   word_order = "abcd"
 //   cycle = "5ms"
 //   timeout = "200ms"
+//
+//   [devices.drive]
+//   serial = "/dev/ttyUSB0"    # Modbus RTU
+//   baud = 19200
+//   parity = "even"            # or "odd", "none"
+//   stop_bits = 1
 //
 //   [retain]
 //   folder = "/var/lib/piezo"
@@ -65,12 +80,14 @@
 //   own_writes = true          # while a client that writes is there, no other may
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/modbus/device.hpp"
 #include "runtime/modbus/heartbeat.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
@@ -80,21 +97,29 @@
 
 namespace hysteron::runtime {
 
-/// A value on a device: four registers that hold a 64-bit float, in the order abcd.
+/// Where a value lies: devices[device].values[value].
 struct DeviceLink {
   std::size_t device = 0;
-  std::uint16_t address = 0;
-  bool input_register = false;  ///< of an input: read by function 4, else by function 3
+  std::size_t value = 0;
+  bool faults = true;  ///< its loss is a fault of the task; else the diagram looks after it
 };
 
-struct DeviceConfig {
-  std::string name{};
-  std::string host = "127.0.0.1";
-  std::uint16_t port = 502;
-  std::uint8_t unit = 1;
-  std::int64_t cycle = 5'000'000;
-  std::int64_t timeout = 200'000'000;
-  Place place{};
+/// What an input is told: a value of a device, or how that value is.
+enum class Tells : std::uint8_t {
+  value,
+  age,      ///< in seconds
+  quality,  ///< as modbus::Quality counts
+};
+
+struct DeviceInput {
+  std::size_t port = 0;
+  DeviceLink link{};
+  Tells tells = Tells::value;
+};
+
+struct DeviceOutput {
+  std::size_t port = 0;
+  DeviceLink link{};
 };
 
 struct RetainConfig {
@@ -109,7 +134,7 @@ struct ModbusConfig {
   std::vector<std::string> allow{};
   std::size_t connections = 32;
   bool read_only = false;
-  std::string word_order = "abcd";
+  modbus::WordOrder word_order = modbus::WordOrder::abcd;
   std::string lock_file{};
   modbus::HeartbeatOptions heartbeat{};
   Place place{};
@@ -124,12 +149,16 @@ struct RunConfig {
   std::optional<TraceSettings> trace{};
   Place trace_place{};
   std::optional<ModbusConfig> modbus{};
-  std::vector<DeviceConfig> devices{};
-  std::vector<std::optional<DeviceLink>> input_links{};   ///< by input
-  std::vector<std::optional<DeviceLink>> output_links{};  ///< by output
+  std::vector<modbus::DeviceOptions> devices{};
+  std::vector<DeviceInput> device_inputs{};
+  std::vector<DeviceOutput> device_outputs{};
 };
 
-/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810; `file` stands in places.
+/// As modbus::word_orders.
+inline constexpr std::array<std::string_view, 4> word_order_words{"abcd", "cdab", "badc", "dcba"};
+
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810 and HY813; `file` stands in
+/// places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
 
 /// A length of time as "5ms": a number and one of ns, us, ms, s. In nanoseconds; nothing where it is none.

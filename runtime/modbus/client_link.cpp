@@ -1,12 +1,15 @@
 #include "runtime/modbus/client_link.hpp"
 
 #include <modbus/modbus.h>
+#include <sys/file.h>
 #include <sys/select.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <optional>
+#include <thread>
 
 #include "runtime/modbus/frame.hpp"
 
@@ -30,6 +33,27 @@ constexpr std::size_t word_at(std::span<const std::uint8_t> bytes, std::size_t a
   return static_cast<std::size_t>(bytes[at]) << 8U | bytes[at + 1];
 }
 
+/// The turn on a serial line. One who was stopped in the middle would keep it for ever, and the guard has to write
+/// then: after the time that two exchanges may take, the line is used all the same.
+class Turn {
+ public:
+  Turn(int line, std::chrono::milliseconds response) : line_(line) {
+    using Clock = std::chrono::steady_clock;
+    const auto longest = Clock::now() + 2 * response;
+    while (::flock(line_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && Clock::now() < longest) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  Turn(Turn&&) = delete;
+  Turn& operator=(Turn&&) = delete;
+  ~Turn() { ::flock(line_, LOCK_UN); }
+
+ private:
+  int line_;
+};
+
 }  // namespace
 
 void ClientLink::Free::operator()(void* context) const {
@@ -38,7 +62,7 @@ void ClientLink::Free::operator()(void* context) const {
 
 ClientLink::ClientLink(const std::variant<TcpLink, SerialLink>& to, std::uint8_t unit,
                        std::chrono::milliseconds response)
-    : context_(new_context(to)), serial_(std::holds_alternative<SerialLink>(to)), unit_(unit) {
+    : context_(new_context(to)), serial_(std::holds_alternative<SerialLink>(to)), unit_(unit), response_(response) {
   if (context_ != nullptr) {
     ::modbus_set_slave(of(context_), unit);
     const auto microseconds = static_cast<std::uint32_t>(std::chrono::microseconds(response).count());
@@ -84,7 +108,12 @@ Exchange ClientLink::exchange(std::span<const std::uint8_t> request, std::vector
   if (!open_) {
     return Exchange::no_link;
   }
+  std::optional<Turn> turn;
+  if (serial_) {
+    turn.emplace(::modbus_get_socket(of(context_)), response_);
+  }
   const Exchange outcome = transfer(request, answer);
+  turn.reset();
   if (outcome != Exchange::answered && outcome != Exchange::exception) {
     close();
   }

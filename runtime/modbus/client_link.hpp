@@ -2,7 +2,8 @@
 //
 // libmodbus opens the link, keeps its timeouts and, on a serial line, its checksums. The answer is checked here, to the
 // byte: transaction, protocol, length, unit, function and size. Its own client takes a late answer for the next one and
-// then stays off by one for ever; here whatever is not the exact answer ends the connection.
+// then stays off by one for ever; here whatever is not the exact answer ends the connection. Several devices may hang
+// on one serial line, and of several processes: exchanges take turns.
 #pragma once
 
 #include <chrono>
@@ -19,6 +20,7 @@ namespace hysteron::runtime::modbus {
 struct TcpLink {
   std::string host = "127.0.0.1";
   std::uint16_t port = 502;
+  friend bool operator==(const TcpLink&, const TcpLink&) = default;
 };
 
 struct SerialLink {
@@ -27,6 +29,7 @@ struct SerialLink {
   char parity = 'E';
   int data_bits = 8;
   int stop_bits = 1;
+  friend bool operator==(const SerialLink&, const SerialLink&) = default;
 };
 
 enum class Exchange : std::uint8_t {
@@ -67,6 +70,7 @@ class ClientLink {
   std::unique_ptr<void, Free> context_;
   bool serial_;
   std::uint8_t unit_;
+  std::chrono::milliseconds response_;
   std::uint16_t transaction_ = 0;
   bool open_ = false;
   std::mutex socket_lock_;  ///< of open, close and interrupt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <numeric>
@@ -9,8 +10,10 @@
 #include <stdexcept>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "runtime/modbus/value_bits.hpp"
+#include "runtime/task/exchange.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -74,37 +77,47 @@ void put_word(std::vector<std::uint8_t>& bytes, std::uint32_t word) {
 
 class Device::Worker {
  public:
-  explicit Worker(const DeviceOptions& options)
+  Worker(const DeviceOptions& options, DeviceWork work)
       : options_(options),
+        work_(std::move(work)),
         blocks_(blocks_of(options.values)),
         cells_(options.values.size()),
         link_(options.link, options.unit, options.response),
-        thread_([this](const std::stop_token& stop) { run(stop); }) {}
+        thread_(work_.own_thread ? std::jthread([this](const std::stop_token& stop) { run(stop); }) : std::jthread()) {}
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   Worker(Worker&&) = delete;
   Worker& operator=(Worker&&) = delete;
   ~Worker() {
     thread_.request_stop();
-    link_.interrupt();
+    if (std::ranges::none_of(blocks_, &Block::written)) {
+      link_.interrupt();
+    }
   }
 
   [[nodiscard]] RemoteReading read(std::size_t value) const {
-    const std::scoped_lock lock(mutex_);
-    const Cell& cell = cells_.at(value);
-    RemoteReading reading{.value = cell.value, .quality = cell.quality};
-    if (cell.good_at) {
-      reading.age = Clock::now() - *cell.good_at;
-      if (reading.quality == Quality::good && reading.age > options_.old_after) {
-        reading.quality = Quality::old;
-      }
+    std::uint64_t number = 0;
+    std::array<double, 3> told{};
+    if (!cells_[value].told.read(number, told)) {
+      return {.age = Clock::now() - begin_};
+    }
+    RemoteReading reading{.value = told[0], .quality = static_cast<Quality>(told[1])};
+    reading.age = Clock::now() - begin_ - std::chrono::nanoseconds(static_cast<std::int64_t>(told[2]));
+    if (reading.quality == Quality::good && reading.age > longest_age(value)) {
+      reading.quality = Quality::old;
     }
     return reading;
   }
 
   void write(std::size_t value, double number) {
-    const std::scoped_lock lock(mutex_);
-    cells_.at(value).to_write = number;
+    Cell& cell = cells_[value];
+    cell.to_write.store(number, std::memory_order_relaxed);
+    cell.is_given.store(true, std::memory_order_release);
+  }
+
+  [[nodiscard]] std::chrono::nanoseconds longest_age(std::size_t value) const {
+    const auto longest = options_.values[value].longest_age;
+    return longest.count() > 0 ? longest : std::max<std::chrono::nanoseconds>(10 * options_.period, options_.response);
   }
 
   [[nodiscard]] DeviceStatus status() const {
@@ -112,13 +125,36 @@ class Device::Worker {
     return status_;
   }
 
+  bool round() {
+    bool sound = link_.is_open() || connect();
+    for (std::size_t i = 0; i < blocks_.size() && sound; ++i) {
+      sound = is_sound(serve(blocks_[i]));
+    }
+    if (!sound) {
+      lose();
+    }
+    return sound;
+  }
+
  private:
+  /// Of the worker, but for what is atomic and the ring, by which the others are told: value, quality, time.
   struct Cell {
     double value = 0.0;
     Quality quality = Quality::never;
-    std::optional<Clock::time_point> good_at{};
-    std::optional<double> to_write{};
+    std::chrono::nanoseconds good_at{0};  ///< since the start
+    double sent = 0.0;
+    std::atomic<double> to_write{0.0};
+    std::atomic<bool> is_given{false};
+    SnapshotRing told{3};
   };
+
+  static void tell(Cell& cell) {
+    const std::array<double, 3> row{cell.value, static_cast<double>(cell.quality),
+                                    static_cast<double>(cell.good_at.count())};
+    cell.told.publish(0, row);
+  }
+
+  static bool is_sound(Exchange outcome) { return outcome == Exchange::answered || outcome == Exchange::exception; }
 
   void run(const std::stop_token& stop) {
     auto wait = options_.first_wait;
@@ -130,8 +166,7 @@ class Device::Worker {
       }
       bool sound = true;
       for (const Block& block : blocks_) {
-        const Exchange outcome = serve(block);
-        sound = outcome == Exchange::answered || outcome == Exchange::exception;
+        sound = is_sound(serve(block));
         if (!sound || stop.stop_requested()) {
           break;
         }
@@ -141,6 +176,12 @@ class Device::Worker {
         sleep_until(stop, begin + options_.period);
       } else {
         wait = pause(stop, wait);
+      }
+    }
+    // What the task wrote last, its safe values, still has to arrive.
+    for (const Block& block : blocks_) {
+      if (block.written && link_.is_open()) {
+        (void)serve(block);
       }
     }
   }
@@ -157,15 +198,17 @@ class Device::Worker {
     return true;
   }
 
+  void lose() {
+    set_state(LinkState::waiting);
+    for (Cell& cell : cells_) {
+      cell.quality = cell.quality == Quality::never ? Quality::never : Quality::lost;
+      tell(cell);
+    }
+  }
+
   /// Marks all values lost and waits; the next wait.
   std::chrono::milliseconds pause(const std::stop_token& stop, std::chrono::milliseconds wait) {
-    {
-      const std::scoped_lock lock(mutex_);
-      status_.state = LinkState::waiting;
-      for (Cell& cell : cells_) {
-        cell.quality = cell.good_at ? Quality::lost : Quality::never;
-      }
-    }
+    lose();
     sleep_until(stop, Clock::now() + wait);
     return std::min(2 * wait, options_.longest_wait);
   }
@@ -206,23 +249,23 @@ class Device::Worker {
 
   Exchange serve(const Block& block) {
     const auto request = block.written ? write_request(block) : read_request(block);
-    if (request.empty()) {
-      return Exchange::answered;  // not all of its values have been given yet
+    if (request.empty() || (block.written && work_.may_write && !work_.may_write())) {
+      return Exchange::answered;  // not all of its values have been given yet, or another writes now
     }
     std::vector<std::uint8_t> answer;
     const Exchange outcome = link_.exchange(request, answer);
     count(outcome);
-    const std::scoped_lock lock(mutex_);
     for (const std::size_t i : block.values) {
       Cell& cell = cells_[i];
       if (outcome == Exchange::exception) {
-        cell.quality = Quality::refused;
+        cell.quality = cell.quality == Quality::never ? Quality::never : Quality::refused;
       } else if (outcome == Exchange::answered) {
-        const auto value = block.written ? cell.to_write : decoded(block, options_.values[i], answer);
+        const auto value = block.written ? std::optional(cell.sent) : decoded(block, options_.values[i], answer);
         cell.quality = value ? Quality::good : Quality::refused;  // an integer beyond 2^53 is no value that we can hold
         cell.value = value.value_or(cell.value);
-        cell.good_at = value ? Clock::now() : cell.good_at;
+        cell.good_at = value ? Clock::now() - begin_ : cell.good_at;
       }
+      tell(cell);
     }
     return outcome;
   }
@@ -235,7 +278,7 @@ class Device::Worker {
     return request;
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> write_request(const Block& block) {
+  std::vector<std::uint8_t> write_request(const Block& block) {
     const bool bits = holds_bits(block.area);
     std::vector<std::uint8_t> request{static_cast<std::uint8_t>(bits ? 15 : 16)};
     put_word(request, block.address);
@@ -243,13 +286,13 @@ class Device::Worker {
     const std::uint32_t bytes = bits ? (block.count + 7) / 8 : 2 * block.count;
     request.push_back(static_cast<std::uint8_t>(bytes));
     request.resize(6 + bytes);
-    const std::scoped_lock lock(mutex_);
     for (const std::size_t i : block.values) {
       const RemoteValue& value = options_.values[i];
-      if (!cells_[i].to_write) {
+      if (!cells_[i].is_given.load(std::memory_order_acquire)) {
         return {};
       }
-      const std::uint64_t pattern = bits_of(*cells_[i].to_write, value.type);
+      cells_[i].sent = cells_[i].to_write.load(std::memory_order_relaxed);
+      const std::uint64_t pattern = bits_of(cells_[i].sent, value.type);
       const std::uint32_t offset = value.at.address - block.address;
       if (bits) {
         request[6 + offset / 8] |= static_cast<std::uint8_t>(pattern << offset % 8);
@@ -282,6 +325,8 @@ class Device::Worker {
   }
 
   const DeviceOptions options_;
+  const DeviceWork work_;
+  const Clock::time_point begin_ = Clock::now();
   const std::vector<Block> blocks_;
   mutable std::mutex mutex_;
   std::condition_variable_any woken_;
@@ -291,7 +336,8 @@ class Device::Worker {
   std::jthread thread_;
 };
 
-Device::Device(const DeviceOptions& options) : worker_(std::make_unique<Worker>(options)) {}
+Device::Device(const DeviceOptions& options, DeviceWork work)
+    : worker_(std::make_unique<Worker>(options, std::move(work))) {}
 Device::~Device() = default;
 
 RemoteReading Device::read(std::size_t value) const {
@@ -299,6 +345,12 @@ RemoteReading Device::read(std::size_t value) const {
 }
 void Device::write(std::size_t value, double number) {
   worker_->write(value, number);
+}
+std::chrono::nanoseconds Device::longest_age(std::size_t value) const {
+  return worker_->longest_age(value);
+}
+bool Device::round() {
+  return worker_->round();
 }
 DeviceStatus Device::status() const {
   return worker_->status();

@@ -1,5 +1,5 @@
 // A remote Modbus device whose values the task reads and writes: a thread of its own, so that a device that is slow or
-// dead delays nobody but itself.
+// dead delays nobody but itself. read() and write() take no lock and call nothing of the system but the clock.
 //
 //   connecting → running → (anything but the exact answer) → waiting → connecting …
 //
@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <variant>
@@ -24,7 +25,9 @@ namespace hysteron::runtime::modbus {
 struct RemoteValue {
   Stretch at{};  ///< the count follows from the type
   PointType type = PointType::uint16;
-  bool written = false;  ///< sent to the device every period, once it has a value; else read from it
+  bool written = false;                     ///< sent to the device every period, once it has a value; else read from it
+  std::chrono::nanoseconds longest_age{0};  ///< beyond that it is old; 0: ten periods, or the response time
+  friend bool operator==(const RemoteValue&, const RemoteValue&) = default;
 };
 
 struct DeviceOptions {
@@ -33,17 +36,23 @@ struct DeviceOptions {
   std::uint8_t unit = 1;
   WordOrder order = WordOrder::abcd;
   std::vector<RemoteValue> values{};
-  std::chrono::milliseconds period{100};
-  std::chrono::milliseconds response{500};    ///< for a whole answer, and for a connection
-  std::chrono::milliseconds first_wait{100};  ///< before the second attempt; doubled for each further one
-  std::chrono::milliseconds longest_wait{5000};
-  std::chrono::milliseconds old_after{1000};
+  std::chrono::nanoseconds period = std::chrono::milliseconds(5);
+  std::chrono::milliseconds response{200};   ///< for a whole answer, and for a connection
+  std::chrono::milliseconds first_wait{50};  ///< before the second attempt; doubled for each further one
+  std::chrono::milliseconds longest_wait{2000};
+  friend bool operator==(const DeviceOptions&, const DeviceOptions&) = default;
+};
+
+/// Who works for a device, and whether it may write.
+struct DeviceWork {
+  bool own_thread = true;             ///< else the owner calls round()
+  std::function<bool()> may_write{};  ///< asked before every write, in the thread that writes; none: it may
 };
 
 enum class Quality : std::uint8_t {
-  never,    ///< not read since the start
+  never,    ///< not good since the start
   good,     ///< read, or taken by the device, and not old
-  old,      ///< the link is up, but the value did not come for `old_after`
+  old,      ///< the link is up, but the value did not come for its longest age
   refused,  ///< the device answered the last request with an exception
   lost,     ///< no link
 };
@@ -51,7 +60,7 @@ enum class Quality : std::uint8_t {
 struct RemoteReading {
   double value = 0.0;
   Quality quality = Quality::never;
-  std::chrono::nanoseconds age{0};  ///< since it was good
+  std::chrono::nanoseconds age{0};  ///< since it was good; since the start where it never was
 };
 
 enum class LinkState : std::uint8_t { connecting, running, waiting };
@@ -71,17 +80,22 @@ class Device {
  public:
   /// Begins at once. Throws std::invalid_argument where a value is written to an area that can only be read, or is no
   /// boolean among bits.
-  explicit Device(const DeviceOptions& options);
+  explicit Device(const DeviceOptions& options, DeviceWork work = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   Device(Device&&) = delete;
   Device& operator=(Device&&) = delete;
-  /// Ends within the response time.
+  /// What was written last is sent once more where there is a link. Ends within twice the response time.
   ~Device();
 
   [[nodiscard]] RemoteReading read(std::size_t value) const;
   void write(std::size_t value, double number);
   [[nodiscard]] DeviceStatus status() const;
+  /// The age beyond which a value is old.
+  [[nodiscard]] std::chrono::nanoseconds longest_age(std::size_t value) const;
+  /// Without a thread: connects where there is no link, and exchanges every value once; waits for the answers. False
+  /// where the link is lost.
+  bool round();
 
  private:
   class Worker;

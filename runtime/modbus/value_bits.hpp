@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "runtime/point.hpp"
 
@@ -62,6 +63,9 @@ constexpr const char* name_of(PointType type) {
 
 /// The bits of a value, in the low 16·registers_of(type) bits.
 [[nodiscard]] std::uint64_t bits_of(double value, PointType type);
+
+/// The lowest and the highest number that a type holds, and a double exactly.
+[[nodiscard]] std::pair<double, double> limits_of(PointType type);
 
 /// The value of bits; empty where an integer is beyond ±2^53 and a double would not hold it exactly.
 [[nodiscard]] std::optional<double> value_of(std::uint64_t bits, PointType type);

@@ -1,13 +1,16 @@
 // The field as the task sees it: inputs that devices give, outputs that devices take.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "runtime/task/safe_outputs.hpp"
 
 namespace hysteron::runtime {
 
-/// Neither function waits for a device: each hands over to a thread that does.
+enum class Delivery : std::uint8_t { pending, done, failed };
+
+/// read() and write() wait for no device: they hand over to a thread that does.
 class FieldIo {
  public:
   FieldIo() = default;
@@ -18,6 +21,8 @@ class FieldIo {
   /// Sets the inputs that devices give, and no others. A lost link or an old value is said by the fault.
   virtual Fault read(std::span<double> inputs) noexcept = 0;
   virtual void write(std::span<const double> outputs) noexcept = 0;
+  /// Whether the devices have taken what was written last. Asked at the end, when nobody tries on.
+  virtual Delivery delivery() noexcept { return Delivery::done; }
 };
 
 }  // namespace hysteron::runtime

@@ -109,6 +109,8 @@ Guard::Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDe
     (void)setsid();
     (void)prctl(PR_SET_NAME, "hysteron-guard");
     (void)std::signal(SIGINT, SIG_IGN);
+    (void)std::signal(SIGHUP, SIG_IGN);
+    (void)std::signal(SIGABRT, SIG_IGN);  // what systemd sends to all processes of a service that hangs
     (void)std::signal(SIGTERM, [](int) { asked_to_end = 1; });
     device.open();
     guard_life(settings, *page_, outputs, device, task);

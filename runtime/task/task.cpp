@@ -8,14 +8,6 @@
 namespace hysteron::runtime {
 namespace {
 
-std::vector<bool> device_inputs(const TaskSettings& settings) {
-  std::vector<bool> result;
-  for (const InputSettings& input : settings.inputs) {
-    result.push_back(input.from_device);
-  }
-  return result;
-}
-
 const TaskSettings& fitting(const TaskSettings& settings, const ProgramShape& shape) {
   if (settings.inputs.size() != shape.inputs.size() || settings.outputs.size() != shape.outputs.size()) {
     throw std::invalid_argument("the settings of a task name other inputs and outputs than its program has");
@@ -24,6 +16,14 @@ const TaskSettings& fitting(const TaskSettings& settings, const ProgramShape& sh
 }
 
 }  // namespace
+
+std::vector<bool> device_inputs(const TaskSettings& settings) {
+  std::vector<bool> result;
+  for (const InputSettings& input : settings.inputs) {
+    result.push_back(input.from_device);
+  }
+  return result;
+}
 
 Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments, SetCheck check)
     : program_(&program),
@@ -176,13 +176,20 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
 
 void Task::settle(Clock& clock, Fault fault) {
   const std::int64_t begin = clock.now();
+  Delivery delivery = Delivery::pending;
   for (std::int64_t due = begin + settings_.loop.period; due - begin <= settings_.longest_stop;
        due += settings_.loop.period) {
     if (attachments_.guard != nullptr) {
       attachments_.guard->cycle_begins(clock.now());
     }
     safe_.step(computed_, fault);
-    if (!write_outputs() || safe_.settled()) {
+    if (!write_outputs()) {
+      break;
+    }
+    if (safe_.settled()) {
+      delivery = attachments_.field == nullptr ? Delivery::done : attachments_.field->delivery();
+    }
+    if (delivery != Delivery::pending) {
       break;
     }
     clock.sleep_until(due);
@@ -192,7 +199,7 @@ void Task::settle(Clock& clock, Fault fault) {
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;
-    status_.fault = fault;
+    status_.fault = safe_.settled() && delivery != Delivery::done ? Fault::lost_link : fault;
     if (attachments_.guard != nullptr && safe_.settled()) {
       (void)attachments_.guard->goodbye();
     }

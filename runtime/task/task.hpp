@@ -36,6 +36,9 @@ struct TaskSettings {
   bool reset_after_lost_client = false;
 };
 
+/// By input: whether a device gives it.
+[[nodiscard]] std::vector<bool> device_inputs(const TaskSettings& settings);
+
 /// Each may be null.
 struct TaskAttachments {
   FieldIo* field = nullptr;

@@ -21,11 +21,17 @@ ProgramShape plant() {
   return shape;
 }
 
+ProgramShape plant_of_two() {
+  ProgramShape shape = plant();
+  shape.outputs.push_back({.name = "W"});
+  return shape;
+}
+
 /// Number, line and column of every error.
-std::string errors_of(std::string_view text) {
+std::string errors_of(std::string_view text, const ProgramShape& shape = plant()) {
   std::string list;
   try {
-    (void)parse_run_config("RUN.toml", text, plant());
+    (void)parse_run_config("RUN.toml", text, shape);
   } catch (const InputError& refused) {
     for (const Diagnostic& one : refused.diagnostics().all()) {
       list += std::to_string(one.number) + "@" + std::to_string(one.place.line) + ":" +
@@ -106,20 +112,24 @@ lock_file = "plant.lock"
   EXPECT_EQ(y.low, -5.0);
   EXPECT_EQ(y.high, 10.0);  // the diagram's
   EXPECT_EQ(y.slew, 1000.0);
-  EXPECT_EQ(config.output_links[0]->address, 8);
+  ASSERT_EQ(config.devices.size(), 1U);
+  const modbus::DeviceOptions& stage = config.devices[0];
+  EXPECT_EQ(config.device_outputs[0].port, 0U);
+  EXPECT_EQ(stage.values[config.device_outputs[0].link.value].at,
+            (modbus::Stretch{modbus::Area::holding_register, 8, 4}));
   EXPECT_TRUE(config.task.inputs[0].from_device);
   EXPECT_FALSE(config.task.inputs[1].from_device);
   EXPECT_EQ(config.task.inputs[1].longest_age, 20U);
-  EXPECT_FALSE(config.input_links[1]);
-  EXPECT_EQ(config.devices[0].host, "10.0.0.7");
-  EXPECT_EQ(config.devices[0].unit, 3);
-  EXPECT_EQ(config.devices[0].cycle, 2'000'000);
+  EXPECT_EQ(std::get<modbus::TcpLink>(stage.link), (modbus::TcpLink{.host = "10.0.0.7", .port = 1502}));
+  EXPECT_EQ(stage.unit, 3);
+  EXPECT_EQ(stage.period, std::chrono::milliseconds(2));
+  EXPECT_EQ(stage.response, std::chrono::milliseconds(150));
   EXPECT_EQ(config.retain->mismatch, MismatchPolicy::cold);
   EXPECT_EQ(config.task.retain_every, 100U);
   EXPECT_EQ(config.trace->trigger->level, 2.5);
   EXPECT_EQ(config.trace->trigger->before, 7U);
   EXPECT_EQ(config.modbus->port, 1600);
-  EXPECT_EQ(config.modbus->word_order, "cdab");
+  EXPECT_EQ(config.modbus->word_order, modbus::WordOrder::cdab);
   EXPECT_TRUE(config.modbus->read_only);
 }
 
@@ -156,6 +166,75 @@ TEST(RunConfig, AHeartbeatOfWritesNeedsWrites) {
   EXPECT_EQ(errors_of(start + "read_only = true\nheartbeat = \"any\"\n"), "");
   EXPECT_EQ(errors_of(start + "read_only = true\nheartbeat = \"write\"\n"), "804@7:13 ");
   EXPECT_EQ(errors_of(start + "read_only = true\nafter_loss = \"reset\"\n"), "804@7:14 ");
+}
+
+TEST(RunConfig, ValuesOnDevicesHaveATypeAndAPlace) {
+  const auto config = parse_run_config("RUN.toml", R"(
+[devices.drive]
+serial = "/dev/ttyS3"
+baud = 115200
+parity = "none"
+stop_bits = 2
+unit = 17
+word_order = "cdab"
+[outputs.Y]
+safe = 0
+device = "drive"
+register = 100
+type = "int16"
+low = -1e6
+high = 10
+on_loss = "keep"
+[inputs.X]
+device = "drive"
+register = 7
+area = "discrete"
+longest_age = "3s"
+[inputs.Z]
+age_of = "y"
+)",
+                                       plant());
+  const modbus::DeviceOptions& drive = config.devices.at(0);
+  EXPECT_EQ(std::get<modbus::SerialLink>(drive.link),
+            (modbus::SerialLink{.path = "/dev/ttyS3", .baud = 115200, .parity = 'N', .stop_bits = 2}));
+  EXPECT_EQ(drive.unit, 17);
+  EXPECT_EQ(drive.order, modbus::WordOrder::cdab);
+  const auto x = std::ranges::find(config.device_inputs, Tells::value, &DeviceInput::tells);
+  EXPECT_EQ(drive.values.at(x->link.value).at, (modbus::Stretch{modbus::Area::discrete_input, 7, 1}));
+  EXPECT_EQ(drive.values.at(x->link.value).type, PointType::boolean);
+  EXPECT_EQ(drive.values.at(x->link.value).longest_age, std::chrono::seconds(3));
+  const DeviceOutput& y = config.device_outputs.at(0);
+  EXPECT_EQ(drive.values.at(y.link.value).at, (modbus::Stretch{modbus::Area::holding_register, 100, 1}));
+  EXPECT_EQ(drive.values.at(y.link.value).type, PointType::int16);
+  EXPECT_FALSE(y.link.faults);
+  EXPECT_EQ(config.task.outputs[0].low, -32768.0) << "it cannot hold less";
+  EXPECT_EQ(config.task.outputs[0].high, 10.0);
+  const auto age = std::ranges::find(config.device_inputs, Tells::age, &DeviceInput::tells);
+  EXPECT_EQ(age->port, 1U);
+  EXPECT_EQ(age->link.value, y.link.value);
+  EXPECT_TRUE(config.task.inputs[1].from_device) << "no client may write it";
+}
+
+TEST(RunConfig, DevicesAreRefusedAtTheirPlace) {
+  const std::string y = "[outputs.Y]\nsafe = 0\n";
+  EXPECT_EQ(errors_of(y + "[devices.a]\nbaud = 9600\n"), "804@4:8 ");
+  EXPECT_EQ(errors_of(y + "[devices.a]\nserial = \"/dev/ttyS0\"\nport = 502\n"), "804@5:8 ");
+  EXPECT_EQ(errors_of(y + "[devices.a]\nserial = \"/dev/ttyS0\"\nparity = \"E\"\n"), "804@5:10 ");
+  const std::string x = y + "[devices.a]\n[inputs.X]\ndevice = \"a\"\n";
+  EXPECT_EQ(errors_of(x + "type = \"boolean\"\n"), "804@6:8 ");
+  EXPECT_EQ(errors_of(x + "area = \"coil\"\ntype = \"real32\"\n"), "804@7:8 ");
+  EXPECT_EQ(errors_of(x + "register = 65533\n"), "805@6:12 ");
+  EXPECT_EQ(errors_of(x + "register = 65535\ntype = \"uint16\"\n"), "");
+  EXPECT_EQ(errors_of(x + "age_of = \"Y\"\n"), "804@6:10 810@6:10 ");
+  EXPECT_EQ(errors_of(x + "[inputs.Z]\nquality_of = \"Y\"\n"), "810@7:14 ");
+  EXPECT_EQ(errors_of(x + "[inputs.Z]\nquality_of = \"x\"\n"), "");
+  EXPECT_EQ(errors_of(y + "area = \"input\"\ndevice = \"a\"\n[devices.a]\n"), "804@3:8 ");
+}
+
+TEST(RunConfig, ARegisterWrittenTwiceHasItsPage) {
+  const auto page = hysteron::test::read_error_page("HY813");
+  EXPECT_EQ(errors_of(page.fails.text, plant_of_two()), "813@8:10 ");
+  EXPECT_EQ(errors_of(page.mended.text, plant_of_two()), "");
 }
 
 TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {

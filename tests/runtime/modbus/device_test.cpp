@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "runtime/modbus/server.hpp"
+#include "runtime/modbus/value_bits.hpp"
 #include "tests/runtime/modbus/bad_server.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 
@@ -38,12 +39,11 @@ bool soon(const std::function<bool()>& holds) {
 DeviceOptions one_register(std::uint16_t port) {
   return {.name = "DEVICE",
           .link = TcpLink{.port = port},
-          .values = {{.at = {Area::holding_register, 0, 1}}},
+          .values = {{.at = {Area::holding_register, 0, 1}, .longest_age = std::chrono::minutes(1)}},
           .period = milliseconds(2),
           .response = response,
           .first_wait = milliseconds(2),
-          .longest_wait = milliseconds(20),
-          .old_after = milliseconds(60'000)};
+          .longest_wait = milliseconds(20)};
 }
 
 class BadDevice : public ::testing::TestWithParam<Fault> {};
@@ -260,6 +260,38 @@ TEST(Device, EveryTypeOverASerialLine) {
                           .period = milliseconds(5),
                           .response = milliseconds(2000)},
                          map, door);
+}
+
+TEST(Device, SeveralUnitsOnOneSerialLineTakeTurns) {
+  test::MemoryDoor door(test::points_of_every_type());
+  const RegisterMap map = make_register_map(door.points(), {.title = "T"});
+  Responder responder(map, door, {});
+  const SerialDevice line(responder);
+  std::vector<std::unique_ptr<Device>> units;
+  for (std::uint8_t unit = 3; unit <= 5; ++unit) {
+    units.push_back(
+        std::make_unique<Device>(DeviceOptions{.link = SerialLink{.path = line.path(), .baud = 115200, .parity = 'N'},
+                                               .unit = unit,
+                                               .values = {{.at = {Area::holding_register, 0, 1}}},
+                                               .period = milliseconds(1),
+                                               .response = milliseconds(5000)}));
+  }
+  for (const auto& unit : units) {
+    EXPECT_TRUE(soon([&] { return unit->status().answers >= 50; }));
+  }
+  for (const auto& unit : units) {
+    const DeviceStatus status = unit->status();
+    EXPECT_EQ(status.timeouts + status.wrong_answers + status.closed, 0U) << "answers to another's requests";
+    EXPECT_EQ(status.connections, 1U);
+  }
+}
+
+TEST(ValueBits, LimitsOfATypeComeBackAsTheyAre) {
+  for (const PointType type : point_types) {
+    const auto [low, high] = limits_of(type);
+    EXPECT_EQ(value_of(bits_of(low, type), type), low) << name_of(type);
+    EXPECT_EQ(value_of(bits_of(high, type), type), high) << name_of(type);
+  }
 }
 
 }  // namespace

@@ -45,6 +45,30 @@ class Field final : public FieldIo {
   std::vector<double> written;
 };
 
+/// Takes a while to hand on what was written, or for ever.
+class SlowField final : public FieldIo {
+ public:
+  explicit SlowField(int cycles) : cycles_(cycles) {}
+  Fault read(std::span<double> /*inputs*/) noexcept override { return Fault::none; }
+  void write(std::span<const double> /*outputs*/) noexcept override {}
+  Delivery delivery() noexcept override { return --cycles_ < 0 ? Delivery::done : Delivery::pending; }
+
+ private:
+  int cycles_;
+};
+
+TEST(Task, WaitsAtItsEndUntilTheSafeValuesHaveArrivedAndSaysWhereTheyDidNot) {
+  Accumulator program;
+  SlowField slow(500);
+  Task task(program, settings(100), {.field = &slow});
+  run(task);
+  EXPECT_EQ(task.fault(), Fault::stop);
+  SlowField dead(1'000'000'000);
+  Task lost(program, settings(100), {.field = &dead});
+  run(lost);
+  EXPECT_EQ(lost.fault(), Fault::lost_link);
+}
+
 TEST(Task, RunsTheProgramAndEndsInSafeOutputs) {
   Accumulator program;
   Field field;

@@ -1,0 +1,211 @@
+#include "runtime/config/device_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "runtime/modbus/value_bits.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using Words = std::string_view;
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
+constexpr std::array<modbus::Area, 4> areas{modbus::Area::holding_register, modbus::Area::input_register,
+                                            modbus::Area::coil, modbus::Area::discrete_input};
+constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
+constexpr std::array<modbus::Area, 2> written_areas{modbus::Area::holding_register, modbus::Area::coil};
+constexpr std::array<Words, 2> network_keys{"host", "port"};
+constexpr std::array<Words, 3> line_keys{"baud", "parity", "stop_bits"};
+constexpr std::array<Words, 4> value_keys{"register", "area", "type", "on_loss"};
+
+constexpr auto type_words = [] {
+  std::array<Words, modbus::point_types.size()> words{};
+  std::ranges::transform(modbus::point_types, words.begin(), [](PointType type) { return modbus::name_of(type); });
+  return words;
+}();
+
+}  // namespace
+
+void DeviceReader::wrong(Place place, const std::string& cause, const std::string& mend) {
+  found_->error(error::wrong_run_value, std::move(place), cause, mend);
+}
+
+void DeviceReader::read_device(const std::string& name, TomlReader table) {
+  modbus::DeviceOptions device{.name = name};
+  std::string line;
+  table.read("serial", line);
+  if (line.empty()) {
+    modbus::TcpLink link;
+    table.read("host", link.host);
+    table.read_whole("port", link.port, 1, 65535);
+    for (const Words key : line_keys) {
+      if (table.has(key)) {
+        wrong(table.place(key), std::string(key) + " is of a serial line, and none is named.",
+              "name it: serial = \"/dev/ttyUSB0\", or remove the key.");
+      }
+    }
+    device.link = std::move(link);
+  } else {
+    modbus::SerialLink link{.path = line};
+    table.read_whole("baud", link.baud, 300, 4'000'000);
+    constexpr std::array<char, 3> parities{'E', 'O', 'N'};
+    std::size_t parity = 0;
+    table.read_choice("parity", parity, std::array<Words, 3>{"even", "odd", "none"});
+    link.parity = parities[parity];
+    table.read_whole("stop_bits", link.stop_bits, 1, 2);
+    for (const Words key : network_keys) {
+      if (table.has(key)) {
+        wrong(table.place(key), "The device is on a serial line and has a " + std::string(key) + " besides.",
+              "remove the key, or serial.");
+      }
+    }
+    device.link = std::move(link);
+  }
+  table.read_whole("unit", device.unit, 0, 247);
+  std::size_t order = 0;
+  table.read_choice("word_order", order, word_order_words);
+  device.order = modbus::word_orders[order];
+  std::int64_t period = device.period.count();
+  table.read_duration("cycle", period, 100'000, 3600 * second);
+  device.period = std::chrono::nanoseconds(period);
+  std::int64_t response = std::chrono::nanoseconds(device.response).count();
+  table.read_duration("timeout", response, 1'000'000, 60 * second);
+  device.response = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(response));
+  config_->devices.push_back(std::move(device));
+}
+
+std::optional<DeviceLink> DeviceReader::read_link(const std::string& port, bool written, std::int64_t longest_age,
+                                                  TomlReader& table) {
+  std::string name;
+  table.read("device", name);
+  modbus::RemoteValue value{.written = written, .longest_age = std::chrono::nanoseconds(longest_age)};
+  std::size_t area = 0;
+  table.read_choice("area", area, written ? std::span<const Words>(written_area_words) : area_words);
+  value.at.area = written ? written_areas[area] : areas[area];
+  const bool bits = modbus::holds_bits(value.at.area);
+  value.type = bits ? PointType::boolean : PointType::real64;
+  auto type = static_cast<std::size_t>(value.type);
+  table.read_choice("type", type, type_words);
+  value.type = modbus::point_types[type];
+  table.read_whole("register", value.at.address, 0, 65535);
+  std::size_t loss = 0;
+  table.read_choice("on_loss", loss, std::array<Words, 2>{"fault", "keep"});
+  if (name.empty()) {
+    for (const Words key : value_keys) {
+      if (table.has(key)) {
+        found_->error(error::unknown_device, table.place(key),
+                      "The key " + std::string(key) + " is of a value on a device, and no device is named.",
+                      "name the device: device = \"stage\", and describe it under [devices.stage].");
+        break;
+      }
+    }
+    return std::nullopt;
+  }
+  const auto found = std::ranges::find(config_->devices, name, &modbus::DeviceOptions::name);
+  if (found == config_->devices.end()) {
+    found_->error(error::unknown_device, table.place("device"), "There is no device " + name + ".",
+                  "describe it under [devices." + name + "].");
+    return std::nullopt;
+  }
+  if (bits != (value.type == PointType::boolean)) {
+    wrong(table.place(table.has("type") ? "type" : "area"),
+          "A boolean lies among coils or discrete inputs, and every other value among registers.",
+          bits ? "leave out the type, or write area = \"holding\"." : "write area = \"coil\", or another type.");
+    return std::nullopt;
+  }
+  value.at.count = static_cast<std::uint32_t>(modbus::registers_of(value.type));
+  if (value.at.address + value.at.count > 0x10000) {
+    found_->error(error::run_value_out_of_range, table.place("register"),
+                  "A " + std::string(modbus::name_of(value.type)) + " from register " +
+                      std::to_string(value.at.address) + " on ends behind the last register, 65535.",
+                  "choose register " + std::to_string(0x10000 - value.at.count) + " or a lower one.");
+    return std::nullopt;
+  }
+  const DeviceLink link{.device = static_cast<std::size_t>(found - config_->devices.begin()),
+                        .value = found->values.size(),
+                        .faults = loss == 0};
+  found->values.push_back(value);
+  values_.push_back({.name = port, .place = table.place("device"), .link = link, .written = written});
+  return link;
+}
+
+void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlReader& table) {
+  const auto link = read_link(shape_->outputs[port].name, true, longest_age, table);
+  if (!link) {
+    return;
+  }
+  config_->device_outputs.push_back({.port = port, .link = *link});
+  const auto [low, high] = modbus::limits_of(config_->devices[link->device].values[link->value].type);
+  OutputSafety& output = config_->task.outputs[port];
+  output.low = std::max(output.low, low);
+  output.high = std::min(output.high, high);
+}
+
+void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlReader& table) {
+  InputSettings& settings = config_->task.inputs[port];
+  const auto link = read_link(shape_->inputs[port].name, false, longest_age, table);
+  if (link) {
+    config_->device_inputs.push_back({.port = port, .link = *link});
+    settings.from_device = true;
+  }
+  read_told(port, "age_of", Tells::age, table);
+  read_told(port, "quality_of", Tells::quality, table);
+  // A device's value has its age from the device; a server's is counted in cycles.
+  settings.longest_age = settings.from_device ? 0 : static_cast<std::uint64_t>(longest_age / shape_->period);
+}
+
+void DeviceReader::read_told(std::size_t port, std::string_view key, Tells tells, TomlReader& table) {
+  std::string of;
+  table.read(key, of);
+  if (of.empty()) {
+    return;
+  }
+  if (config_->task.inputs[port].from_device) {
+    wrong(table.place(key), shape_->inputs[port].name + " has two sources.",
+          "keep one of device, age_of and quality_of.");
+  }
+  config_->task.inputs[port].from_device = true;
+  told_.push_back({.port = port, .tells = tells, .of = of, .place = table.place(key)});
+}
+
+void DeviceReader::finish() {
+  for (const Told& told : told_) {
+    const auto found =
+        std::ranges::find_if(values_, [&](const Named& value) { return equal_ignoring_case(value.name, told.of); });
+    if (found == values_.end()) {
+      found_->error(error::unknown_device, told.place, told.of + " is no input or output on a device.",
+                    "name one that has a device: its age and its quality are those of its exchange with the device.");
+      continue;
+    }
+    config_->device_inputs.push_back({.port = told.port, .link = found->link, .tells = told.tells});
+  }
+  refuse_twice();
+}
+
+void DeviceReader::refuse_twice() {
+  const auto at = [&](const Named& value) -> const modbus::Stretch& {
+    return config_->devices[value.link.device].values[value.link.value].at;
+  };
+  std::ranges::stable_sort(values_, {}, [](const Named& value) { return value.place.line; });
+  for (auto second_one = values_.begin(); second_one != values_.end(); ++second_one) {
+    for (auto first = values_.begin(); first != second_one; ++first) {
+      const modbus::Stretch& a = at(*first);
+      const modbus::Stretch& b = at(*second_one);
+      if (first->written && second_one->written && first->link.device == second_one->link.device && a.area == b.area &&
+          a.address < b.address + b.count && b.address < a.address + a.count) {
+        found_->error(error::device_register_twice, second_one->place,
+                      second_one->name + " and " + first->name + " write the same register of " +
+                          config_->devices[first->link.device].name + ", " +
+                          std::to_string(std::max(a.address, b.address)) + ".",
+                      "give each a place of its own; a real64 takes four registers.");
+      }
+    }
+  }
+}
+
+}  // namespace hysteron::runtime

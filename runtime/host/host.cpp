@@ -1,0 +1,246 @@
+#include "runtime/host/host.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "runtime/config/device_field.hpp"
+#include "runtime/host/service_notice.hpp"
+#include "runtime/modbus/lock_file.hpp"
+#include "runtime/modbus/server.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/text_file.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
+
+void ask_to_stop(int /*signal*/) {
+  stop_asked.store(true, std::memory_order_relaxed);
+}
+
+std::string status_line(const Task& task, const std::string& how) {
+  const LoopStatistics& s = task.statistics();
+  const auto events = [&](Cause cause) { return s.events[static_cast<std::size_t>(cause)]; };
+  return fmt::format(
+      "{}; {} cycles, {} skipped; late: {} woken, {} own CPU, {} pre-empted, {} steal; start p99.99 {:.1f} us, worst "
+      "{:.1f} us in cycle {}; fault: {}\n",
+      how, s.run, s.skipped, events(Cause::late_wake), events(Cause::own_cpu), events(Cause::preempted),
+      events(Cause::host_steal), static_cast<double>(s.lateness.percentile(0.9999)) * 1e-3,
+      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), name_of(task.fault()));
+}
+
+/// What the run file asks to keep: read before the program starts.
+Recovery recover_into(RetainFiles& files, const RetainConfig& retain, StepProgram& program) {
+  Recovery recovery = recover(files, program.shape().layout, retain.mismatch);
+  if (!recovery.refused.empty()) {
+    throw InputError(error::retained_values_unfit, retain.place, recovery.refused,
+                     "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts "
+                     "the files aside.");
+  }
+  if (recovery.values) {
+    for (std::size_t i = 0; i < recovery.values->parameters.size(); ++i) {
+      program.set_parameter(i, recovery.values->parameters[i]);
+    }
+    program.restore(recovery.values->state);
+  }
+  return recovery;
+}
+
+std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
+  try {
+    return std::make_unique<Trace>(settings, program);
+  } catch (const std::system_error& problem) {
+    throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
+                     "name a file in a folder that is there and may be written to.");
+  }
+}
+
+modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
+  modbus::MapRequest request{.title = title, .order = config.word_order, .lock_file = config.lock_file};
+  if (!config.lock_file.empty() && std::filesystem::exists(config.lock_file)) {
+    request.lock_text = read_text_file(config.lock_file);
+  }
+  modbus::RegisterMap map = modbus::make_register_map(door.points(), request);
+  if (!config.lock_file.empty()) {
+    if (const auto text = modbus::lock_text(map); text != request.lock_text) {
+      write_file_atomically(config.lock_file, text);
+    }
+  }
+  return map;
+}
+
+std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task) {
+  return std::make_unique<modbus::Server>(
+      register_map(config, title, task.door()), task.door(),
+      modbus::ServerOptions{.listen = config.listen,
+                            .port = config.port,
+                            .allow = config.allow,
+                            .connections = config.connections,
+                            .read_only = config.read_only,
+                            .heartbeat = config.heartbeat,
+                            .client_lost = [&task](bool lost) { task.client_lost(lost); },
+                            .place = config.place});
+}
+
+/// The cyclic thread, and what it ends with.
+class CyclicThread {
+ public:
+  CyclicThread(Task& task, const RunConfig& config, bool virtual_time)
+      : thread_([this, &task, &config, virtual_time] { run(task, config, virtual_time); }) {
+    started_.wait(false);
+  }
+  CyclicThread(const CyclicThread&) = delete;
+  CyclicThread& operator=(const CyclicThread&) = delete;
+  CyclicThread(CyclicThread&&) = delete;
+  CyclicThread& operator=(CyclicThread&&) = delete;
+  ~CyclicThread() {
+    stop_asked.store(true);
+    thread_.join();
+  }
+
+  /// The clock and the scheduling that it obtained.
+  [[nodiscard]] const std::string& obtained() const { return obtained_; }
+  [[nodiscard]] bool is_done() const { return done_.load(std::memory_order_acquire); }
+  [[nodiscard]] LoopEnd end() const { return end_; }
+
+ private:
+  void run(Task& task, const RunConfig& config, bool virtual_time) {
+    default_floating_point();
+    touch_stack();
+    if (virtual_time) {
+      VirtualClock clock;
+      run(task, clock, "virtual clock");
+    } else {
+      MonotonicClock clock;
+      SchedulingRequest request = config.scheduling;
+      request.period = config.task.loop.period;
+      request.runtime = request.period / 2;
+      const auto got = obtain_scheduling(request);
+      run(task, clock, description_of(got) + (got.refused.empty() ? "" : " (refused: " + got.refused + ")"));
+    }
+  }
+  void run(Task& task, Clock& clock, std::string obtained) {
+    obtained_ = std::move(obtained);
+    started_.store(true);
+    started_.notify_one();
+    end_ = task.run(clock, stop_asked);
+    done_.store(true, std::memory_order_release);
+  }
+
+  std::string obtained_;
+  LoopEnd end_ = LoopEnd::stopped;
+  std::atomic<bool> started_{false};
+  std::atomic<bool> done_{false};
+  std::thread thread_;
+};
+
+/// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
+void wait_for(const CyclicThread& cyclic, PointDoor& door, nanoseconds period) {
+  using Clock = std::chrono::steady_clock;
+  const nanoseconds interval = service_watchdog() / 2;
+  const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
+  Snapshot snapshot;
+  std::uint64_t cycle = 0;
+  auto moved = Clock::now();
+  auto told = moved;
+  bool is_stopping = false;
+  while (!cyclic.is_done()) {
+    std::this_thread::sleep_for(milliseconds(5));
+    if (!is_stopping && stop_asked.load()) {
+      tell_service_manager("STOPPING=1");
+      is_stopping = true;
+    }
+    const auto now = Clock::now();
+    if (interval.count() == 0 || now - told < interval) {
+      continue;
+    }
+    door.read(snapshot);
+    if (snapshot.cycle != cycle) {
+      cycle = snapshot.cycle;
+      moved = now;
+    }
+    if (now - moved <= std::max(longest, 2 * interval)) {
+      tell_service_manager("WATCHDOG=1");
+    }
+    told = now;
+  }
+}
+
+}  // namespace
+
+modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
+  TaskDoor door(program, device_inputs(config.task), config.task.outputs);
+  return register_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
+}
+
+bool run_host(StepProgram& program, RunConfig config, const HostOptions& options,
+              const std::function<void(std::string_view)>& print) {
+  const ProgramShape& shape = program.shape();
+  config.task.loop.cycles = options.cycles;
+  if (config.trace) {
+    config.trace->waits = options.virtual_time;
+  }
+  std::string how = fmt::format("{}: {}", shape.name, options.how);
+  std::optional<RetainFolder> folder;
+  Recovery recovery;
+  if (config.retain) {
+    folder.emplace(config.retain->folder);
+    recovery = recover_into(*folder, *config.retain, program);
+    how += recovery.values ? fmt::format(", from retained state {}", recovery.sequence) : "";
+    how += recovery.note.empty() ? "" : ", " + recovery.note;
+  }
+  stop_asked.store(false);
+  (void)std::signal(SIGTERM, ask_to_stop);
+  (void)std::signal(SIGINT, ask_to_stop);
+  // The guard is forked before there is any thread. It has nothing to do where no output goes to a device.
+  DeviceOutputs device_outputs(config);
+  std::unique_ptr<Guard> guard;
+  if (config.guard && !config.device_outputs.empty() && !options.virtual_time) {
+    guard = std::make_unique<Guard>(
+        GuardSettings{.watchdog = config.task.watchdog, .period = shape.period, .silence = config.silence},
+        SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
+  }
+  const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
+  std::unique_ptr<Retainer> retainer;
+  if (folder) {
+    retainer = std::make_unique<Retainer>(*folder, program, recovery);
+  }
+  std::unique_ptr<DeviceField> field;
+  if (!config.devices.empty()) {
+    field = std::make_unique<DeviceField>(config, options.virtual_time,
+                                          [&guard] { return guard == nullptr || guard->may_write(); });
+  }
+  Task task(program, config.task,
+            {.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
+  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task) : nullptr;
+  how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+
+  LoopEnd end = LoopEnd::stopped;
+  {
+    const CyclicThread cyclic(task, config, options.virtual_time);
+    print(how + "; " + cyclic.obtained() + "\n");
+    tell_service_manager("READY=1");
+    wait_for(cyclic, task.door(), nanoseconds(shape.period));
+    end = cyclic.end();
+  }
+  print(status_line(task, shape.name + ": " + std::string(name_of(end))));
+  return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop;
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,32 @@
+// A program run as its run file says, from the start to the safe outputs at the end: what `hysteron serve` and a
+// generated host have in common.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "runtime/config/run_config.hpp"
+#include "runtime/modbus/register_map.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+struct HostOptions {
+  std::string how{};         ///< compiled, interpreted, generated: for the status line
+  std::uint64_t cycles = 0;  ///< ends after so many; 0: when it is asked to
+  bool virtual_time = false;
+};
+
+/// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew
+/// where points came.
+[[nodiscard]] modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program);
+
+/// Runs until SIGTERM, Ctrl-C, a fault that ends it or its number of cycles. Prints a line when it runs, and another at
+/// its end. True where it ended as asked, with its outputs safe. Throws InputError HY811, HY812 and those of the
+/// server. To be called while the process has one thread: it forks the guard.
+[[nodiscard]] bool run_host(StepProgram& program, RunConfig config, const HostOptions& options,
+                            const std::function<void(std::string_view)>& print);
+
+}  // namespace hysteron::runtime

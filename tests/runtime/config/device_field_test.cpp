@@ -1,0 +1,231 @@
+// The task's inputs and outputs on devices: values, their age and quality, and who may write.
+#include "runtime/config/device_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "runtime/modbus/listen.hpp"
+#include "runtime/modbus/server.hpp"
+#include "tests/runtime/modbus/memory_door.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using modbus::Quality;
+using std::chrono::milliseconds;
+
+bool soon(const std::function<bool()>& holds) {
+  for (int i = 0; i < 15'000 && !holds(); ++i) {
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  return holds();
+}
+
+std::uint16_t free_port() {
+  return modbus::port_of(modbus::listen_on("127.0.0.1", 0, {}));
+}
+
+/// Our own server as the device: it gives X in input registers and takes Y in holding registers.
+class Stage {
+ public:
+  explicit Stage(std::uint16_t port) : port_(port) {}
+  void start() {
+    server_ = std::make_unique<modbus::Server>(modbus::make_register_map(door_.points(), {}), door_,
+                                               modbus::ServerOptions{.port = port_});
+  }
+  void stop() { server_.reset(); }
+  void give(double x) { door_.set(0, x); }
+  [[nodiscard]] double taken() { return door_.value(1); }
+  [[nodiscard]] std::uint64_t writes() { return door_.writes(); }
+  void refuse(const std::string& why) { door_.refuse(why); }
+
+ private:
+  std::uint16_t port_;
+  test::MemoryDoor door_{{{.name = "X"}, {.name = "Y", .kind = PointKind::parameter, .writable = true}}};
+  std::unique_ptr<modbus::Server> server_;
+};
+
+ProgramShape shape() {
+  return {.name = "PLANT",
+          .period = 1'000'000,
+          .inputs = {{.name = "X", .preset = 7.0}, {.name = "X_AGE"}, {.name = "X_QUALITY"}, {.name = "Y_QUALITY"}},
+          .outputs = {{.name = "Y"}}};
+}
+
+RunConfig config_of(std::uint16_t port, const std::string& on_loss = "fault") {
+  return parse_run_config(
+      "RUN.toml",
+      "[devices.stage]\nport = " + std::to_string(port) +
+          "\ncycle = \"2ms\"\n[outputs.Y]\nsafe = 0.0\ndevice = \"stage\"\nlongest_age = \"60s\"\non_loss = \"" +
+          on_loss +
+          "\"\n[inputs.X]\ndevice = \"stage\"\narea = \"input\"\nlongest_age = \"250ms\"\n"
+          "on_loss = \"" +
+          on_loss +
+          "\"\n[inputs.X_AGE]\nage_of = \"X\"\n[inputs.X_QUALITY]\nquality_of = \"x\"\n"
+          "[inputs.Y_QUALITY]\nquality_of = \"Y\"\n",
+      shape());
+}
+
+using Inputs = std::array<double, 4>;
+constexpr double good = static_cast<double>(Quality::good);
+constexpr double lost = static_cast<double>(Quality::lost);
+
+TEST(DeviceField, ALossIsAFaultUntilTheDeviceIsBack) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.give(0.25);
+  DeviceField field(config_of(port), false);
+  Inputs inputs{7.0};
+  const auto reads = [&](Fault fault) {
+    return soon([&] {
+      field.write(std::array{0.5});
+      return field.read(inputs) == fault;
+    });
+  };
+  EXPECT_TRUE(reads(Fault::lost_link));
+  EXPECT_EQ(inputs[0], 7.0) << "nothing was read: the default stays";
+  for (int round = 0; round < 3; ++round) {
+    stage.start();
+    EXPECT_TRUE(reads(Fault::none));
+    EXPECT_EQ(inputs[0], 0.25);
+    EXPECT_EQ(inputs[2], good);
+    EXPECT_EQ(inputs[3], good);
+    EXPECT_EQ(stage.taken(), 0.5);
+    stage.stop();
+    EXPECT_TRUE(reads(Fault::lost_link));
+    EXPECT_EQ(inputs[0], 0.25) << "the last value stays";
+    EXPECT_EQ(inputs[2], lost);
+    EXPECT_GT(inputs[1], 0.25) << "a loss is a fault only after the longest age";
+  }
+}
+
+TEST(DeviceField, AValueThatIsReadAgainAndAgainNeverBecomesStale) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  DeviceField field(config_of(port), false);
+  Inputs inputs{};
+  const auto is_well = [&] {
+    field.write(std::array{0.5});
+    return field.read(inputs) == Fault::none;
+  };
+  ASSERT_TRUE(soon(is_well));
+  std::this_thread::sleep_for(milliseconds(300));  // beyond the longest age
+  EXPECT_TRUE(soon(is_well));
+  EXPECT_EQ(config_of(port).task.inputs[0].longest_age, 0U) << "cycles since a server's write do not count here";
+}
+
+TEST(DeviceField, WhereTheDiagramLooksAfterItALossIsNoFault) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  DeviceField field(config_of(port, "keep"), false);
+  Inputs inputs{};
+  EXPECT_EQ(field.read(inputs), Fault::none);
+  EXPECT_TRUE(soon([&] { return field.read(inputs) == Fault::none && inputs[2] == good; }));
+  stage.stop();
+  EXPECT_TRUE(soon([&] { return field.read(inputs) == Fault::none && inputs[2] == lost && inputs[1] > 0.3; }));
+}
+
+TEST(DeviceField, WhatADeviceRefusesIsStale) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  DeviceField field(config_of(port), false);
+  Inputs inputs{};
+  const auto reads = [&](Fault fault) {
+    return soon([&] {
+      field.write(std::array{0.5});
+      return field.read(inputs) == fault;
+    });
+  };
+  ASSERT_TRUE(reads(Fault::none));
+  stage.refuse("not now");
+  EXPECT_TRUE(reads(Fault::stale_input));
+  EXPECT_EQ(inputs[3], static_cast<double>(Quality::refused));
+}
+
+TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  DeviceField field(config_of(port), true);
+  Inputs inputs{};
+  for (int cycle = 1; cycle < 50; ++cycle) {
+    stage.give(cycle);
+    EXPECT_EQ(field.read(inputs), Fault::none);
+    EXPECT_EQ(inputs[0], cycle);
+    EXPECT_EQ(inputs[1], 0.0);
+    EXPECT_EQ(stage.writes(), static_cast<std::uint64_t>(cycle - 1));
+    EXPECT_EQ(stage.taken(), cycle == 1 ? 0.0 : 10.0 * (cycle - 1));
+    field.write(std::array{10.0 * cycle});
+  }
+  EXPECT_EQ(field.delivery(), Delivery::done);
+  EXPECT_EQ(stage.taken(), 490.0);
+  stage.stop();
+  for (int cycle = 1; cycle <= 3; ++cycle) {
+    EXPECT_EQ(field.read(inputs), Fault::lost_link);
+    EXPECT_EQ(inputs[1], cycle * 0.001) << "on the virtual clock the age is that of the cycles";
+  }
+  field.write(std::array{0.0});
+  EXPECT_EQ(field.delivery(), Delivery::failed);
+}
+
+TEST(DeviceField, WhoMayNotWriteWritesNothingNotEvenAtItsEnd) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  std::atomic<bool> may_write{true};
+  {
+    DeviceField field(config_of(port), false, [&] { return may_write.load(); });
+    field.write(std::array{0.5});
+    EXPECT_TRUE(soon([&] { return field.delivery() == Delivery::done; }));
+    may_write.store(false);
+    std::uint64_t writes = 0;
+    EXPECT_TRUE(soon([&] { return stage.writes() == std::exchange(writes, stage.writes()); }));  // the one under way
+    field.write(std::array{99.0});
+    Inputs inputs{};
+    stage.give(3.0);
+    EXPECT_TRUE(soon([&] {
+      (void)field.read(inputs);
+      return inputs[0] == 3.0;
+    })) << "it still reads";
+  }
+  EXPECT_EQ(stage.taken(), 0.5);
+}
+
+TEST(DeviceField, TheLastValuesArriveBeforeItEnds) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  stage.start();
+  {
+    DeviceField field(config_of(port), false);
+    field.write(std::array{0.5});
+    EXPECT_TRUE(soon([&] { return field.delivery() == Delivery::done; }));
+    field.write(std::array{-1.0});
+  }
+  EXPECT_EQ(stage.taken(), -1.0);
+}
+
+TEST(DeviceOutputs, AreTakenFromANewConnectionAndADeadDeviceIsNotBelieved) {
+  const std::uint16_t port = free_port();
+  Stage stage(port);
+  DeviceOutputs outputs(config_of(port));
+  outputs.open();
+  EXPECT_FALSE(outputs.write(std::array{-1.0}));
+  stage.start();
+  EXPECT_TRUE(soon([&] { return outputs.write(std::array{-1.0}); }));
+  EXPECT_EQ(stage.taken(), -1.0);
+  EXPECT_TRUE(soon([&] { return outputs.write(std::array{-2.0}); }));
+  EXPECT_EQ(stage.taken(), -2.0);
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

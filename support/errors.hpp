@@ -251,6 +251,7 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::unknown_device, "Device that is not described"},
     ErrorTitle{error::retained_values_unfit, "Retained values that do not fit"},
     ErrorTitle{error::trace_not_writable, "Trace that cannot be written"},
+    ErrorTitle{error::device_register_twice, "One register of a device written twice"},
     ErrorTitle{error::register_address_twice, "Register address given twice"},
     ErrorTitle{error::lock_file_syntax, "Line of a lock file that is not understood"},
     ErrorTitle{error::point_addressed_twice, "Point with two addresses"},

@@ -265,7 +265,9 @@ class Run {
     }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
-    add_glitches(chosen_edges());
+    const std::vector<Edge> edges = chosen_edges();
+    add_glitches(edges);
+    result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
     }
@@ -286,6 +288,14 @@ class Run {
     const auto source = std::make_shared<const language::SourceFile>(language::parse("text", input_.text, diagnostics));
     const Definitions definitions = define(source, diagnostics);
     return edges_of(definitions, top_definition(definitions, base_.program->graph.name));
+  }
+
+  [[nodiscard]] std::vector<std::string> ports() const {
+    std::vector<std::string> names = task_.outputs;
+    for (const Port& input : input_.program.graph.inputs) {
+      names.push_back(input.name);
+    }
+    return names;
   }
 
   /// Glitches are counted, not fitted: an effect of their own where they outweigh the noise, else a remark.

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -100,6 +101,28 @@ struct CutFinding {
   bool agrees = false;
 };
 
+/// Shares of the gap that calibration leaves, by where they arise.
+struct GapSplit {
+  double input_output = 0.0;  ///< delay, clock, quantum and glitches on the wires that a record is made of
+  double plant = 0.0;         ///< all other effects
+  double open = 0.0;          ///< what no effect closes
+};
+
+/// What the replay of a runtime's trace says of the deployed controller; filled in by who has the trace.
+struct ControllerFinding {
+  struct Output {
+    std::string name{};
+    std::string unit{};
+    double difference_rms = 0.0;  ///< as recorded less as the controller's diagram computes it
+    double limited_rms = 0.0;     ///< as it left less as computed: limits and safe values
+  };
+  std::uint64_t steps = 0;
+  std::uint64_t different = 0;  ///< steps with other bits
+  std::uint64_t first_different = 0;
+  std::uint64_t dropped = 0;  ///< steps that are missing in the trace
+  std::vector<Output> outputs{};
+};
+
 /// Where a residual depends on something: its mean or size in bins of it.
 struct MapFinding {
   std::string over{};  ///< "amplitude", "rate", "depth", …
@@ -151,6 +174,8 @@ struct Diagnosis {
   std::vector<GapFinding> gaps{};  ///< of all outputs
   std::vector<EdgeFinding> edges{};
   std::vector<CutFinding> cuts{};
+  GapSplit split{};
+  std::optional<ControllerFinding> controller{};
   std::vector<MapFinding> maps{};
   std::vector<std::string> cannot_tell{};
   NextExperiment next{};

@@ -245,6 +245,27 @@ std::vector<std::string> structural_reasons(const Diagnosis& so_far) {
   return reasons;
 }
 
+GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
+                  const std::vector<std::string>& ports) {
+  static const std::set<std::string, std::less<>> of_wires{"delay", "clock", "quantization", "glitches"};
+  std::set<std::string> wires;
+  for (const std::string& port : ports) {
+    if (const Edge* const edge = find_edge(edges, port)) {
+      wires.insert(edge->name);
+    }
+  }
+  GapSplit split{.open = 1.0};
+  for (const EffectFinding& effect : effects) {
+    const bool at_port =
+        wires.contains(effect.edge) ||
+        std::ranges::any_of(effect.same_edges, [&](const std::string& same) { return wires.contains(same); });
+    (at_port && of_wires.contains(effect.id) ? split.input_output : split.plant) += effect.share;
+    split.open -= effect.share;
+  }
+  split.open = std::max(0.0, split.open);
+  return split;
+}
+
 std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
                              const VectorXd& improved) {
   std::vector<Trace> traces;

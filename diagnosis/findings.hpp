@@ -30,6 +30,10 @@ struct Findings {
 /// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict.
 [[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far);
 
+/// `edges` are those of the diagram as given, `ports` its inputs and outputs.
+[[nodiscard]] GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
+                                const std::vector<std::string>& ports);
+
 [[nodiscard]] std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
                                            const VectorXd& improved);
 

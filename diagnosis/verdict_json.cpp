@@ -71,6 +71,25 @@ Json where_of(const Diagnosis& found) {
           {"times", std::move(times)}};
 }
 
+Json split_of(const Diagnosis& found) {
+  Json result = {{"input_output", number(found.split.input_output)},
+                 {"plant", number(found.split.plant)},
+                 {"open", number(found.split.open)}};
+  if (found.controller) {
+    Json outputs = Json::object();
+    for (const ControllerFinding::Output& output : found.controller->outputs) {
+      outputs[output.name] = {{"unit", output.unit},
+                              {"difference_rms", number(output.difference_rms)},
+                              {"limited_rms", number(output.limited_rms)}};
+    }
+    result["controller"] = {
+        {"same_bits", found.controller->different == 0}, {"steps", found.controller->steps},
+        {"different", found.controller->different},      {"first_different", found.controller->first_different},
+        {"dropped", found.controller->dropped},          {"outputs", std::move(outputs)}};
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string verdict_json(const Diagnosis& found) {
@@ -112,6 +131,7 @@ std::string verdict_json(const Diagnosis& found) {
                         {"unknown_score", number(found.unknown_score)},
                         {"gap", gap_of(found.gap)},
                         {"where", where_of(found)},
+                        {"split", split_of(found)},
                         {"cannot_tell", found.cannot_tell},
                         {"next_experiment", std::move(next)},
                         {"seconds", number(found.seconds)},

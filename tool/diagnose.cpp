@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -24,6 +25,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
 #include "tool/diagram.hpp"
+#include "tool/replayed.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -33,12 +35,16 @@ constexpr std::string_view examples = R"(Examples:
   hysteron diagnose plant.st --log slow.csv --log fast.csv --params tuned.toml --out diagnosis --material 0.05
   hysteron diagnose plant.st --log machine.csv --params tuned.toml --out diagnosis --effects creep,lag,delay
 
+  hysteron diagnose plant.st --log run.csv --params tuned.toml --out diagnosis --trace run.trace --controller feedforward.st
+
 Where the diagram of a plant and a record of the machine differ, which effect causes it, and how far the gap shrinks once
 that effect is added. The diagram is run from its reset over each whole record: columns are its inputs, and the outputs
 of the same name are what it should meet. Parameters named under [fit] in P.toml are refitted first, those that are not 0
 where none is named; what that closes is calibration and no effect.
 DIR gets verdict.json, report.html, improved.st and improved.toml, traces.csv, where an experiment would tell more
 next_experiment.csv, and where the improved diagram has an inverse feedforward.st.
+A column that is named as a signal inside the diagram, H1 or LEVEL1.XOUT, cuts it there. With the trace of the runtime
+that drove the machine, and the diagram that it ran, the controller's own part of the gap is told too.
 Exit codes: 0 a verdict; 1 the record cannot be diagnosed, verdict.json says why; 2 an error in diagram, parameters,
 records or command line, and nothing is written.
 )";
@@ -49,6 +55,8 @@ struct Options {
   std::string output;
   std::vector<std::string> effects;
   std::vector<std::string> limits;
+  DiagramOptions controller;
+  std::string trace;
   diagnosis::DiagnosisOptions diagnosis;
   bool json = false;
 };
@@ -86,8 +94,29 @@ void check_effects(const std::vector<std::string>& wanted, const Program& progra
   }
 }
 
+/// The controller's trace, replayed on its diagram.
+diagnosis::ControllerFinding replayed(const Options& options, Diagnostics& warnings) {
+  const Replayed found = replay_trace(options.controller, options.trace, {}, warnings);
+  diagnosis::ControllerFinding result{.steps = found.result.steps,
+                                      .different = found.result.different,
+                                      .first_different = found.result.first_different,
+                                      .dropped = found.result.dropped};
+  const auto& outputs = found.program->shape().outputs;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    result.outputs.push_back({.name = outputs[i].name,
+                              .unit = outputs[i].unit,
+                              .difference_rms = found.result.difference_rms[i],
+                              .limited_rms = found.result.limited_rms[i]});
+  }
+  return result;
+}
+
 int diagnose(Options options, Console& console) {
   Diagnostics warnings;
+  if (options.trace.empty() != options.controller.file.empty()) {
+    throw InputError(error::bad_usage, {}, "--trace and --controller belong together.",
+                     "give the trace of `hysteron serve` and the diagram that it ran.");
+  }
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
   check_effects(options.effects, program);
@@ -100,6 +129,10 @@ int diagnose(Options options, Console& console) {
   for (const std::string& limit : options.limits) {
     options.diagnosis.limits.push_back(limit_of(limit));
   }
+  std::optional<diagnosis::ControllerFinding> controller;
+  if (!options.trace.empty()) {
+    controller = replayed(options, warnings);
+  }
   diagnosis::Diagnosis found;
   {
     Progress line("Diagnosing");
@@ -107,6 +140,7 @@ int diagnose(Options options, Console& console) {
     found = diagnosis::diagnose(input, options.diagnosis);
     line.finish();
   }
+  found.controller = std::move(controller);
   write_files_atomically(diagnosis_files(options.output, found));
   console.print(options.json ? diagnosis::verdict_json(found) : diagnosis_text(found));
   console.report(warnings);
@@ -145,6 +179,10 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
       ->check(CLI::PositiveNumber)
       ->option_text("SECONDS");
+  app.add_option("--trace", options->trace, "What `hysteron serve` recorded of the controller while the log was taken.")
+      ->option_text("RUN.trace");
+  app.add_option("--controller", options->controller.file, "The diagram that it ran.")->option_text("CONTROLLER.st");
+  app.add_option("--controller-params", options->controller.parameters, "Its parameters.")->option_text("P.toml");
   app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
   app.add_flag("--json", options->json, "Prints verdict.json.");

@@ -48,6 +48,28 @@ Program improved_program(const Diagnosis& found) {
   return compile_text(found.improved_text, {.top = found.top, .any_order = true});
 }
 
+std::string controller_text(const diagnosis::ControllerFinding& controller) {
+  if (controller.different == 0) {
+    std::string text = fmt::format("  controller: {} steps replayed, the same bits: no part of the gap is its own\n",
+                                   controller.steps);
+    for (const auto& output : controller.outputs) {
+      if (output.limited_rms > 0.0) {
+        text += fmt::format("    {}: limits and safe values change it by {} RMS\n", output.name,
+                            with_unit(output.limited_rms, output.unit));
+      }
+    }
+    return text;
+  }
+  std::string text =
+      fmt::format("  controller: {} of {} steps give other bits than its diagram, the first is step {}\n",
+                  controller.different, controller.steps, controller.first_different);
+  for (const auto& output : controller.outputs) {
+    text += fmt::format("    {}: recorded and replayed differ by {} RMS\n", output.name,
+                        with_unit(output.difference_rms, output.unit));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& found) {
@@ -74,6 +96,13 @@ std::string diagnosis_text(const Diagnosis& found) {
     for (const ParameterFinding& one : effect.parameters) {
       text += line_of(one);
     }
+  }
+  if (!found.effects.empty()) {
+    text += fmt::format("  of the gap: inputs and outputs {:.0f} %, plant {:.0f} %, open {:.0f} %\n",
+                        100.0 * found.split.input_output, 100.0 * found.split.plant, 100.0 * found.split.open);
+  }
+  if (found.controller) {
+    text += controller_text(*found.controller);
   }
   if (found.rivals.size() > 1) {
     text += "  not ruled out:\n";

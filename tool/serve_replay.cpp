@@ -4,14 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "runtime/task/trace_file.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
-#include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
-#include "tool/serve_program.hpp"
+#include "tool/replayed.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -34,40 +32,38 @@ struct Options {
   std::string engine;
 };
 
-int replay_trace(const Options& options, Console& console) {
-  refuse_to_overwrite(options.output, {options.trace, options.diagram.file, options.diagram.parameters});
-  Diagnostics found;
-  const Program diagram = load_diagram(options.diagram, found);
-  const auto program = step_program(diagram, engine_of(options.engine), options.diagram.float32);
-  const auto& shape = program->shape();
-  std::string csv = "t";
+std::string header_of(const runtime::ProgramShape& shape) {
+  std::string header = "t";
   for (const auto* const signals : {&shape.inputs, &shape.outputs}) {
     for (const runtime::ProgramSignal& signal : *signals) {
-      csv += "," + signal.name + (signal.unit.empty() ? "" : " [" + signal.unit + "]");
+      header += "," + signal.name + (signal.unit.empty() ? "" : " [" + signal.unit + "]");
     }
   }
-  csv += "\n";
+  return header + "\n";
+}
+
+std::string row_of(const runtime::ProgramShape& shape, const runtime::TraceStep& step) {
+  std::string row = number_text(static_cast<double>(static_cast<std::int64_t>(step.number) * shape.period) * 1e-9);
+  for (const auto* const values : {&step.inputs, &step.outputs}) {
+    for (const double value : *values) {
+      row += "," + number_text(value);
+    }
+  }
+  return row + "\n";
+}
+
+int replay(const Options& options, Console& console) {
+  refuse_to_overwrite(options.output, {options.trace, options.diagram.file, options.diagram.parameters});
+  Diagnostics found;
   const bool wants_record = !options.output.empty();
-  const auto bytes = read_text_file(options.trace);
-  runtime::ReplayResult result;
-  const auto fault = runtime::replay(bytes, *program, result, [&](const runtime::TraceStep& step) {
-    if (!wants_record) {
-      return;
-    }
-    csv += number_text(static_cast<double>(static_cast<std::int64_t>(step.number) * shape.period) * 1e-9);
-    for (const auto* const values : {&step.inputs, &step.outputs}) {
-      for (const double value : *values) {
-        csv += "," + number_text(value);
-      }
-    }
-    csv += "\n";
-  });
-  if (!fault.empty()) {
-    throw InputError(error::broken_trace, {.file = options.trace}, fmt::format("This cannot be replayed: {}.", fault),
-                     "give the trace that `hysteron serve` wrote of this diagram, and the same --engine.");
-  }
+  std::string rows;
+  const Replayed replayed = replay_trace(options.diagram, options.trace, options.engine, found,
+                                         [&](const runtime::ProgramShape& shape, const runtime::TraceStep& step) {
+                                           rows += wants_record ? row_of(shape, step) : "";
+                                         });
+  const runtime::ReplayResult& result = replayed.result;
   if (wants_record) {
-    write_file_atomically(options.output, csv);
+    write_file_atomically(options.output, header_of(replayed.program->shape()) + rows);
   }
   if (result.different > 0) {
     found.error(error::replay_differs, {.file = options.trace},
@@ -93,7 +89,7 @@ Action add_replay(CLI::App& app) {
       ->check(CLI::IsMember({"interpreter", "compiled"}))
       ->option_text("NAME");
   app.footer(std::string(examples));
-  return [options](Console& console) { return replay_trace(*options, console); };
+  return [options](Console& console) { return replay(*options, console); };
 }
 
 }  // namespace hysteron::tool

@@ -55,6 +55,7 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   html += fmt::format("<div class=\"{}\">\n{}{}</div>\n", gap.empty() ? "head" : "head two",
                       report::verdict_section(diagnosis), gap);
   html += report::effects_section(diagnosis);
+  html += report::split_section(diagnosis);
   html += report::where_section(diagnosis, improved.graph);
   html += traces_section(diagnosis);
   html += maps_section(diagnosis);

@@ -11,6 +11,8 @@ namespace hysteron::diagnosis::report {
 [[nodiscard]] std::string verdict_section(const Diagnosis& diagnosis);
 /// Each effect with its edge, its parameters and whether a feedforward can take it back.
 [[nodiscard]] std::string effects_section(const Diagnosis& diagnosis);
+/// The gap by controller, inputs and outputs, and plant; and on which side of a measured inner signal it lies.
+[[nodiscard]] std::string split_section(const Diagnosis& diagnosis);
 /// The shrinking gap: nominal, calibrated, improved, against the floor.
 [[nodiscard]] std::string gap_section(const Diagnosis& diagnosis);
 /// The diagram with the gap on its wires, and the wires as a table.

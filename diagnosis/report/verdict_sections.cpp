@@ -145,6 +145,31 @@ std::string gap_table(const std::vector<GapFinding>& gaps) {
   return html + "</tbody></table>\n";
 }
 
+std::string controller_row(const ControllerFinding& controller) {
+  std::string text;
+  if (controller.different == 0) {
+    text = fmt::format("none: {} steps replayed, the same bits", controller.steps);
+  } else {
+    text = fmt::format("{} of {} steps give other bits than its diagram, the first is step {}", controller.different,
+                       controller.steps, controller.first_different);
+  }
+  for (const ControllerFinding::Output& output : controller.outputs) {
+    if (output.difference_rms > 0.0) {
+      text += fmt::format("; {} differs by {} RMS", output.name, quantity(output.difference_rms, output.unit));
+    }
+    if (output.limited_rms > 0.0) {
+      text += fmt::format("; limits and safe values change {} by {} RMS", output.name,
+                          quantity(output.limited_rms, output.unit));
+    }
+  }
+  return fmt::format("<tr><td>controller</td><td class=\"bar\"></td><td>{}</td></tr>\n", escaped(text));
+}
+
+std::string split_row(const char* part, double share, const char* css_class, const char* what) {
+  return fmt::format("<tr><td>{}</td><td class=\"bar\">{} {}</td><td>{}</td></tr>\n", part, share_bar(share, css_class),
+                     percent(share), what);
+}
+
 }  // namespace
 
 std::string verdict_section(const Diagnosis& diagnosis) {
@@ -179,6 +204,28 @@ std::string effects_section(const Diagnosis& diagnosis) {
     html += effect_card(effect);
   }
   return html + "</div></section>\n";
+}
+
+std::string split_section(const Diagnosis& diagnosis) {
+  if (diagnosis.effects.empty() && diagnosis.cuts.empty() && !diagnosis.controller) {
+    return {};
+  }
+  std::string html = "<section class=\"split\"><h2>Which part</h2>\n<table><tbody>\n";
+  if (diagnosis.controller) {
+    html += controller_row(*diagnosis.controller);
+  }
+  if (!diagnosis.effects.empty()) {
+    html += split_row("inputs and outputs", diagnosis.split.input_output, "after",
+                      "delay, clock, quantum and glitches on the measured wires");
+    html += split_row("plant", diagnosis.split.plant, "after", "all other effects");
+    html += split_row("open", diagnosis.split.open, "before", "no effect closes it");
+  }
+  for (const CutFinding& cut : diagnosis.cuts) {
+    html += fmt::format("<tr><td>{}</td><td class=\"bar\"></td><td>{}</td></tr>\n", escaped(cut.signal),
+                        cut.agrees ? "agrees with its column: the gap lies behind it"
+                                   : "does not agree with its column: a gap lies before it");
+  }
+  return html + "</tbody></table></section>\n";
 }
 
 std::string gap_section(const Diagnosis& diagnosis) {

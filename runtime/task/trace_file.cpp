@@ -201,12 +201,21 @@ std::string read_trace(std::string_view bytes, TraceHead& head,
   return {};
 }
 
+namespace {
+/// Not finite where one is: 0, the bits are compared by themselves.
+double square_of(double difference) {
+  return std::isfinite(difference) ? difference * difference : 0.0;
+}
+}  // namespace
+
 std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& result,
                    const std::function<void(const TraceStep&)>& on_step) {
   std::string fault;
   std::uint64_t next = 0;
   bool known = false;
   std::vector<double> computed(program.shape().outputs.size());
+  result.difference_rms.assign(computed.size(), 0.0);
+  result.limited_rms.assign(computed.size(), 0.0);
   const auto set_all = [&](std::span<const double> parameters) {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       program.set_parameter(i, parameters[i]);
@@ -233,6 +242,10 @@ std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& r
         ++result.steps;
         next = step.number + 1;
         for (std::size_t i = 0; i < computed.size(); ++i) {
+          result.difference_rms[i] += square_of(step.computed[i] - computed[i]);
+          result.limited_rms[i] += square_of(step.outputs[i] - step.computed[i]);
+        }
+        for (std::size_t i = 0; i < computed.size(); ++i) {
           const bool same = std::bit_cast<std::uint64_t>(computed[i]) == std::bit_cast<std::uint64_t>(step.computed[i]);
           if (!same && !(std::isnan(computed[i]) && std::isnan(step.computed[i]))) {
             result.first_different = result.different == 0 ? step.number : result.first_different;
@@ -255,6 +268,11 @@ std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& r
   };
   TraceHead head;
   const auto broken = read_trace(bytes, head, visit);
+  for (auto* const squares : {&result.difference_rms, &result.limited_rms}) {
+    for (double& sum : *squares) {
+      sum = result.steps > 0 ? std::sqrt(sum / static_cast<double>(result.steps)) : 0.0;
+    }
+  }
   return fault.empty() ? broken : fault;
 }
 

@@ -81,7 +81,9 @@ struct ReplayResult {
   std::uint64_t first_different = 0;  ///< its number
   std::uint64_t without_state = 0;    ///< steps that no state came before: they cannot be replayed
   std::uint64_t dropped = 0;
-  bool complete = false;  ///< the end was written
+  bool complete = false;                 ///< the end was written
+  std::vector<double> difference_rms{};  ///< by output: as recorded less as replayed
+  std::vector<double> limited_rms{};     ///< by output: as it left less as computed; limits and safe values
 };
 
 /// Runs the program over the recorded inputs, and compares every output with the recorded one, bit by bit. Every

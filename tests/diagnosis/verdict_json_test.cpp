@@ -97,6 +97,21 @@ TEST(VerdictJson, MapsStandWhereTheyBelong) {
   EXPECT_EQ(where["times"][0]["over"], "run time");
 }
 
+TEST(VerdictJson, SplitsTheGapAndHasTheControllerWhereThereIsATrace) {
+  Diagnosis found = full();
+  found.split = {.input_output = 0.25, .plant = 0.7, .open = 0.05};
+  found.cuts = {{.signal = "H1_MEASURED", .agrees = true}};
+  json verdict = json::parse(verdict_json(found));
+  EXPECT_EQ(verdict["split"]["input_output"], 0.25);
+  EXPECT_EQ(verdict["where"]["cuts"][0]["signal"], "H1_MEASURED");
+  EXPECT_EQ(verdict["where"]["cuts"][0]["agrees"], true);
+  EXPECT_FALSE(verdict["split"].contains("controller"));
+  found.controller = ControllerFinding{.steps = 7, .different = 2, .first_different = 3};
+  verdict = json::parse(verdict_json(found));
+  EXPECT_EQ(verdict["split"]["controller"]["same_bits"], false);
+  EXPECT_EQ(verdict["split"]["controller"]["first_different"], 3);
+}
+
 TEST(VerdictJson, OnlyAnExactInverseIsInvertible) {
   const json effects = json::parse(verdict_json(full()))["effects"];
   EXPECT_EQ(effects[0]["invertible"], true);

@@ -240,6 +240,58 @@ TEST_F(Diagnose, SeveralRecordsAreOneDiagnosis) {
   EXPECT_THAT(bench.names(), IsSupersetOf({"found/traces1.csv", "found/traces2.csv"}));
 }
 
+/// A controller that `hysteron serve` has run, and its trace.
+constexpr const char* controller = R"(FUNCTION_BLOCK CONTROLLER  (* @ts 5ms *)
+  VAR_OUTPUT
+    FORCE : LREAL;  (* @unit N *)
+  END_VAR
+  VAR
+    WAVE : HY_SINE := (AMPLITUDE := 3.0, FREQUENCY := 0.7);
+  END_VAR
+
+  WAVE();
+  FORCE := 2.0 * WAVE.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+TEST_F(Diagnose, ATraceTellsTheControllersOwnPart) {
+  bench.write("controller.st", controller);
+  bench.write("RUN.toml", "[outputs.FORCE]\nsafe = 0.0\nhigh = 5.0\n[trace]\nfile = \"run.trace\"\n");
+  const auto served = bench.shell("hysteron serve controller.st --config RUN.toml --virtual --cycles 600");
+  ASSERT_EQ(served.code, 0) << served.err;
+  const auto same = bench.shell(command + " --trace run.trace --controller controller.st --json");
+  ASSERT_EQ(same.code, 0) << same.err;
+  const json split = json::parse(same.out)["split"];
+  EXPECT_EQ(split["controller"]["same_bits"], true);
+  EXPECT_EQ(split["controller"]["steps"], 600);
+  EXPECT_EQ(split["controller"]["outputs"]["FORCE"]["difference_rms"], 0.0);
+  EXPECT_GT(split["controller"]["outputs"]["FORCE"]["limited_rms"], 0.1) << "the run file holds it to 5 N";
+  EXPECT_GT(split["plant"].get<double>(), 0.9) << "a load is the plant's";
+  // What ran was not what the diagram says: the sign of one computed force in the trace. A record of a step is 5 + 20
+  // bytes and two outputs, the end of the trace 5 + 16.
+  std::string bytes = bench.read("run.trace");
+  const std::size_t record = 5 + 20 + 2 * 8;
+  bytes[bytes.size() - (5 + 16) - 100 * record + 5 + 20 + 7] ^= static_cast<char>(0x80);
+  bench.write("other.trace", bytes);
+  const auto differs = bench.shell(command + " --trace other.trace --controller controller.st");
+  ASSERT_EQ(differs.code, 0) << differs.err;
+  EXPECT_THAT(differs.out, HasSubstr("1 of 600 steps give other bits than its diagram, the first is step 500"));
+  EXPECT_THAT(differs.out, HasSubstr("FORCE: recorded and replayed differ by "));
+  EXPECT_THAT(bench.read("found/report.html"), HasSubstr("give other bits than its diagram"));
+}
+
+TEST_F(Diagnose, ATraceAndItsControllerBelongTogether) {
+  const auto alone = bench.shell(command + " --trace run.trace");
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("belong together"));
+  bench.write("controller.st", controller);
+  bench.write("no.trace", "no trace");
+  const auto broken = bench.shell(command + " --trace no.trace --controller controller.st");
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("cannot be replayed"));
+  EXPECT_FALSE(bench.has("found"));
+}
+
 TEST_F(Diagnose, HelpSaysWhatItDoesAndWhatItReturns) {
   const auto help = bench.shell("hysteron diagnose --help");
   EXPECT_EQ(help.code, 0);

@@ -79,6 +79,19 @@ TEST(ReportPage, SaysTheVerdictTheEffectsAndTheGap) {
   }
 }
 
+TEST(ReportPage, SaysWhichPartTheGapBelongsTo) {
+  Diagnosis found = test::rich_diagnosis();
+  found.split = {.input_output = 0.25, .plant = 0.7, .open = 0.05};
+  found.cuts = {{.signal = "AMP_XOUT_MEASURED", .agrees = true}};
+  found.controller = ControllerFinding{.steps = 600, .outputs = {{.name = "U", .unit = "V", .limited_rms = 0.5}}};
+  const std::string page = report_page(found, test::rich_program());
+  EXPECT_THAT(page, HasSubstr("Which part"));
+  EXPECT_THAT(page, HasSubstr("none: 600 steps replayed, the same bits; limits and safe values change U by 0.5 V RMS"));
+  EXPECT_THAT(page, HasSubstr("25 %"));
+  EXPECT_THAT(page, HasSubstr("AMP_XOUT_MEASURED"));
+  EXPECT_EQ(unbalanced(page), "");
+}
+
 TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
   const std::string page = report_page(test::refused_diagnosis(), test::rich_program());
   EXPECT_THAT(page, HasSubstr("Record refused"));

@@ -6,7 +6,7 @@ from trials.scoring.figures import Score
 from trials.scoring.text import amount
 
 SHOWN = (
-    "single_r10", "single_r3", "single_r1", "cousin_r10", "rivals", "pair", "false_alarm", "ambiguous", "sure_wrong", "auroc",
+    "single_r10", "single_r3", "single_r1", "cousin_r10", "named_r3", "rivals", "pair", "false_alarm", "ambiguous", "sure_wrong", "auroc",
     "edge", "closure", "closure_10", "own_closure", "own_closure_10", "seconds", "missing",
 )  # fmt: skip
 

@@ -83,6 +83,7 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     chosen = of("cousin", where=lambda c: _bucket(c.ratio) == 10.0)
     out.append(_proportion("cousin_r10", "another formula of the same physics, R ≥ 10", share([c.named_first for c in chosen]), 0.90))
     chosen = of("single", "cousin", where=lambda c: _bucket(c.ratio) >= 3.0)
+    out.append(_proportion("named_r3", "  single effects by either formula, R ≥ 3", share([c.named_first for c in chosen]), None))
     out.append(_proportion("rivals", "truth in the rival set, R ≥ 3", share([c.in_rivals for c in chosen]), 0.95))
     sizes = [float(len(c.rivals)) for c in chosen if c.rivals]
     mean = float(np.mean(sizes)) if sizes else math.nan

@@ -13,21 +13,12 @@ namespace hysteron::runtime {
 namespace {
 
 using Words = std::string_view;
-constexpr std::int64_t second = 1'000'000'000;
-constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
 constexpr std::array<modbus::Area, 4> areas{modbus::Area::holding_register, modbus::Area::input_register,
                                             modbus::Area::coil, modbus::Area::discrete_input};
-constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
 constexpr std::array<modbus::Area, 2> written_areas{modbus::Area::holding_register, modbus::Area::coil};
 constexpr std::array<Words, 2> network_keys{"host", "port"};
 constexpr std::array<Words, 3> line_keys{"baud", "parity", "stop_bits"};
 constexpr std::array<Words, 4> value_keys{"register", "area", "type", "on_loss"};
-
-constexpr auto type_words = [] {
-  std::array<Words, modbus::point_types.size()> words{};
-  std::ranges::transform(modbus::point_types, words.begin(), [](PointType type) { return modbus::name_of(type); });
-  return words;
-}();
 
 }  // namespace
 
@@ -42,7 +33,7 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
   if (line.empty()) {
     modbus::TcpLink link;
     table.read("host", link.host);
-    table.read_whole("port", link.port, 1, 65535);
+    table.read_whole("port", link.port);
     for (const Words key : line_keys) {
       if (table.has(key)) {
         wrong(table.place(key), std::string(key) + " is of a serial line, and none is named.",
@@ -52,12 +43,12 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
     device.link = std::move(link);
   } else {
     modbus::SerialLink link{.path = line};
-    table.read_whole("baud", link.baud, 300, 4'000'000);
+    table.read_whole("baud", link.baud);
     constexpr std::array<char, 3> parities{'E', 'O', 'N'};
     std::size_t parity = 0;
-    table.read_choice("parity", parity, std::array<Words, 3>{"even", "odd", "none"});
+    table.read_choice("parity", parity);
     link.parity = parities[parity];
-    table.read_whole("stop_bits", link.stop_bits, 1, 2);
+    table.read_whole("stop_bits", link.stop_bits);
     for (const Words key : network_keys) {
       if (table.has(key)) {
         wrong(table.place(key), "The device is on a serial line and has a " + std::string(key) + " besides.",
@@ -66,15 +57,15 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
     }
     device.link = std::move(link);
   }
-  table.read_whole("unit", device.unit, 0, 247);
+  table.read_whole("unit", device.unit);
   std::size_t order = 0;
-  table.read_choice("word_order", order, word_order_words);
+  table.read_choice("word_order", order);
   device.order = modbus::word_orders[order];
   std::int64_t period = device.period.count();
-  table.read_duration("cycle", period, 100'000, 3600 * second);
+  table.read_duration("cycle", period);
   device.period = std::chrono::nanoseconds(period);
   std::int64_t response = std::chrono::nanoseconds(device.response).count();
-  table.read_duration("timeout", response, 1'000'000, 60 * second);
+  table.read_duration("timeout", response);
   device.response = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(response));
   config_->devices.push_back(std::move(device));
 }
@@ -85,16 +76,16 @@ std::optional<DeviceLink> DeviceReader::read_link(const std::string& port, bool 
   table.read("device", name);
   modbus::RemoteValue value{.written = written, .longest_age = std::chrono::nanoseconds(longest_age)};
   std::size_t area = 0;
-  table.read_choice("area", area, written ? std::span<const Words>(written_area_words) : area_words);
+  table.read_choice("area", area);
   value.at.area = written ? written_areas[area] : areas[area];
   const bool bits = modbus::holds_bits(value.at.area);
   value.type = bits ? PointType::boolean : PointType::real64;
   auto type = static_cast<std::size_t>(value.type);
-  table.read_choice("type", type, type_words);
+  table.read_choice("type", type);
   value.type = modbus::point_types[type];
-  table.read_whole("register", value.at.address, 0, 65535);
+  table.read_whole("register", value.at.address);
   std::size_t loss = 0;
-  table.read_choice("on_loss", loss, std::array<Words, 2>{"fault", "keep"});
+  table.read_choice("on_loss", loss);
   if (name.empty()) {
     for (const Words key : value_keys) {
       if (table.has(key)) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -18,28 +17,9 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t second = 1'000'000'000;
-constexpr std::int64_t many = 1'000'000'000'000;
 constexpr TomlKind run_file{error::run_file_syntax, error::run_key_twice,
                             "a table as [outputs.U] and a value as safe = 0.0"};
-
-using Keys = std::string_view;
-constexpr std::array<Keys, 8> top_keys{"task", "watchdog", "outputs", "inputs", "devices", "retain", "trace", "modbus"};
-constexpr std::array<Keys, 8> task_keys{"period",     "missed",   "catch_up",  "tolerance",
-                                        "scheduling", "priority", "processor", "lock_memory"};
-constexpr std::array<Keys, 4> watchdog_keys{"time", "sensitivity", "guard", "silence"};
-constexpr std::array<Keys, 13> output_keys{"safe",   "on_fault", "hold_cycles", "ramp", "low",     "high",       "slew",
-                                           "device", "register", "area",        "type", "on_loss", "longest_age"};
-constexpr std::array<Keys, 8> input_keys{"device",  "register",    "area",   "type",
-                                         "on_loss", "longest_age", "age_of", "quality_of"};
-constexpr std::array<Keys, 10> device_keys{"host",      "port", "serial",     "baud",  "parity",
-                                           "stop_bits", "unit", "word_order", "cycle", "timeout"};
-constexpr std::array<Keys, 3> retain_keys{"folder", "every", "mismatch"};
-constexpr std::array<Keys, 4> trace_keys{"file", "trigger", "before", "after"};
-constexpr std::array<Keys, 11> modbus_keys{"listen",         "port",       "allow",     "connections",
-                                           "read_only",      "word_order", "lock_file", "heartbeat",
-                                           "heartbeat_time", "after_loss", "own_writes"};
 
 std::vector<std::string> names_of(const std::vector<ProgramSignal>& signals) {
   std::vector<std::string> names;
@@ -64,33 +44,33 @@ class Reader {
       : file_(file), shape_(shape), root_(parse_toml(file, text, run_file)) {}
 
   RunConfig read() {
-    const TomlReader top(file_, "a run file", root_, top_keys, found_);
+    const TomlReader top(file_, "a run file", root_, top_keys(), found_);
     config_.task.loop.period = shape_.period;
     config_.task.loop.tolerance = shape_.period / 10;
     config_.task.inputs.resize(shape_.inputs.size());
     config_.task.outputs.resize(shape_.outputs.size());
     has_safe_value_.resize(shape_.outputs.size(), false);
     if (const auto* const table = table_at(root_, "task")) {
-      read_task({file_, "[task]", *table, task_keys, found_});
+      read_task({file_, "[task]", *table, run_table("task").keys, found_});
     }
     if (const auto* const table = table_at(root_, "watchdog")) {
-      read_watchdog({file_, "[watchdog]", *table, watchdog_keys, found_});
+      read_watchdog({file_, "[watchdog]", *table, run_table("watchdog").keys, found_});
     }
     each_below("devices", [&](const toml::key& key, const toml::table& table) {
       const std::string name(key.str());
-      devices_.read_device(name, {file_, "[devices." + name + "]", table, device_keys, found_});
+      devices_.read_device(name, {file_, "[devices." + name + "]", table, run_table("devices").keys, found_});
     });
     each_below("outputs", [&](const toml::key& key, const toml::table& table) { read_output(key, table); });
     each_below("inputs", [&](const toml::key& key, const toml::table& table) { read_input(key, table); });
     devices_.finish();
     if (const auto* const table = table_at(root_, "retain")) {
-      read_retain({file_, "[retain]", *table, retain_keys, found_});
+      read_retain({file_, "[retain]", *table, run_table("retain").keys, found_});
     }
     if (const auto* const table = table_at(root_, "trace")) {
-      read_trace({file_, "[trace]", *table, trace_keys, found_});
+      read_trace({file_, "[trace]", *table, run_table("trace").keys, found_});
     }
     if (const auto* const table = table_at(root_, "modbus")) {
-      read_modbus({file_, "[modbus]", *table, modbus_keys, found_});
+      read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
     }
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
@@ -131,7 +111,7 @@ class Reader {
 
   void read_task(TomlReader table) {
     std::int64_t period = shape_.period;
-    table.read_duration("period", period, 1, many);
+    table.read_duration("period", period);
     if (period != shape_.period) {
       found_.error(error::wrong_period, table.place("period"),
                    "The period is not the sample time of " + shape_.name + ", which is " +
@@ -139,22 +119,22 @@ class Reader {
                    "leave the key out, or state another sample time in the diagram: (* @ts 1ms *).");
     }
     std::size_t policy = 0;
-    table.read_choice("missed", policy, std::array<Keys, 3>{"skip", "catch_up", "stop"});
+    table.read_choice("missed", policy);
     config_.task.loop.policy = static_cast<MissedPolicy>(policy);
-    table.read_whole("catch_up", config_.task.loop.catch_up, 1, 1000);
+    table.read_whole("catch_up", config_.task.loop.catch_up);
     table.read_duration("tolerance", config_.task.loop.tolerance, 1, shape_.period);
     std::size_t scheduling = 0;
-    table.read_choice("scheduling", scheduling, std::array<Keys, 3>{"fifo", "deadline", "other"});
+    table.read_choice("scheduling", scheduling);
     constexpr std::array classes{Scheduling::fifo, Scheduling::deadline, Scheduling::other};
     config_.scheduling.scheduling = classes[scheduling];
-    table.read_whole("priority", config_.scheduling.priority, 1, 99);
-    table.read_whole("processor", config_.scheduling.processor, 0, 1023);
+    table.read_whole("priority", config_.scheduling.priority);
+    table.read_whole("processor", config_.scheduling.processor);
     table.read("lock_memory", config_.scheduling.lock_memory);
   }
 
   void read_watchdog(TomlReader table) {
-    table.read_duration("time", config_.task.watchdog.time, 1000, 1000 * second);
-    table.read_whole("sensitivity", config_.task.watchdog.sensitivity, 1, 1000);
+    table.read_duration("time", config_.task.watchdog.time);
+    table.read_whole("sensitivity", config_.task.watchdog.sensitivity);
     table.read("guard", config_.guard);
     table.read_duration("silence", config_.silence, std::max<std::int64_t>(2 * shape_.period, 1'000'000),
                         1000 * second);
@@ -184,18 +164,18 @@ class Reader {
     if (!index) {
       return;
     }
-    TomlReader table(file_, "[outputs." + std::string(key.str()) + "]", node, output_keys, found_);
+    TomlReader table(file_, "[outputs." + std::string(key.str()) + "]", node, run_table("outputs").keys, found_);
     OutputSafety& output = config_.task.outputs[*index];
     output.low = shape_.outputs[*index].low;
     output.high = shape_.outputs[*index].high;
-    table.read("low", output.low, -infinity, infinity);
-    table.read("high", output.high, -infinity, infinity);
-    table.read("safe", output.value, -infinity, infinity);
-    table.read("slew", output.slew, std::numeric_limits<double>::min(), infinity);
-    table.read("ramp", output.ramp, std::numeric_limits<double>::min(), infinity);
-    table.read_whole("hold_cycles", output.hold_cycles, 0, many);
+    table.read("low", output.low);
+    table.read("high", output.high);
+    table.read("safe", output.value);
+    table.read("slew", output.slew);
+    table.read("ramp", output.ramp);
+    table.read_whole("hold_cycles", output.hold_cycles);
     std::size_t action = 0;
-    table.read_choice("on_fault", action, std::array<Keys, 3>{"value", "ramp", "hold"});
+    table.read_choice("on_fault", action);
     output.action = static_cast<SafeAction>(action);
     devices_.read_output(*index, read_longest_age(table), table);
     has_safe_value_[*index] = has_safe_value_[*index] || table.has("safe");
@@ -217,7 +197,7 @@ class Reader {
     if (!index) {
       return;
     }
-    TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, input_keys, found_);
+    TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, run_table("inputs").keys, found_);
     devices_.read_input(*index, read_longest_age(table), table);
   }
 
@@ -238,9 +218,9 @@ class Reader {
     RetainConfig retain{.place = table.place()};
     missing(table, "folder", "\"retained\"");
     table.read("folder", retain.folder);
-    table.read_whole("every", config_.task.retain_every, 1, many);
+    table.read_whole("every", config_.task.retain_every);
     std::size_t mismatch = 0;
-    table.read_choice("mismatch", mismatch, std::array<Keys, 2>{"refuse", "cold"});
+    table.read_choice("mismatch", mismatch);
     retain.mismatch = static_cast<MismatchPolicy>(mismatch);
     config_.retain = std::move(retain);
   }
@@ -260,8 +240,8 @@ class Reader {
                      "The trigger \"" + trigger + "\" is not understood.",
                      "write an input or output, < or >, and a number: \"U > 5.0\"; or \"fault\".");
       } else {
-        table.read_whole("before", trace.trigger->before, 0, many);
-        table.read_whole("after", trace.trigger->after, 0, many);
+        table.read_whole("before", trace.trigger->before);
+        table.read_whole("after", trace.trigger->after);
       }
     }
     config_.trace = std::move(trace);
@@ -271,12 +251,12 @@ class Reader {
   void read_modbus(TomlReader table) {
     ModbusConfig modbus{.place = table.place()};
     table.read("listen", modbus.listen);
-    table.read_whole("port", modbus.port, 0, 65535);
+    table.read_whole("port", modbus.port);
     table.read("allow", modbus.allow);
-    table.read_whole("connections", modbus.connections, 1, 1000);
+    table.read_whole("connections", modbus.connections);
     table.read("read_only", modbus.read_only);
     std::size_t order = 0;
-    table.read_choice("word_order", order, word_order_words);
+    table.read_choice("word_order", order);
     modbus.word_order = modbus::word_orders[order];
     table.read("lock_file", modbus.lock_file);
     read_heartbeat(table, modbus);
@@ -285,13 +265,13 @@ class Reader {
 
   void read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
     std::size_t mode = 0;
-    table.read_choice("heartbeat", mode, std::array<Keys, 3>{"off", "any", "write"});
+    table.read_choice("heartbeat", mode);
     modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
     std::int64_t time = std::chrono::nanoseconds(modbus.heartbeat.time).count();
-    table.read_duration("heartbeat_time", time, 1'000'000, 3600 * second);
+    table.read_duration("heartbeat_time", time);
     modbus.heartbeat.time = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
     std::size_t after = 0;
-    table.read_choice("after_loss", after, std::array<Keys, 2>{"resume", "reset"});
+    table.read_choice("after_loss", after);
     config_.task.reset_after_lost_client = after == 1;
     table.read("own_writes", modbus.heartbeat.own_writes);
     if (modbus.read_only && (modbus.heartbeat.mode == modbus::HeartbeatMode::write_telegram || after == 1)) {

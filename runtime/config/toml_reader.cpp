@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "runtime/config/run_config.hpp"
@@ -27,17 +28,29 @@ std::string duration_text(std::int64_t nanoseconds) {
 }  // namespace
 
 TomlReader::TomlReader(const std::string& file, std::string name, const toml::table& table,
-                       std::span<const std::string_view> known, Diagnostics& diagnostics)
-    : file_(&file), name_(std::move(name)), table_(&table), diagnostics_(&diagnostics) {
+                       std::span<const RunKey> known, Diagnostics& diagnostics)
+    : file_(&file), name_(std::move(name)), table_(&table), known_(known), diagnostics_(&diagnostics) {
   for (const auto& [key, node] : table) {
-    if (std::ranges::find(known, key.str()) == known.end()) {
-      const auto near = nearest_name(key.str(), known);
+    if (std::ranges::find(known, key.str(), &RunKey::name) == known.end()) {
+      std::vector<std::string_view> names;
+      for (const RunKey& one : known) {
+        names.push_back(one.name);
+      }
+      const auto near = nearest_name(key.str(), names);
       diagnostics.error(
           error::unknown_run_key, place_of(file, key.source()),
           "There is no key " + std::string(key.str()) + " in " + name_ + ".",
-          near.empty() ? "use one of: " + listed(known) + "." : "did you mean " + std::string(near) + "?");
+          near.empty() ? "use one of: " + listed(names) + "." : "did you mean " + std::string(near) + "?");
     }
   }
+}
+
+const RunKey& TomlReader::declared(std::string_view key) const {
+  const auto found = std::ranges::find(known_, key, &RunKey::name);
+  if (found == known_.end()) {
+    throw std::logic_error("a key is read that is not declared");
+  }
+  return *found;
 }
 
 Place TomlReader::place(std::string_view key) const {
@@ -79,7 +92,7 @@ void TomlReader::read(std::string_view key, std::vector<std::string>& into) {
     return;
   }
   const auto* const list = node->as_array();
-  if (list == nullptr || !list->is_homogeneous<std::string>()) {
+  if (list == nullptr || (!list->empty() && !list->is_homogeneous<std::string>())) {
     return wrong_type(key, "a list of texts", "[\"192.168.10.0/24\"]");
   }
   for (const toml::node& one : *list) {
@@ -87,7 +100,8 @@ void TomlReader::read(std::string_view key, std::vector<std::string>& into) {
   }
 }
 
-void TomlReader::read(std::string_view key, double& into, double low, double high) {
+void TomlReader::read(std::string_view key, double& into) {
+  const auto [low, high] = std::pair(declared(key).low, declared(key).high);
   const auto* const node = table_->get(key);
   if (node == nullptr) {
     return;
@@ -97,14 +111,14 @@ void TomlReader::read(std::string_view key, double& into, double low, double hig
     return wrong_type(key, "a number", "1.5");
   }
   if (!std::isfinite(*value) || *value < low || *value > high) {
-    return out_of_range(key, std::isinf(low) && std::isinf(high) ? std::string("a finite number")
-                             : std::isinf(high)                  ? "a finite number, " + number_text(low) + " or above"
-                                                : "from " + number_text(low) + " to " + number_text(high));
+    return out_of_range(key, std::isinf(low) ? "a finite number" : "a finite number above 0");
   }
   into = *value;
 }
 
-std::optional<std::int64_t> TomlReader::whole(std::string_view key, std::int64_t low, std::int64_t high) {
+std::optional<std::int64_t> TomlReader::whole(std::string_view key) {
+  const auto low = static_cast<std::int64_t>(declared(key).low);
+  const auto high = static_cast<std::int64_t>(declared(key).high);
   const auto* const node = table_->get(key);
   if (node == nullptr) {
     return std::nullopt;
@@ -119,6 +133,11 @@ std::optional<std::int64_t> TomlReader::whole(std::string_view key, std::int64_t
     return std::nullopt;
   }
   return value;
+}
+
+void TomlReader::read_duration(std::string_view key, std::int64_t& into) {
+  const RunKey& bounds = declared(key);
+  read_duration(key, into, static_cast<std::int64_t>(bounds.low), static_cast<std::int64_t>(bounds.high));
 }
 
 void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high) {
@@ -136,7 +155,8 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::in
   into = *value;
 }
 
-void TomlReader::read_choice(std::string_view key, std::size_t& into, std::span<const std::string_view> words) {
+void TomlReader::read_choice(std::string_view key, std::size_t& into) {
+  const auto words = declared(key).words;
   const auto* const node = table_->get(key);
   if (node == nullptr) {
     return;

@@ -9,28 +9,32 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/config/run_keys.hpp"
 #include "support/diagnostic.hpp"
 #include "support/toml_text.hpp"
 
 namespace hysteron::runtime {
 
-/// One table of the file. What is asked for and not there leaves the value as it was.
+/// One table of the file. What is asked for and not there leaves the value as it was. Ranges and words of a choice are
+/// those that the key is declared with.
 class TomlReader {
  public:
   /// Reports every key that is not among `known`.
-  TomlReader(const std::string& file, std::string name, const toml::table& table,
-             std::span<const std::string_view> known, Diagnostics& diagnostics);
+  TomlReader(const std::string& file, std::string name, const toml::table& table, std::span<const RunKey> known,
+             Diagnostics& diagnostics);
 
   void read(std::string_view key, bool& into);
   void read(std::string_view key, std::string& into);
   void read(std::string_view key, std::vector<std::string>& into);
-  void read(std::string_view key, double& into, double low, double high);
+  void read(std::string_view key, double& into);
+  void read_duration(std::string_view key, std::int64_t& into);
+  /// Within bounds that the key's declaration cannot know.
   void read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high);
   /// The index of the word that stands there.
-  void read_choice(std::string_view key, std::size_t& into, std::span<const std::string_view> words);
+  void read_choice(std::string_view key, std::size_t& into);
   template <class Integer>
-  void read_whole(std::string_view key, Integer& into, std::int64_t low, std::int64_t high) {
-    if (const auto value = whole(key, low, high)) {
+  void read_whole(std::string_view key, Integer& into) {
+    if (const auto value = whole(key)) {
       into = static_cast<Integer>(*value);
     }
   }
@@ -42,13 +46,15 @@ class TomlReader {
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
-  std::optional<std::int64_t> whole(std::string_view key, std::int64_t low, std::int64_t high);
+  [[nodiscard]] const RunKey& declared(std::string_view key) const;
+  std::optional<std::int64_t> whole(std::string_view key);
   void wrong_type(std::string_view key, const std::string& wanted, const std::string& example);
   void out_of_range(std::string_view key, const std::string& range);
 
   const std::string* file_;
   std::string name_;
   const toml::table* table_;
+  std::span<const RunKey> known_;
   Diagnostics* diagnostics_;
 };
 

@@ -1,0 +1,304 @@
+#include "runtime/config/run_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "support/numbers.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using Words = std::string_view;
+using enum KeyKind;
+
+constexpr double above_zero = std::numeric_limits<double>::min();
+constexpr double us = 1e3;
+constexpr double ms = 1e6;
+constexpr double s = 1e9;
+constexpr double many = 1e12;
+
+constexpr std::array<Words, 3> missed_words{"skip", "catch_up", "stop"};
+constexpr std::array<Words, 3> scheduling_words{"fifo", "deadline", "other"};
+constexpr std::array<Words, 3> on_fault_words{"value", "ramp", "hold"};
+constexpr std::array<Words, 2> loss_words{"fault", "keep"};
+constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
+constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
+constexpr std::array<Words, 9> type_words{"boolean", "int16",  "uint16", "int32", "uint32",
+                                          "int64",   "uint64", "real32", "real64"};
+constexpr std::array<Words, 3> parity_words{"even", "odd", "none"};
+constexpr std::array<Words, 4> order_words{"abcd", "cdab", "badc", "dcba"};
+constexpr std::array<Words, 2> mismatch_words{"refuse", "cold"};
+constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
+constexpr std::array<Words, 2> after_words{"resume", "reset"};
+
+constexpr std::array task_keys{
+    RunKey{"period", time, "(the diagram's)", "for the reader: must be the sample time of the diagram", 1.0, many},
+    RunKey{.name = "missed",
+           .kind = choice,
+           .otherwise = "\"skip\"",
+           .meaning = "what follows a missed period: it is left out, made up for, or ends the task",
+           .words = missed_words},
+    RunKey{"catch_up", whole, "3", "periods made up for at once, at the most", 1.0, 1000.0},
+    RunKey{"tolerance",
+           time,
+           "(a tenth of the period)",
+           "a cycle that starts later than this is late",
+           1.0,
+           many,
+           {},
+           "no more than the period"},
+    RunKey{.name = "scheduling",
+           .kind = choice,
+           .otherwise = "\"fifo\"",
+           .meaning = "the scheduling that is asked for; the status line says what was obtained",
+           .words = scheduling_words},
+    RunKey{"priority", whole, "80", "of fifo", 1.0, 99.0},
+    RunKey{"processor", whole, "(any)", "the processor that the task keeps to", 0.0, 1023.0},
+    RunKey{"lock_memory", flag, "true", "no page of memory leaves while it runs"},
+};
+constexpr std::array watchdog_keys{
+    RunKey{"time", time, "(no watchdog)", "the longest time of a cycle", us, 1000.0 * s},
+    RunKey{"sensitivity", whole, "1", "so many cycles in a row may be longer; one may be longer by this factor", 1.0,
+           1000.0},
+    RunKey{"guard", flag, "true", "a process of its own holds the outputs on devices safe when the task hangs or dies"},
+    RunKey{"silence",
+           time,
+           "\"50ms\"",
+           "without a cycle for so long, the guard takes over",
+           ms,
+           1000.0 * s,
+           {},
+           "two periods at the least"},
+};
+constexpr std::array output_keys{
+    RunKey{"safe", number, "(required)", "the value of the output when something is wrong, in its unit"},
+    RunKey{.name = "on_fault",
+           .kind = choice,
+           .otherwise = "\"value\"",
+           .meaning = "how it gets there: at once, by a ramp, or not at all: it holds its last value",
+           .words = on_fault_words},
+    RunKey{"hold_cycles", whole, "0", "cycles for which it holds its last value before", 0.0, many},
+    RunKey{"ramp", number, "(required by on_fault)", "of a ramp, the change a second", above_zero},
+    RunKey{"low", number, "(the diagram's)", "the output is never below"},
+    RunKey{"high", number, "(the diagram's)", "the output is never above"},
+    RunKey{"slew", number, "(none)", "the largest change a second", above_zero},
+    RunKey{"device", text, "(none)", "the device that takes it, as named under [devices]"},
+    RunKey{"register", whole, "0", "where it lies there: the first register, or the coil", 0.0, 65535.0},
+    RunKey{.name = "area",
+           .kind = choice,
+           .otherwise = "\"holding\"",
+           .meaning = "holding registers or coils",
+           .words = written_area_words},
+    RunKey{.name = "type",
+           .kind = choice,
+           .otherwise = "(real64; of a coil, boolean)",
+           .meaning = "how it lies there; an integer limits the output to what it can hold",
+           .words = type_words},
+    RunKey{.name = "on_loss",
+           .kind = choice,
+           .otherwise = "\"fault\"",
+           .meaning = "where the device is lost: a fault of the task, or left to the diagram",
+           .words = loss_words},
+    RunKey{"longest_age",
+           time,
+           "(ten cycles of the device, or its timeout)",
+           "on a device: it is lost once the device has not taken it for so long",
+           1.0,
+           1000.0 * s,
+           {},
+           "a period at the least"},
+};
+constexpr std::array input_keys{
+    RunKey{"device", text, "(none: clients of the server write it)",
+           "the device that gives it, as named under [devices]"},
+    RunKey{"register", whole, "0", "where it lies there: the first register, coil or discrete input", 0.0, 65535.0},
+    RunKey{.name = "area",
+           .kind = choice,
+           .otherwise = "\"holding\"",
+           .meaning = "holding or input registers, coils or discrete inputs",
+           .words = area_words},
+    RunKey{.name = "type",
+           .kind = choice,
+           .otherwise = "(real64; of a coil or discrete input, boolean)",
+           .meaning = "how it lies there",
+           .words = type_words},
+    RunKey{.name = "on_loss",
+           .kind = choice,
+           .otherwise = "\"fault\"",
+           .meaning = "where the device is lost: a fault of the task, or the last value stays",
+           .words = loss_words},
+    RunKey{"longest_age",
+           time,
+           "(on a device, ten of its cycles, or its timeout; else none)",
+           "older, it is lost; written by clients, it is stale",
+           1.0,
+           1000.0 * s,
+           {},
+           "a period at the least"},
+    RunKey{"age_of", text, "(none)", "it is told the age of this input or output on a device, in seconds"},
+    RunKey{"quality_of", text, "(none)", "the same, the quality: 0 never, 1 good, 2 old, 3 refused, 4 lost"},
+};
+constexpr std::array device_keys{
+    RunKey{"host", text, "\"127.0.0.1\"", "of Modbus TCP: name or address"},
+    RunKey{"port", whole, "502", "of Modbus TCP", 1.0, 65535.0},
+    RunKey{"serial", text, "(none: TCP)",
+           "of Modbus RTU: the serial line, as /dev/ttyUSB0; devices on one line take turns"},
+    RunKey{"baud", whole, "19200", "of the serial line", 300.0, 4e6},
+    RunKey{.name = "parity",
+           .kind = choice,
+           .otherwise = "\"even\"",
+           .meaning = "of the serial line",
+           .words = parity_words},
+    RunKey{"stop_bits", whole, "1", "of the serial line", 1.0, 2.0},
+    RunKey{"unit", whole, "1", "the unit identifier", 0.0, 247.0},
+    RunKey{.name = "word_order",
+           .kind = choice,
+           .otherwise = "\"abcd\"",
+           .meaning = "how values of 32 and 64 bits lie in its registers",
+           .words = order_words},
+    RunKey{"cycle", time, "\"5ms\"", "how often its values are exchanged", 100.0 * us, 3600.0 * s},
+    RunKey{"timeout", time, "\"200ms\"", "for a whole answer, and for a connection", ms, 60.0 * s},
+};
+constexpr std::array retain_keys{
+    RunKey{"folder", text, "(required)", "where the state and the parameters are kept"},
+    RunKey{"every", whole, "1000", "cycles from one writing to the next", 1.0, many},
+    RunKey{.name = "mismatch",
+           .kind = choice,
+           .otherwise = "\"refuse\"",
+           .meaning = "where what was kept is of another diagram: an error, or put aside and begun anew",
+           .words = mismatch_words},
+};
+constexpr std::array trace_keys{
+    RunKey{"file", text, "(required)", "the trace, for replay, tune and diagnose"},
+    RunKey{"trigger", text, "(none: every cycle is kept)",
+           "\"U > 5.0\", an input or output and a number; or \"fault\""},
+    RunKey{"before", whole, "1000", "with a trigger: cycles kept from before", 0.0, many},
+    RunKey{"after", whole, "1000", "with a trigger: cycles kept from then on", 0.0, many},
+};
+constexpr std::array modbus_keys{
+    RunKey{"listen", text, "\"127.0.0.1\"", "the address of the server"},
+    RunKey{"port", whole, "1502", "its port; 0: any that is free", 0.0, 65535.0},
+    RunKey{"allow", texts, "[]", "the networks whose clients are served; none: all that reach the address"},
+    RunKey{"connections", whole, "32", "clients at once", 1.0, 1000.0},
+    RunKey{"read_only", flag, "false", "writes are refused"},
+    RunKey{.name = "word_order",
+           .kind = choice,
+           .otherwise = "\"abcd\"",
+           .meaning = "how values of 32 and 64 bits lie in the registers",
+           .words = order_words},
+    RunKey{"lock_file", text, "(none)", "keeps the addresses through edits of the diagram"},
+    RunKey{.name = "heartbeat",
+           .kind = choice,
+           .otherwise = "\"off\"",
+           .meaning = "the telegrams that show that the client lives",
+           .words = heartbeat_words},
+    RunKey{"heartbeat_time", time, "\"1s\"", "without one for so long after the first, the outputs become safe", ms,
+           3600.0 * s},
+    RunKey{.name = "after_loss",
+           .kind = choice,
+           .otherwise = "\"resume\"",
+           .meaning = "the outputs return when the client is back, or when it then writes task.reset",
+           .words = after_words},
+    RunKey{"own_writes", flag, "false", "while a client that writes is there, no other may"},
+};
+
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"}, RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},   RunKey{"modbus"}};
+
+constexpr std::array tables{
+    RunTable{"[task]", "How the cycle runs.", task_keys},
+    RunTable{"[watchdog]", "What watches it.", watchdog_keys},
+    RunTable{"[outputs.NAME]", "A table for each output of the diagram.", output_keys},
+    RunTable{"[inputs.NAME]", "A table for each input that is not only written by clients.", input_keys},
+    RunTable{"[devices.NAME]", "A Modbus device with inputs or outputs of the task.", device_keys},
+    RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
+    RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
+    RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
+};
+
+std::string time_text(double nanoseconds) {
+  constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
+  const auto unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
+  return number_text(nanoseconds / unit->first) + unit->second;
+}
+
+std::string kind_text(const RunKey& key) {
+  constexpr std::array<const char*, 6> names{"true or false", "text",         "list of texts",
+                                             "number",        "whole number", "time"};
+  if (key.kind != choice) {
+    return names.at(static_cast<std::size_t>(key.kind));
+  }
+  std::string list;
+  for (const Words word : key.words) {
+    list += (list.empty() ? "`\"" : ", `\"") + std::string(word) + "\"`";
+  }
+  return list;
+}
+
+std::string range_text(const RunKey& key) {
+  const auto text_of = [&](double value) {
+    return key.kind == time ? time_text(value) : fmt::format("{}", number_text(value));
+  };
+  std::string range = key.low == above_zero ? "above 0"
+                      : std::isfinite(key.low) && std::isfinite(key.high)
+                          ? text_of(key.low) + " to " + text_of(key.high)
+                          : "";
+  if (!key.also.empty()) {
+    range += "; " + std::string(key.also);
+  }
+  return range;
+}
+
+std::string default_text(const RunKey& key) {
+  const bool words = key.otherwise.starts_with('(');
+  return words ? std::string(key.otherwise.substr(1, key.otherwise.size() - 2))
+               : "`" + std::string(key.otherwise) + "`";
+}
+
+}  // namespace
+
+std::span<const RunTable> run_tables() {
+  return tables;
+}
+
+std::span<const RunKey> top_keys() {
+  return file_keys;
+}
+
+const RunTable& run_table(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      tables, [&](const RunTable& table) { return table.name.substr(1, table.name.find_first_of(".]") - 1) == name; });
+  if (found == tables.end()) {
+    throw std::invalid_argument("there is no such table in a run file");
+  }
+  return *found;
+}
+
+std::string run_file_page() {
+  std::string page =
+      "# The run file\n\n"
+      "What `hysteron serve --config RUN.toml` reads, in [TOML](https://toml.io): how a diagram is run. Every key but "
+      "the\n"
+      "safe values may be left out. A time is a text with one of `ns`, `us`, `ms`, `s`, as `\"5ms\"`. Names of inputs "
+      "and\n"
+      "outputs are the diagram's, without regard to case. The page is printed from `runtime/config/run_keys.cpp`, by "
+      "which\n"
+      "the reader goes as well; `RunKeys.ThePageIsCurrent` in `test_runtime` holds it, and prints it anew.\n";
+  for (const RunTable& table : tables) {
+    page +=
+        fmt::format("\n## `{}`\n\n{}\n\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n",
+                    table.name, table.meaning);
+    for (const RunKey& key : table.keys) {
+      page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, kind_text(key), range_text(key),
+                          default_text(key), key.meaning);
+    }
+  }
+  return page;
+}
+
+}  // namespace hysteron::runtime

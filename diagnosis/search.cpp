@@ -84,6 +84,9 @@ constexpr std::size_t stride = 3;
 /// many.
 constexpr double more_than_chance = 10.0;
 
+/// Costs above this many of the floor's are a gap, however little one effect alone gains on it.
+constexpr double surely_a_gap = 2.0;
+
 /// What a fit gains in log likelihood with the noise left open, on as many samples as its residuals are worth.
 double nats_gained(double cost_before, const Fit& fit) {
   const double samples = static_cast<double>(fit.residuals.size()) / std::max(1.0, correlation_time(fit.residuals));
@@ -228,11 +231,17 @@ class Searcher {
     std::ranges::move(fits, std::back_inserter(found));
   }
 
+  /// Where the residual is little more than noise, an effect has to gain more than chance does. Of a large gap a single
+  /// one may close little, and leave residuals so slow that they count for few samples.
+  [[nodiscard]] bool is_worth_following(double cost_before, const Fit& best) const {
+    return cost_before > surely_a_gap * floor_cost_ || nats_gained(cost_before, best) > more_than_chance;
+  }
+
   /// To the end those fits that a few steps have brought to the front; one that closes a small part of what the best
   /// closes is ranked well enough.
   void finish_front(std::vector<Explanation>& fits, double cost_before) {
     std::ranges::stable_sort(fits, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
-    const bool decides = !fits.empty() && nats_gained(cost_before, fits.front().fit) > more_than_chance;
+    const bool decides = !fits.empty() && is_worth_following(cost_before, fits.front().fit);
     std::atomic<std::size_t> done{0};
     in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
       const bool in_front = decides && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
@@ -419,7 +428,7 @@ class Searcher {
     std::vector<Explanation> beam;
     std::set<std::vector<std::string>> taken;
     const double gap = result.calibrated.fit.cost - floor_cost_;
-    if (found.empty() || nats_gained(result.calibrated.fit.cost, found.front().fit) < more_than_chance) {
+    if (found.empty() || !is_worth_following(result.calibrated.fit.cost, found.front().fit)) {
       return beam;
     }
     for (const Explanation& one : found) {

@@ -138,6 +138,9 @@ inline constexpr int unusable_listen_address = 829;
 inline constexpr int malformed_allow_list = 830;
 inline constexpr int broken_trace = 840;
 inline constexpr int replay_differs = 841;
+inline constexpr int malformed_web_address = 842;
+inline constexpr int open_web_page = 843;
+inline constexpr int unfit_token_file = 844;
 }  // namespace error
 
 inline constexpr std::array error_titles{
@@ -265,6 +268,9 @@ inline constexpr std::array error_titles{
     ErrorTitle{error::malformed_allow_list, "Entry of an allow-list that is not understood"},
     ErrorTitle{error::broken_trace, "Trace that cannot be replayed"},
     ErrorTitle{error::replay_differs, "Replay that gives other bits"},
+    ErrorTitle{error::malformed_web_address, "Address of the live page that is not understood"},
+    ErrorTitle{error::open_web_page, "Live page open to a network without a token"},
+    ErrorTitle{error::unfit_token_file, "Token file that does not serve"},
 };
 
 }  // namespace hysteron

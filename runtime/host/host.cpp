@@ -230,6 +230,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
             {.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
   const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task) : nullptr;
   how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+  const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
 
   LoopEnd end = LoopEnd::stopped;
   {

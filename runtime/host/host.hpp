@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/modbus/register_map.hpp"
+#include "runtime/point.hpp"
 #include "runtime/task/step_program.hpp"
 
 namespace hysteron::runtime {
@@ -17,6 +19,8 @@ struct HostOptions {
   std::string how{};         ///< compiled, interpreted, generated: for the status line
   std::uint64_t cycles = 0;  ///< ends after so many; 0: when it is asked to
   bool virtual_time = false;
+  /// Makes what else serves the door beside the task, and adds to the status line where. Its life is that of the task.
+  std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)> beside{};
 };
 
 /// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew

@@ -13,6 +13,8 @@
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
+#include "tool/generate_host.hpp"
+#include "tool/host_sources.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -22,16 +24,21 @@ namespace fs = std::filesystem;
 constexpr std::string_view examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
+  hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
 Writes NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
+With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
+the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
-Exit codes: 0 done; 2 an error in the diagram, the parameters or the output folder.
+Exit codes: 0 done; 2 an error in the diagram, the parameters, the run file or the output folder.
 )";
 
 struct Options {
   DiagramOptions diagram;
   std::string target;
+  std::string config;
   std::string folder;
+  bool host = false;
   bool force = false;
 };
 
@@ -49,16 +56,32 @@ void refuse_foreign_file(const fs::path& path, const std::string& text) {
   }
 }
 
-int generate(const Options& options, Console& console) {
-  if (!equal_ignoring_case(options.target, "cpp")) {
+void check_usage(const Options& options) {
+  if (options.target.empty() && !options.host) {
+    throw InputError(error::bad_usage, {}, "It is not said what to generate.",
+                     "write --target cpp for the step, or --host for a program that runs it as a task.");
+  }
+  if (!options.target.empty() && !equal_ignoring_case(options.target, "cpp")) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no target {}.", options.target),
                      "the targets are: cpp.");
   }
+  if (options.host == options.config.empty()) {
+    throw InputError(error::bad_usage, {},
+                     options.host ? "A host needs its run file." : "A run file is for a host, and none is asked for.",
+                     "write --host and --config RUN.toml together.");
+  }
+}
+
+int generate(const Options& options, Console& console) {
+  check_usage(options);
   Diagnostics warnings;
   const Program program = load_diagram(options.diagram, warnings);
+  const bool float32 = options.diagram.float32;
   std::vector<OutputFile> files;
-  for (GeneratedFile& file : generate_cpp(program, {.float32 = options.diagram.float32})) {
+  for (GeneratedFile& file : options.host ? generate_host(program, {.run_file = options.config, .float32 = float32})
+                                          : generate_cpp(program, {.float32 = float32})) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = std::move(file.text)});
+    refuse_to_overwrite(files.back().path.string(), {options.diagram.file, options.diagram.parameters, options.config});
     if (!options.force) {
       refuse_foreign_file(files.back().path, files.back().contents);
     }
@@ -66,7 +89,13 @@ int generate(const Options& options, Console& console) {
   write_files_atomically(files);
   console.report(warnings);
   for (const OutputFile& file : files) {
-    console.print(file.path.string() + "\n");
+    if (!file.path.lexically_relative(options.folder).string().starts_with("hysteron/")) {
+      console.print(file.path.string() + "\n");
+    }
+  }
+  if (options.host) {
+    console.print(
+        fmt::format("{}: {} sources\n", (fs::path(options.folder) / "hysteron").string(), host_sources().size()));
   }
   return exit_ok;
 }
@@ -76,7 +105,9 @@ int generate(const Options& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20).")->required()->option_text("cpp");
+  app.add_option("--target", options->target, "The language: cpp (C++20).")->option_text("cpp");
+  app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
+  app.add_option("--config", options->config, "The run file of the host.")->option_text("RUN.toml");
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")
       ->required()
       ->option_text("DIR");

@@ -258,6 +258,9 @@ class Reader {
     std::size_t order = 0;
     table.read_choice("word_order", order);
     modbus.word_order = modbus::word_orders[order];
+    std::size_t placing = 0;
+    table.read_choice("map", placing);
+    modbus.placing = static_cast<modbus::Placing>(placing);
     table.read("lock_file", modbus.lock_file);
     read_heartbeat(table, modbus);
     config_.modbus = std::move(modbus);

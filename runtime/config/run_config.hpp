@@ -56,7 +56,9 @@ struct ModbusConfig {
   std::size_t connections = 32;
   bool read_only = false;
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
+  modbus::Placing placing = modbus::Placing::compact;
   std::string lock_file{};
+  std::string first_addresses{};  ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
   Place place{};
 };

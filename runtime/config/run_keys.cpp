@@ -32,6 +32,7 @@ constexpr std::array<Words, 9> type_words{"boolean", "int16",  "uint16", "int32"
                                           "int64",   "uint64", "real32", "real64"};
 constexpr std::array<Words, 3> parity_words{"even", "odd", "none"};
 constexpr std::array<Words, 4> order_words{"abcd", "cdab", "badc", "dcba"};
+constexpr std::array<Words, 2> map_words{"compact", "openplc"};
 constexpr std::array<Words, 2> mismatch_words{"refuse", "cold"};
 constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
 constexpr std::array<Words, 2> after_words{"resume", "reset"};
@@ -191,6 +192,13 @@ constexpr std::array modbus_keys{
            .otherwise = "\"abcd\"",
            .meaning = "how values of 32 and 64 bits lie in the registers",
            .words = order_words},
+    RunKey{.name = "map",
+           .kind = choice,
+           .otherwise = "\"compact\"",
+           .meaning =
+               "where points lie: without holes from address 0 on, or as in OpenPLC's `%QX`, `%IX`, `%IW`, `%QW`, "
+               "`%MW`, `%MD`, `%ML`",
+           .words = map_words},
     RunKey{"lock_file", text, "(none)", "keeps the addresses through edits of the diagram"},
     RunKey{.name = "heartbeat",
            .kind = choice,

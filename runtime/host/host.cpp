@@ -72,13 +72,13 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
 }
 
 modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
-  modbus::MapRequest request{.title = title, .order = config.word_order, .lock_file = config.lock_file};
-  if (!config.lock_file.empty() && std::filesystem::exists(config.lock_file)) {
-    request.lock_text = read_text_file(config.lock_file);
-  }
+  modbus::MapRequest request{
+      .title = title, .placing = config.placing, .order = config.word_order, .lock_file = config.lock_file};
+  const bool has_lock = !config.lock_file.empty() && std::filesystem::exists(config.lock_file);
+  request.lock_text = has_lock ? read_text_file(config.lock_file) : config.first_addresses;
   modbus::RegisterMap map = modbus::make_register_map(door.points(), request);
   if (!config.lock_file.empty()) {
-    if (const auto text = modbus::lock_text(map); text != request.lock_text) {
+    if (const auto text = modbus::lock_text(map); !has_lock || text != request.lock_text) {
       write_file_atomically(config.lock_file, text);
     }
   }

@@ -96,8 +96,8 @@ std::string described(const RunConfig& c) {
   }
   if (c.modbus) {
     put(c.modbus->listen, c.modbus->port, c.modbus->allow.size(), c.modbus->connections, c.modbus->read_only,
-        static_cast<int>(c.modbus->word_order), c.modbus->lock_file, static_cast<int>(c.modbus->heartbeat.mode),
-        c.modbus->heartbeat.time.count(), c.modbus->heartbeat.own_writes);
+        static_cast<int>(c.modbus->word_order), static_cast<int>(c.modbus->placing), c.modbus->lock_file,
+        static_cast<int>(c.modbus->heartbeat.mode), c.modbus->heartbeat.time.count(), c.modbus->heartbeat.own_writes);
   }
   return all;
 }

@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/listen.hpp"
@@ -132,6 +133,7 @@ class HostProcess {
     }
     return std::make_unique<modbus::Device>(options);
   }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
   void send(int signal) const { ::kill(process_, signal); }
   /// Ends it by SIGTERM; its exit code, and what it said at its end.
   std::pair<int, std::string> end() {
@@ -232,6 +234,25 @@ TEST(Host, WhereTheStepHangsTheGuardHoldsTheDeviceAndTheTaskWritesNoMore) {
     EXPECT_EQ(stage.taken(), -1.0);
     return stage.door.writes() > writes + 50;
   }));
+}
+
+TEST(Host, ServesOpenPlcsAddresses) {
+  Stage stage;
+  HostProcess host(run_file(stage.port, "map = \"openplc\"\n"));
+  stage.start();
+  // X and Y are LREAL, so %ML0 and %ML1; the first words that clients read and write are task.state and task.commit.
+  const auto at = [](std::string_view address) { return modbus::parse_address(address)->at; };
+  modbus::Device screen({.link = modbus::TcpLink{.port = host.port()},
+                         .values = {{.at = at("%ML0"), .type = PointType::real64, .written = true},
+                                    {.at = at("%ML1"), .type = PointType::real64},
+                                    {.at = at("%IW0"), .type = PointType::uint16},
+                                    {.at = at("%QW0"), .type = PointType::uint16}},
+                         .response = milliseconds(2000)});
+  screen.write(0, 0.75);
+  EXPECT_TRUE(soon([&] { return screen.read(1).value == 1.5 && stage.taken() == 1.5; }));
+  EXPECT_TRUE(soon([&] { return screen.read(2).value == 1.0; })) << "task.state is running";
+  EXPECT_TRUE(soon([&] { return screen.read(3).quality == modbus::Quality::good; }));
+  EXPECT_EQ(host.end().first, 0);
 }
 
 TEST(Host, TellsTheServiceManagerThatItIsReadyLivesAndStops) {

@@ -1,0 +1,56 @@
+# Writes the sources of a generated host into one translation unit, so that the tool carries them: run at build time as
+#   cmake -DROOT=… -DRUNTIME=LIST -DSUPPORT=LIST -DOUTPUT=FILE.cpp -DDEPFILE=FILE.d -P embed_sources.cmake
+#
+# RUNTIME and SUPPORT name files with the sources of these targets, a line each. The rooms of the runtime that a host
+# needs go in whole, with every header that they include; of support, what they include and the source beside it.
+cmake_policy(VERSION 3.25)
+set(rooms "^runtime/(config|host|modbus|task)/")
+
+# The sources of a target, relative to the root.
+function(read_list file folder result)
+  file(STRINGS ${file} lines)
+  foreach(line ${lines})
+    cmake_path(ABSOLUTE_PATH line BASE_DIRECTORY ${ROOT}/${folder} NORMALIZE)
+    cmake_path(RELATIVE_PATH line BASE_DIRECTORY ${ROOT})
+    list(APPEND found ${line})
+  endforeach()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+read_list(${RUNTIME} runtime waiting)
+read_list(${SUPPORT} support support_sources)
+list(FILTER waiting INCLUDE REGEX ${rooms})
+# What the generated main includes besides.
+list(APPEND waiting LICENSE runtime/host/host_program.hpp runtime/task/linked_program.hpp)
+
+set(files "")
+while(waiting)
+  list(POP_FRONT waiting file)
+  if(file IN_LIST files)
+    continue()
+  endif()
+  list(APPEND files ${file})
+  file(STRINGS ${ROOT}/${file} includes REGEX "^#include \"")
+  foreach(include ${includes})
+    string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" include "${include}")
+    list(APPEND waiting ${include})
+    string(REGEX REPLACE "\\.hpp$" ".cpp" source ${include})
+    if(source IN_LIST support_sources)
+      list(APPEND waiting ${source})
+    endif()
+  endforeach()
+endwhile()
+list(SORT files)
+
+set(text "// The sources of a generated host, written by embed_sources.cmake.\n#include \"tool/host_sources.hpp\"\n\n")
+string(APPEND text "#include <array>\n\nnamespace hysteron::tool {\nnamespace {\n\nconstexpr std::array files{\n")
+set(depends "")
+foreach(file ${files})
+  file(READ ${ROOT}/${file} source)
+  string(APPEND text "    EmbeddedSource{\"${file}\", R\"embedded(${source})embedded\"},\n")
+  string(APPEND depends " \\\n  ${ROOT}/${file}")
+endforeach()
+string(APPEND text "};\n\n}  // namespace\n\nstd::span<const EmbeddedSource> host_sources() {\n  return files;\n}\n\n")
+string(APPEND text "}  // namespace hysteron::tool\n")
+file(WRITE ${OUTPUT} "${text}")
+file(WRITE ${DEPFILE} "${OUTPUT}:${depends}\n")

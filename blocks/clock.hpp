@@ -2,6 +2,7 @@
 #pragma once
 
 #include "blocks/clock_time.hpp"
+#include "blocks/effect_term.hpp"
 #include "blocks/past_signal.hpp"
 
 namespace hysteron {
@@ -9,12 +10,14 @@ namespace hysteron {
 struct Clock : PastSignal {
   static constexpr About about{
       .name = "HY_CLOCK",
-      .title = "Clock that lags behind",
+      .title = "Clock that runs slow or fast",
       .group = Group::Dynamics,
-      .equation = "XOUT(t) = XIN(t − SKEW·t − LOST·[t > T_LOST]), straight between samples",
+      .equation = "XOUT(t) = XIN(t − SKEW·t − LOST·[t > T_LOST]), straight between samples and ahead of the last one",
       .meaning =
           "What a record shows whose clock runs slower than the other signals' by SKEW, and which missed LOST seconds "
-          "of samples at T_LOST: a delay that grows, and one that steps. t is 0 in the first step. The delay can be "
+          "of samples at T_LOST: a delay that grows, and one that steps. t is 0 in the first step. A SKEW below 0 is a "
+          "clock that runs fast: what is not there yet goes on at the rate of the last sample, which holds for a few "
+          "samples of a smooth signal. The delay can be "
           "up to 1024 samples; where it would be longer it is held there, with ERROR. The step of the delay takes one "
           "sample, so that the result has a derivative by T_LOST.",
       .delay = "SKEW·t, and LOST more after T_LOST; the gain between samples as in HY_DEAD_TIME.",
@@ -28,7 +31,7 @@ struct Clock : PastSignal {
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{
-          HY_FIELD(SKEW).in("1").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost per second"),
+          HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).means("seconds lost per second, or won"),
           HY_FIELD(LOST).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost at once"),
           HY_FIELD(T_LOST).in("s").at_least(0.0).otherwise(0.0).means("time at which they are lost")};
     }
@@ -70,7 +73,10 @@ struct Clock : PastSignal {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     const S time = to_real<S>(state.COUNT) * ts;
     const S behind = params.SKEW * time + params.LOST * passed_part(time, params.T_LOST, ts);
-    return ago<S>(state, view(state, in), behind / ts);
+    Out<S> out = ago<S>(state, view(state, in), max(behind / ts, S(0.0)));
+    const S ahead = max(S(0.0) - behind / ts, S(0.0));
+    out.XOUT = with_term<S>(out.XOUT, ahead * (in.XIN - last(state, view(state, in))));
+    return out;
   }
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,

@@ -12,14 +12,18 @@ struct Creep {
       .name = "HY_CREEP",
       .title = "Logarithmic creep",
       .group = Group::Dynamics,
-      .equation = "XOUT = XIN + GAIN·Σ w_i·x_i, τ_i·x_i' + x_i = XIN, τ_i = T_ONSET·10^(i/2), i = -1 … 11",
+      .equation =
+          "XOUT = XIN + GAIN·Σ w_i·x_i, τ_i·x_i' + x_i = XIN, τ_i = T_ONSET·10^(i/2), i = -1 … 11; "
+          "with SINCE_START the sum less what it is in the first step",
       .meaning =
           "Creep of a piezo actuator or of a material: after a step of s the output is s·(1 + GAIN·log10(1 + "
           "t/T_ONSET)), and so for every past input, linearly. It is a sum of 13 first-order lags, two a decade, exact "
           "for an input that runs straight between its samples. The sum is the logarithm to 0.004 of a decade for "
           "times up to 10^5·T_ONSET, and ends at 5.77 decades. SETTLED starts as HY_LAG does: the first input has "
           "stood "
-          "for ever and has crept all it can.",
+          "for ever and has crept all it can. A logarithm has no end, so that a gain measured on a machine at rest "
+          "holds "
+          "what has crept by then: SINCE_START counts from there.",
       .source =
           "log(1 + t/T) as an integral of exponentials over ln τ with the weight exp(−T/τ), by the trapezoidal rule; "
           "H. Jung, J. Y. Shim, D. Gweon, Rev. Sci. Instrum. 71 (2000) 3436, for the law",
@@ -42,12 +46,18 @@ struct Creep {
     S GAIN;
     S T_ONSET;
     Bool<S> SETTLED;
+    Bool<S> SINCE_START;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).means("share of a step, per decade"),
-                        HY_FIELD(T_ONSET).in("s").above(0.0).otherwise(0.1).means("time from which it creeps"),
-                        HY_FIELD(SETTLED).otherwise(1.0).means(
-                            "starts as if the first input had stood for ever; FALSE: as if 0 had")};
+      return std::tuple{
+          HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).means("share of a step, per decade"),
+          HY_FIELD(T_ONSET).in("s").above(0.0).otherwise(0.1).means("time from which it creeps"),
+          HY_FIELD(SETTLED).otherwise(1.0).means("starts as if the first input had stood for ever; FALSE: as if 0 had"),
+          HY_FIELD(SINCE_START)
+              .otherwise(0.0)
+              .either_way()
+              .means("TRUE: what has crept before the first step is in XIN already, and XOUT starts as "
+                     "XIN")};
     }
   };
   template <class S>
@@ -55,11 +65,13 @@ struct Creep {
     Array<S, lags> RATES;
     S X1;
     Bool<S> STARTED;
+    S FIRST;
     using Self = State;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(RATES).in("'x/s").otherwise(0.0).means("rates of the lags one sample ago"),
                         HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
+                        HY_FIELD(FIRST).in("'x").otherwise(0.0).means("the sum in the first step")};
     }
   };
   template <class S>
@@ -67,14 +79,27 @@ struct Creep {
   template <class S>
   using Out = Xout<S, "'x", "signal that creeps">;
 
-  /// The rate of lag `i` at the present sample.
+  /// The rates of the lags at the present sample.
   template <class S>
-  static S rate(const Params<S>& params, const State<S>& state, const In<S>& in, std::size_t i, const S& ts) {
-    return started_rate<S>({.start = !state.STARTED,
-                            .settled = params.SETTLED,
-                            .rate = at(state.RATES, Int<S>(static_cast<std::int32_t>(i))),
-                            .x = state.X1},
-                           in.XIN, params.T_ONSET * S(times[i]), ts);
+  static std::array<S, lags> rates(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    std::array<S, lags> result{};
+    for (std::size_t i = 0; i < lags; ++i) {
+      result[i] = started_rate<S>({.start = !state.STARTED,
+                                   .settled = params.SETTLED,
+                                   .rate = at(state.RATES, Int<S>(static_cast<std::int32_t>(i))),
+                                   .x = state.X1},
+                                  in.XIN, params.T_ONSET * S(times[i]), ts);
+    }
+    return result;
+  }
+  /// Σ w_i·x_i
+  template <class S>
+  static S sum(const Params<S>& params, const In<S>& in, const std::array<S, lags>& rates) {
+    S crept = S(0.0);
+    for (std::size_t i = 0; i < lags; ++i) {
+      crept = crept + S(weights[i]) * (in.XIN - params.T_ONSET * S(times[i]) * rates[i]);
+    }
+    return crept;
   }
 
   template <class S>
@@ -83,25 +108,20 @@ struct Creep {
     fill(state.RATES, S(0.0));
     state.X1 = S(0.0);
     state.STARTED = Bool<S>(false);
+    state.FIRST = S(0.0);
     return state;
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    S crept = S(0.0);
-    for (std::size_t i = 0; i < lags; ++i) {
-      const S lagged = in.XIN - params.T_ONSET * S(times[i]) * rate(params, state, in, i, ts);
-      crept = crept + S(weights[i]) * lagged;
-    }
+    const S crept = since_start(params.SINCE_START, state, sum<S>(params, in, rates(params, state, in, ts)));
     return {.XOUT = with_term<S>(in.XIN, params.GAIN * crept)};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    std::array<S, lags> rates{};
+    const std::array<S, lags> now = rates(params, state, in, ts);
+    state.FIRST = select(state.STARTED, state.FIRST, sum<S>(params, in, now));
     for (std::size_t i = 0; i < lags; ++i) {
-      rates[i] = rate(params, state, in, i, ts);
-    }
-    for (std::size_t i = 0; i < lags; ++i) {
-      store(state.RATES, Int<S>(static_cast<std::int32_t>(i)), rates[i]);
+      store(state.RATES, Int<S>(static_cast<std::int32_t>(i)), now[i]);
     }
     state.X1 = in.XIN;
     state.STARTED = Bool<S>(true);

@@ -39,6 +39,7 @@ struct Field {
   Type type = Type::Real;
   bool required = false;       ///< an input that has no default: it must be connected
   bool above_minimum = false;  ///< the minimum itself is out of range
+  bool open = false;           ///< a choice of the machine's past, which a record does not show
 
   [[nodiscard]] constexpr bool has_neutral() const { return neutral == neutral; }
 };
@@ -93,6 +94,12 @@ struct BoundField : Field {
   [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
     auto copy = *this;
     copy.Field::effect = identifier;
+    return copy;
+  }
+  /// A choice of what was before a record began, which the record does not tell: a diagnosis tries it both ways.
+  [[nodiscard]] constexpr BoundField either_way() const {
+    auto copy = *this;
+    copy.open = true;
     return copy;
   }
   /// Up to where the block is what its effect is called: a resonance rings, above critical damping it lags.

@@ -69,4 +69,11 @@ S started_rate(const RateBefore<S>& before, const S& x, const S& time_constant, 
   return select(before.start && !before.settled, from_zero, going_on);
 }
 
+/// What follows a signal slowly, or with `wanted` only what has followed since the first step: the state's members
+/// STARTED and FIRST tell what it was there.
+template <class S, class State>
+S since_start(const Bool<S>& wanted, const State& state, const S& followed) {
+  return followed - select(wanted, select(state.STARTED, state.FIRST, followed), S(0.0));
+}
+
 }  // namespace hysteron

@@ -54,6 +54,11 @@ struct PastSignal {
             .ERROR = held_back,
             .ERRORID = select(held_back, Word<S>(fault::dead_time_too_long), Word<S>(std::uint16_t{0}))};
   }
+  /// The sample before the present one, which itself stands in for it in the first step.
+  template <class S, class State>
+  static S last(const State& state, const View<S>& view) {
+    return past<S>(state, view, Int<S>(1));
+  }
   template <class S, class State>
   static void keep(State& state, const View<S>& view) {
     constexpr std::int32_t size{capacity};

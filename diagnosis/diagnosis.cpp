@@ -27,13 +27,14 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// A floor is an estimate: that of slow noise is off by a tenth. Less above it is no claim that something is unknown.
+/// A floor is an estimate: that of slow noise is off by a tenth, even from repeats. Less above it is no claim that
+/// something is unknown.
 constexpr double above_floor = 1.2;
 /// A calibrated residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
-/// So many floors may be noise after all, where the floor sees its fast part alone.
+/// So many floors may be noise after all, where the floor sees its fast part alone, or what a dwell's trend leaves.
 constexpr double hidden_noise = 1.5;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
@@ -207,7 +208,7 @@ class Run {
       } else {
         result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
       }
-    } else if (gap_calibrated && size > above_floor && (predictable || size > far_above())) {
+    } else if (gap_calibrated && size > least_above() && (predictable || size > far_above())) {
       result_.verdict = Verdict::Unknown;
     } else if (gap_before && calibration_matters(found.calibrated)) {
       result_.verdict = Verdict::Calibration;
@@ -216,6 +217,9 @@ class Run {
     }
   }
 
+  [[nodiscard]] double least_above() const {
+    return result_.gap.floor.evidence == "repeats" ? above_floor : hidden_noise;
+  }
   [[nodiscard]] double far_above() const {
     return result_.gap.floor.evidence == "differences" ? far_above_fast_floor : far_above_floor;
   }

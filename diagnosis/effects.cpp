@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string_view>
 
@@ -85,6 +86,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       }
     }
     kind.parameters = searched(block.params);
+    std::ranges::copy_if(block.params, std::back_inserter(kind.choices), &Field::open);
     // A level at which something starts or stands, which the search leaves alone: X0, say.
     std::erase_if(kind.parameters, [](const EffectParameter& one) {
       return !one.strength && one.role == Role::Level && one.field.preset == 0.0;

@@ -51,6 +51,7 @@ struct EffectKind {
   std::string output = "XOUT";
   std::string enriches{};                     ///< Enrich: the block that it can stand for; Free: the block itself
   std::vector<EffectParameter> parameters{};  ///< those that are searched
+  std::vector<Field> choices{};               ///< of what was before the record: tried both ways
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
 };

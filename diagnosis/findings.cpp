@@ -296,14 +296,14 @@ std::string improved_text(const Explanation& explanation, const std::string& pat
 
 parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
                                         const Explanation& explanation) {
-  const auto set = [&](const std::string& path, double value) {
+  const auto set = [&](const std::string& path, parameters::Value value) {
     for (parameters::ParameterValue& one : file.values) {
       if (language::same_name(one.path, path)) {
-        one.value = value;
+        one.value = std::move(value);
         return;
       }
     }
-    file.values.push_back({.path = path, .value = value});
+    file.values.push_back({.path = path, .value = std::move(value)});
   };
   const auto fitted = [&](const std::string& path) {
     return std::ranges::any_of(file.fits,
@@ -327,7 +327,11 @@ parameters::ParameterFile improved_file(const Task& task, parameters::ParameterF
   }
   for (const Applied& applied : explanation.variant.effects) {
     for (const auto& [path, value] : applied.settings) {
-      set(path, value);
+      const std::int64_t found = find_parameter(explanation.variant.program->graph, path);
+      const bool choice =
+          found >= 0 &&
+          explanation.variant.program->graph.parameters[static_cast<std::size_t>(found)].field.type == Type::Bool;
+      set(path, choice ? parameters::Value(value != 0.0) : parameters::Value(value));
     }
   }
   return file;

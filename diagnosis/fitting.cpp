@@ -107,7 +107,9 @@ Explanation begun_from(const Task& task, const Screened& one, const Explanation&
 void finish(const Task& task, Explanation& one, bool thoroughly) {
   Model model(task, *one.variant.program, one.variant.further);
   const Applied& own = one.variant.effects.back();
-  const Index count = std::ssize(own.parameters) - std::ssize(own.settings);
+  const Index count = std::ranges::count_if(own.paths, [&](const std::string& path) {
+    return std::ranges::none_of(own.settings, [&](const auto& setting) { return setting.first == path; });
+  });
   const Index first = model.first_further() + std::ssize(one.variant.further) - count;
   if (own.has(Role::Gap)) {
     scan(model, one.fit, first, count);

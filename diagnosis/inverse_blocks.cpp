@@ -208,19 +208,20 @@ std::string integral_forward(InverseText& text, const BlockStage& stage) {
   return text.rate(stage.name, stage.wanted, 1.0);
 }
 
-/// y = x + G·z, T·z' + z = x: z is y behind a lag of T/(1 + G), over 1 + G.
+/// y = x + G·z, T·z' + z = x: z is y behind a lag of T/(1 + G), over 1 + G, so that x is y with a relaxation too.
 std::string relaxation(InverseText& text, const BlockStage& stage) {
   const double g = stage.value("GAIN");
   if (g <= -1.0) {
     throw NoInverse(fmt::format("{} follows a step by nothing in the end", stage.node.path));
   }
   note_smooth(text, stage);
-  const std::string lagged =
-      text.instance(stage.name, "HY_LAG",
-                    fmt::format("T1 := {}, SETTLED := {}", real_literal(stage.value("T1") / (1.0 + g)),
-                                literal_text(Type::Bool, stage.value("SETTLED"))));
-  text.call(lagged, "XIN := " + stage.wanted);
-  return fmt::format("{} - {} * {}.XOUT", stage.wanted, number(g / (1.0 + g)), lagged);
+  const std::string back = text.instance(
+      stage.name, "HY_RELAXATION",
+      fmt::format("GAIN := {}, T1 := {}, SETTLED := {}, SINCE_START := {}", real_literal(-g / (1.0 + g)),
+                  real_literal(stage.value("T1") / (1.0 + g)), literal_text(Type::Bool, stage.value("SETTLED")),
+                  literal_text(Type::Bool, stage.value("SINCE_START"))));
+  text.call(back, "XIN := " + stage.wanted);
+  return back + ".XOUT";
 }
 
 /// What of a step HY_CREEP with GAIN = 1 has crept by the sample of the step itself: a ramp over one sample.
@@ -247,7 +248,8 @@ std::string creep(InverseText& text, const BlockStage& stage) {
   const std::string two = text.instance(stage.name + "_BEFORE", "HY_DELAY");
   const std::string from_second = text.started(1);
   const std::string from_third = text.started(2);
-  const double settled = stage.value("SETTLED") != 0.0 ? 1.0 / (1.0 + g * all) : 1.0;
+  const bool crept_before = stage.value("SETTLED") != 0.0 && stage.value("SINCE_START") == 0.0;
+  const double settled = crept_before ? 1.0 / (1.0 + g * all) : 1.0;
   const std::string x = text.signal(
       stage.name + "_X", fmt::format("SEL({0}, {1} * {2}, {2} - {3}.XOUT - SEL({4}, 0.0, {3}.XOUT - {5}.XOUT))",
                                      from_second, number(settled), stage.wanted, one, from_third, two));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -126,11 +128,12 @@ class Searcher {
                      .other = about_nominal_ ? result.calibrated.fit.x : nominal.fit.x};
     std::vector<Explanation> beam{about_nominal_ ? nominal : result.calibrated};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
+      can_stop_ = round > 0;
       begin_ = static_cast<double>(round) / options_.most_effects;
       width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
       std::vector<Explanation> found;
       for (const Explanation& one : beam) {
-        if (round > 0 && out_of_time()) {
+        if (must_stop()) {
           break;
         }
         expand(one, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
@@ -154,7 +157,8 @@ class Searcher {
       options_.progress(begin_ + width_ * fraction, text);
     }
   }
-  [[nodiscard]] bool out_of_time() const { return options_.out_of_time && options_.out_of_time(); }
+  /// The first round is done whole: each effect gets its chance. Later ones end where they are when time is up.
+  [[nodiscard]] bool must_stop() const { return can_stop_ && options_.out_of_time && options_.out_of_time(); }
 
   /// Lines of the residual's spectrum, and periods over a signal, for what oscillates.
   [[nodiscard]] Hints hints_of(const VectorXd& residuals) const {
@@ -178,9 +182,8 @@ class Searcher {
     extents.measure(candidates, options_.threads);
     for (std::size_t i = 0, count = candidates.size(); i < count; ++i) {
       const Extents::Signals* const signals = extents.find(candidates[i]);
-      if (signals != nullptr && has_other_centre(candidates[i].own(), signals->input)) {
-        candidates.push_back(candidates[i]);
-        candidates.back().about_zero = true;
+      if (signals != nullptr) {
+        std::ranges::move(other_guesses(candidates[i], signals->input), std::back_inserter(candidates));
       }
     }
     result.tried += candidates.size();
@@ -195,7 +198,7 @@ class Searcher {
     std::atomic<std::size_t> done{0};
     in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
       const Extents::Signals* const signals = extents.find(candidates[i]);
-      if (signals == nullptr || !(signals->input.range() >= 0.0)) {
+      if (signals == nullptr || !(signals->input.range() >= 0.0) || must_stop()) {
         return;
       }
       std::vector<double> periods;
@@ -222,6 +225,10 @@ class Searcher {
     std::vector<Explanation> fits(list.size());
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
+      if (must_stop()) {
+        fits[i].fit.cost = std::numeric_limits<double>::infinity();
+        return;
+      }
       fits[i] = begun_from(task_, list[i], from, known_starts_);
       say(0.6 + 0.3 * static_cast<double>(++done) / static_cast<double>(list.size()),
           list[i].candidate.own().effect + " at " + list[i].candidate.own().edge);
@@ -244,7 +251,8 @@ class Searcher {
     const bool decides = !fits.empty() && is_worth_following(cost_before, fits.front().fit);
     std::atomic<std::size_t> done{0};
     in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
-      const bool in_front = decides && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
+      const bool in_front =
+          decides && !must_stop() && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
       if (i < finished_always || in_front) {
         finish(task_, fits[i], i < finished_always);
       }
@@ -259,7 +267,7 @@ class Searcher {
     std::atomic<std::size_t> done{0};
     in_parallel(order.size(), options_.threads, [&](std::size_t i) {
       const std::size_t at = order[i];
-      if (!list[at].starts.empty()) {
+      if (!list[at].starts.empty() && !must_stop()) {
         list[at] = screened_about(list[at].starts, stride, task_, candidates[at], grids[at], from.fit.x, background, 3);
       }
       say(0.4 + 0.2 * static_cast<double>(++done) / static_cast<double>(order.size()), "finer grids");
@@ -361,12 +369,10 @@ class Searcher {
         return result;
       }
       Applied& own = match->variant.effects.back();
+      for (const auto& [path, value] : wanted.settings) {
+        own.settings.emplace_back(own.instance + path.substr(wanted.instance.size()), value);
+      }
       for (std::size_t j = 0; j < own.paths.size(); ++j) {
-        for (const auto& [path, value] : wanted.settings) {
-          if (path == wanted.paths[j]) {
-            own.settings.emplace_back(own.paths[j], value);
-          }
-        }
         for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
           const Unknown& unknown = whole.variant.further[k];
           if (unknown.path == wanted.paths[j]) {
@@ -408,7 +414,9 @@ class Searcher {
           one.candidate.variant.effects.back().twins = std::move(twin->candidate.variant.effects.back().twins);
           std::swap(*twin, one);
         }
-        twin->candidate.variant.effects.back().twins.push_back(one.candidate.own().edge);
+        if (one.candidate.own().edge != twin->candidate.own().edge) {
+          twin->candidate.variant.effects.back().twins.push_back(one.candidate.own().edge);
+        }
         continue;
       }
       int& times = taken[one.candidate.own().effect];
@@ -448,6 +456,7 @@ class Searcher {
   const std::string& top_;
   double floor_cost_;
   double nominal_cost_ = 0.0;
+  bool can_stop_ = false;
   KnownStarts known_starts_{};
   bool about_nominal_ = true;
   const SearchOptions& options_;

@@ -28,6 +28,7 @@ Extent extent_of(const RecordSignals& values, double sample_time) {
   Extent extent{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
   std::vector<double> rates;
   for (const Signal& record : values) {
+    extent.first = record.empty() ? extent.first : std::max(extent.first, std::abs(record.front()));
     for (std::size_t k = 0; k < record.size(); ++k) {
       extent.low = std::min(extent.low, record[k]);
       extent.high = std::max(extent.high, record[k]);

@@ -17,6 +17,7 @@ using RecordSignals = std::vector<Signal>;
 struct Extent {
   double low = 0.0;
   double high = 0.0;
+  double first = 0.0;           ///< the largest |value| at a record's start
   std::vector<double> rates{};  ///< its |rate| a second in steps of 1 % of the samples, 101 of them
 
   [[nodiscard]] double range() const { return high - low; }

@@ -158,8 +158,23 @@ bool in_range(const Field& field, double value) {
 
 }  // namespace
 
-bool has_other_centre(const Applied& effect, const Extent& input) {
-  return std::ranges::any_of(effect.parameters, is_centre) && std::abs(input.low + input.high) > 0.1 * input.range();
+std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input) {
+  constexpr double off_centre = 0.1;
+  constexpr double at_rest = 0.01;
+  std::vector<Candidate> others;
+  if (std::ranges::any_of(candidate.own().parameters, is_centre) &&
+      std::abs(input.low + input.high) > off_centre * input.range()) {
+    others.push_back(candidate);
+    others.back().about_zero = true;
+  }
+  for (const Field& choice : candidate.kind.choices) {
+    if (input.first > at_rest * input.range()) {
+      others.push_back(candidate);
+      Applied& own = others.back().variant.effects.back();
+      own.settings.emplace_back(own.instance + "." + std::string(choice.name), choice.preset == 0.0 ? 1.0 : 0.0);
+    }
+  }
+  return others;
 }
 
 Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary, const Hints& hints,

@@ -34,8 +34,9 @@ struct Grids {
 [[nodiscard]] Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* auxiliary,
                              const Hints& hints, const std::vector<double>& periods);
 
-/// Whether an effect has a centre for which 0 is another guess than the middle of the signal.
-[[nodiscard]] bool has_other_centre(const Applied& effect, const Extent& input);
+/// The same change with what the record does not tell taken otherwise: 0 for a centre where the middle of the signal is
+/// elsewhere; what was before the record, where its start is not 0.
+[[nodiscard]] std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input);
 
 /// With one point in so many of each long grid: enough to see which candidates deserve the whole of it.
 /// Lines and periods stay: each is a guess of its own.

@@ -98,6 +98,20 @@ TEST(Clock, ShowsTheSignalAsItWas) {
   }
 }
 
+TEST(Clock, ThatRunsFastGoesOnAtTheRateOfTheLastSample) {
+  const double ts = 0.01;
+  const double skew = -0.004;
+  Stepper<Clock> block(ts, {.SKEW = skew, .LOST = 0.0, .T_LOST = 0.0});
+  const auto signal = [](double t) { return std::sin(1.3 * t); };
+  EXPECT_EQ(block({.XIN = signal(0.0)}).XOUT, signal(0.0));
+  for (int k = 1; k < 1500; ++k) {
+    const double t = k * ts;
+    const double ahead = -skew * t;
+    // What a straight line misses: half the curvature, over what is ahead and the sample before.
+    EXPECT_NEAR(block({.XIN = signal(t)}).XOUT, signal(t + ahead), 0.5 * 1.3 * 1.3 * ahead * (ahead + ts) + 1e-12);
+  }
+}
+
 TEST(Clock, LosesSamplesAsARecordWithAHoleDoes) {
   // A record of which 17 samples were dropped, and shown as if it had none missing.
   Stepper<Clock> block(0.01, {.SKEW = 0.0, .LOST = 0.17, .T_LOST = 1.0});

@@ -21,7 +21,7 @@ TEST(Creep, IsTheLogarithmOverFiveDecades) {
   // From rest at 0 a step at t = 0. Wide samples see late times, narrow ones early times.
   const double onset = 0.1;
   for (const double ts : {1e-4, 1e-2, 1.0}) {
-    Stepper<Creep> block(ts, {.GAIN = 0.02, .T_ONSET = onset, .SETTLED = false});
+    Stepper<Creep> block(ts, {.GAIN = 0.02, .T_ONSET = onset, .SETTLED = false, .SINCE_START = false});
     for (int k = 0; k < 10'000; ++k) {
       const double t = k * ts;
       const double decades = (block({.XIN = 3.0}).XOUT / 3.0 - 1.0) / 0.02;
@@ -34,7 +34,7 @@ TEST(Creep, IsLinearInThePastInput) {
   // A step up at 0 and down at 2 s: the sum of both steps' logarithms; the later step begins over one sample.
   const double ts = 1e-3;
   const double onset = 0.2;
-  Stepper<Creep> block(ts, {.GAIN = 0.1, .T_ONSET = onset, .SETTLED = false});
+  Stepper<Creep> block(ts, {.GAIN = 0.1, .T_ONSET = onset, .SETTLED = false, .SINCE_START = false});
   for (int k = 0; k < 20'000; ++k) {
     const double t = k * ts;
     const double x = k < 2000 ? 1.0 : 0.0;
@@ -47,7 +47,7 @@ TEST(Creep, IsLinearInThePastInput) {
 }
 
 TEST(Creep, StartsSettled) {
-  Stepper<Creep> block(0.01, {.GAIN = 0.01, .T_ONSET = 0.1, .SETTLED = true});
+  Stepper<Creep> block(0.01, {.GAIN = 0.01, .T_ONSET = 0.1, .SETTLED = true, .SINCE_START = false});
   const double first = block({.XIN = 5.0}).XOUT;
   EXPECT_NEAR(first, 5.0 * (1.0 + 0.01 * 5.7714), 1e-5) << "all of it has crept";
   for (int k = 0; k < 100; ++k) {
@@ -55,9 +55,31 @@ TEST(Creep, StartsSettled) {
   }
 }
 
+TEST(Creep, SinceTheStartIsTheLogarithmOfTheStepsAfterIt) {
+  // At rest at 5 from before the record; a step of 2 at 1 s creeps by itself, over one sample.
+  const double ts = 1e-2;
+  Stepper<Creep> block(ts, {.GAIN = 0.1, .T_ONSET = 0.2, .SETTLED = true, .SINCE_START = true});
+  for (int k = 0; k < 2000; ++k) {
+    const double t = k * ts;
+    const double expected = k < 100 ? 5.0 : 7.0 + 0.2 * std::log10(1.0 + (t - 1.0 + 0.5 * ts) / 0.2);
+    EXPECT_NEAR(block({.XIN = k < 100 ? 5.0 : 7.0}).XOUT, expected, k < 100 ? 1e-14 : 0.2 * 0.001) << "t " << t;
+  }
+}
+
+TEST(Relaxation, SinceTheStartLeavesOutWhatHasFollowedBefore) {
+  const double ts = 0.01;
+  Stepper<Relaxation> whole(ts, {.GAIN = 0.3, .T1 = 0.09, .SETTLED = true, .SINCE_START = false});
+  Stepper<Relaxation> since(ts, {.GAIN = 0.3, .T1 = 0.09, .SETTLED = true, .SINCE_START = true});
+  RandomIo random(5, ts);
+  for (int k = 0; k < 300; ++k) {
+    const double x = k == 0 ? 4.0 : 10.0 * random.unit();
+    EXPECT_NEAR(since({.XIN = x}).XOUT, whole({.XIN = x}).XOUT - 0.3 * 4.0, 1e-14 * 20.0);
+  }
+}
+
 TEST(Relaxation, AStepApproachesItsEndExponentially) {
   const double ts = 0.01;
-  Stepper<Relaxation> block(ts, {.GAIN = 0.3, .T1 = 0.37, .SETTLED = false});
+  Stepper<Relaxation> block(ts, {.GAIN = 0.3, .T1 = 0.37, .SETTLED = false, .SINCE_START = false});
   for (int k = 0; k < 300; ++k) {
     EXPECT_NEAR(block({.XIN = 2.0}).XOUT, 2.0 * (1.0 + 0.3 * (1.0 - std::exp(-k * ts / 0.37))), 1e-13);
   }
@@ -65,7 +87,7 @@ TEST(Relaxation, AStepApproachesItsEndExponentially) {
 
 TEST(Relaxation, IsTheInputAndItsLag) {
   const double ts = 0.01;
-  Stepper<Relaxation> block(ts, {.GAIN = -0.2, .T1 = 0.09, .SETTLED = true});
+  Stepper<Relaxation> block(ts, {.GAIN = -0.2, .T1 = 0.09, .SETTLED = true, .SINCE_START = false});
   Stepper<Lag> lag(ts, {.T1 = 0.09, .SETTLED = true});
   RandomIo random(4, ts);
   for (int k = 0; k < 300; ++k) {

@@ -35,15 +35,15 @@ std::string with_block(const std::string& block) {
 }
 
 /// Begins at rest at 0; loops of two sizes, none of whose samples lies on a reversal.
-std::vector<double> smooth_reference(double size, std::size_t steps = 6000) {
+std::vector<double> smooth_reference(double size, double start = 0.0, std::size_t steps = 6000) {
   std::vector<double> reference(steps);
   for (std::size_t k = 0; k < steps; ++k) {
     const double t = static_cast<double>(k) * sample_time;
     const double fade = std::min(1.0, t);
     const double in = fade * fade * fade * (10.0 + fade * (-15.0 + 6.0 * fade));
-    reference[k] =
-        size * in *
-        (0.6 * std::sin(2.0 * std::numbers::pi * 1.003 * t) + 0.4 * std::sin(2.0 * std::numbers::pi * 0.371 * t));
+    reference[k] = start + size * in *
+                               (0.6 * std::sin(2.0 * std::numbers::pi * 1.003 * t) +
+                                0.4 * std::sin(2.0 * std::numbers::pi * 0.371 * t));
   }
   return reference;
 }
@@ -54,14 +54,14 @@ struct Outcome {
   Feedforward feedforward{};
 };
 
-Outcome outcome_of(const std::string& text, double size, std::size_t shift = 0) {
+Outcome outcome_of(const std::string& text, double size, std::size_t shift = 0, double start = 0.0) {
   const Program plant = compile_text(text);
   Outcome outcome{.feedforward = feedforward_of(plant, "U", "Y", sample_time)};
   EXPECT_NE(outcome.feedforward.text, "") << outcome.feedforward.reason;
   if (outcome.feedforward.text.empty()) {
     return outcome;
   }
-  const std::vector<double> reference = smooth_reference(size);
+  const std::vector<double> reference = smooth_reference(size, start);
   records::Record given = records::Record::even(0.0, sample_time, reference.size());
   given.add({.name = "REF", .unit = {}, .values = reference});
   records::Record driven = records::Record::even(0.0, sample_time, reference.size());
@@ -149,6 +149,20 @@ TEST(Feedforward, ChainsOfBlocksAndExpressions) {
       "  CREEP(XIN := SLOW.XOUT);\n  Y := 3.0 + CREEP.XOUT * 0.5;\n");
   const Outcome outcome = outcome_of(text, 10.0);
   EXPECT_LE(outcome.rms, 1e-3) << outcome.feedforward.text;
+}
+
+/// A machine that has stood at 10 before: what has crept or followed by then is in its output, or is not.
+TEST(Feedforward, CreepAndRelaxationSinceTheStart) {
+  for (const std::string since : {"FALSE", "TRUE"}) {
+    EXPECT_LE(
+        outcome_of(with_block("HY_RELAXATION := (GAIN := 0.3, T1 := 0.5, SINCE_START := " + since + ")"), 20.0, 0, 10.0)
+            .worst,
+        1e-7);
+    EXPECT_LE(outcome_of(with_block("HY_CREEP := (GAIN := 0.08, T_ONSET := 0.01, SINCE_START := " + since + ")"), 20.0,
+                         0, 10.0)
+                  .worst,
+              5e-6);
+  }
 }
 
 /// The servo's force follows from the acceleration, its friction from the velocity that the reference has.

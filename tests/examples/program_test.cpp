@@ -3,18 +3,15 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <iterator>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "codegen/compile.hpp"
 #include "examples/example.hpp"
-#include "support/numbers.hpp"
 #include "support/text_file.hpp"
+#include "tests/examples/printed.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
@@ -63,23 +60,6 @@ TEST_P(ExampleProgram, SaysThatGnuplotIsMissing) {
   EXPECT_FALSE(std::filesystem::exists(folder / (std::string("out/") + GetParam().picture)));
 }
 
-/// The words of a text. Numbers that are rounding alone, or that another libm may change in the last digit shown, are
-/// compared by `alike`.
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  return {std::istream_iterator<std::string>(stream), {}};
-}
-
-bool alike(const std::string& a, const std::string& b) {
-  const ParsedNumber x = parse_number(a);
-  const ParsedNumber y = parse_number(b);
-  if (x.status != NumberStatus::Finite || y.status != NumberStatus::Finite) {
-    return a == b;
-  }
-  const bool rounding = std::fabs(x.value) < 1e-14 && std::fabs(y.value) < 1e-14;
-  return rounding || std::fabs(x.value - y.value) <= 0.1 * std::fabs(y.value);
-}
-
 TEST_P(ExampleProgram, ReadmeShowsWhatItPrints) {
   const ScratchFolder folder;
   ASSERT_EQ(run("PATH=" + folder.path().string() + " " + programs + "/" + GetParam().program + " " + folder / "out" +
@@ -87,15 +67,7 @@ TEST_P(ExampleProgram, ReadmeShowsWhatItPrints) {
             0);
   const std::string printed = contents_of(folder / "printed");
   const std::string name = std::string(GetParam().program).substr(std::string("example_").size());
-  const std::string page = read_text_file(path_of(name + "/README.md").string());
-  const std::size_t table = page.find("```text\n");
-  ASSERT_NE(table, std::string::npos);
-  const auto shown = words_of(page.substr(table + 8, page.find("```", table + 8) - table - 8));
-  const auto wanted = words_of(printed.substr(0, printed.find("No picture")));
-  ASSERT_EQ(shown.size(), wanted.size());
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    EXPECT_TRUE(alike(shown[i], wanted[i])) << shown[i] << " in the README, " << wanted[i] << " printed";
-  }
+  expect_readme_shows(name, printed.substr(0, printed.find("No picture")));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -72,6 +72,9 @@ class Reader {
     if (const auto* const table = table_at(root_, "modbus")) {
       read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
     }
+    if (const auto* const table = table_at(root_, "addresses")) {
+      read_addresses("", *table);
+    }
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;
@@ -264,6 +267,25 @@ class Reader {
     table.read("lock_file", modbus.lock_file);
     read_heartbeat(table, modbus);
     config_.modbus = std::move(modbus);
+  }
+
+  /// A name with a point in it may be quoted, or not: HYST.C1 = "%ML3" is a table in TOML.
+  void read_addresses(const std::string& prefix, const toml::table& table) {
+    for (const auto& [key, node] : table) {
+      const std::string name = prefix + std::string(key.str());
+      const Place place = place_of(file_, node.source());
+      if (const auto* const below = node.as_table()) {
+        read_addresses(name + ".", *below);
+      } else if (!node.is_string()) {
+        found_.error(error::wrong_run_value, place, name + " must be an address, a text.",
+                     "write it as in " + name + " = \"%QW5\".");
+      } else if (!config_.modbus) {
+        found_.error(error::wrong_run_value, place, name + " has an address, and there is no server.",
+                     "add the table [modbus], or remove [addresses].");
+      } else {
+        config_.modbus->addresses.push_back({.name = name, .address = node.as_string()->get(), .place = place});
+      }
+    }
   }
 
   void read_heartbeat(TomlReader& table, ModbusConfig& modbus) {

@@ -58,7 +58,8 @@ struct ModbusConfig {
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;
   std::string lock_file{};
-  std::string first_addresses{};  ///< the text that counts where the lock file is not there yet
+  std::vector<modbus::GivenAddress> addresses{};  ///< of [addresses]
+  std::string first_addresses{};                  ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
   Place place{};
 };

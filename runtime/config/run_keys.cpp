@@ -215,8 +215,15 @@ constexpr std::array modbus_keys{
     RunKey{"own_writes", flag, "false", "while a client that writes is there, no other may"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"}, RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},   RunKey{"modbus"}};
+constexpr std::array address_keys{
+    RunKey{"NAME", text, "(by the map and the lock file)",
+           "where the point NAME lies, as `hysteron map` lists it: `\"%QX0.3\"`, `\"%IW7\"`, `\"%ML2\"` with OpenPLC's "
+           "meaning, or an area and a number, `\"holding 16\"`"},
+};
+
+constexpr std::array file_keys{RunKey{"task"},   RunKey{"watchdog"}, RunKey{"outputs"},
+                               RunKey{"inputs"}, RunKey{"devices"},  RunKey{"retain"},
+                               RunKey{"trace"},  RunKey{"modbus"},   RunKey{"addresses"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -227,6 +234,7 @@ constexpr std::array tables{
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
+    RunTable{"[addresses]", "A line for each point of the server whose address is given.", address_keys},
 };
 
 std::string time_text(double nanoseconds) {

@@ -72,8 +72,11 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
 }
 
 modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
-  modbus::MapRequest request{
-      .title = title, .placing = config.placing, .order = config.word_order, .lock_file = config.lock_file};
+  modbus::MapRequest request{.title = title,
+                             .placing = config.placing,
+                             .order = config.word_order,
+                             .given = config.addresses,
+                             .lock_file = config.lock_file};
   const bool has_lock = !config.lock_file.empty() && std::filesystem::exists(config.lock_file);
   request.lock_text = has_lock ? read_text_file(config.lock_file) : config.first_addresses;
   modbus::RegisterMap map = modbus::make_register_map(door.points(), request);

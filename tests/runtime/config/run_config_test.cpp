@@ -237,6 +237,21 @@ TEST(RunConfig, ARegisterWrittenTwiceHasItsPage) {
   EXPECT_EQ(errors_of(page.mended.text, plant_of_two()), "");
 }
 
+TEST(RunConfig, AddressesMayBeGiven) {
+  const std::string server = "[outputs.Y]\nsafe = 0\n[modbus]\nmap = \"openplc\"\n[addresses]\n";
+  const auto config = parse_run_config(
+      "RUN.toml", server + "X = \"%QW5\"\n\"HYST.C1\" = \"holding 16\"\ntask.commit = \"%QW7\"\n", plant());
+  EXPECT_EQ(config.modbus->placing, modbus::Placing::openplc);
+  std::map<std::string, std::string> given;
+  for (const modbus::GivenAddress& one : config.modbus->addresses) {
+    given[one.name] = one.address + "@" + std::to_string(one.place.line);
+  }
+  EXPECT_EQ(given, (std::map<std::string, std::string>{
+                       {"X", "%QW5@6"}, {"HYST.C1", "holding 16@7"}, {"task.commit", "%QW7@8"}}));
+  EXPECT_EQ(errors_of(server + "X = 5\n"), "804@6:5 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[addresses]\nX = \"%QW5\"\n"), "804@4:5 ");
+}
+
 TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[outputs.y]\nsafe = 1\n"), "802@3:10 ");
 }

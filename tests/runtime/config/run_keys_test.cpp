@@ -48,7 +48,7 @@ std::string before(const RunTable& table, std::string_view key) {
     return others + "[trace]\n" + (key == "file" ? "" : "file = \"run.trace\"\n") +
            (key == "before" || key == "after" ? "trigger = \"fault\"\n" : "");
   }
-  return others + std::string(name) + "\n";
+  return others + (name == "[addresses]" ? "[modbus]\n" : "") + std::string(name) + "\n";
 }
 
 /// All that a run file can say.

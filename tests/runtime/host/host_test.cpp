@@ -238,20 +238,23 @@ TEST(Host, WhereTheStepHangsTheGuardHoldsTheDeviceAndTheTaskWritesNoMore) {
 
 TEST(Host, ServesOpenPlcsAddresses) {
   Stage stage;
-  HostProcess host(run_file(stage.port, "map = \"openplc\"\n"));
+  HostProcess host(run_file(stage.port, "map = \"openplc\"\n[addresses]\nY = \"%ML7\"\ntask.reset = \"%MW3\"\n"));
   stage.start();
-  // X and Y are LREAL, so %ML0 and %ML1; the first words that clients read and write are task.state and task.commit.
+  // X is an LREAL, so %ML0; the first words that clients read and write are task.state and task.commit.
   const auto at = [](std::string_view address) { return modbus::parse_address(address)->at; };
   modbus::Device screen({.link = modbus::TcpLink{.port = host.port()},
                          .values = {{.at = at("%ML0"), .type = PointType::real64, .written = true},
-                                    {.at = at("%ML1"), .type = PointType::real64},
+                                    {.at = at("%ML7"), .type = PointType::real64},
                                     {.at = at("%IW0"), .type = PointType::uint16},
-                                    {.at = at("%QW0"), .type = PointType::uint16}},
+                                    {.at = at("%QW0"), .type = PointType::uint16},
+                                    {.at = at("%MW3"), .type = PointType::uint16}},
                          .response = milliseconds(2000)});
   screen.write(0, 0.75);
   EXPECT_TRUE(soon([&] { return screen.read(1).value == 1.5 && stage.taken() == 1.5; }));
   EXPECT_TRUE(soon([&] { return screen.read(2).value == 1.0; })) << "task.state is running";
-  EXPECT_TRUE(soon([&] { return screen.read(3).quality == modbus::Quality::good; }));
+  for (const std::size_t command : {3U, 4U}) {
+    EXPECT_TRUE(soon([&] { return screen.read(command).quality == modbus::Quality::good; })) << command;
+  }
   EXPECT_EQ(host.end().first, 0);
 }
 

@@ -44,6 +44,14 @@ struct Snapshot {
   std::vector<double> values;  ///< as points()
 };
 
+/// What can be seen of one cycle beyond a snapshot: the values within the diagram, and parameters twice.
+struct LiveValues {
+  std::uint64_t cycle = 0;
+  std::vector<double> values{};      ///< as points(); parameters as they count in the program
+  std::vector<double> inner{};       ///< as inner()
+  std::vector<PointWrite> staged{};  ///< parameters that wait for a commit
+};
+
 /// What a server may do with the running task. Every function may be called from a server's thread and returns at once;
 /// none of them waits for the cyclic thread, and none makes it wait.
 class PointDoor {
@@ -57,6 +65,10 @@ class PointDoor {
   [[nodiscard]] virtual std::span<const Point> points() const = 0;
   /// The values of the newest whole cycle; of one cycle, never of two. Parameters read as staged while any are staged.
   virtual void read(Snapshot& into) = 0;
+  /// Signals within the diagram, to be looked at. They are no points: a diagram may change within, its points stay.
+  [[nodiscard]] virtual std::span<const Point> inner() const = 0;
+  /// The newest whole cycle, and what is staged.
+  virtual void read_live(LiveValues& into) = 0;
   /// All of the writes or none. Empty where taken; otherwise the reason, as a sentence that names the point.
   /// The caller has checked that each is writable, finite and within its limits.
   virtual std::string write(std::span<const PointWrite> writes) = 0;

@@ -1,25 +1,37 @@
 // hysteron serve: runs a diagram as a cyclic task.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "runtime/host/host.hpp"
+#include "runtime/web/server.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
+#include "tool/inner_signals.hpp"
+#include "tool/live_diagram.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::tool {
 namespace {
 
+using BesideTask = decltype(runtime::HostOptions::beside);
+
 constexpr std::string_view examples = R"(Examples:
   hysteron serve feedforward.st --params tuned.toml --config RUN.toml
   hysteron serve feedforward.st --config RUN.toml --virtual --cycles 100000
+  hysteron serve feedforward.st --config RUN.toml --web 127.0.0.1:8080
 
 RUN.toml says how outputs become safe, and what watches, keeps, records and serves the task. On the virtual clock time
-passes as fast as the steps do, with the same bits. SIGTERM and Ctrl-C bring the outputs to their safe values and end it.
+passes as fast as the steps do, with the same bits. The live page shows trends, the diagram with its values, parameters
+and cycles in a browser; it changes parameters only for who has the token of a file that its owner alone may read. SIGTERM and Ctrl-C bring the outputs to their safe values and end it.
 Exit codes: 0 it ran and ended as asked; 1 a fault ended it or was there at its end; 2 an error in the diagram, the
 parameters, the run file, or what the run file names.
 )";
@@ -30,19 +42,46 @@ struct Options {
   std::string engine;
   std::uint64_t cycles = 0;
   bool virtual_time = false;
+  std::string web;
+  std::string token_file;
 };
+
+/// Checked before anything runs.
+std::optional<runtime::web::ServerOptions> web_options(const Options& options) {
+  if (options.web.empty()) {
+    return {};
+  }
+  runtime::web::ServerOptions web{.endpoint = runtime::web::parse_endpoint(options.web)};
+  web.access.is_loopback = web.endpoint.is_loopback;
+  if (!options.token_file.empty()) {
+    web.access.token = runtime::web::read_token(options.token_file);
+  }
+  runtime::web::check_access(web.endpoint, web.access);
+  return web;
+}
 
 int serve(const Options& options, Console& console) {
   Diagnostics warnings;
   const Program diagram = load_diagram(options.diagram, warnings);
   const Engine engine = engine_of(options.engine);
-  const auto program = step_program(diagram, engine, options.diagram.float32);
+  const auto web = web_options(options);
+  const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
+  const auto program = step_program(diagram, engine, options.diagram.float32, inner);
   auto config = runtime::parse_run_config(options.config, read_text_file(options.config), program->shape());
   console.report(warnings);
+  const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
+    const runtime::web::Subject subject{.name = program->shape().name,
+                                        .period = program->shape().period,
+                                        .diagram = live_diagram(diagram.graph, inner)};
+    auto server = std::make_shared<runtime::web::Server>(door, subject, *web);
+    where += fmt::format("; live page on http://{}/", runtime::web::text_of(web->endpoint, server->port()));
+    return server;
+  };
   const bool well = runtime::run_host(*program, std::move(config),
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",
                                        .cycles = options.cycles,
-                                       .virtual_time = options.virtual_time},
+                                       .virtual_time = options.virtual_time,
+                                       .beside = web ? BesideTask(serve_page) : BesideTask()},
                                       [&](std::string_view text) {
                                         console.print(text);
                                         (void)std::fflush(stdout);
@@ -65,6 +104,11 @@ Action add_serve(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--cycles", options->cycles, "Ends after so many cycles.")->option_text("N");
   app.add_flag("--virtual", options->virtual_time, "Runs as fast as it can, on a clock of its own.");
+  auto* const web =
+      app.add_option("--web", options->web, "Serves the live page there: 127.0.0.1:8080.")->option_text("ADDRESS:PORT");
+  app.add_option("--web-token-file", options->token_file, "Who has its token may change parameters on the page.")
+      ->needs(web)
+      ->option_text("FILE");
   app.footer(std::string(examples));
   return [options](Console& console) { return serve(*options, console); };
 }

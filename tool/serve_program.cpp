@@ -54,7 +54,11 @@ ProgramSignal signal_of(const Port& port) {
 template <class S>
 class InterpretedProgram final : public runtime::StepProgram {
  public:
-  InterpretedProgram(const Program& program, ProgramShape shape) : shape_(std::move(shape)), machine_(program) {
+  InterpretedProgram(const Program& program, ProgramShape shape, const std::vector<InnerSignal>& inner)
+      : shape_(std::move(shape)), machine_(program) {
+    for (const InnerSignal& signal : inner) {
+      inner_.push_back(signal.wire);
+    }
     const auto& parameters = program.graph.parameters;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       for (std::size_t element = 0; element < parameters[i].value.size(); ++element) {
@@ -73,6 +77,11 @@ class InterpretedProgram final : public runtime::StepProgram {
       outputs[i] = static_cast<double>(machine_.output(i));
     }
   }
+  void inner_values(std::span<double> into) const noexcept override {
+    for (std::size_t i = 0; i < into.size(); ++i) {
+      into[i] = static_cast<double>(machine_.value(inner_[i]));
+    }
+  }
   void set_parameter(std::size_t parameter, double value) noexcept override {
     machine_.set_parameter(places_[parameter].first, static_cast<S>(value), places_[parameter].second);
   }
@@ -87,6 +96,7 @@ class InterpretedProgram final : public runtime::StepProgram {
   ProgramShape shape_;
   Machine<S> machine_;
   std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< parameter and element
+  std::vector<Wire> inner_;
 };
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -145,6 +155,15 @@ std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, P
           .state_size = function_of<std::size_t (*)()>(library, "hysteron_state_size")});
 }
 
+/// The program with its inner signals as further outputs, by names that no diagram can have.
+Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    program.graph.outputs.push_back(
+        {.name = fmt::format("inner__{}", i), .type = inner[i].type, .wire = inner[i].wire});
+  }
+  return program;
+}
+
 }  // namespace
 
 ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
@@ -184,15 +203,19 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   return shape;
 }
 
-std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32) {
+std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32,
+                                                   const std::vector<InnerSignal>& inner) {
   auto shape = shape_of(program, engine, float32);
+  for (const InnerSignal& signal : inner) {
+    shape.inner.push_back({.name = signal.name, .unit = signal.unit, .type = point_type(signal.type)});
+  }
   if (engine == Engine::compiled) {
-    return compiled_program(program, std::move(shape), float32);
+    return compiled_program(with_outputs(program, inner), std::move(shape), float32);
   }
   if (float32) {
-    return std::make_unique<InterpretedProgram<float>>(program, std::move(shape));
+    return std::make_unique<InterpretedProgram<float>>(program, std::move(shape), inner);
   }
-  return std::make_unique<InterpretedProgram<double>>(program, std::move(shape));
+  return std::make_unique<InterpretedProgram<double>>(program, std::move(shape), inner);
 }
 
 Engine best_engine() {

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "codegen/compile.hpp"
 #include "runtime/task/step_program.hpp"
+#include "tool/inner_signals.hpp"
 
 namespace hysteron::tool {
 
@@ -16,8 +18,10 @@ enum class Engine : std::uint8_t { interpreter, compiled };
 /// the diagram states no sample time.
 [[nodiscard]] runtime::ProgramShape shape_of(const Program& program, Engine engine, bool float32);
 
-/// Throws InputError HY725 or HY726 where it cannot be compiled.
-[[nodiscard]] std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32);
+/// Throws InputError HY725 or HY726 where it cannot be compiled. The inner signals are those of `program`; with them,
+/// the state has the same layout and every output the same bits.
+[[nodiscard]] std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32,
+                                                                 const std::vector<InnerSignal>& inner = {});
 
 /// Compiled where there is a compiler.
 [[nodiscard]] Engine best_engine();

@@ -71,6 +71,19 @@ class Checker {
     return texts;
   }
 
+  /// The unit of each output of each node, after run().
+  std::vector<std::vector<std::string>> output_units() {
+    std::vector<std::vector<std::string>> texts(graph_.nodes.size());
+    for (std::uint32_t index = 0; index < graph_.nodes.size(); ++index) {
+      const Node& node = graph_.nodes[index];
+      for (std::size_t port = 0; port < output_count(node); ++port) {
+        const bool is_real = node.block != nullptr && node.block->outputs[port].type == Type::Real;
+        texts[index].push_back(is_real ? text_of_field(index, node.block->outputs[port]) : std::string());
+      }
+    }
+    return texts;
+  }
+
  private:
   using MaybeUnit = std::optional<Unit>;
   static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
@@ -422,6 +435,13 @@ std::vector<std::string> of_parameters(const Graph& graph, const Schedule& sched
   Checker checker(graph, ignored);
   checker.run(schedule);
   return checker.parameter_units();
+}
+
+std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Schedule& schedule) {
+  Diagnostics ignored;
+  Checker checker(graph, ignored);
+  checker.run(schedule);
+  return checker.output_units();
 }
 
 }  // namespace hysteron::units

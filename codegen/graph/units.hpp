@@ -24,4 +24,7 @@ void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostic
 /// diagram does not say enough.
 std::vector<std::string> of_parameters(const Graph& graph, const Schedule& schedule);
 
+/// The same for the outputs of all nodes, by node and output. Empty for operations.
+std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Schedule& schedule);
+
 }  // namespace hysteron::units

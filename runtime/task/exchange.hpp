@@ -66,7 +66,7 @@ class SnapshotRing {
     newest_.store(number, std::memory_order_release);
   }
 
-  /// False where nothing was published yet.
+  /// The first values of the newest row, as many as asked for. False where nothing was published yet.
   bool read(std::uint64_t& cycle, std::span<double> values) const noexcept {
     for (;;) {
       const std::uint64_t number = newest_.load(std::memory_order_acquire);
@@ -76,7 +76,7 @@ class SnapshotRing {
       const Row& row = rows_[number % rows_.size()];
       const std::uint64_t before = row.sequence.load(std::memory_order_acquire);
       cycle = row.cycle.load(std::memory_order_relaxed);
-      for (std::size_t i = 0; i < width_; ++i) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = row.values[i].load(std::memory_order_relaxed);
       }
       std::atomic_thread_fence(std::memory_order_acquire);

@@ -1,14 +1,16 @@
 // A generated step behind plain functions, linked into the host or opened as a library, as a program of a task.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "runtime/task/step_program.hpp"
 
 namespace hysteron::runtime {
 
-/// As NAME_step.cpp has them.
+/// As NAME_step.cpp has them. A step gives the inner signals of the shape behind its outputs.
 struct StepFunctions {
   void (*reset)() = nullptr;
   void (*step)(const double* inputs, double* outputs) = nullptr;
@@ -21,13 +23,19 @@ struct StepFunctions {
 /// There is one state behind the functions, and so only one such program of a kind in a process.
 class LinkedProgram final : public StepProgram {
  public:
-  LinkedProgram(ProgramShape shape, const StepFunctions& functions) : shape_(std::move(shape)), functions_(functions) {
+  LinkedProgram(ProgramShape shape, const StepFunctions& functions)
+      : shape_(std::move(shape)), functions_(functions), results_(shape_.outputs.size() + shape_.inner.size()) {
     functions_.reset();
   }
   [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
   void reset() noexcept override { functions_.reset(); }
   void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
-    functions_.step(inputs.data(), outputs.data());
+    functions_.step(inputs.data(), results_.data());
+    std::ranges::copy_n(results_.begin(), static_cast<std::ptrdiff_t>(outputs.size()), outputs.begin());
+  }
+  void inner_values(std::span<double> into) const noexcept override {
+    std::ranges::copy_n(results_.end() - static_cast<std::ptrdiff_t>(into.size()),
+                        static_cast<std::ptrdiff_t>(into.size()), into.begin());
   }
   void set_parameter(std::size_t parameter, double value) noexcept override {
     functions_.set_parameter(parameter, value);
@@ -46,6 +54,7 @@ class LinkedProgram final : public StepProgram {
  private:
   ProgramShape shape_;
   StepFunctions functions_;
+  std::vector<double> results_;
 };
 
 }  // namespace hysteron::runtime

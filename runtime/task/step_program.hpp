@@ -32,6 +32,7 @@ struct ProgramShape {
   std::vector<ProgramSignal> inputs{};
   std::vector<ProgramSignal> outputs{};
   std::vector<ProgramSignal> parameters{};
+  std::vector<ProgramSignal> inner{};  ///< signals within the diagram that can be looked at; often none
   /// Two programs whose layouts are the same text understand each other's state: same diagram, whatever its parameters.
   std::string layout{};
 };
@@ -48,6 +49,8 @@ class StepProgram {
   virtual void reset() noexcept = 0;
   /// Allocates nothing, calls nothing of the system.
   virtual void step(std::span<const double> inputs, std::span<double> outputs) noexcept = 0;
+  /// The inner signals of the newest step, as shape().inner. Allocates nothing, calls nothing of the system.
+  virtual void inner_values(std::span<double> /*into*/) const noexcept {}
   /// Between two steps; the state is kept.
   virtual void set_parameter(std::size_t parameter, double value) noexcept = 0;
   [[nodiscard]] virtual double parameter(std::size_t parameter) const noexcept = 0;

@@ -12,7 +12,8 @@ constexpr std::size_t command_count = 4;
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
 
 std::size_t width_of(const ProgramShape& shape) {
-  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + command_count;
+  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + command_count +
+         shape.inner.size();
 }
 
 TaskOrders first_orders(const StepProgram& program) {
@@ -82,6 +83,9 @@ TaskDoor::TaskDoor(const StepProgram& program, const std::vector<bool>& device_i
   add_command("task.discard", "any number but 0: the staged parameters are forgotten");
   add_command("task.reset", "any number but 0: every state as after a start, and a fault is forgotten");
   add_command("task.heartbeat", "any number: the client lives");
+  for (const ProgramSignal& signal : shape.inner) {
+    inner_.push_back(point_of(signal, PointKind::output, false));
+  }
 }
 
 void TaskDoor::add_status(const char* name, PointType type, const char* unit, const char* meaning) {
@@ -109,6 +113,27 @@ void TaskDoor::read(Snapshot& into) {
   }
   if (!any || parameters_.any_staged()) {
     std::ranges::copy(parameters_.staged(), into.values.begin() + static_cast<std::ptrdiff_t>(first_parameter_));
+  }
+}
+
+void TaskDoor::read_live(LiveValues& into) {
+  into.values.resize(points_.size() + inner_.size());
+  const bool any = snapshots_.read(into.cycle, into.values);
+  into.inner.assign(into.values.begin() + static_cast<std::ptrdiff_t>(points_.size()), into.values.end());
+  into.values.resize(points_.size());
+  into.staged.clear();
+  const std::lock_guard lock(servers_);
+  if (!any) {
+    std::ranges::fill(into.values, 0.0);
+    std::ranges::fill(into.inner, 0.0);
+    std::ranges::copy(wanted_.inputs, into.values.begin());
+    std::ranges::copy(parameters_.committed(), into.values.begin() + static_cast<std::ptrdiff_t>(first_parameter_));
+  }
+  const std::vector<double>& staged = parameters_.staged();
+  for (std::size_t i = 0; i < staged.size(); ++i) {
+    if (staged[i] != parameters_.committed()[i]) {
+      into.staged.push_back({.point = first_parameter_ + i, .value = staged[i]});
+    }
   }
 }
 
@@ -191,7 +216,8 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);
-  *at = status.heartbeat;
+  *at++ = status.heartbeat;
+  program.inner_values(std::span(at, published_.end()));
   snapshots_.publish(statistics.run, published_);
 }
 

@@ -51,6 +51,8 @@ class TaskDoor final : public PointDoor {
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;
   std::string write(std::span<const PointWrite> writes) override;
+  [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
+  void read_live(LiveValues& into) override;
 
   // For the cyclic thread alone.
   [[nodiscard]] const TaskOrders* take_orders() noexcept { return orders_.take(); }
@@ -65,6 +67,7 @@ class TaskDoor final : public PointDoor {
   void add_command(const char* name, const char* meaning);
 
   std::vector<Point> points_;
+  std::vector<Point> inner_;
   std::vector<bool> device_inputs_;
   std::size_t first_parameter_ = 0;
   std::size_t first_command_ = 0;

@@ -33,6 +33,13 @@ class MemoryDoor : public runtime::PointDoor {
     return "";
   }
 
+  [[nodiscard]] std::span<const runtime::Point> inner() const override { return {}; }
+  void read_live(runtime::LiveValues& into) override {
+    runtime::Snapshot snapshot;
+    read(snapshot);
+    into = {.cycle = snapshot.cycle, .values = std::move(snapshot.values)};
+  }
+
   void set(std::size_t point, double value) {
     const std::scoped_lock lock(mutex_);
     values_[point] = value;

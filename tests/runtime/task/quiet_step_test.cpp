@@ -2,11 +2,7 @@
 // and clock: held by the allocator's own count, the kernel's, and a filter of system calls that kills at the first
 // other.
 #include <gtest/gtest.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -16,7 +12,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <thread>
@@ -24,6 +19,7 @@
 #include "runtime/task/scheduling.hpp"
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/runtime/task/quiet_thread.hpp"
 #include "tests/support/counted_new.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -95,20 +91,6 @@ TEST(QuietStep, TheAllocatorIsWatched) {
   EXPECT_EQ(hysteron::test::allocations, before + 1);
 }
 
-/// From here on, the calling thread may sleep and ask for the time; anything else kills the process.
-bool allow_only_sleep_and_clock() {
-  const auto allow = [](std::uint32_t number) {
-    return std::array<sock_filter, 2>{
-        {BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
-  };
-  const auto sleep = allow(SYS_clock_nanosleep);
-  const auto clock = allow(SYS_clock_gettime);
-  std::array<sock_filter, 6> filter{{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)), sleep[0], sleep[1],
-                                     clock[0], clock[1], BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS)}};
-  const sock_fprog program{.len = static_cast<unsigned short>(filter.size()), .filter = filter.data()};
-  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program) == 0;
-}
-
 /// Runs in a process of its own; its end says whether the filter struck.
 int end_of_filtered_run(const std::string& folder, bool with_a_forbidden_call) {
   const pid_t child = fork();
@@ -118,7 +100,7 @@ int end_of_filtered_run(const std::string& folder, bool with_a_forbidden_call) {
       run_task(
           folder,
           [&](std::uint64_t cycle) {
-            if (cycle == warm_up && !allow_only_sleep_and_clock()) {
+            if (cycle == warm_up && !test::allow_only_sleep_and_clock()) {
               _exit(2);
             }
             if (cycle == warm_up + 100 && with_a_forbidden_call) {

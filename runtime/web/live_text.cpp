@@ -1,0 +1,108 @@
+#include "runtime/web/live_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+
+namespace hysteron::runtime::web {
+namespace {
+
+using nlohmann::json;
+
+std::string_view name_of(PointKind kind) {
+  switch (kind) {
+    case PointKind::input:
+      return "input";
+    case PointKind::output:
+      return "output";
+    case PointKind::parameter:
+      return "parameter";
+    case PointKind::status:
+      return "status";
+    case PointKind::command:
+      return "command";
+  }
+  return {};
+}
+
+std::string_view name_of(PointType type) {
+  return type == PointType::boolean                               ? "boolean"
+         : type == PointType::real32 || type == PointType::real64 ? "real"
+                                                                  : "integer";
+}
+
+json limit(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+/// Texts are the user's: what is no UTF-8 is replaced.
+std::string text_of(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+void add_number(std::string& text, double value) {
+  if (std::isfinite(value)) {
+    fmt::format_to(std::back_inserter(text), "{}", value);
+  } else {
+    text += "null";
+  }
+}
+
+void add_list(std::string& text, std::span<const double> values) {
+  text += '[';
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += i == 0 ? "" : ",";
+    add_number(text, values[i]);
+  }
+  text += ']';
+}
+
+}  // namespace
+
+std::string description_text(const Subject& subject, const PointDoor& door, bool writable, bool token_to_read) {
+  json points = json::array();
+  for (const Point& point : door.points()) {
+    points.push_back({{"name", point.name},
+                      {"kind", name_of(point.kind)},
+                      {"type", name_of(point.type)},
+                      {"unit", point.unit},
+                      {"low", limit(point.low)},
+                      {"high", limit(point.high)},
+                      {"meaning", point.meaning}});
+  }
+  json inner = json::array();
+  for (const Point& signal : door.inner()) {
+    inner.push_back({{"name", signal.name}, {"type", name_of(signal.type)}, {"unit", signal.unit}});
+  }
+  return text_of({{"name", subject.name},
+                  {"period", static_cast<double>(subject.period) * 1e-9},
+                  {"diagram", subject.diagram},
+                  {"points", std::move(points)},
+                  {"inner", std::move(inner)},
+                  {"writable", writable},
+                  {"token_to_read", token_to_read}});
+}
+
+std::string values_text(const LiveValues& live) {
+  std::string text = fmt::format("{{\"cycle\":{},\"values\":", live.cycle);
+  add_list(text, live.values);
+  text += ",\"inner\":";
+  add_list(text, live.inner);
+  text += ",\"staged\":[";
+  for (std::size_t i = 0; i < live.staged.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}[{},", i == 0 ? "" : ",", live.staged[i].point);
+    add_number(text, live.staged[i].value);
+    text += ']';
+  }
+  return text + "]}";
+}
+
+std::string refusal_text(const std::string& refusal) {
+  return text_of({{"refusal", refusal}});
+}
+
+}  // namespace hysteron::runtime::web

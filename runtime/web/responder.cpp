@@ -1,0 +1,169 @@
+#include "runtime/web/responder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "runtime/web/assets.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::runtime::web {
+namespace {
+
+Answer refusal(unsigned status, const std::string& why) {
+  return {.status = status, .body = refusal_text(why)};
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return number_text(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
+/// Why a point cannot take a value, as a sentence that names it; empty where it can.
+std::string refusal_of(const Point& point, double value) {
+  if (!std::isfinite(value)) {
+    return point.name + " is not a finite number.";
+  }
+  if (value < point.low) {
+    return fmt::format("{} must be at least {}; {} was given.", point.name, with_unit(point.low, point.unit),
+                       number_text(value));
+  }
+  if (value > point.high) {
+    return fmt::format("{} must be at most {}; {} was given.", point.name, with_unit(point.high, point.unit),
+                       number_text(value));
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<Header>& common_headers() {
+  static const std::vector<Header> headers{
+      {"Content-Security-Policy",
+       "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cache-Control", "no-store"},
+  };
+  return headers;
+}
+
+Responder::Responder(PointDoor& door, const Subject& subject, Access access)
+    : door_(door),
+      access_(std::move(access)),
+      description_(description_text(subject, door, access_.can_write(), access_.reading_needs_token())) {}
+
+Answer Responder::answer(const Request& request) {
+  if (Answer refused = refused_sender(request); refused.status != 200) {
+    return refused;
+  }
+  if (request.method == "GET") {
+    return read(request);
+  }
+  if (request.method == "POST") {
+    return write(request);
+  }
+  return refusal(405, "Only GET and POST are answered.");
+}
+
+Answer Responder::upgrade(const Request& request) const {
+  if (Answer refused = refused_sender(request); refused.status != 200) {
+    return refused;
+  }
+  return request.target == stream_target ? Answer{} : refusal(404, "There is no such stream.");
+}
+
+/// Another page in the same browser may not ask in the user's name.
+Answer Responder::refused_sender(const Request& request) const {
+  if (access_.is_loopback && !is_loopback_host(request.host)) {
+    return refusal(421, "The header Host names another machine; open the page by 127.0.0.1 or localhost.");
+  }
+  if (!is_own_origin(request.origin, request.host)) {
+    return refusal(403, "The request comes from a page of another server.");
+  }
+  return {};
+}
+
+Answer Responder::read(const Request& request) {
+  for (const Asset& asset : assets()) {
+    if (request.target == asset.target) {
+      return {.type = asset.type, .body = std::string(asset.text)};
+    }
+  }
+  const bool description = request.target == "/api/description";
+  if (!description && request.target != "/api/values") {
+    return refusal(404, "There is nothing of this name.");
+  }
+  if (access_.reading_needs_token() && !is_authorized(access_, request.authorization)) {
+    return refusal(401, "The token is missing or wrong.");
+  }
+  if (description) {
+    return {.body = description_};
+  }
+  door_.read_live(live_);
+  return {.body = values_text(live_)};
+}
+
+Answer Responder::write(const Request& request) {
+  constexpr std::array<std::string_view, 3> targets{"/api/stage", "/api/commit", "/api/discard"};
+  if (std::ranges::find(targets, request.target) == targets.end()) {
+    return refusal(404, "There is nothing of this name.");
+  }
+  if (!access_.can_write()) {
+    return refusal(403, "The live page is read-only: it was started without --web-token-file.");
+  }
+  if (!is_authorized(access_, request.authorization)) {
+    return refusal(401, "The token is missing or wrong.");
+  }
+  return request.target == targets[0] ? stage(request.body)
+                                      : give(request.target == targets[1] ? "task.commit" : "task.discard");
+}
+
+Answer Responder::stage(std::string_view body) {
+  const auto values = nlohmann::json::parse(body, nullptr, false);
+  if (!values.is_object() || values.empty()) {
+    return refusal(400, "The body is no JSON object of parameters and their values.");
+  }
+  std::vector<PointWrite> writes;
+  for (const auto& [name, value] : values.items()) {
+    if (!value.is_number() && !value.is_boolean()) {
+      return refusal(422, name + " is not given a number.");
+    }
+    const double number = value.is_boolean() ? (value.get<bool>() ? 1.0 : 0.0) : value.get<double>();
+    if (const std::string why = collect(name, number, writes); !why.empty()) {
+      return refusal(422, why);
+    }
+  }
+  const std::string why = door_.write(writes);
+  return why.empty() ? Answer{.body = "{}"} : refusal(422, why);
+}
+
+std::string Responder::collect(const std::string& name, double value, std::vector<PointWrite>& writes) const {
+  const auto points = door_.points();
+  const auto point = std::ranges::find(points, name, &Point::name);
+  if (point == points.end()) {
+    return "There is no parameter " + name + ".";
+  }
+  if (point->kind != PointKind::parameter || !point->writable) {
+    return name + " is no parameter; the live page changes parameters alone.";
+  }
+  writes.push_back({.point = static_cast<std::size_t>(point - points.begin()), .value = value});
+  return refusal_of(*point, value);
+}
+
+Answer Responder::give(std::string_view command) {
+  const auto points = door_.points();
+  const auto point = std::ranges::find(points, command, &Point::name);
+  if (point == points.end()) {
+    return refusal(404, "The program takes no such command.");
+  }
+  const std::vector<PointWrite> writes{{.point = static_cast<std::size_t>(point - points.begin()), .value = 1.0}};
+  const std::string why = door_.write(writes);
+  return why.empty() ? Answer{.body = "{}"} : refusal(422, why);
+}
+
+}  // namespace hysteron::runtime::web

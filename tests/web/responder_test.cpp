@@ -1,0 +1,211 @@
+// What the live page answers, and how a set of parameters gets from it to the task: through the task's own door.
+#include "runtime/web/responder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "runtime/task/task_door.hpp"
+#include "runtime/web/assets.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+
+namespace hysteron::runtime::web {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* token = "0123456789abcdef";
+constexpr const char* bearer = "Bearer 0123456789abcdef";
+
+/// G.A from -1e9 to 1e9, in mm; both parameters only with a sum of 0.
+struct Bench {
+  explicit Bench(Access access) : responder(door, {.name = "ACCUMULATOR", .period = 1'000'000}, std::move(access)) {}
+
+  static const test::Accumulator& with_unit(test::Accumulator& program) {
+    program.mutable_shape().parameters[0].unit = "mm";
+    program.mutable_shape().inner = {{.name = "SUM.XOUT", .unit = "um"}};
+    return program;
+  }
+  Answer get(std::string_view target, std::string_view authorization = {}) {
+    return responder.answer(
+        {.method = "GET", .target = target, .host = "127.0.0.1:8080", .authorization = authorization});
+  }
+  Answer post(std::string_view target, std::string_view body = {}, std::string_view authorization = bearer) {
+    return responder.answer(
+        {.method = "POST", .target = target, .host = "localhost", .authorization = authorization, .body = body});
+  }
+  std::string refusal(std::string_view target, std::string_view body = {}) {
+    const Answer answer = post(target, body);
+    return answer.status == 422 ? json::parse(answer.body).at("refusal").get<std::string>()
+                                : "status " + std::to_string(answer.status);
+  }
+  [[nodiscard]] std::vector<PointWrite> staged() {
+    LiveValues live;
+    door.read_live(live);
+    return live.staged;
+  }
+
+  test::Accumulator program;
+  TaskDoor door{with_unit(program), {false}, {{}, {}}, [](std::span<const double> set) {
+                  return set[0] + set[1] == 0.0 ? std::string() : std::string("G.A and G.B must have the sum 0.");
+                }};
+  Responder responder;
+};
+
+TEST(WebResponder, DescribesWhatThereIsToBeSeen) {
+  Bench bench({.token = token});
+  const Answer answer = bench.get("/api/description");
+  EXPECT_EQ(answer.status, 200U);
+  const json about = json::parse(answer.body);
+  EXPECT_EQ(about["name"], "ACCUMULATOR");
+  EXPECT_EQ(about["period"], 0.001);
+  EXPECT_EQ(about["writable"], true);
+  EXPECT_EQ(about["token_to_read"], false);
+  ASSERT_EQ(about["points"].size(), bench.door.points().size());
+  EXPECT_EQ(about["points"][0]["name"], "X");
+  EXPECT_EQ(about["points"][0]["kind"], "input");
+  EXPECT_EQ(about["points"][0]["unit"], "V");
+  EXPECT_EQ(about["points"][0]["low"], nullptr);
+  EXPECT_EQ(about["points"][3]["high"], 1e9);
+  EXPECT_EQ(about["inner"], json::parse(R"([{"name": "SUM.XOUT", "type": "real", "unit": "um"}])"));
+}
+
+TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {
+  Bench bench({});
+  const std::vector<double> inputs{0.1};
+  const std::vector<double> outputs{1.0 / 3.0, std::numeric_limits<double>::quiet_NaN()};
+  LoopStatistics statistics;
+  statistics.run = 42;
+  bench.door.publish(bench.program, inputs, outputs, {.state = TaskState::running}, statistics);
+  const json values = json::parse(bench.get("/api/values").body);
+  EXPECT_EQ(values["cycle"], 42);
+  EXPECT_EQ(values["values"][0].get<double>(), 0.1);
+  EXPECT_EQ(values["values"][1].get<double>(), 1.0 / 3.0) << "to the bit";
+  EXPECT_EQ(values["values"][2], nullptr) << "JSON has no NaN";
+  EXPECT_EQ(values["inner"].size(), 1U);
+  EXPECT_EQ(values["staged"], json::array());
+}
+
+TEST(WebResponder, ASetIsStagedThenCommittedWhole) {
+  Bench bench({.token = token});
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2.5, "G.B": -2.5})").status, 200U);
+  EXPECT_EQ(bench.staged().size(), 2U);
+  EXPECT_EQ(bench.door.take_orders()->commits, 0U) << "staged values reach no step";
+  const json values = json::parse(bench.get("/api/values").body);
+  EXPECT_EQ(values["staged"], json::parse("[[3, 2.5], [4, -2.5]]"));
+  EXPECT_EQ(values["values"][3], 1.0) << "what counts is what counted before";
+  EXPECT_EQ(bench.post("/api/commit").status, 200U);
+  const TaskOrders* const orders = bench.door.take_orders();
+  ASSERT_NE(orders, nullptr);
+  EXPECT_EQ(orders->commits, 1U);
+  EXPECT_EQ(orders->parameters, (std::vector<double>{2.5, -2.5}));
+  EXPECT_TRUE(bench.staged().empty());
+}
+
+TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
+  Bench bench({.token = token});
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"G.B": 1, "G.A": 2e9})"),
+            "G.A must be at most 1000000000 mm; 2000000000 was given.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": -2e9})"),
+            "G.A must be at least -1000000000 mm; -2000000000 was given.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"G.C": 1})"), "There is no parameter G.C.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"X": 1})"), "X is no parameter; the live page changes parameters alone.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"task.reset": 1})"),
+            "task.reset is no parameter; the live page changes parameters alone.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": "1"})"), "G.A is not given a number.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": null})"), "G.A is not given a number.");
+  EXPECT_TRUE(bench.staged().empty()) << "all or none";
+  for (const char* const body : {"", "1", "[]", "{}", "{", R"({"G.A": 1e999})", R"({"G.A": NaN})"}) {
+    EXPECT_EQ(bench.post("/api/stage", body).status, 400U) << body;
+  }
+  EXPECT_EQ(bench.post("/api/stage", std::string(60'000, '[')).status, 400U);
+  // The set as a whole is refused at the commit, and stays staged to be mended.
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 3})").status, 200U);
+  (void)bench.door.take_orders();
+  EXPECT_EQ(bench.refusal("/api/commit"), "G.A and G.B must have the sum 0.");
+  EXPECT_EQ(bench.door.take_orders(), nullptr) << "nothing reaches the task";
+  EXPECT_EQ(bench.staged().size(), 1U);
+  EXPECT_EQ(bench.post("/api/discard").status, 200U);
+  EXPECT_TRUE(bench.staged().empty());
+}
+
+TEST(WebResponder, WithoutATokenFileEverythingIsReadOnly) {
+  Bench bench({});
+  for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
+    EXPECT_EQ(bench.post(target, R"({"G.A": 2})").status, 403U);
+    EXPECT_EQ(bench.post(target, R"({"G.A": 2})", "Bearer ").status, 403U);
+  }
+  EXPECT_EQ(json::parse(bench.get("/api/description").body)["writable"], false);
+  EXPECT_TRUE(bench.staged().empty());
+}
+
+TEST(WebResponder, WhoWritesHasTheToken) {
+  Bench bench({.token = token});
+  for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
+    for (const char* const wrong : {"", "Bearer ", "Bearer 0123456789abcdeg", "0123456789abcdef"}) {
+      EXPECT_EQ(bench.post(target, R"({"G.A": 2})", wrong).status, 401U);
+    }
+  }
+  EXPECT_TRUE(bench.staged().empty());
+  EXPECT_EQ(bench.get("/api/values").status, 200U) << "on the loopback, reading is free";
+}
+
+TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
+  Bench bench({.is_loopback = false, .token = token});
+  for (const char* const target : {"/api/description", "/api/values"}) {
+    EXPECT_EQ(bench.get(target).status, 401U);
+    EXPECT_EQ(bench.get(target).body.find("ACCUMULATOR"), std::string::npos);
+    EXPECT_EQ(bench.get(target, bearer).status, 200U);
+  }
+  EXPECT_EQ(bench.get("/").status, 200U) << "the page itself holds no values";
+}
+
+TEST(WebResponder, PagesOfOthersMayNotAsk) {
+  Bench bench({.token = token});
+  for (const char* const target : {"/", "/api/values", "/api/description"}) {
+    EXPECT_EQ(bench.responder.answer({.method = "GET", .target = target, .host = "evil.example"}).status, 421U);
+    EXPECT_EQ(bench.responder
+                  .answer({.method = "GET", .target = target, .host = "localhost", .origin = "http://evil.example"})
+                  .status,
+              403U);
+  }
+  EXPECT_EQ(bench.responder.upgrade({.target = "/api/stream", .host = "evil.example"}).status, 421U);
+  EXPECT_EQ(
+      bench.responder.upgrade({.target = "/api/stream", .host = "localhost", .origin = "http://evil.example"}).status,
+      403U);
+  EXPECT_EQ(
+      bench.responder.upgrade({.target = "/api/stream", .host = "localhost", .origin = "http://localhost"}).status,
+      200U);
+  EXPECT_EQ(bench.responder.upgrade({.target = "/other", .host = "localhost"}).status, 404U);
+}
+
+TEST(WebResponder, WhatIsNotThereIsNotFound) {
+  Bench bench({.token = token});
+  EXPECT_EQ(bench.get("/nothing").status, 404U);
+  EXPECT_EQ(bench.get("/../etc/passwd").status, 404U);
+  EXPECT_EQ(bench.get("/api/stage").status, 404U);
+  EXPECT_EQ(bench.post("/api/values").status, 404U);
+  EXPECT_EQ(bench.responder.answer({.method = "PUT", .target = "/", .host = "localhost"}).status, 405U);
+}
+
+/// The page refers to nothing outside of itself, and its policy forbids that it could.
+TEST(WebResponder, NoOtherHostIsNamed) {
+  EXPECT_EQ(common_headers()[0].name, "Content-Security-Policy");
+  EXPECT_TRUE(common_headers()[0].value.starts_with("default-src 'self';"));
+  EXPECT_EQ(common_headers()[0].value.find("unsafe"), std::string_view::npos);
+  ASSERT_EQ(assets().size(), 7U);
+  for (const Asset& asset : assets()) {
+    EXPECT_GT(asset.text.size(), 100U) << asset.target;
+    if (asset.target.starts_with("/dygraph") || asset.target == "/icon.svg") {
+      continue;  // names of licences and of the SVG standard
+    }
+    EXPECT_EQ(asset.text.find("//www"), std::string_view::npos) << asset.target;
+    EXPECT_EQ(asset.text.find("http://"), std::string_view::npos) << asset.target;
+    EXPECT_EQ(asset.text.find(" style="), std::string_view::npos) << asset.target << ": the policy would block it";
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::runtime::web

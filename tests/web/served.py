@@ -1,0 +1,57 @@
+"""`hysteron serve` as a process beside a test: a folder with its files, its ports from its status line, its end by SIGTERM."""
+import os
+import re
+import signal
+import subprocess
+import tempfile
+
+TOOL = os.environ["HYSTERON_TOOL"]
+
+
+class Served:
+    """Given the text of a diagram, of a run file, and further arguments. Use it in a with statement."""
+
+    def __init__(self, diagram, run_file, *arguments):
+        self._folder = tempfile.TemporaryDirectory()
+        self.path = self._folder.name
+        self.write("diagram.st", diagram)
+        self.write("RUN.toml", run_file)
+        self.command = [TOOL, "serve", "diagram.st", "--config", "RUN.toml", "--engine", "interpreter", *arguments]
+
+    def write(self, name, text, mode=0o600):
+        with open(os.path.join(self.path, name), "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(file.name, mode)
+        return file.name
+
+    def __enter__(self):
+        self.process = subprocess.Popen(self.command, cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.status = self.process.stdout.readline()
+        if not self.status:
+            raise AssertionError(self.process.stderr.read())
+        self.modbus_port = self._port(r"Modbus on \S+:(\d+)")
+        self.web_port = self._port(r"live page on http://\S+:(\d+)/")
+        return self
+
+    def _port(self, pattern):
+        found = re.search(pattern, self.status)
+        return int(found.group(1)) if found else None
+
+    def map(self):
+        """The file of the register map."""
+        text = subprocess.run([TOOL, "map", "diagram.st", "--config", "RUN.toml", "--format", "json"], cwd=self.path,
+                              check=True, capture_output=True, text=True).stdout
+        return self.write("map.json", text)
+
+    def stop(self):
+        """Ends it; what it printed, and its exit code."""
+        self.process.send_signal(signal.SIGTERM)
+        out, err = self.process.communicate(timeout=60)
+        return self.status + out + err, self.process.returncode
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.stop()
+        self.process.stdout.close()
+        self.process.stderr.close()
+        self._folder.cleanup()

@@ -1,0 +1,163 @@
+#include "runtime/web/server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/errors.hpp"
+#include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/web/web_client.hpp"
+
+namespace hysteron::runtime::web {
+namespace {
+
+using nlohmann::json;
+using test::WebClient;
+using test::WebFrame;
+using test::WebReply;
+
+constexpr const char* token = "0123456789abcdef";
+const std::string authorized = "Authorization: Bearer 0123456789abcdef\r\n";
+
+struct Bench {
+  explicit Bench(Limits limits = {}, Access access = {.token = token})
+      : server(door, {.name = "T", .period = 1'000'000},
+               {.endpoint = parse_endpoint("127.0.0.1:0"), .access = std::move(access), .limits = limits}) {}
+  static bool soon(const std::function<bool()>& holds) {
+    for (int i = 0; i < 4000 && !holds(); ++i) {
+      std::this_thread::sleep_for(milliseconds(5));
+    }
+    return holds();
+  }
+  test::MemoryDoor door{{{.name = "Y", .kind = PointKind::output, .unit = "um"},
+                         {.name = "K", .kind = PointKind::parameter, .low = 0.0, .high = 9.0, .writable = true},
+                         {.name = "task.commit", .kind = PointKind::command, .writable = true}}};
+  Server server;
+};
+
+TEST(WebServer, GivesThePageWithItsPolicy) {
+  const Bench bench;
+  const WebClient client(bench.server.port());
+  for (const auto& [target, type, text] : {std::tuple{"/", "text/html", "<!DOCTYPE html>"},
+                                           {"/page.js", "text/javascript", "use strict"},
+                                           {"/dygraph.js", "text/javascript", "Dygraph"},
+                                           {"/page.css", "text/css", "--paper"}}) {
+    const WebReply reply = client.ask("GET", target);
+    EXPECT_EQ(reply.status, 200) << target;
+    EXPECT_NE(reply.body.find(text), std::string::npos) << target;
+    EXPECT_EQ(reply.headers.at("Content-Type"), type);
+    EXPECT_TRUE(reply.headers.at("Content-Security-Policy").starts_with("default-src 'self';"));
+    EXPECT_EQ(reply.headers.at("X-Content-Type-Options"), "nosniff");
+    EXPECT_EQ(reply.headers.at("Cache-Control"), "no-store");
+    EXPECT_FALSE(reply.headers.contains("Access-Control-Allow-Origin"));
+  }
+  EXPECT_EQ(bench.server.status().accepted, 1U) << "one connection for all of them";
+  EXPECT_EQ(bench.server.status().answers, 4U);
+}
+
+TEST(WebServer, StagesAndCommitsForWhoHasTheToken) {
+  Bench bench;
+  const WebClient client(bench.server.port());
+  EXPECT_EQ(client.ask("POST", "/api/stage", authorized, R"({"K": 4.5})").status, 200);
+  EXPECT_EQ(bench.door.value(1), 4.5);
+  EXPECT_EQ(client.ask("POST", "/api/commit", authorized).status, 200);
+  EXPECT_EQ(bench.door.value(2), 1.0);
+  const WebReply refused = client.ask("POST", "/api/stage", authorized, R"({"K": 10})");
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_EQ(json::parse(refused.body)["refusal"], "K must be at most 9; 10 was given.");
+  const WebReply stranger = client.ask("POST", "/api/stage", "", R"({"K": 1})");
+  EXPECT_EQ(stranger.status, 401);
+  EXPECT_EQ(stranger.headers.at("WWW-Authenticate"), "Bearer");
+  EXPECT_EQ(bench.door.value(1), 4.5);
+  bench.door.refuse("not while the machine moves.");
+  EXPECT_EQ(json::parse(client.ask("POST", "/api/commit", authorized).body)["refusal"], "not while the machine moves.");
+}
+
+TEST(WebServer, StreamsTheValues) {
+  Bench bench({.interval = milliseconds(5)});
+  bench.door.set(0, 0.1);
+  const WebClient client(bench.server.port());
+  ASSERT_EQ(client.open_stream(), 101);
+  std::uint64_t last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto frame = client.frame();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->opcode, 1U);
+    const json values = json::parse(frame->payload);
+    EXPECT_GT(values["cycle"].get<std::uint64_t>(), last);
+    last = values["cycle"];
+    EXPECT_EQ(values["values"][0].get<double>(), 0.1);
+  }
+  EXPECT_EQ(bench.server.status().streams, 1U);
+  client.send_frame(8, std::string("\x03\xe8", 2));
+  EXPECT_TRUE(client.socket().sees_the_end());
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 0; }));
+}
+
+TEST(WebServer, BeyondTheLoopbackAStreamBeginsWithTheToken) {
+  Bench bench({.interval = milliseconds(5)}, {.is_loopback = false, .token = token});
+  const WebClient silent(bench.server.port(), milliseconds(200));
+  ASSERT_EQ(silent.open_stream(), 101);
+  EXPECT_FALSE(silent.frame()) << "nothing is shown before the token is";
+  const WebClient wrong(bench.server.port());
+  ASSERT_EQ(wrong.open_stream(), 101);
+  wrong.send_frame(1, "0123456789abcdeg");
+  const auto farewell = wrong.frame();
+  ASSERT_TRUE(farewell);
+  EXPECT_EQ(farewell->opcode, 8U);
+  EXPECT_EQ(farewell->payload.substr(0, 2), std::string("\x03\xf0", 2)) << "1008, against the policy";
+  const WebClient right(bench.server.port());
+  ASSERT_EQ(right.open_stream(), 101);
+  right.send_frame(1, token);
+  const auto frame = right.frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->opcode, 1U);
+  const WebClient reader(bench.server.port());
+  EXPECT_EQ(reader.ask("GET", "/api/values").status, 401);
+  EXPECT_EQ(reader.ask("GET", "/api/values", authorized).status, 200);
+}
+
+TEST(WebServer, AForeignPageGetsNoStream) {
+  const Bench bench;
+  EXPECT_EQ(WebClient(bench.server.port()).open_stream("Origin: http://evil.example\r\n"), 403);
+  const std::string port = std::to_string(bench.server.port());
+  EXPECT_EQ(WebClient(bench.server.port()).open_stream("Origin: http://127.0.0.1:" + port + "\r\n"), 101);
+}
+
+TEST(WebServer, TheSeventeenthStreamIsTold) {
+  Bench bench;
+  std::vector<std::unique_ptr<WebClient>> streams;
+  for (int i = 0; i < 16; ++i) {
+    streams.push_back(std::make_unique<WebClient>(bench.server.port()));
+    ASSERT_EQ(streams.back()->open_stream(), 101) << i;
+    ASSERT_TRUE(streams.back()->frame());
+  }
+  EXPECT_EQ(WebClient(bench.server.port()).open_stream(), 503);
+  streams.pop_back();
+  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().streams == 15; }));
+  EXPECT_EQ(WebClient(bench.server.port()).open_stream(), 101);
+}
+
+TEST(WebServer, APortInUseIsAnErrorWithItsNumber) {
+  Bench bench;
+  try {
+    const Server second(
+        bench.door, {},
+        {.endpoint = {.address = "127.0.0.1", .port = bench.server.port()}, .access = {.token = token}});
+    FAIL();
+  } catch (const InputError& refused) {
+    EXPECT_EQ(refused.diagnostics().all().front().number, error::port_in_use);
+  }
+  try {
+    const Server open(bench.door, {}, {.endpoint = parse_endpoint("0.0.0.0:0"), .access = {.is_loopback = false}});
+    FAIL();
+  } catch (const InputError& refused) {
+    EXPECT_EQ(refused.diagnostics().all().front().number, error::open_web_page);
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::runtime::web

@@ -1,0 +1,197 @@
+"""The live page in a browser, against a running `hysteron serve`: what a user sees, types and is told."""
+import json
+import os
+import unittest
+import urllib.request
+
+from tests.web.browser import Browser
+from tests.web.served import Served
+
+TOKEN = "a-token-of-this-test-0123456789"
+DIAGRAM = """FUNCTION_BLOCK STAGE  (* @ts 1ms *)
+  VAR_INPUT
+    SCALE : LREAL := 1.0;
+    RESET : BOOL;
+  END_VAR
+  VAR_OUTPUT
+    U : LREAL;  (* @unit V *)
+    Y : LREAL;  (* @unit um *)
+    REST : LREAL;  (* @unit um *)
+    UP : BOOL;
+  END_VAR
+  VAR
+    WAVE : HY_SINE := (AMPLITUDE := 30.0, FREQUENCY := 0.2);
+    BRANCH : HY_BRANCH;
+    HYST : HY_HYSTERESIS_RO := (C1 := 0.15, C2 := 0.01, C3 := 0.7);
+    SHARE : HY_GAIN := (K := 0.5);
+    LAG : HY_LAG := (T1 := 0.05);
+  END_VAR
+
+  BRANCH(XIN := SCALE * WAVE.XOUT, R1 := RESET);
+  HYST(XIN := SCALE * WAVE.XOUT, R1 := RESET);
+  LAG(XIN := HYST.XOUT);
+  SHARE(XIN := HYST.XOUT - LAG.XOUT);
+  U := SCALE * WAVE.XOUT;
+  Y := LAG.XOUT;
+  REST := SHARE.XOUT;
+  UP := BRANCH.Q;
+  WAVE();
+END_FUNCTION_BLOCK
+"""
+RUN_FILE = """[task]
+scheduling = "other"
+lock_memory = false
+[outputs.U]
+safe = 0.0
+[outputs.Y]
+safe = 0.0
+[outputs.REST]
+safe = 0.0
+[outputs.UP]
+safe = 0
+"""
+LIVE = "Number(document.body?.dataset.frames) > 20"
+
+
+def values_of(port):
+    """The values as the server gives them to anybody else."""
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/api/values", timeout=60) as answer:
+        return json.load(answer)
+
+
+def served(*arguments):
+    return Served(DIAGRAM, RUN_FILE, *arguments)
+
+
+@unittest.skipUnless(Browser.is_there(), "chromium is not installed: scripts/install-dependencies test")
+class LivePage(unittest.TestCase):
+    def open(self, port):
+        return self.enterContext(Browser(f"http://127.0.0.1:{port}/"))
+
+    def start(self, *arguments):
+        task = served(*arguments)
+        if "--web-token-file" in arguments:
+            task.write("token", TOKEN + "\n")
+        return self.enterContext(task)
+
+    def expect_no_fault(self, browser, port):
+        self.assertEqual(browser.faults, [])
+        own = (f"http://127.0.0.1:{port}/", f"ws://127.0.0.1:{port}/")
+        self.assertGreater(len(browser.requests), 6)
+        for address in browser.requests:
+            self.assertTrue(address.startswith(own), address)
+
+    def test_values_reach_the_page_and_no_other_host_is_asked(self):
+        port = self.start("--web", "127.0.0.1:0").web_port
+        browser = self.open(port)
+        browser.wait_for(LIVE)
+        self.assertEqual(browser.text("#title"), "STAGE")
+        self.assertEqual(browser.text("#state"), "Running")
+        cycles = "Number(document.querySelector('[data-value=\"task.cycles\"]').textContent)"
+        seen = browser.evaluate(cycles)
+        browser.wait_for(f"{cycles} > {seen} + 100")
+        self.assertGreater(values_of(port)["cycle"], seen)
+        # the diagram: the value of an input, and one within that moves
+        scale = "document.querySelector('#diagram [data-point=SCALE]').textContent"
+        self.assertEqual(browser.evaluate(scale), "1.0000")
+        wave = "document.querySelector('#diagram [data-inner]').textContent"
+        before = browser.evaluate(wave)
+        browser.wait_for(f"{wave} !== {json.dumps(before)}")
+        places = browser.evaluate("[...document.querySelectorAll('#diagram .value')].map(e => e.textContent)")
+        self.assertGreater(len(places), 10)
+        self.assertNotIn("–", places, "every place has its value")
+        # the trends: axes with names and units, and curves
+        self.assertGreater(browser.evaluate("document.querySelectorAll('.plot canvas').length"), 2)
+        trends = browser.text("#trends")
+        for label in ("U [V]", "time since the task's start [s]", "UP = "):
+            self.assertIn(label, trends)
+        inner = browser.evaluate("document.querySelectorAll('.plot').length")
+        browser.click("#diagram [data-inner]")
+        browser.wait_for(f"document.querySelectorAll('.plot').length !== {inner} || document.querySelector('.plotted')")
+        self.expect_no_fault(browser, port)
+
+    def test_without_a_token_file_the_page_is_read_only(self):
+        port = self.start("--web", "127.0.0.1:0").web_port
+        browser = self.open(port)
+        browser.wait_for(LIVE)
+        self.assertIn("Read-only", browser.text("#access"))
+        self.assertTrue(browser.evaluate("[...document.querySelectorAll('#parameters input, .tools button')].every(e => e.disabled)"))
+        self.expect_no_fault(browser, port)
+
+    def test_parameters_are_staged_refused_and_committed(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token")
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        field = 'input[data-name="LAG.T1"]'
+        now = "document.querySelector('[data-value=\"LAG.T1\"]').textContent"
+        staged = "document.querySelector('[data-staged=\"LAG.T1\"]').textContent"
+        notice = "document.getElementById('notice').textContent"
+
+        browser.type(field, "0.2")
+        browser.click("#stage")
+        browser.wait_for(f"{notice}.includes('Type the token first')")
+        browser.type("#token", "a-wrong-token-0123456789")
+        browser.click("#stage")
+        browser.wait_for(f"{notice}.includes('token is missing or wrong')")
+        self.assertEqual(browser.evaluate(staged), "")
+
+        browser.type("#token", TOKEN)
+        browser.type(field, "-3")
+        browser.click("#stage")
+        browser.wait_for(f"{notice}.startsWith('Refused: LAG.T1 must be at least 0 s; -3 was given.')")
+        self.assertTrue(browser.evaluate(f"document.querySelector('{field}').classList.contains('refused')"))
+        browser.type(field, "a lot")
+        browser.click("#stage")
+        browser.wait_for(f"{notice}.includes('is no number')")
+
+        browser.type(field, "0.2")
+        browser.click("#stage")
+        browser.wait_for(f"{staged} === '0.2'")
+        self.assertEqual(browser.evaluate(now), "0.05", "what is staged does not count yet")
+        self.assertIn("waits for a commit", browser.evaluate(notice))
+        browser.click("#commit")
+        browser.wait_for(f"{now} === '0.2' && {staged} === ''")
+        self.assertIn("Committed", browser.evaluate(notice))
+        browser.type(field, "0.3")
+        browser.click("#stage")
+        browser.wait_for(f"{staged} === '0.3'")
+        browser.click("#discard")
+        browser.wait_for(f"{staged} === ''")
+        self.assertEqual(browser.evaluate(now), "0.2")
+        # 401 and 422 are logged by the browser itself; there is nothing else
+        self.assertTrue(all(fault.get("source") == "network" for fault in browser.faults), browser.faults)
+        printed, _ = task.stop()
+        self.assertNotIn(TOKEN, printed)
+
+    def test_a_lost_connection_is_said(self):
+        task = self.start("--web", "127.0.0.1:0")
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        _, code = task.stop()
+        self.assertEqual(code, 0)
+        browser.wait_for("document.body.classList.contains('stale')")
+        self.assertIn("No connection", browser.text("#state"))
+
+    def test_beyond_the_loopback_the_token_comes_first(self):
+        task = self.start("--web", "0.0.0.0:0", "--web-token-file", "token")
+        browser = self.open(task.web_port)
+        browser.wait_for("document.getElementById('login')?.hidden === false")
+        self.assertNotIn("STAGE", browser.text("body"))
+        browser.type("#login-token", TOKEN)
+        browser.click("#login button")
+        browser.wait_for(LIVE)
+        self.assertEqual(browser.text("#title"), "STAGE")
+
+
+if __name__ == "__main__":
+    # The picture of docs/how-to/live-page.md: HYSTERON_TOOL=build/hysteron /usr/bin/python3 -m tests.web.test_page FILE.png
+    import sys
+    import time
+
+    with_token = served("--web", "127.0.0.1:0", "--web-token-file", "token")
+    with_token.write("token", TOKEN + "\n")
+    with with_token as task:
+        with Browser(f"http://127.0.0.1:{task.web_port}/", 1280, 1750) as page:
+            page.wait_for(LIVE)
+            time.sleep(12)
+            page.screenshot(sys.argv[1])

@@ -96,12 +96,15 @@ class JavaScriptClients(unittest.TestCase):
 
 
 def print_table():
-    print("| client | asked for | " + " | ".join(ORDERS) + " |")
-    print("| --- | --- | " + " | ".join("---" for _ in ORDERS) + " |")
-    for client, version in versions().items():
-        results = [tried(client, order) for order in ORDERS]
-        for name in results[0]:
-            print(f"| {client} {version} | {name} | " + " | ".join(one[name] for one in results) + " |")
+    results = {f"{client} {version}": [tried(client, order) for order in ORDERS] for client, version in versions().items()}
+    print("| asked for | " + " | ".join(results) + " |")
+    print("| --- |" + " --- |" * len(results))
+    for name in next(iter(results.values()))[0]:
+        said = []
+        for runs in results.values():
+            good = [run[name] for run in runs].count("ok")
+            said.append(f"right in {good} of {len(ORDERS)}" if good else runs[0][name])
+        print(f"| {name} | " + " | ".join(said) + " |")
 
 
 if __name__ == "__main__":

@@ -197,18 +197,20 @@ TEST_P(WebHostileFrames, EndTheirStreamAndNoOther) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, WebHostileFrames,
-    ::testing::Values(
-        BadFrame{"AnOversizedOne", [](const WebClient& one) { one.send_frame(1, std::string(1 << 20, 'a')); }},
-        BadFrame{"AnOversizedOneThatIsOnlyAnnounced",
-                 [](const WebClient& one) { one.send(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 10)); }},
-        BadFrame{"ABadText", [](const WebClient& one) { one.send_frame(1, "\xc0\xaf\xed\xa0\x80"); }},
-        BadFrame{"AnUnmaskedOne", [](const WebClient& one) { one.send_frame(1, "hello", false); }},
-        BadFrame{"AReservedBit", [](const WebClient& one) { one.send_frame(1, "hello", true, 0xF0); }},
-        BadFrame{"AReservedOpcode", [](const WebClient& one) { one.send_frame(5, "hello"); }},
-        BadFrame{"AContinuationOfNothing", [](const WebClient& one) { one.send_frame(0, "hello"); }},
-        BadFrame{"ALongPing", [](const WebClient& one) { one.send_frame(9, std::string(126, 'a')); }},
-        BadFrame{"AMessageThatNobodyAskedFor", [](const WebClient& one) { one.send_frame(1, "hello"); }},
-        BadFrame{"RequestsInsteadOfFrames", [](const WebClient& one) { one.request("GET", "/"); }}),
+    ::testing::Values(BadFrame{"AnOversizedOne",
+                               [](const WebClient& one) { one.send_frame(1, std::string(1 << 20, 'a')); }},
+                      BadFrame{"AnOversizedOneThatIsOnlyAnnounced",
+                               [](const WebClient& one) {
+                                 one.send(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff\0\0\0\0", 14));
+                               }},
+                      BadFrame{"ABadText", [](const WebClient& one) { one.send_frame(1, "\xc0\xaf\xed\xa0\x80"); }},
+                      BadFrame{"AnUnmaskedOne", [](const WebClient& one) { one.send_frame(1, "hello", false); }},
+                      BadFrame{"AReservedBit", [](const WebClient& one) { one.send_frame(1, "hello", true, 0xF0); }},
+                      BadFrame{"AReservedOpcode", [](const WebClient& one) { one.send_frame(5, "hello"); }},
+                      BadFrame{"AContinuationOfNothing", [](const WebClient& one) { one.send_frame(0, "hello"); }},
+                      BadFrame{"ALongPing", [](const WebClient& one) { one.send_frame(9, std::string(126, 'a')); }},
+                      BadFrame{"AMessageThatNobodyAskedFor", [](const WebClient& one) { one.send_frame(1, "hello"); }},
+                      BadFrame{"RequestsInsteadOfFrames", [](const WebClient& one) { one.request("GET", "/"); }}),
     [](const auto& frame) { return std::string(frame.param.name); });
 
 struct BadRequest {

@@ -19,16 +19,25 @@ S without_denormals(const S& x) {
   return select(abs(x) < S(1e-36), (x + S(1.0)) - S(1.0), x);
 }
 
-/// 1 − exp(−TS/T), the part that one sample forgets; 1 for T up to TS/64. Slow time constants go through a series,
-/// since the difference from 1 would lose their digits (in float, 1 s at 50 µs by 6e-4).
+/// 1 − exp(−u) for u ≥ 0. Small u go through a series, since the difference from 1 would lose their digits (of a lag of
+/// 1 s at 50 µs in float, 6e-4).
 template <class S>
-S forgotten_part(const S& time_constant, const S& ts) {
-  const S u = ts / max(time_constant, ts * S(0.015625));
-  const S series =
-      u * (S(1.0) - u * (S(1.0 / 2.0) -
+S decayed_part(const S& u) {
+  return either<S>(
+      u < S(0.03125),
+      [&] {
+        return u * (S(1.0) -
+                    u * (S(1.0 / 2.0) -
                          u * (S(1.0 / 6.0) - u * (S(1.0 / 24.0) -
                                                   u * (S(1.0 / 120.0) - u * (S(1.0 / 720.0) - u * S(1.0 / 5040.0)))))));
-  return select(u < S(0.03125), series, S(1.0) - exp(-u));
+      },
+      [&] { return S(1.0) - exp(-u); });
+}
+
+/// 1 − exp(−TS/T), the part that one sample forgets; 1 for T up to TS/64.
+template <class S>
+S forgotten_part(const S& time_constant, const S& ts) {
+  return decayed_part(ts / max(time_constant, ts * S(0.015625)));
 }
 
 /// D(k) from D(k−1), x(k) and x(k−1).

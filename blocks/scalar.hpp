@@ -124,6 +124,18 @@ T select(bool condition, const T& a, const T& b) {
   return condition ? a : b;
 }
 
+/// select of two values that cost much: of numbers only the chosen one is worked out, of traced scalars both are.
+template <class S, class First, class Second>
+S either(const Bool<S>& condition, const First& a, const Second& b) {
+  if constexpr (std::is_same_v<Bool<S>, bool>) {
+    return condition ? a() : b();
+  } else {
+    const S first = a();
+    const S second = b();
+    return select(condition, first, second);
+  }
+}
+
 /// Towards zero, as IEC 61131-3 TRUNC; saturates at the ends of DINT, and 0 for not-a-number, so that no input is
 /// undefined.
 template <MachineReal S>

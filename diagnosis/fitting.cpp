@@ -70,6 +70,15 @@ std::vector<std::string> Explanation::names() const {
   return names;
 }
 
+std::vector<std::string> Explanation::places() const {
+  std::vector<std::string> places;
+  for (const Applied& applied : variant.effects) {
+    places.push_back(applied.effect + "@" + applied.edge);
+  }
+  std::ranges::sort(places);
+  return places;
+}
+
 Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,
                        const KnownStarts& known_starts) {
   Explanation best{.variant = one.candidate.variant};

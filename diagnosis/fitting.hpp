@@ -14,7 +14,8 @@ namespace hysteron::diagnosis {
 struct Explanation {
   Variant variant{};
   Fit fit{};
-  [[nodiscard]] std::vector<std::string> names() const;  ///< identifiers, sorted
+  [[nodiscard]] std::vector<std::string> names() const;   ///< identifiers, sorted
+  [[nodiscard]] std::vector<std::string> places() const;  ///< identifiers with their edges, sorted
   [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
 };
 

@@ -13,64 +13,13 @@
 #include <optional>
 #include <set>
 
+#include "diagnosis/drivers.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/spectrum.hpp"
 #include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
-
-/// The extents of the signals at the candidates' inputs; those of one edge once.
-class Extents {
- public:
-  Extents(const Task& task, const VectorXd& at) : task_(task), known_(at.head(std::ssize(task.known))) {}
-
-  void measure(const std::vector<Candidate>& candidates, unsigned threads) {
-    std::map<std::string, const Candidate*> first;
-    for (const Candidate& candidate : candidates) {
-      if (candidate.input.from != Wire::From::Nothing) {
-        first.emplace(candidate.family, &candidate);
-      }
-    }
-    const std::vector<std::pair<std::string, const Candidate*>> list(first.begin(), first.end());
-    std::vector<Signals> found(list.size());
-    in_parallel(list.size(), threads, [&](std::size_t i) {
-      const Candidate& candidate = *list[i].second;
-      std::vector<Wire> wires{candidate.input};
-      if (!candidate.auxiliary.empty()) {
-        wires.push_back(candidate.auxiliary.front());
-      }
-      std::vector<RecordSignals> values = wire_signals(task_, *candidate.variant.program, wires, known_);
-      const double sample_time = task_.records.front().sample_time();
-      found[i].input_values = std::move(values.front());
-      found[i].input = extent_of(found[i].input_values, sample_time);
-      if (values.size() > 1) {
-        found[i].auxiliary_values = std::move(values.back());
-        found[i].auxiliary = extent_of(*found[i].auxiliary_values, sample_time);
-      }
-    });
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      signals_.emplace(list[i].first, std::move(found[i]));
-    }
-  }
-
-  struct Signals {
-    RecordSignals input_values{};
-    Extent input{};
-    std::optional<RecordSignals> auxiliary_values{};
-    std::optional<Extent> auxiliary{};
-  };
-
-  [[nodiscard]] const Signals* find(const Candidate& candidate) const {
-    const auto found = signals_.find(candidate.family);
-    return found == signals_.end() ? nullptr : &found->second;
-  }
-
- private:
-  const Task& task_;
-  VectorXd known_;
-  std::map<std::string, Signals> signals_{};
-};
 
 /// So many of the best fits of a round go to the end in any case.
 constexpr std::size_t finished_always = 6;
@@ -85,6 +34,11 @@ constexpr std::size_t stride = 3;
 /// What a fit has to gain, in nats, to be followed further: a verdict asks for 6 beyond the penalties, which are as
 /// many.
 constexpr double more_than_chance = 10.0;
+
+/// A pair whose cost is below so many of the floor's is not tried with another effect in the place of one.
+constexpr double well_closed = 1.3;
+/// An exchange has to bring the cost below this share of what it was for another one to follow.
+constexpr double worth_exchanging = 0.95;
 
 /// Costs above this many of the floor's are a gap, however little one effect alone gains on it.
 constexpr double surely_a_gap = 2.0;
@@ -142,6 +96,9 @@ class Searcher {
       if (round > 0) {
         without_each(found, result);
       }
+      if (round == 1) {
+        exchange(found, result);
+      }
       beam = next_beam(found, result, round == 0 ? options_.beam : 1);
       std::ranges::move(found, std::back_inserter(result.explanations));
     }
@@ -176,12 +133,13 @@ class Searcher {
     return hints;
   }
 
+  /// To a set every effect more is added; `found` gets the best.
   void expand(const Explanation& from, std::size_t fitted, Search& result, std::vector<Explanation>& found) {
+    expanded_.insert(from.places());
     std::vector<Candidate> candidates = candidates_of(from.variant, top_, options_.candidates);
-    Extents extents(task_, from.fit.x);
-    extents.measure(candidates, options_.threads);
+    const Drivers drivers(task_, candidates, from.fit.x.head(std::ssize(task_.known)), options_.threads);
     for (std::size_t i = 0, count = candidates.size(); i < count; ++i) {
-      const Extents::Signals* const signals = extents.find(candidates[i]);
+      const Driven* const signals = drivers.find(candidates[i]);
       if (signals != nullptr) {
         std::ranges::move(other_guesses(candidates[i], signals->input), std::back_inserter(candidates));
       }
@@ -197,7 +155,7 @@ class Searcher {
     std::vector<Grids> grids(candidates.size());
     std::atomic<std::size_t> done{0};
     in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
-      const Extents::Signals* const signals = extents.find(candidates[i]);
+      const Driven* const signals = drivers.find(candidates[i]);
       if (signals == nullptr || !(signals->input.range() >= 0.0) || must_stop()) {
         return;
       }
@@ -349,6 +307,29 @@ class Searcher {
     std::ranges::move(reduced, std::back_inserter(found));
   }
 
+  /// Each effect of the best pair in turn gives its place to any other: what was found first may have stood in for two,
+  /// and is not what fits best beside the other one. It goes on while that helps.
+  void exchange(std::vector<Explanation>& found, Search& result) {
+    const auto best_cost = [&] {
+      return std::ranges::min(found, {}, [](const Explanation& one) { return one.fit.cost; }).fit.cost;
+    };
+    for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
+      const double cost = best_cost();
+      if (cost <= well_closed * floor_cost_ || cost > worth_exchanging * before) {
+        return;
+      }
+      before = cost;
+      const Explanation best =
+          *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
+      for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
+        Explanation rest = without(best, i, result.calibrated.variant);
+        if (std::isfinite(rest.fit.cost) && expanded_.insert(rest.places()).second) {
+          expand(rest, options_.fitted_later, result, found);
+        }
+      }
+    }
+  }
+
   /// A set without one of its effects, built anew on the bare diagram and fitted from where it stood.
   [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare) const {
     Explanation result{.variant = bare};
@@ -457,6 +438,7 @@ class Searcher {
   double floor_cost_;
   double nominal_cost_ = 0.0;
   bool can_stop_ = false;
+  std::set<std::vector<std::string>> expanded_{};
   KnownStarts known_starts_{};
   bool about_nominal_ = true;
   const SearchOptions& options_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -103,6 +104,7 @@ int run(StepProgram& program, const HostProgram& host, std::span<const char* con
 }  // namespace
 
 int host_program(StepProgram& program, const HostProgram& host, int argc, const char* const* argv) {
+  (void)std::signal(SIGPIPE, SIG_IGN);  // whoever reads what it prints may go: the task stays
   try {
     return run(program, host, {argv, static_cast<std::size_t>(argc)});
   } catch (const InputError& refused) {

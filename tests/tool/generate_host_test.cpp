@@ -83,7 +83,7 @@ class Beside {
     }
     return line;
   }
-  /// Ends it by SIGTERM; its exit code.
+  /// Ends it by SIGTERM; its exit code. Nobody reads any more what it says at its end.
   int end() {
     ::kill(process_, SIGTERM);
     const int status = ::pclose(std::exchange(stream_, nullptr));

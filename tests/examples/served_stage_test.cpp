@@ -44,12 +44,14 @@ TEST(ServedStage, IsDrivenReplayedAndDiagnosed) {
   const auto y = column(record, "Y");
   const auto ref = column(record, "REF");
   EXPECT_LT(rms(column(record, "ERR")), 0.02 * range(ref));
-  // Every answer is of its own cycle: the stage's model, played once more by the recorded voltages.
+  // In every cycle the sensor is read, then the voltage of the cycle before is written: the model alone gives the same
+  // bits, two cycles behind the voltage.
   simulated::Stage stage;
   const auto u = column(record, "U");
-  for (std::size_t k = 0; k < u.size(); ++k) {
+  EXPECT_EQ(y[0], stage.reading());
+  for (std::size_t k = 1; k < u.size(); ++k) {
     ASSERT_EQ(y[k], stage.reading()) << k;
-    stage.advance(u[k]);
+    stage.advance(u[k - 1]);
   }
   if (run("command -v gnuplot > " + folder / "where") == 0) {
     EXPECT_THAT(contents_of(folder / "out/08_served_stage.png"), StartsWith("\x89PNG"));

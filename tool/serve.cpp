@@ -31,7 +31,8 @@ constexpr std::string_view examples = R"(Examples:
 
 RUN.toml says how outputs become safe, and what watches, keeps, records and serves the task. On the virtual clock time
 passes as fast as the steps do, with the same bits. The live page shows trends, the diagram with its values, parameters
-and cycles in a browser; it changes parameters only for who has the token of a file that its owner alone may read. SIGTERM and Ctrl-C bring the outputs to their safe values and end it.
+and cycles in a browser; it changes parameters only for who has the token of a file that its owner alone may read.
+SIGTERM and Ctrl-C bring the outputs to their safe values and end it.
 Exit codes: 0 it ran and ended as asked; 1 a fault ended it or was there at its end; 2 an error in the diagram, the
 parameters, the run file, or what the run file names.
 )";

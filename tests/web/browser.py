@@ -68,7 +68,7 @@ class Browser:
         end = time.monotonic() + PATIENCE
         while not (value := self.evaluate(expression)):
             if time.monotonic() > end:
-                raise AssertionError(f"never true: {expression}; the page says {self.text('body')}; faults: {self.faults}")
+                raise AssertionError(f"never true: {expression}; the page says {self.text('body')}; faults: {self.faults[:5]}")
             time.sleep(0.05)
         return value
 
@@ -81,7 +81,8 @@ class Browser:
         self._ask("Input.insertText", text=text)
 
     def click(self, selector):
-        self.evaluate(f"document.querySelector({json.dumps(selector)}).click()")
+        press = "new MouseEvent('click', { bubbles: true, cancelable: true })"
+        self.evaluate(f"document.querySelector({json.dumps(selector)}).dispatchEvent({press})")
 
     def screenshot(self, file):
         data = self._ask("Page.captureScreenshot", format="png")["data"]
@@ -109,9 +110,9 @@ class Browser:
         elif method == "Network.webSocketCreated":
             self.requests.append(parameters["url"])
         elif method == "Runtime.exceptionThrown":
-            self.faults.append(parameters["exceptionDetails"])
+            self.faults.append({"source": "script", "text": parameters["exceptionDetails"].get("text")})
         elif method == "Log.entryAdded":
-            self.faults.append(parameters["entry"])
+            self.faults.append({name: parameters["entry"].get(name) for name in ("source", "text", "url")})
 
     def _receive(self):
         while b"\0" not in self._buffer:

@@ -12,7 +12,7 @@ let parameters = [];  // {point, now, staged, input}
 let live = [];        // {element, of: "values" or "inner", at, type, unit}
 let statusRows = [];  // {cell, at}
 let readToken = "";
-let lastCycle = null, lastTime = 0, rate = null, heard = 0, frames = 0;
+let heard = 0, frames = 0;
 
 function add(parent, name, properties) {
   return parent.appendChild(Object.assign(document.createElement(name), properties));
@@ -88,7 +88,8 @@ function markPlotted() {
 
 function buildTrends() {
   const own = description.points.map((point, at) => ({ ...point, key: "values" + at }))
-    .filter(point => point.kind === "input" || point.kind === "output");
+    .filter(point => point.kind === "input" || point.kind === "output")
+    .sort((a, b) => (a.type === "boolean") - (b.type === "boolean") || (a.kind === "input") - (b.kind === "input"));
   const inner = description.inner.map((signal, at) => ({ ...signal, key: "inner" + at }));
   trends = new Trends(place("trends"), [...own, ...inner]);
   trends.choose(own.slice(0, 8).map(signal => signal.key));
@@ -127,9 +128,6 @@ function buildCycles() {
   const body = place("cycles").tBodies[0];
   body.textContent = "";
   statusRows = [];
-  const rateRow = add(body, "tr", {});
-  add(rateRow, "th", { textContent: "cycles a second, measured here", scope: "row" });
-  add(rateRow, "td", { className: "number", id: "rate" });
   description.points.forEach((point, at) => {
     if (point.kind !== "status") return;
     const row = add(body, "tr", {});
@@ -171,7 +169,6 @@ function showStatus(values) {
     const value = values[at];
     cell.textContent = names ? names[value] : point.unit === "ns" ? `${(value / 1000).toFixed(1)} µs` : String(value);
   }
-  place("rate").textContent = rate === null ? "–" : rate.toFixed(rate < 100 ? 1 : 0);
 }
 
 function showParameters(values, staged) {
@@ -188,10 +185,7 @@ function showParameters(values, staged) {
 }
 
 function show(frame) {
-  const now = performance.now();
-  if (lastCycle !== null && now - lastTime >= 1000) rate = (frame.cycle - lastCycle) * 1000 / (now - lastTime);
-  if (lastCycle === null || now - lastTime >= 1000 || frame.cycle < lastCycle) [lastCycle, lastTime] = [frame.cycle, now];
-  heard = now;
+  heard = performance.now();
   for (const { element, of, at, type, unit } of live) element.textContent = shown(frame[of][at], type) + unit;
   showState(frame.values);
   showStatus(frame.values);

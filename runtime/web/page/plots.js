@@ -5,6 +5,12 @@ const span = 60;        // seconds that are shown
 const redraws = 200;    // milliseconds between two drawings
 const mostRows = 1300;  // a little more than the span at 20 values a second
 
+// dygraphs' own legend writes styles into the page, which the page's policy forbids, even where it is not shown.
+Dygraph.PLUGINS = Dygraph.PLUGINS.filter(plugin => plugin !== Dygraph.Plugins.Legend);
+
+const truths = "TRUE is 1";
+const truthTicks = [{ v: 0, label: "FALSE" }, { v: 1, label: "TRUE" }];
+
 // Of Okabe and Ito.
 const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
@@ -43,6 +49,7 @@ class Trends {
     if (last && time === last[0]) return;
     this.rows.push([time, ...values]);
     if (this.rows.length > mostRows) this.rows.splice(0, this.rows.length - mostRows);
+    this.write();
   }
 
   choose(keys) {
@@ -62,7 +69,7 @@ class Trends {
     const groups = new Map();
     this.signals.forEach((signal, index) => {
       if (!this.chosen.has(signal.key)) return;
-      const group = signal.type === "boolean" ? "TRUE is 1" : signal.unit;
+      const group = signal.type === "boolean" ? truths : signal.unit;
       groups.set(group, [...(groups.get(group) || []), index]);
     });
     let colour = 0;
@@ -86,7 +93,8 @@ class Trends {
     });
     const area = this.host.appendChild(document.createElement("div"));
     area.className = "plot";
-    const isTruth = group === "TRUE is 1";
+    const isTruth = group === truths;
+    area.classList.toggle("truths", isTruth);
     const names = members.map(([index]) => this.signals[index].name);
     const graph = new Dygraph(area, this.columns(members), {
       labels: ["t", ...members.map(([index]) => this.signals[index].key)],
@@ -101,7 +109,7 @@ class Trends {
       animatedZooms: false,
       gridLineColor: "rgba(128, 128, 128, .28)",
       axisLineColor: "rgba(128, 128, 128, .9)",
-      axes: { y: { axisLabelWidth: 66 } },
+      axes: { y: isTruth ? { axisLabelWidth: 66, ticker: () => truthTicks } : { axisLabelWidth: 66 } },
       yRangePad: 12,
       zoomCallback: (low, high) => { this.window = [low, high]; },
       highlightCallback: (event, x, points, row) => { this.pointed = x; },
@@ -116,16 +124,21 @@ class Trends {
     return rows.length > 0 ? rows : [[0, ...members.map(() => null)]];
   }
 
-  draw() {
+  // The newest values, or those under the pointer, beside their names.
+  write() {
     const newest = this.rows[this.rows.length - 1];
-    if (!newest) return;
     const at = this.pointed === null ? newest : this.rows.find(row => row[0] >= this.pointed) || newest;
-    const view = this.window || [Math.max(this.rows[0][0], newest[0] - span), Math.max(newest[0], this.rows[0][0] + 1)];
-    for (const { graph, members, values } of this.plots) {
+    for (const { members, values } of this.plots) {
       members.forEach(([index], k) => {
         values[k].textContent = shown(at[1 + index], this.signals[index].type);
       });
-      graph.updateOptions({ file: this.columns(members), dateWindow: view });
     }
+  }
+
+  draw() {
+    const newest = this.rows[this.rows.length - 1];
+    if (!newest) return;
+    const view = this.window || [Math.max(this.rows[0][0], newest[0] - span), Math.max(newest[0], this.rows[0][0] + 1)];
+    for (const { graph, members } of this.plots) graph.updateOptions({ file: this.columns(members), dateWindow: view });
   }
 }

@@ -201,7 +201,7 @@ std::string with_head(std::string_view comment, const std::string& from, std::st
 }  // namespace
 
 std::vector<GeneratedFile> generate_host(const Program& program, const HostRequest& request) {
-  const auto name = lower_identifier(program.graph.name);
+  const auto name = namespace_identifier(program.graph.name);
   const auto unit = "hysteron-" + name;
   // The shape of the compiled engine: a host understands what `hysteron serve`
   // retained and recorded with it.

@@ -90,16 +90,30 @@ std::vector<Signal> run(const Program& program, const Drive& drive, const std::v
 
 }  // namespace
 
-bool has_default(const Graph& graph, const Port& input) {
-  for (const language::FunctionBlock& block : graph.source->blocks) {
-    for (const language::Variable& variable : block.variables) {
-      if (variable.name.span.offset == input.span.offset) {
-        return variable.initial != language::no_expression;
-      }
+namespace {
+
+/// As @ts takes it: 50us, 1ms, 1s.
+std::string duration_text(double seconds) {
+  const long long nanoseconds = std::llround(std::min(seconds * 1e9, 9e18));
+  for (const auto& [unit, size] : {std::pair{"s", 1'000'000'000LL}, {"ms", 1'000'000LL}, {"us", 1'000LL}}) {
+    if (nanoseconds % size == 0) {
+      return fmt::format("{}{}", nanoseconds / size, unit);
     }
   }
-  return false;
+  return fmt::format("{}ns", nanoseconds);
 }
+
+/// A record that is slower by just a thousand or a million was most likely not written in seconds.
+std::string unit_advice(double ratio) {
+  for (const auto& [name, factor] : {std::pair{"milliseconds", 1e3}, {"microseconds", 1e6}}) {
+    if (std::abs(ratio / factor - 1.0) < 0.01) {
+      return fmt::format("if its column t is in {}, divide it by {:.0f}: times are in seconds. Else ", name, factor);
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 std::string type_fault(Type type, double value) {
   switch (type) {
@@ -174,8 +188,8 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
   diagnostics.error(error::sample_time_mismatch, {.file = record.file()},
                     fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded),
                                 graph.name, number_text(stated)),
-                    fmt::format("state @ts {}ns in the diagram, or resample the record to {} s.",
-                                std::llround(std::min(recorded * 1e9, 9e18)), number_text(stated)));
+                    fmt::format("{}state @ts {} in the diagram, or resample the record to {} s.",
+                                unit_advice(recorded / stated), duration_text(recorded), number_text(stated)));
 }
 
 std::vector<Signal> interpret(const Program& program, const Drive& drive, const std::vector<Wire>& watched,

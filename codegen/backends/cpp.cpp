@@ -26,12 +26,23 @@ void append(std::string& text, const Parts&... parts) {
   (text.append(parts), ...);
 }
 
+/// A comment to the end of its line. A line break in the text would end it; a backslash at the end would draw the next
+/// line into it.
 void append_comment(std::string& text, std::string_view unit, std::string_view meaning) {
   const bool has_unit = !unit.empty() && unit.find('\'') == std::string_view::npos;
   if (has_unit) {
-    append(text, "  // [", unit, "]", meaning.empty() ? "" : " ", meaning);
+    append(text, "  // [", unit, "]", meaning.empty() ? "" : " ");
   } else if (!meaning.empty()) {
-    append(text, "  // ", meaning);
+    append(text, "  // ");
+  }
+  const std::size_t begin = text.size();
+  append(text, meaning);
+  std::replace_if(
+      text.begin() + static_cast<std::ptrdiff_t>(begin), text.end(),
+      [](char letter) { return letter == '\n' || letter == '\r'; }, ' ');
+  const std::size_t last = text.find_last_not_of(' ');
+  if (last >= begin && last < text.size() && text[last] == '\\') {
+    text += '.';
   }
 }
 
@@ -70,7 +81,7 @@ class CppHeader {
     auto before = std::async(std::launch::async, [this] { return declarations(); });
     std::string text = functions();
     text.insert(0, before.get());
-    return {lower_identifier(graph_.name) + ".hpp", std::move(text)};
+    return {namespace_identifier(graph_.name) + ".hpp", std::move(text)};
   }
 
  private:
@@ -88,7 +99,7 @@ class CppHeader {
       }
       return groups[number];
     };
-    const auto field_name = [&](std::string_view name) { return fields_[fields_.add(lower_identifier(name)).number]; };
+    const auto field_name = [&](std::string_view name) { return fields_[fields_.add(field_identifier(name)).number]; };
     for (const Parameter& parameter : graph_.parameters) {
       const auto dot = parameter.path.rfind('.');
       if (dot == std::string::npos) {
@@ -123,7 +134,7 @@ class CppHeader {
 
   std::string declarations() const {
     std::string text = banner();
-    append(text, includes(), "namespace ", lower_identifier(graph_.name),
+    append(text, includes(), "namespace ", namespace_identifier(graph_.name),
            " {\n\nusing Real = ", options_.float32 ? "float" : "double",
            ";\n\ninline constexpr Real sample_time = ", expressions_.literal(Type::Real, graph_.sample_time()),
            ";  // s\n\n");
@@ -321,7 +332,7 @@ class CppHeader {
       CppExpressions::print_cell(expressions_.cells[routine_.counter], counter);
       append(text, fmt::format("  {0} = {0} + 1 < {1} ? {0} + 1 : 0;\n", counter, routine_.longest_period));
     }
-    append(text, "  return out;\n}\n\n}  // namespace ", lower_identifier(graph_.name), "\n");
+    append(text, "  return out;\n}\n\n}  // namespace ", namespace_identifier(graph_.name), "\n");
     return text;
   }
 

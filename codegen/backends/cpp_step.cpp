@@ -91,7 +91,7 @@ GeneratedFile generate_cpp_step(const Program& program) {
       getters += fmt::format("    case {}:\n      return static_cast<double>({});\n", index, target);
     }
   }
-  const auto name = lower_identifier(graph.name);
+  const auto name = namespace_identifier(graph.name);
   return {name + "_step.cpp",
           fmt::format(fmt::runtime(text_of_step), fmt::arg("name", name), fmt::arg("inputs", inputs),
                       fmt::arg("outputs", outputs), fmt::arg("setters", setters), fmt::arg("getters", getters))};

@@ -1,12 +1,14 @@
 // Words that an identifier of generated C++ may not be: keywords, and the names that the generated text uses itself.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
 namespace hysteron {
 
-inline constexpr auto cpp_words = std::to_array<std::string_view>(
+/// Also errno, unix and linux, which are macros.
+inline constexpr auto cpp_keywords = std::to_array<std::string_view>(
     {"alignas",     "alignof",   "and",        "and_eq",    "asm",      "auto",         "bitand",
      "bitor",       "bool",      "break",      "case",      "catch",    "char",         "char8_t",
      "char16_t",    "char32_t",  "class",      "compl",     "concept",  "const",        "consteval",
@@ -20,7 +22,16 @@ inline constexpr auto cpp_words = std::to_array<std::string_view>(
      "static_cast", "struct",    "switch",     "template",  "this",     "thread_local", "throw",
      "true",        "try",       "typedef",    "typeid",    "typename", "union",        "unsigned",
      "using",       "virtual",   "void",       "volatile",  "wchar_t",  "while",        "xor",
-     "xor_eq",      "std",       "in",         "out",       "state",    "params",       "detail",
-     "main",        "errno"});
+     "xor_eq",      "errno",     "unix",       "linux"});
+
+/// What the generated text calls its own.
+inline constexpr auto cpp_own_words =
+    std::to_array<std::string_view>({"std", "in", "out", "state", "params", "detail", "main"});
+
+inline constexpr auto cpp_words = [] {
+  std::array<std::string_view, cpp_keywords.size() + cpp_own_words.size()> words;
+  std::ranges::copy(cpp_own_words, std::ranges::copy(cpp_keywords, words.begin()).out);
+  return words;
+}();
 
 }  // namespace hysteron

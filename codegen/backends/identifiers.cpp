@@ -1,6 +1,10 @@
 #include "codegen/backends/identifiers.hpp"
 
 #include <algorithm>
+#include <unordered_set>
+
+#include "codegen/backends/c_library_names.hpp"
+#include "codegen/backends/cpp_words.hpp"
 
 namespace hysteron {
 namespace {
@@ -34,10 +38,26 @@ void append_lower(std::string& text, std::initializer_list<std::string_view> par
 
 }  // namespace
 
-std::string lower_identifier(std::string_view name) {
+std::string field_identifier(std::string_view name) {
   std::string text;
   append_lower(text, {name});
-  return text;
+  return std::ranges::find(cpp_keywords, text) == cpp_keywords.end() ? text : text + "_2";
+}
+
+std::string namespace_identifier(std::string_view name) {
+  static const std::unordered_set<std::string_view> taken = [] {
+    std::unordered_set<std::string_view> words(cpp_keywords.begin(), cpp_keywords.end());
+    words.insert(cpp_own_words.begin(), cpp_own_words.end());
+    for (std::string_view rest = c_library_names; !rest.empty();) {
+      const auto length = std::min(rest.find_first_of(" \n"), rest.size());
+      words.insert(rest.substr(0, length));
+      rest.remove_prefix(std::min(length + 1, rest.size()));
+    }
+    return words;
+  }();
+  std::string text;
+  append_lower(text, {name});
+  return taken.contains(text) ? text + "_2" : text;
 }
 
 std::string_view Identifiers::make(std::initializer_list<std::string_view> parts) {

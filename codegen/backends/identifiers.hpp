@@ -31,7 +31,10 @@ class Identifiers {
   std::string text_;                        ///< of the identifier that is being made
 };
 
-/// A name in lower case, with anything but letters and digits made an underscore.
-std::string lower_identifier(std::string_view name);
+/// A name in lower case, with anything but letters and digits made an underscore; numbered where it is a keyword.
+std::string field_identifier(std::string_view name);
+
+/// The same for the namespace of a diagram, which the C library's names must not be either.
+std::string namespace_identifier(std::string_view name);
 
 }  // namespace hysteron

@@ -24,6 +24,10 @@ constexpr std::array<std::string_view, 8> variable_keys{"unit",    "min", "max",
                                                         "neutral", "doc", "every", "phase"};
 constexpr std::array<std::string_view, 3> block_keys{"ts", "effect", "doc"};
 
+/// The most that a block may hold, and the most levels of blocks in blocks.
+constexpr std::uint64_t most_instances = 2'000'000;
+constexpr std::uint32_t most_levels = 1000;
+
 std::string known_keys(std::span<const std::string_view> keys) {
   std::string text;
   for (const auto key : keys) {
@@ -86,6 +90,7 @@ class Reader {
       read(definition);
     }
     sort_by_calls();
+    limit_size();
   }
 
  private:
@@ -118,6 +123,11 @@ class Reader {
     definition.by_name.reserve(definition.block->variables.size());
     for (const Variable& variable : definition.block->variables) {
       check_name(variable.name);
+      if (find_block_type(variable.name.text) != nullptr) {
+        error(error::reserved_name, variable.name.span,
+              fmt::format("'{}' is a block of the library", variable.name.text),
+              "Choose another name; names that begin with HY_ belong to the library.");
+      }
       if (!definition.by_name
                .emplace(upper(variable.name.text), static_cast<std::uint32_t>(definition.variables.size()))
                .second) {
@@ -309,6 +319,41 @@ class Reader {
           marks[declared.definition] = Mark::Open;
           stack.push_back({declared.definition, 0});
         }
+      }
+    }
+  }
+
+  /// Hierarchy is flattened: blocks that hold two of each other, thirty times over, would be 2^30 instances. Reported
+  /// where the bound is first passed.
+  void limit_size() {
+    struct Size {
+      std::uint64_t instances = 0;
+      std::uint32_t levels = 1;
+    };
+    std::vector<Size> sizes(definitions_.list.size());
+    for (const std::uint32_t index : definitions_.callees_first) {
+      Size& size = sizes[index];
+      for (const Declared& declared : definitions_.list[index].variables) {
+        if (declared.kind == Declared::Kind::LibraryBlock) {
+          ++size.instances;
+        } else if (declared.kind == Declared::Kind::UserBlock) {
+          const Size& inner = sizes[declared.definition];
+          size.instances += 1 + inner.instances;
+          size.levels = std::max(size.levels, inner.levels + 1);
+        }
+      }
+      if (size.instances > most_instances || size.levels > most_levels) {
+        const language::Name& name = definitions_.list[index].block->name;
+        const bool many = size.instances > most_instances;
+        error(error::nested_too_deeply, name.span,
+              many ? fmt::format("'{}' with all blocks inside it has {} instances; {} are the most", name.text,
+                                 size.instances, most_instances)
+                   : fmt::format("blocks are nested {} levels deep in '{}'; {} are the most", size.levels, name.text,
+                                 most_levels),
+              many ? "Every instance of a block brings all instances inside it: use fewer of them."
+                   : "Put what is inside into fewer blocks.");
+        std::ranges::for_each(definitions_.list, [](Definition& one) { one.usable = false; });
+        return;
       }
     }
   }

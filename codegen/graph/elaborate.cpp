@@ -136,7 +136,8 @@ void Elaborator::instantiate(const Instance& instance, std::size_t variable, Par
   const std::string path = instance.path + std::string(declared.field.name);
   switch (declared.kind) {
     case Declared::Kind::Constant:
-      slot = {.wire = builder_.literal(declared.field.type, declared.field.preset), .driven = true};
+      slot = {.wire = builder_.literal(declared.field.type, declared.field.preset, declared.field.unit),
+              .driven = true};
       break;
     case Declared::Kind::LibraryBlock:
       part.node = builder_.block(*declared.block, path, rate, declared.variable->name.span);
@@ -339,7 +340,8 @@ void Elaborator::close(const Instance& instance, std::size_t variable, const Par
         break;
       }
       if (declared.has_preset) {
-        slot = {.wire = builder_.literal(declared.field.type, declared.field.preset), .driven = true};
+        slot = {.wire = builder_.literal(declared.field.type, declared.field.preset, declared.field.unit),
+                .driven = true};
       } else {
         error(error::undriven_output, declared.variable->name.span,
               fmt::format("nothing is assigned to '{}'", declared.field.name),

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
+#include <utility>
 
 #include "support/errors.hpp"
 
@@ -44,16 +47,16 @@ std::vector<std::uint32_t> order_by_path(const Range& range, Path path) {
 
 class Finisher {
  public:
-  Finisher(Graph& graph, const std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics)
+  Finisher(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics)
       : graph_(graph), slots_(slots), parameters_(parameters), diagnostics_(diagnostics) {}
 
   void run() {
     for (Port& inner : graph_.inner) {
-      const language::Span driven = slots_[inner.wire.index].span;
-      inner.span = driven.length > 0 ? driven : inner.span;
+      if (inner.wire.from == Wire::From::Alias && slots_[inner.wire.index].span.length > 0) {
+        inner.span = slots_[inner.wire.index].span;
+      }
     }
     for_each_wire([&](Wire& wire) { wire = follow(wire); });
-    std::erase_if(graph_.inner, [](const Port& inner) { return inner.wire.from == Wire::From::Literal; });
     sort_nodes();
     sort_parameters();
     settle_rates();
@@ -74,19 +77,24 @@ class Finisher {
     }
   }
 
-  Wire follow(Wire wire) {
-    std::size_t steps = 0;
-    while (wire.from == Wire::From::Alias) {
-      const Slot& slot = slots_[wire.index];
-      if (++steps > slots_.size()) {
+  /// What drives a wire. Every variable on the way remembers it: chains of variables are followed once.
+  Wire follow(const Wire& wire) {
+    Wire source = wire;
+    for (std::size_t steps = 0; source.from == Wire::From::Alias; ++steps) {
+      const Slot& slot = slots_[source.index];
+      if (steps > slots_.size()) {
         diagnostics_.error(error::algebraic_loop, graph_.place(slot.span),
                            "variables are assigned to each other in a circle",
                            "Assign one of them from an input or from the output of an instance.");
-        return {};
+        source = {};
+        break;
       }
-      wire = slot.wire;
+      source = slot.wire;
     }
-    return wire;
+    for (Wire passed = wire; passed.from == Wire::From::Alias;) {
+      passed = std::exchange(slots_[passed.index].wire, source);
+    }
+    return source;
   }
 
   void sort_nodes() {
@@ -120,16 +128,32 @@ class Finisher {
     canonical_literals();
   }
 
-  // Literals in the order of the wires that use them, so that nothing remembers the order of the text.
+  // Literals in the order of the wires that use them, so that nothing remembers the order of the text. Constants keep
+  // their units; a variable that stands for a plain number has nothing to be checked.
   void canonical_literals() {
+    std::unordered_map<std::uint32_t, std::string> units;
+    for (const Port& inner : graph_.inner) {
+      if (inner.name.empty()) {
+        units.emplace(inner.wire.index, inner.unit);
+      }
+    }
+    std::erase_if(graph_.inner, [&](const Port& inner) {
+      return inner.name.empty() ||
+             (inner.wire.from == Wire::From::Literal && units.find(inner.wire.index) == units.end());
+    });
     std::vector<double> literals;
+    std::vector<Port> constants;
     for_each_wire([&](Wire& wire) {
       if (wire.from == Wire::From::Literal) {
-        literals.push_back(graph_.literals[wire.index]);
-        wire.index = static_cast<std::uint32_t>(literals.size() - 1);
+        const std::uint32_t old = std::exchange(wire.index, static_cast<std::uint32_t>(literals.size()));
+        literals.push_back(graph_.literals[old]);
+        if (const auto unit = units.find(old); unit != units.end()) {
+          constants.push_back({.unit = unit->second, .type = wire.type, .wire = wire});
+        }
       }
     });
     graph_.literals = std::move(literals);
+    std::ranges::move(constants, std::back_inserter(graph_.inner));
   }
 
   void sort_parameters() {
@@ -168,33 +192,63 @@ class Finisher {
       case Wire::From::Input:
         return Rate{};
       case Wire::From::Node:
-        if (graph_.nodes[wire.index].block == nullptr) {
-          settle_operation(wire.index);
-          return constant_[wire.index] ? std::nullopt : std::optional(graph_.nodes[wire.index].rate);
-        }
-        return graph_.nodes[wire.index].rate;
+        settle_operation(wire.index);
+        return constant_[wire.index] ? std::nullopt : std::optional(graph_.nodes[wire.index].rate);
       default:
         return std::nullopt;
     }
   }
 
+  /// Gives an operation the rate of its operands, and before it those that are operations themselves. A chain of them
+  /// may be as long as the diagram: hence a stack of our own.
   void settle_operation(std::uint32_t index) {
-    if (settled_[index]) {
-      return;
+    std::vector<std::uint32_t> open{index};
+    while (!open.empty()) {
+      const std::uint32_t top = open.back();
+      if (graph_.nodes[top].block != nullptr || settled_[top] == Settled::Yes) {
+        open.pop_back();
+        continue;
+      }
+      if (settled_[top] == Settled::Open) {
+        settle_by_operands(top);
+        settled_[top] = Settled::Yes;
+        open.pop_back();
+        continue;
+      }
+      settled_[top] = Settled::Open;  // set first: a loop of operations is reported by the scheduler
+      for (std::uint32_t pin = 0; pin < graph_.nodes[top].wire_count; ++pin) {
+        const Wire& wire = graph_.wires[graph_.nodes[top].first_wire + pin];
+        if (wire.from == Wire::From::Node && settled_[wire.index] == Settled::No) {
+          open.push_back(wire.index);
+        }
+      }
     }
-    settled_[index] = true;  // set first: a loop of operations is reported by the scheduler
+  }
+
+  void settle_by_operands(std::uint32_t index) {
     Node& node = graph_.nodes[index];
     std::optional<Rate> rate;
     for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
-      const auto one = rate_of(graph_.wires[node.first_wire + pin]);
+      const Wire& wire = graph_.wires[node.first_wire + pin];
+      std::optional<Rate> one;
+      if (wire.from == Wire::From::Input) {
+        one = Rate{};
+      } else if (wire.from == Wire::From::Node && !constant_[wire.index]) {
+        one = graph_.nodes[wire.index].rate;
+      }
       if (one && rate && *one != *rate) {
-        report(node.span, fmt::format("an expression mixes signals of two rates (every {} and every {} steps)",
-                                      rate->every, one->every));
+        report(node.span, fmt::format("an expression mixes signals of two rates ({} and {})", steps_of(rate->every),
+                                      steps_of(one->every)));
       }
       rate = rate ? rate : one;
     }
     constant_[index] = !rate;
     node.rate = rate.value_or(Rate{});
+  }
+
+  /// `every step`, `every 4 steps`.
+  static std::string steps_of(std::uint32_t every) {
+    return every == 1 ? std::string("every step") : fmt::format("every {} steps", every);
   }
 
   /// All rates repeat together after their least common multiple.
@@ -226,7 +280,7 @@ class Finisher {
     if (one_rate || !check_common_period()) {
       return;
     }
-    settled_.assign(graph_.nodes.size(), false);
+    settled_.assign(graph_.nodes.size(), Settled::No);
     constant_.assign(graph_.nodes.size(), false);
     for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
@@ -241,8 +295,8 @@ class Finisher {
         const auto rate = rate_of(graph_.wires[node.first_wire + pin]);
         if (rate && *rate != node.rate) {
           report(graph_.wire_spans[node.first_wire + pin],
-                 fmt::format("{} runs every {} steps, its input {} changes every {}", node.path, node.rate.every,
-                             node.block->pin(pin).name, rate->every));
+                 fmt::format("{} runs {}, its input {} changes {}", node.path, steps_of(node.rate.every),
+                             node.block->pin(pin).name, steps_of(rate->every)));
         }
       }
     }
@@ -261,17 +315,17 @@ class Finisher {
   }
 
   Graph& graph_;
-  const std::vector<Slot>& slots_;
+  std::vector<Slot>& slots_;
   std::vector<Parameter>& parameters_;
   Diagnostics& diagnostics_;
-  std::vector<bool> settled_;
+  enum class Settled : std::uint8_t { No, Open, Yes };
+  std::vector<Settled> settled_;
   std::vector<bool> constant_;
 };
 
 }  // namespace
 
-void finish(Graph& graph, const std::vector<Slot>& slots, std::vector<Parameter>& parameters,
-            Diagnostics& diagnostics) {
+void finish(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics) {
   Finisher(graph, slots, parameters, diagnostics).run();
 }
 

@@ -18,6 +18,6 @@ struct Slot {
 /// Replaces aliases by their sources, sorts nodes and parameters by path, gives operations their rates, and reports
 /// wires between two rates (HY403), rates without a usable common period (HY406) and variables that only name each
 /// other (HY401).
-void finish(Graph& graph, const std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics);
+void finish(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics);
 
 }  // namespace hysteron

@@ -99,7 +99,7 @@ struct Graph {
   std::vector<Port> inputs{};
   std::vector<Port> outputs{};
   std::vector<Parameter> parameters{};
-  std::vector<Port> inner{};       ///< variables and inner ports that state a unit: checked, else nothing
+  std::vector<Port> inner{};       ///< what else states a unit: variables, inner ports; without a name, a constant
   std::vector<NamedWire> named{};  ///< signals that are no outputs of a block; only where they are asked for
   std::vector<InitialState> initial_states{};
   std::vector<Node> nodes{};

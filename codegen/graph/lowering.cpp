@@ -8,6 +8,7 @@
 
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/names.hpp"
+#include "codegen/graph/unit_of_operation.hpp"
 #include "codegen/trace/evaluate.hpp"
 #include "support/errors.hpp"
 
@@ -65,23 +66,32 @@ Op select_for(Type type) {
 
 }  // namespace
 
-Wire GraphBuilder::literal(Type type, double value) {
+Wire GraphBuilder::literal(Type type, double value, std::string_view unit) {
   graph_.literals.push_back(value);
-  return {Wire::From::Literal, type, 0, static_cast<std::uint32_t>(graph_.literals.size() - 1)};
+  const Wire wire{Wire::From::Literal, type, 0, static_cast<std::uint32_t>(graph_.literals.size() - 1)};
+  if (!unit.empty()) {
+    units_.emplace(wire.index, unit);
+    graph_.inner.push_back({.unit = std::string(unit), .type = type, .wire = wire});
+  }
+  return wire;
 }
 
 Wire GraphBuilder::operation(Op op, std::initializer_list<Wire> operands, const std::string& path,
                              language::Span span) {
   bool all_literal = true;
   std::vector<double> values;
+  std::vector<std::string_view> units;
   for (const Wire& wire : operands) {
     all_literal = all_literal && is_literal(wire);
     if (all_literal) {
       values.push_back(value(wire));
+      units.push_back(unit(wire));
     }
   }
   if (all_literal) {
-    return literal(info(op).result, fold(op, values));
+    if (const auto unit = units::unit_of_constants(op, units, values.back())) {
+      return literal(info(op).result, fold(op, values), *unit);
+    }
   }
   if (path != numbered_path_) {
     numbered_path_ = path;

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 
 #include "codegen/graph/graph.hpp"
 #include "codegen/language/syntax.hpp"
@@ -14,8 +16,10 @@ class GraphBuilder {
  public:
   explicit GraphBuilder(Graph& graph) : graph_(graph) {}
 
-  Wire literal(Type type, double value);
-  /// An operation on wires; folded where all are literals. `path` names the pin that the expression feeds.
+  /// A literal, or with its unit a constant.
+  Wire literal(Type type, double value, std::string_view unit = {});
+  /// An operation on wires; folded where all are literals, unless their units do not agree: the check of units is to
+  /// find it. `path` names the pin that the expression feeds.
   Wire operation(Op op, std::initializer_list<Wire> operands, const std::string& path, language::Span span);
   /// A block with all pins unconnected.
   std::uint32_t block(const BlockType& type, std::string path, Rate rate, language::Span span);
@@ -23,9 +27,15 @@ class GraphBuilder {
   Graph& graph() { return graph_; }
   [[nodiscard]] bool is_literal(Wire wire) const { return wire.from == Wire::From::Literal; }
   [[nodiscard]] double value(Wire wire) const { return graph_.literals[wire.index]; }
+  /// Of a constant; empty for a plain number.
+  [[nodiscard]] std::string_view unit(Wire wire) const {
+    const auto found = units_.find(wire.index);
+    return found == units_.end() ? std::string_view() : found->second;
+  }
 
  private:
   Graph& graph_;
+  std::unordered_map<std::uint32_t, std::string> units_;  ///< by literal
   std::string numbered_path_;
   std::uint32_t next_number_ = 0;
 };

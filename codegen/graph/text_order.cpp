@@ -63,8 +63,8 @@ class Order {
         diagnostics.error(
             error::hidden_delay, source_.place(read.span),
             fmt::format("hidden delay: {} is read before it is {}", read.text, call ? "called" : "assigned"),
-            "In an IEC compiler this would be last cycle's value. Move the statement behind, as `hysteron fmt` does, "
-            "or read it through a HY_DELAY.",
+            "In an IEC compiler this would be last cycle's value. Move this statement behind that one, as `hysteron "
+            "fmt` does, or read it through a HY_DELAY.",
             {{source_.place(statement_span(writer)), call ? "called here" : "assigned here"}});
       } else if (!read.late && read.strict && read.statement > writer) {
         diagnostics.warning(

@@ -49,8 +49,10 @@ struct Unit {
   Powers powers{};
   std::vector<std::pair<std::uint32_t, Fraction>> variables{};   ///< sorted by variable
   std::vector<std::pair<std::string_view, Fraction>> symbols{};  ///< as it was written, for messages
+  bool declared = false;  ///< an @unit of the text is a part of it, not the descriptions of blocks alone
 
   void multiply(const Unit& other, Fraction exponent) {
+    declared = declared || other.declared;
     factor *= other.factor == 1.0 ? 1.0 : std::pow(other.factor, exponent.number());
     for (std::size_t i = 0; i < dimensions; ++i) {
       if (!other.powers[i].zero()) {
@@ -95,6 +97,11 @@ struct Unit {
     return true;
   }
 };
+
+/// Whether two factors to the SI are the same but for rounding.
+inline bool same_size(double a, double b) {
+  return std::abs(a / b - 1.0) < 1e-9;
+}
 
 /// Gives the number of a unit variable ('x) by its name.
 using UnitVariable = std::function<std::uint32_t(std::string_view)>;

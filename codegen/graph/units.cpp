@@ -3,18 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 #include <map>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "codegen/graph/names.hpp"
 #include "codegen/graph/unit.hpp"
+#include "codegen/graph/unit_of_operation.hpp"
+#include "codegen/graph/unit_solver.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::units {
 namespace {
+
+/// Nothing is concluded from an equation with more unknowns than this.
+constexpr std::size_t most_unknowns = 32;
 
 /// The units of all wires, found by unification: unit variables are solved as wires are met.
 class Checker {
@@ -22,14 +29,19 @@ class Checker {
   Checker(const Graph& graph, Diagnostics& diagnostics) : graph_(graph), diagnostics_(diagnostics) {}
 
   void run(const Schedule& schedule) {
+    for (const Port& inner : graph_.inner) {
+      if (inner.name.empty()) {
+        constants_.emplace(inner.wire.index, inner.unit);
+      }
+    }
     for (const Port& input : graph_.inputs) {
-      inputs_.push_back(known(input.unit));
+      inputs_.push_back(declared(input.unit));
     }
     for (const Parameter& parameter : graph_.parameters) {
-      parameters_.push_back(known(parameter.path.find('.') == std::string::npos ||
-                                          parameter.field.unit.find('\'') == std::string_view::npos
-                                      ? parameter.field.unit
-                                      : std::string_view{}));
+      parameters_.push_back(declared(parameter.path.find('.') == std::string::npos ||
+                                             parameter.field.unit.find('\'') == std::string_view::npos
+                                         ? parameter.field.unit
+                                         : std::string_view{}));
     }
     outputs_.resize(graph_.nodes.size());
     prepared_.assign(graph_.nodes.size(), false);
@@ -44,11 +56,14 @@ class Checker {
         connect(index);
       }
     }
-    for (const Port& inner : graph_.inner) {
-      agree(of_wire(inner.wire), known(inner.unit), inner.span, [&] { return inner.name; });
+    for (const Port& inner : graph_.inner) {  // of a constant, with itself
+      agree(of_wire(inner.wire), declared(inner.unit), inner.span, {inner.wire}, [&] { return inner.name; });
     }
     for (const Port& output : graph_.outputs) {
-      agree(of_wire(output.wire), known(output.unit), output.span, [&] { return output.name; });
+      agree(of_wire(output.wire), declared(output.unit), output.span, {output.wire}, [&] { return output.name; });
+    }
+    for (const Mismatch& one : mismatches_) {
+      report(one);
     }
   }
 
@@ -85,7 +100,6 @@ class Checker {
   }
 
  private:
-  using MaybeUnit = std::optional<Unit>;
   static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
 
   MaybeUnit known(std::string_view text) {
@@ -98,6 +112,15 @@ class Checker {
     }
     std::string reason;
     return cache_.emplace(text, parse_unit(text, reason)).first->second;
+  }
+
+  /// A unit that the text states.
+  MaybeUnit declared(std::string_view text) {
+    MaybeUnit unit = known(text);
+    if (unit) {
+      unit->declared = true;
+    }
+    return unit;
   }
 
   /// Gives a node's outputs their units; a block's pins are connected in a second pass, when all variables exist.
@@ -128,8 +151,7 @@ class Checker {
     for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
       const Field& field = node.block->pin(pin);
       const Wire& wire = graph_.wire(node, pin);
-      if (field.unit.empty() || field.type != Type::Real || wire.from == Wire::From::Literal ||
-          (wire.from == Wire::From::Node && !prepared_[wire.index])) {
+      if (field.unit.empty() || field.type != Type::Real || (wire.from == Wire::From::Node && !prepared_[wire.index])) {
         continue;
       }
       const MaybeUnit expected = of_field(index, field);
@@ -137,7 +159,7 @@ class Checker {
       if (quietly && given && expected && !can_agree(*given, *expected)) {
         continue;  // reported in the second pass
       }
-      agree(given, expected, graph_.wire_spans[node.first_wire + pin],
+      agree(given, expected, graph_.wire_spans[node.first_wire + pin], {wire},
             [&] { return fmt::format("{}.{}", node.path, field.name); });
     }
   }
@@ -197,8 +219,7 @@ class Checker {
 
   std::uint32_t first_variable(std::uint32_t index) {
     if (first_variable_[index] == none) {
-      first_variable_[index] = static_cast<std::uint32_t>(solutions_.size());
-      solutions_.resize(solutions_.size() + units_of(index).variables.size());
+      first_variable_[index] = solver_.add(units_of(index).variables.size());
     }
     return first_variable_[index];
   }
@@ -207,7 +228,7 @@ class Checker {
   /// 'y/'x^(1+C3), is beyond the check, but not beyond this text: um/V^(1+C3).
   std::string text_of_field(std::uint32_t index, const Field& field) {
     if (const MaybeUnit unit = of_field(index, field)) {
-      const Unit all = solved(*unit);
+      const Unit all = solver_.solved(*unit);
       return all.variables.empty() ? unit_text(all) : std::string();
     }
     std::string text;
@@ -217,7 +238,7 @@ class Checker {
         continue;
       }
       const std::size_t end = std::min(field.unit.find_first_of("*/^() ", at), field.unit.size());
-      const Unit unit = solved(unit_of_variable(variable_of(index, field.unit.substr(at + 1, end - at - 1))));
+      const Unit unit = solver_.solved(unit_of_variable(variable_of(index, field.unit.substr(at + 1, end - at - 1))));
       if (!unit.variables.empty()) {
         return {};
       }
@@ -247,6 +268,8 @@ class Checker {
         return parameters_[wire.index];
       case Wire::From::Node:
         return wire.port < outputs_[wire.index].size() ? outputs_[wire.index][wire.port] : std::nullopt;
+      case Wire::From::Literal:
+        return declared(literal_unit(wire));
       default:
         return std::nullopt;
     }
@@ -254,147 +277,132 @@ class Checker {
 
   /// The unit of an expression. A literal takes the unit of what it is added to, and counts as a number in products.
   MaybeUnit operation(const Node& node) {
-    const auto arg = [&](std::uint32_t pin) {
+    std::array<MaybeUnit, 3> operands;
+    std::optional<double> exponent;
+    for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
       const Wire& wire = graph_.wire(node, pin);
-      const bool product = node.op == Op::Multiply || node.op == Op::Divide;
-      return product && wire.from == Wire::From::Literal ? MaybeUnit(Unit{}) : of_wire(wire);
-    };
-    const auto span = node.span;
-    const auto same = [&](std::uint32_t a, std::uint32_t b) {
-      const MaybeUnit left = arg(a);
-      const MaybeUnit right = arg(b);
-      agree(right, left, span, [] { return "the two sides"; });
-      return left ? left : right;
-    };
-    const auto number = [&](std::uint32_t pin) -> MaybeUnit {
-      agree(arg(pin), Unit{}, span, [&] { return fmt::format("the argument of {}", info(node.op).name); });
-      return Unit{};
-    };
-    switch (node.op) {
-      case Op::Add:
-      case Op::Subtract:
-      case Op::Min:
-      case Op::Max:
-        return same(0, 1);
-      case Op::Less:
-      case Op::LessEqual:
-      case Op::Equal:
-      case Op::NotEqual:
-        same(0, 1);
-        return std::nullopt;
-      case Op::Select:
-        return same(1, 2);
-      case Op::Negate:
-      case Op::Abs:
-        return arg(0);
-      case Op::Multiply:
-      case Op::Divide: {
-        MaybeUnit left = arg(0);
-        const MaybeUnit right = arg(1);
-        if (!left || !right) {
-          return std::nullopt;
-        }
-        left->multiply(*right, {node.op == Op::Multiply ? 1 : -1, 1});
-        return left;
-      }
-      case Op::Sqrt: {
-        const MaybeUnit inside = arg(0);
-        if (!inside) {
-          return std::nullopt;
-        }
-        Unit root;
-        root.multiply(*inside, {1, 2});
-        return root;
-      }
-      case Op::Power: {
-        const MaybeUnit base = arg(0);
-        const Wire& exponent = graph_.wire(node, 1);
-        if (!base || exponent.from != Wire::From::Literal) {
-          return std::nullopt;
-        }
-        const double twice = graph_.literals[exponent.index] * 2.0;
-        if (twice != std::floor(twice) || std::abs(twice) > 48.0) {
-          return std::nullopt;
-        }
-        Unit result;
-        result.multiply(*base, Fraction::of(static_cast<std::int64_t>(twice), 2));
-        return result;
-      }
-      case Op::Exp:
-      case Op::Log:
-      case Op::Sin:
-      case Op::Cos:
-      case Op::Tan:
-      case Op::Asin:
-      case Op::Acos:
-      case Op::Atan:
-        return number(0);
-      default:
-        return std::nullopt;
-    }
-  }
-
-  /// A unit with all solved variables replaced.
-  Unit solved(const Unit& unit) {
-    if (unit.variables.empty()) {
-      return unit;
-    }
-    Unit result;
-    result.factor = unit.factor;
-    result.powers = unit.powers;
-    result.symbols = unit.symbols;
-    for (const auto& [variable, power] : unit.variables) {
-      if (solutions_[variable]) {
-        solutions_[variable] = solved(*solutions_[variable]);
-        result.multiply(*solutions_[variable], power);
-      } else {
-        result.add_variable(variable, power);
+      operands.at(pin) = is_number(wire) && is_product(node) ? MaybeUnit(Unit{}) : of_wire(wire);
+      if (node.op == Op::Power && pin == 1 && wire.from == Wire::From::Literal) {
+        exponent = graph_.literals[wire.index];
       }
     }
-    return result;
+    MaybeUnit result = unit_of_operation(
+        node.op, {operands.data(), node.wire_count}, exponent, [&](const MaybeUnit& given, const MaybeUnit& expected) {
+          const std::uint32_t first = node.op == Op::Select ? 1 : 0;
+          const Wire& left = graph_.wire(node, first);
+          const Wire& right = graph_.wire(node, std::min(first + 1, node.wire_count - 1));
+          agree(given, expected, node.span, {right, left}, [&] {
+            return node.wire_count == 1 ? fmt::format("the argument of {}", info(node.op).name)
+                                        : std::string("the two sides");
+          });
+        });
+    return result && result->variables.size() > most_unknowns ? std::nullopt : result;
   }
 
-  Unit ratio(const Unit& given, const Unit& expected) {
-    Unit quotient = solved(given);
-    quotient.multiply(solved(expected), {-1, 1});
-    return quotient;
+  static bool is_product(const Node& node) { return node.op == Op::Multiply || node.op == Op::Divide; }
+
+  /// Of a constant; empty for a plain number.
+  [[nodiscard]] std::string_view literal_unit(const Wire& wire) const {
+    const auto found = constants_.find(wire.index);
+    return found == constants_.end() ? std::string_view() : found->second;
   }
 
-  static bool is_one(const Unit& unit) { return unit.same_dimension(Unit{}) && std::abs(unit.factor - 1.0) < 1e-9; }
+  /// A literal without a unit.
+  [[nodiscard]] bool is_number(const Wire& wire) const {
+    return wire.from == Wire::From::Literal && wire.type == Type::Real && literal_unit(wire).empty();
+  }
+
+  static bool is_one(const Unit& unit) { return unit.same_dimension(Unit{}) && same_size(unit.factor, 1.0); }
 
   bool can_agree(const Unit& given, const Unit& expected) {
-    const Unit quotient = ratio(given, expected);
+    const Unit quotient = solver_.ratio(given, expected);
     return !quotient.variables.empty() || is_one(quotient);
   }
 
-  /// Reports where two units differ. `where` names the place; it is asked only then.
+  /// The wires of two units: that of the given one, and that of the expected one, where there is one.
+  struct Sides {
+    Wire given{};
+    Wire expected{};
+  };
+
+  /// Two units that differ, and where.
+  struct Mismatch {
+    Unit given;
+    Unit expected;
+    language::Span span;
+    Sides sides;
+    std::string where;
+  };
+
+  /// Takes it that two units are the same, or notes that they differ. `where` names the place; it is asked only then.
   template <class Where>
-  void agree(const MaybeUnit& given, const MaybeUnit& expected, language::Span span, Where where) {
+  void agree(const MaybeUnit& given, const MaybeUnit& expected, language::Span span, Sides sides, Where where) {
     if (!given || !expected) {
       return;
     }
-    const Unit quotient = ratio(*given, *expected);
-    if (!quotient.variables.empty()) {
-      const auto [variable, power] = quotient.variables.front();
-      Unit rest = quotient;
-      rest.variables.erase(rest.variables.begin());
-      Unit solution;
-      solution.multiply(rest, (power * Fraction{-1, 1}).inverse());
-      solutions_[variable] = solution;
+    const Unit quotient = solver_.ratio(*given, *expected);
+    if (quotient.variables.empty()) {
+      if (!is_one(quotient)) {
+        mismatches_.push_back({*given, *expected, span, sides, where()});
+      }
+    } else if (quotient.variables.size() <= most_unknowns) {
+      solver_.solve(quotient);
+    }
+  }
+
+  void report(const Mismatch& found) {
+    const Unit given = solver_.solved(found.given);
+    const Unit expected = solver_.solved(found.expected);
+    // The descriptions of blocks alone, as in the loop U - I.XOUT over an integral, refuse nothing: a gain of 1/s that
+    // the text does not write is no fault where no unit is written either.
+    if (!given.declared && !expected.declared) {
       return;
     }
-    if (is_one(quotient)) {
-      return;
+    diagnostics_.error(
+        error::unit_mismatch, graph_.place(found.span),
+        fmt::format("{}: the unit is {}, {} is expected", found.where, unit_text(given), unit_text(expected)),
+        mend(found.sides, given, expected));
+  }
+
+  std::string mend(const Sides& sides, const Unit& given, const Unit& expected) {
+    Unit quotient = given;
+    quotient.multiply(expected, {-1, 1});
+    if (given.same_dimension(expected)) {
+      return fmt::format(
+          "The two differ by the factor {:.6g}: put a HY_GAIN with K = {:.6g} between them, whose output carries the "
+          "other unit.",
+          quotient.factor, quotient.factor);
     }
-    const Unit left = solved(*given);
-    const Unit right = solved(*expected);
-    const bool scale = left.same_dimension(right);
-    diagnostics_.error(error::unit_mismatch, graph_.place(span),
-                       fmt::format("{}: the unit is {}, {} is expected", where(), unit_text(left), unit_text(right)),
-                       scale ? fmt::format("The two differ by the factor {:.6g}: put a HY_GAIN with K = {:.6g} between "
-                                           "them, whose output carries the other unit.",
-                                           quotient.factor, quotient.factor)
-                             : std::string("Correct an @unit, or connect a signal of the expected unit."));
+    std::string text = "Correct an @unit, or connect a signal of the expected unit.";
+    for (const bool is_given : {true, false}) {
+      double number = 0.0;
+      bool divides = false;
+      if (find_number(is_given ? sides.given : sides.expected, number, divides)) {
+        Unit unit;
+        unit.multiply(quotient, {is_given == divides ? 1 : -1, 1});
+        return text + fmt::format(
+                          " If {} is a quantity and no mere number, say so, and write the name for it: "
+                          "VAR CONSTANT K : LREAL := {}; (* @unit {} *) END_VAR.",
+                          number_text(number), literal_text(Type::Real, number), unit_text(unit));
+      }
+    }
+    return text;
+  }
+
+  /// The number by which an expression is multiplied or divided.
+  bool find_number(const Wire& wire, double& number, bool& divides) const {
+    if (wire.from != Wire::From::Node || graph_.nodes[wire.index].block != nullptr) {
+      return false;
+    }
+    const Node& node = graph_.nodes[wire.index];
+    for (std::uint32_t pin = 0; is_product(node) && pin < node.wire_count; ++pin) {
+      if (is_number(graph_.wire(node, pin))) {
+        number = graph_.literals[graph_.wire(node, pin).index];
+        divides = node.op == Op::Divide && pin == 1;
+        return true;
+      }
+    }
+    return node.op == Op::Negate && find_number(graph_.wire(node, 0), number, divides);
   }
 
   const Graph& graph_;
@@ -404,7 +412,9 @@ class Checker {
   std::vector<MaybeUnit> parameters_;
   std::vector<std::vector<MaybeUnit>> outputs_;
   std::vector<bool> prepared_;
-  std::vector<MaybeUnit> solutions_;           ///< by unit variable
+  std::unordered_map<std::uint32_t, std::string_view> constants_;  ///< by literal: the units of those that have one
+  UnitSolver solver_;
+  std::vector<Mismatch> mismatches_;
   std::vector<std::uint32_t> first_variable_;  ///< by node: of its unit variables; none where none was met yet
   std::unordered_map<const BlockType*, BlockUnits> blocks_;
 };

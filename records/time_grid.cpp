@@ -134,6 +134,13 @@ TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& r
   const auto equal_steps = static_cast<std::size_t>(std::count_if(
       steps.begin(), steps.end(), [&](double step) { return std::abs(step - usual) <= 0.01 * printed + rounding; }));
   const bool exact = equal_steps == steps.size() || (coarse && 10 * equal_steps >= 9 * steps.size());
+  // Few rows in coarse times could be many a grid: 0, 1 and 3 s as well as 0, 1.5 and 3.
+  constexpr std::size_t fewest_rounded_rows = 10;
+  if (coarse && !exact && time.size() < fewest_rounded_rows) {
+    const auto other =
+        std::ranges::find_if(steps, [&](double step) { return std::abs(step - usual) > 0.01 * printed + rounding; });
+    return {.fault = fault_at(static_cast<std::size_t>(other - steps.begin()) + 1)};
+  }
   const double taken_away = exact ? 0.0 : printed;
 
   // What the printed digits leave open: an end may be off by a good half of the last one, the slope by both ends.

@@ -17,6 +17,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/output_record.hpp"
+#include "tool/writable.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
@@ -136,6 +137,9 @@ std::string summary(const Program& program, const Drive& drive, const records::R
 int run(const Options& options, Console& console) {
   refuse_to_overwrite(options.output == "-" ? "" : options.output,
                       {options.input, options.diagram.file, options.diagram.parameters});
+  if (options.output != "-") {
+    refuse_unwritable(options.output);
+  }
   Diagnostics diagnostics;
   Program program = load_diagram(options.diagram, diagnostics);
   refuse_ports_named_as_time(diagnostics);

@@ -18,6 +18,7 @@
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/compiled.hpp"
+#include "tool/diagram.hpp"
 #include "tool/test_judge.hpp"
 #include "tool/test_plan.hpp"
 #include "tool/test_report.hpp"
@@ -119,6 +120,56 @@ CaseResult run_case(std::size_t number, const PlannedCase& planned, const Genera
   return result;
 }
 
+/// The files that a test file names, and what else its cases are made from.
+std::vector<std::string> inputs_of(const std::string& diagram, const std::string& tests, const TestFile& file,
+                                   bool with_golden) {
+  std::vector<std::string> inputs{diagram, tests};
+  for (const TestCase& test : file.cases) {
+    for (const TestText* named : {&test.csv, &test.parameter_file, &test.golden}) {
+      if (!named->text.empty() && (with_golden || named != &test.golden)) {
+        inputs.push_back((fs::path(tests).parent_path() / named->text).string());
+      }
+    }
+  }
+  return inputs;
+}
+
+/// Golden records are written over nothing that a case is made from, and each by one case alone.
+void refuse_to_overwrite(const std::vector<PlannedCase>& cases, const std::vector<std::string>& inputs) {
+  std::map<fs::path, const PlannedCase*> written;
+  for (const PlannedCase& planned : cases) {
+    if (planned.golden.empty()) {
+      continue;
+    }
+    for (const std::string& input : inputs) {
+      tool::refuse_to_overwrite(planned.golden.string(), {input});
+    }
+    const auto [first, is_new] = written.emplace(planned.golden.lexically_normal(), &planned);
+    if (!is_new) {
+      throw InputError(error::overwrites_input, planned.test.golden.place,
+                       fmt::format("The cases \"{}\" and \"{}\" would both write {}.", first->second->test.name,
+                                   planned.test.name, planned.golden.string()),
+                       "give each case a golden record of its own, or update one of them by --filter.");
+    }
+  }
+}
+
+/// The results are written over none of the files that a run reads. A test file that cannot be read is reported later.
+void refuse_to_overwrite(const std::string& junit, const Options& options) {
+  for (const std::string& diagram : options.diagrams) {
+    const std::string tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
+    TestFile file;
+    try {
+      file = read_test_file(tests);
+    } catch (const InputError&) {
+      file = {};
+    }
+    for (const std::string& input : inputs_of(diagram, tests, file, true)) {
+      tool::refuse_to_overwrite(junit, {input});
+    }
+  }
+}
+
 /// The cases of one file that the filter selects.
 FileResult run_file(const std::string& diagram, const std::string& tests, const Options& options, Console& console) {
   FileResult result{.file = tests, .cases = {}};
@@ -133,6 +184,9 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
   }
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
+  }
+  if (options.update) {
+    refuse_to_overwrite(cases, inputs_of(diagram, tests, file, false));
   }
   console.report(diagnostics);
   std::optional<GeneratedPrograms> generated;
@@ -163,6 +217,9 @@ int run_tests(const Options& options, Console& console) {
   if (!options.tests.empty() && options.diagrams.size() > 1) {
     throw InputError(error::bad_usage, {}, "--tests names the test file of one diagram, here are several.",
                      "give one diagram, or leave --tests out.");
+  }
+  if (!options.junit.empty()) {
+    refuse_to_overwrite(options.junit, options);
   }
   Diagnostics refused;
   std::vector<FileResult> results;

@@ -151,6 +151,7 @@ class CasePlan {
     return longest;
   }
 
+  /// Whether the values of a signal suit the steps of the case; says what does not.
   bool fits(const TestSignal& signal) {
     const auto steps = planned_.drive.steps;
     if (const auto* const list = std::get_if<std::vector<double>>(&signal.values);
@@ -176,10 +177,14 @@ class CasePlan {
     std::vector<Signal> given(graph().inputs.size());
     for (const TestSignal& signal : test().inputs) {
       const auto port = find_port(graph().inputs, signal, "input", diagnostics_);
-      if (port < 0 || !fits(signal)) {
+      if (port < 0) {
         continue;
       }
       const auto index = static_cast<std::size_t>(port);
+      if (!fits(signal)) {
+        given[index] = {graph().inputs[index].preset};  // given, if wrongly: one fault, one message
+        continue;
+      }
       if (!given[index].empty() || (record_ && record_->find(signal.name) != nullptr)) {
         diagnostics_.error(
             error::unusable_test, signal.place, fmt::format("The input {} is given twice.", signal.name),

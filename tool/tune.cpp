@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,6 +14,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/tune_report.hpp"
+#include "tool/writable.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -84,6 +86,14 @@ int tune(const Options& options, Console& console) {
   inputs.push_back(options.diagram.parameters);
   for (const std::string& input : inputs) {
     refuse_to_overwrite(options.output, {input});
+    for (const char* name : {"report.html", "report.json", "residuals.csv"}) {
+      refuse_to_overwrite(options.report.empty() ? "" : (std::filesystem::path(options.report) / name).string(),
+                          {input});
+    }
+  }
+  refuse_unwritable(options.output);
+  if (!options.report.empty()) {
+    refuse_unwritable_folder(options.report);
   }
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
@@ -112,12 +122,12 @@ int tune(const Options& options, Console& console) {
     line.finish();
   }
 
-  parameters::write_parameter_file(options.output, tuned_file(file, problem, fit), tuned_remarks(problem, fit),
-                                   tuned_heading(problem, fit));
   const TuneReport report{.problem = problem, .fit = fit};
   if (!options.report.empty()) {
     write_report(options.report, report);
   }
+  parameters::write_parameter_file(options.output, tuned_file(file, problem, fit), tuned_remarks(problem, fit),
+                                   tuned_heading(problem, fit));
   console.print(options.json ? as_json(report).dump(2) + "\n" : as_text(report));
   console.report(warnings);
   if (fit.solution.status == FitStatus::Cancelled) {

@@ -17,6 +17,10 @@
 namespace hysteron::tool {
 namespace {
 
+std::string iterations_of(const OutputErrorFit& fit) {
+  return fmt::format("{} iteration{}", fit.solution.iterations, fit.solution.iterations == 1 ? "" : "s");
+}
+
 using Eigen::Index;
 
 std::string unit_behind(const std::string& unit) {
@@ -117,8 +121,8 @@ std::string page(const TuneReport& report) {
       "<style>body{{font-family:sans-serif;max-width:900px;margin:2em auto;color:#222}}"
       "table{{border-collapse:collapse}}td,th{{padding:.25em .8em;border-bottom:1px solid #ccc;text-align:left}}"
       "svg{{max-width:100%;height:auto;display:block;margin:1em 0}}</style></head>\n<body><h1>Fit of {0}</h1>\n"
-      "<p>{1} {2} iterations, {3:.2g} s.</p>\n",
-      escaped(report.problem.program.graph.name), escaped(report.fit.solution.message), report.fit.solution.iterations,
+      "<p>{1} {2}, {3:.2g} s.</p>\n",
+      escaped(report.problem.program.graph.name), escaped(report.fit.solution.message), iterations_of(report.fit),
       report.fit.seconds);
   html += "<table><tr><th>parameter</th><th>value</th><th>standard error</th><th>unit</th></tr>\n";
   for (std::size_t i = 0; i < report.fit.names.size(); ++i) {
@@ -180,8 +184,7 @@ std::string as_text(const TuneReport& report) {
   if (fit.start_costs.size() > 1) {
     text += fmt::format("The best of {} starts was number {}.\n", fit.start_costs.size(), fit.best_start + 1);
   }
-  return text +
-         fmt::format("{} {} iterations, {:.2f} s.\n", fit.solution.message, fit.solution.iterations, fit.seconds);
+  return text + fmt::format("{} {}, {:.2f} s.\n", fit.solution.message, iterations_of(fit), fit.seconds);
 }
 
 nlohmann::json as_json(const TuneReport& report) {

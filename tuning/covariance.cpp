@@ -25,6 +25,8 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double null_direction = 1e-7;
 /// From this correlation on, two parameters are worth a warning.
 constexpr double strong_correlation = 0.99;
+/// Up to this share of its value as a standard error, a parameter is well determined, whatever it goes along with.
+constexpr double well_determined = 0.05;
 
 /// The scaled Jacobian of the free parameters, J = U·Σ·Vᵀ·diag(lengths).
 struct Decomposition {
@@ -69,12 +71,17 @@ void add_null_direction(Covariance& result, const Decomposition& d, Index k, con
   result.indistinguishable.push_back(std::move(found));
 }
 
-void warn_of_pairs(Covariance& result, const std::vector<Index>& free, const std::vector<std::string>& names) {
+/// `values`: of the parameters; null where they are not known.
+void warn_of_pairs(Covariance& result, const std::vector<Index>& free, const std::vector<std::string>& names,
+                   const VectorXd* values) {
+  const auto is_sharp = [&](Index j) {
+    return values != nullptr && result.standard_errors[j] <= well_determined * std::fabs((*values)[j]);
+  };
   for (std::size_t a = 0; a < free.size(); ++a) {
     for (std::size_t b = a + 1; b < free.size(); ++b) {
       const double correlation = result.correlation(free[a], free[b]);
       if (std::fabs(correlation) > strong_correlation && std::isfinite(result.standard_errors[free[a]]) &&
-          std::isfinite(result.standard_errors[free[b]])) {
+          std::isfinite(result.standard_errors[free[b]]) && !(is_sharp(free[a]) && is_sharp(free[b]))) {
         result.warnings.push_back(fmt::format("{} can hardly be told apart by this record (correlation {:.4f}).",
                                               joined(names, {free[a], free[b]}), correlation));
       }
@@ -82,8 +89,8 @@ void warn_of_pairs(Covariance& result, const std::vector<Index>& free, const std
   }
 }
 
-Covariance assemble(const Decomposition& d, Covariance result, Index parameters,
-                    const std::vector<std::string>& names) {
+Covariance assemble(const Decomposition& d, Covariance result, Index parameters, const std::vector<std::string>& names,
+                    const VectorXd* values) {
   result.standard_errors = VectorXd::Constant(parameters, not_a_number);
   result.covariance = MatrixXd::Constant(parameters, parameters, not_a_number);
   result.correlation = result.covariance;
@@ -116,7 +123,7 @@ Covariance assemble(const Decomposition& d, Covariance result, Index parameters,
       add_null_direction(result, d, k, names);
     }
   }
-  warn_of_pairs(result, d.free, names);
+  warn_of_pairs(result, d.free, names, values);
   if (result.degrees_of_freedom <= 0) {
     result.warnings.push_back(
         fmt::format("{} samples for {} parameters leave nothing to judge the fit by; there are no standard errors.",
@@ -208,7 +215,7 @@ Covariance covariance_of(const LeastSquaresResult& fit, const std::vector<std::s
     d.singular = svd.singularValues();
     d.v = svd.matrixV();
   }
-  result = assemble(d, std::move(result), fit.x.size(), names);
+  result = assemble(d, std::move(result), fit.x.size(), names, &fit.x);
   result.warnings.insert(result.warnings.begin(), bound_warnings.begin(), bound_warnings.end());
   return result;
 }
@@ -233,7 +240,7 @@ Covariance covariance_of(const Eigen::MatrixXd& normal_matrix, double sum_of_squ
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
   d.singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
   d.v = eigen.eigenvectors().rowwise().reverse();
-  return assemble(d, std::move(result), n, names);
+  return assemble(d, std::move(result), n, names, nullptr);
 }
 
 }  // namespace hysteron

@@ -5,6 +5,7 @@
 #include <IpTNLP.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hysteron::detail {
@@ -109,6 +110,9 @@ class DimensionlessProblem : public Ipopt::TNLP {
                              Ipopt::IpoptCalculatedQuantities* /*quantities*/) override {
     iterations = iteration;
     adapt_damping(trials);
+    if (watch_cost(value)) {
+      return false;
+    }
     if (!model_.options().progress) {
       return true;
     }
@@ -149,6 +153,20 @@ class DimensionlessProblem : public Ipopt::TNLP {
       damping_ = damping_ > smallest ? damping_ / factor : 0.0;
     }
   }
+  /// True where the cost has not moved for so long that it will not: at a kink of the model its gradient stays, and
+  /// Ipopt, which waits for the gradient, would go to the limit of iterations.
+  bool watch_cost(double value) {
+    constexpr int patience = 15;
+    constexpr double step = 1e-6;  // of the cost: a thousandth of a standard error at a thousand samples
+    if (value < (1.0 - step) * marked_cost_) {
+      marked_cost_ = value;
+      still_ = 0;
+    } else {
+      ++still_;
+    }
+    stands_still = still_ >= patience;
+    return stands_still;
+  }
   /// Exceptions do not pass through Ipopt's frames: they are kept, the run stops, and solve throws them again.
   template <class Body>
   bool guarded(Body body) {
@@ -164,6 +182,8 @@ class DimensionlessProblem : public Ipopt::TNLP {
   }
 
   double damping_ = 0.0;
+  double marked_cost_ = std::numeric_limits<double>::infinity();
+  int still_ = 0;
   VectorXd diagonal_{};
   Model& model_;
   const Round& round_;
@@ -171,6 +191,7 @@ class DimensionlessProblem : public Ipopt::TNLP {
  public:
   VectorXd solution;
   int iterations = 0;
+  bool stands_still = false;
 };
 
 /// Every return code of Ipopt 3.11. There are no constraints, so that what Ipopt says of feasibility and restoration
@@ -246,6 +267,9 @@ RoundResult run_ipopt(Model& model, const Round& round) {
   model.iterations += dimensionless->iterations;
   if (model.failure) {
     std::rethrow_exception(std::exchange(model.failure, nullptr));
+  }
+  if (code == Ipopt::User_Requested_Stop && dimensionless->stands_still) {
+    return {{FitStatus::Stalled, "stopped, the cost stood still"}, dimensionless->solution};
   }
   return {translate(code), dimensionless->solution};
 }

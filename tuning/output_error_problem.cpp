@@ -52,6 +52,7 @@ class Builder {
       check_same_sample_time(record);
       add_experiment(record);
     }
+    refuse_empty_tests();
     if (diagnostics_.has_errors()) {
       throw InputError(std::move(diagnostics_));
     }
@@ -67,8 +68,7 @@ class Builder {
   void add_parameter(const FitSetting& fit) {
     const std::int64_t found = find_parameter(graph(), fit.path);
     if (found < 0) {
-      parameters::report_unknown_parameter(graph(), fit.path, fit.place, diagnostics_);
-      return;
+      return;  // reported where the file was applied
     }
     const Parameter& parameter = graph().parameters[static_cast<std::size_t>(found)];
     const Field& field = parameter.field;
@@ -208,7 +208,7 @@ class Builder {
     experiment.train = rows_of(record, file_.tune.train);
     experiment.test = rows_of(record, file_.tune.test);
     if (file_.tune.train.empty()) {
-      experiment.train = {{.first = 0, .last = record.size()}};
+      experiment.train = all_but(experiment.test, record.size());
     }
     if (experiment.train.empty()) {
       diagnostics_.error(error::nothing_to_train_on, {.file = record.file()},
@@ -217,6 +217,39 @@ class Builder {
                          "widen train in [tune], or leave the record out.");
     }
     problem_.experiments.push_back(std::move(experiment));
+  }
+
+  static std::vector<records::RowRange> all_but(const std::vector<records::RowRange>& taken, std::size_t size) {
+    std::vector<records::RowRange> rest;
+    std::size_t first = 0;
+    for (const records::RowRange& range : taken) {
+      if (first < range.first) {
+        rest.push_back({.first = first, .last = range.first});
+      }
+      first = range.last;
+    }
+    if (first < size) {
+      rest.push_back({.first = first, .last = size});
+    }
+    return rest;
+  }
+
+  /// An interval beyond all records would be a test of nothing.
+  void refuse_empty_tests() {
+    for (const parameters::Interval& test : file_.tune.test) {
+      const auto is_met = [&](const records::Record& record) {
+        const records::RowRange rows = record.rows_between(test.begin, test.end);
+        return rows.first < rows.last;
+      };
+      if (!records_.empty() && std::ranges::none_of(records_, is_met)) {
+        const records::Record& record = records_.front();
+        diagnostics_.error(error::contradicting_range, test.place,
+                           fmt::format("No record has a sample from {} to {} s, which is to be the test.",
+                                       number_text(test.begin), number_text(test.end)),
+                           fmt::format("choose a part of a record: {} holds {} to {} s.", record.file(),
+                                       number_text(record.time().front()), number_text(record.time().back())));
+      }
+    }
   }
 
   /// Sorted, without overlap: a sample counts once.

@@ -247,6 +247,21 @@ void set_state(const ParameterValue& given, Graph& graph, Diagnostics& diagnosti
   graph.initial_states.push_back(*state);
 }
 
+/// A bound that the parameter itself cannot take is a slip. At a bound that is excluded, as 0 where it must be above 0,
+/// a fit keeps away from it.
+void check_bounds(const FitSetting& fit, const Parameter& parameter, Diagnostics& diagnostics) {
+  const Field& field = parameter.field;
+  for (const auto* const bound : {&fit.minimum, &fit.maximum}) {
+    if (*bound && std::isfinite((*bound)->value) &&
+        ((*bound)->value < field.minimum || (*bound)->value > field.maximum)) {
+      diagnostics.error(error::parameter_out_of_range, (*bound)->place,
+                        fmt::format("The fit of {} has the bound {}, outside of the parameter's own range.",
+                                    parameter.path, number_text((*bound)->value)),
+                        fmt::format("{} {}.", field.name, range_fault(field, (*bound)->value)));
+    }
+  }
+}
+
 }  // namespace
 
 void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
@@ -264,6 +279,14 @@ void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
   }
   for (const ParameterValue& given : file.initial) {
     set_state(given, graph, diagnostics);
+  }
+  for (const FitSetting& fit : file.fits) {
+    const auto found = by_path.find(in_capitals(fit.path));
+    if (found == by_path.end()) {
+      report_unknown_parameter(graph, fit.path, fit.place, diagnostics);
+    } else {
+      check_bounds(fit, graph.parameters[found->second], diagnostics);
+    }
   }
 }
 

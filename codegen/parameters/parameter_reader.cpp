@@ -345,6 +345,7 @@ class Reader {
         (key.str() == "train" ? result_.tune.train : result_.tune.test) = intervals_of(key, node);
       }
     }
+    refuse_shared_intervals();
   }
 
   void read_loss(const toml::key& key, const toml::node& node) {
@@ -409,6 +410,19 @@ class Reader {
       }
     }
     return intervals;
+  }
+
+  /// A sample that was fitted tells nothing of the rest.
+  void refuse_shared_intervals() {
+    for (const Interval& test : result_.tune.test) {
+      for (const Interval& train : result_.tune.train) {
+        if (test.begin < train.end && train.begin < test.end) {
+          contradiction(test.place, "Intervals of test and train overlap.",
+                        "end one where the other begins: a test on what was fitted says nothing.");
+          return;
+        }
+      }
+    }
   }
 
   void add_interval(std::vector<Interval>& intervals, const toml::key& key, const toml::node& node) {

@@ -190,7 +190,7 @@ function show(frame) {
   showState(frame.values);
   showStatus(frame.values);
   showParameters(frame.values, frame.staged);
-  trends.add(frame.cycle * description.period, trends.signals.map(({ key }) =>
+  trends.add(frame.values[index.get("task.elapsed")] * description.period, trends.signals.map(({ key }) =>
     key.startsWith("inner") ? frame.inner[Number(key.slice(5))] : frame.values[Number(key.slice(6))]));
   document.body.classList.remove("stale");
   document.body.dataset.frames = ++frames;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -101,16 +101,23 @@ void thin(const records::Record& record, const std::filesystem::path& to) {
   write_table(to, columns);
 }
 
-/// The first lines of a text, indented.
-std::string first_lines(const std::string& text, int count) {
-  std::string result;
-  std::size_t at = 0;
-  for (int i = 0; i < count && at < text.size(); ++i) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    result += "  " + text.substr(at, end - at) + "\n";
-    at = end + 1;
+/// What the diagnosis names, and how far that closes the gap. Where an effect acts is left out: on a line of blocks
+/// several places fit alike.
+std::string summary_of(const std::string& said) {
+  std::string names;
+  std::string gap;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string first;
+    words >> first;
+    if (line.ends_with(" % of the gap")) {
+      names += (names.empty() ? "" : ", ") + first;
+    } else if (first == "Y" || first == "closed") {
+      gap += line.substr(0, line.find(" (")) + "\n";
+    }
   }
-  return result;
+  return "The diagnosis of the record names " + names + ":\n" + gap;
 }
 
 void example(const std::filesystem::path& given) {
@@ -127,7 +134,7 @@ void example(const std::filesystem::path& given) {
       run(fmt::format("cd '{}' && '{}' diagnose '{}' --params '{}' --log every_tenth.csv --out diagnosis "
                       "--effects creep,lag,delay,backlash,even_nonlinearity,thermal_drift",
                       folder.string(), HYSTERON_TOOL, file("plant.st"), file("stage.toml")));
-  fmt::print("The diagnosis of the record:\n{}", first_lines(found, 4));
+  fmt::print("{}", summary_of(found));
   draw("08_served_stage/plot.gp", folder);
 }
 

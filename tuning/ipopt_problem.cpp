@@ -282,8 +282,21 @@ double robust_threshold(const VectorXd& residuals) {
   return 1.345 * 1.4826 * *middle;
 }
 
+/// Whether each free parameter is known to its own size at least. On a plateau, where a peak has left the samples say,
+/// the cost stands still too, and its gradient is small.
+bool is_determined(const LeastSquaresResult& result, const LeastSquaresProblem& problem) {
+  const double deviation = result.residuals.norm() / std::sqrt(static_cast<double>(result.residuals.size()));
+  for (Index j = 0; j < result.x.size(); ++j) {
+    const bool is_free = result.at_bound[static_cast<std::size_t>(j)] == AtBound::Free;
+    if (is_free && deviation > problem.typical[j] * result.jacobian.col(j).norm()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Ipopt's word held against the gradient itself, which does not depend on the units of a round.
-FitStatus confirmed(const LeastSquaresResult& result, const LeastSquaresProblem& problem) {
+FitStatus confirmed(const LeastSquaresResult& result, const LeastSquaresProblem& problem, bool stood_still) {
   constexpr double small = 1e-5;
   const bool ended = result.converged() || result.status == FitStatus::Stalled;
   if (!ended) {
@@ -294,6 +307,9 @@ FitStatus confirmed(const LeastSquaresResult& result, const LeastSquaresProblem&
     if (is_free && result.cost > 0.0 && result.jacobian.col(j).isZero(0.0)) {
       return FitStatus::NoInfluence;
     }
+  }
+  if (stood_still && !is_determined(result, problem)) {
+    return FitStatus::NoInfluence;
   }
   if (result.gradient_norm <= small) {
     return result.status == FitStatus::Stalled ? FitStatus::NearlyConverged : result.status;
@@ -322,7 +338,7 @@ LeastSquaresResult report(Model& model, const Descent& descent) {
       result.weights = model.weights(point->residuals);
     }
     result.gradient_norm = descent.gradient_norm(*point);
-    result.status = confirmed(result, model.problem());
+    result.status = confirmed(result, model.problem(), descent.outcome.stood_still);
   }
   result.residual_evaluations = model.residual_evaluations;
   result.jacobian_evaluations = model.jacobian_evaluations;

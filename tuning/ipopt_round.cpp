@@ -269,7 +269,7 @@ RoundResult run_ipopt(Model& model, const Round& round) {
     std::rethrow_exception(std::exchange(model.failure, nullptr));
   }
   if (code == Ipopt::User_Requested_Stop && dimensionless->stands_still) {
-    return {{FitStatus::Stalled, "stopped, the cost stood still"}, dimensionless->solution};
+    return {{FitStatus::Stalled, "stopped, the cost stood still", true}, dimensionless->solution};
   }
   return {translate(code), dimensionless->solution};
 }

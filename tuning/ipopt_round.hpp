@@ -23,7 +23,8 @@ struct Round {
 
 struct Outcome {
   FitStatus status = FitStatus::SolverFailed;
-  std::string_view name{};  ///< Ipopt's own
+  std::string_view name{};   ///< Ipopt's own
+  bool stood_still = false;  ///< ended because the cost no longer moved
 };
 
 struct RoundResult {

@@ -57,6 +57,19 @@ UMask=0077
 WantedBy=multi-user.target
 )";
 
+/// A path as one word of a unit file (systemd.syntax(7)).
+std::string word(const std::string& path) {
+  if (path.find_first_of(" \t'\"\\%") == std::string::npos) {
+    return path;
+  }
+  std::string quoted = "\"";
+  for (const char letter : path) {
+    quoted += letter == '"' || letter == '\\' ? "\\" : letter == '%' ? "%" : "";
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
 std::string rights_of(const runtime::RunConfig& config) {
   std::string rights;
   std::vector<std::string> capabilities;
@@ -84,7 +97,7 @@ std::string rights_of(const runtime::RunConfig& config) {
   } else {
     rights += "DevicePolicy=closed\nSupplementaryGroups=dialout\n";
     for (const std::string& line : lines) {
-      rights += fmt::format("DeviceAllow={} rw\n", line);
+      rights += fmt::format("DeviceAllow={} rw\n", word(line));
     }
   }
 
@@ -104,7 +117,7 @@ std::string rights_of(const runtime::RunConfig& config) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }
   for (const std::string& folder : folders) {
-    rights += fmt::format("ReadWritePaths=-{}\n", folder);
+    rights += fmt::format("ReadWritePaths={}\n", word("-" + folder));
   }
   return rights;
 }

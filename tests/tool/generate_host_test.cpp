@@ -171,6 +171,8 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
            "[retain]\nfolder = \"/srv/kept\"\n[trace]\nfile = \"/srv/traces/run.trace\"\n"),
       AllOf(HasSubstr("\nDevicePolicy=closed\nSupplementaryGroups=dialout\nDeviceAllow=/dev/ttyUSB3 rw\n"),
             HasSubstr("\nReadWritePaths=-/srv/kept\nReadWritePaths=-/srv/traces\n"), Not(HasSubstr("PrivateDevices"))));
+  EXPECT_THAT(unit("[trace]\nfile = \"/srv/my runs/100%/run.trace\"\n"),
+              HasSubstr("\nReadWritePaths=\"-/srv/my runs/100%%\"\n"));
 }
 
 TEST(GenerateHost, NothingIsWrittenWhereSomethingIsWrong) {

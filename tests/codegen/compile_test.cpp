@@ -132,6 +132,60 @@ TEST(Compile, ABlockCannotContainItself) {
       Contains(Field(&Diagnostic::number, error::recursive_block)));
 }
 
+TEST(Compile, NamesOfTheLibraryAreReserved) {
+  for (const std::string declaration : {"HY_LAG : HY_LAG;", "hy_sum : LREAL := 1.0;"}) {
+    EXPECT_THAT(diagnose(block(io + "VAR " + declaration + " END_VAR", "Y := U;")),
+                Contains(Field(&Diagnostic::number, error::reserved_name)))
+        << declaration;
+  }
+}
+
+/// Thirty blocks that hold two of the one before: refused before they are counted out.
+TEST(Compile, TheInstancesOfABlockAreBounded) {
+  std::string text;
+  for (int i = 0; i < 30; ++i) {
+    const std::string inner = "B" + std::to_string(i - 1);
+    text += "FUNCTION_BLOCK B" + std::to_string(i) + " VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR " +
+            (i == 0 ? "Y := X;" : "VAR I, J : " + inner + "; END_VAR I(X := X); J(X := I.Y); Y := J.Y;") +
+            " END_FUNCTION_BLOCK\n";
+  }
+  const auto found = diagnose(text);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().number, error::nested_too_deeply);
+  EXPECT_THAT(found.front().cause, AllOf(HasSubstr("'B20'"), HasSubstr("2097150 instances")));
+}
+
+TEST(Compile, TheLevelsOfBlocksInBlocksAreBounded) {
+  std::string text =
+      "FUNCTION_BLOCK B0 VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := X; "
+      "END_FUNCTION_BLOCK\n";
+  for (int i = 1; i <= 1000; ++i) {
+    text += "FUNCTION_BLOCK B" + std::to_string(i) +
+            " VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR I : B" + std::to_string(i - 1) +
+            "; END_VAR I(X := X); Y := I.Y; END_FUNCTION_BLOCK\n";
+  }
+  const auto found = diagnose(text);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().number, error::nested_too_deeply);
+  EXPECT_THAT(found.front().cause, HasSubstr("1001 levels"));
+}
+
+/// Operations take the rate of their operands, however many stand in a row.
+TEST(Compile, ALongChainOfOperationsGetsItsRate) {
+  constexpr int length = 100'000;
+  std::string parts = "VAR S : HY_SAMPLE; (* @every 2 *) H : HY_HOLD; ";
+  std::string text = "S(XIN := U); V0 := S.XOUT + 1.0; ";
+  for (int i = 0; i < length; ++i) {
+    parts += "V" + std::to_string(i) + " : LREAL; ";
+    if (i > 0) {
+      text += "V" + std::to_string(i) + " := V" + std::to_string(i - 1) + " + 1.0; ";
+    }
+  }
+  const auto found =
+      diagnose(block(io + parts + "END_VAR", text + "H(XIN := V" + std::to_string(length - 1) + "); Y := H.XOUT;"));
+  EXPECT_THAT(found, IsEmpty());
+}
+
 TEST(Compile, UnitsAreCarriedThroughBlocksAndExpressions) {
   const auto with = [&](const std::string& in, const std::string& out, const std::string& parts,
                         const std::string& text) {

@@ -12,7 +12,10 @@
 #include <string_view>
 #include <vector>
 
+#include "codegen/backends/c_library_names.hpp"
 #include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp_words.hpp"
+#include "codegen/backends/identifiers.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "tests/codegen/random_program.hpp"
@@ -159,6 +162,57 @@ TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) {
 }
 TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) {
   hold_generated_against_interpreted<float>();
+}
+
+/// A diagram may be named after anything that C++ or the C library has for itself: its namespace then has another name.
+TEST(Generated, NoNamespaceHasANameOfTheLanguageOrTheCLibrary) {
+  std::vector<std::string> names{"MAIN", "FLOAT", "DOUBLE", "INLINE", "REGISTER", "AUTO",  "SIGNED", "EXTERN",
+                                 "ASM",  "NAN",   "POW",    "SELECT", "REMOVE",   "RAND",  "STRTOD", "STD",
+                                 "TM",   "LINUX", "SIGNAL", "INDEX",  "PAUSE",    "ERRNO", "DETAIL", "PLANT"};
+  names.insert(names.end(), cpp_words.begin(), cpp_words.end());
+  std::istringstream library{std::string(c_library_names)};
+  for (std::string word; library >> word;) {
+    names.push_back(word);
+  }
+  const test::ScratchFolder folder;
+  std::ofstream main_file(folder.path() / "main.cpp");
+  main_file << "#include <algorithm>\n#include <array>\n#include <bit>\n#include <cctype>\n#include <charconv>\n"
+               "#include <cmath>\n#include <concepts>\n#include <cstddef>\n#include <cstdint>\n#include <cstdio>\n"
+               "#include <cstdlib>\n#include <iostream>\n#include <limits>\n#include <string>\n#include <thread>\n"
+               "#include <vector>\n";
+  for (const std::string& name : names) {
+    main_file << "namespace " << namespace_identifier(name) << " { using Real = double; }\n";
+  }
+  main_file << "int main() { std::puts(\"compiled\"); }\n";
+  main_file.close();
+  EXPECT_EQ(printed_by_main(folder, ""), "compiled\n");
+  EXPECT_EQ(namespace_identifier("PLANT"), "plant") << "others keep theirs";
+}
+
+/// Parameters of nested blocks are members of a structure; comments are the user's words.
+TEST(Generated, MembersAndCommentsAreSafe) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK STAGE VAR_INPUT X : LREAL; FLOAT : LREAL := 2.0; (* @param @doc times */ 2 \\ *) END_VAR\n"
+      "VAR_OUTPUT Z : LREAL; END_VAR Z := FLOAT * X; END_FUNCTION_BLOCK\n"
+      "FUNCTION_BLOCK SELECT (* @ts 1ms *) VAR_INPUT\n"
+      "  U : LREAL; (* @doc in volts \\ *)\n"
+      "  K : LREAL := 1.0; (* @param @doc a path: C:\\ *)\nEND_VAR\n"
+      "VAR_OUTPUT Y : LREAL; (* @doc ends in \\ *) END_VAR VAR S : STAGE; END_VAR\n"
+      "S(X := K * U); Y := S.Z; END_FUNCTION_BLOCK\n",
+      {.top = "SELECT"});
+  const test::ScratchFolder folder;
+  const GeneratedFile header = generate_cpp_header(program, {});
+  std::ofstream(folder.path() / header.name) << header.text;
+  std::ofstream(folder.path() / "main.cpp") << fmt::format(R"(#include <cstdio>
+#include "{}"
+int main() {{
+  {}::Params params;
+  {}::State state;
+  std::printf("%g\n", {}::step(params, state, {{.u = 3.0}}).y);
+}}
+)",
+                                                           header.name, "select_2", "select_2", "select_2");
+  EXPECT_EQ(printed_by_main(folder, "-Wall -Wextra -Werror"), "6\n") << header.text;
 }
 
 /// A target runs for years: 10^10 steps are six days at 50 us. The counter of steps is a DINT, which ends at 2.1·10^9.

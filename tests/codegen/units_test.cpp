@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "codegen/compile.hpp"
+#include "support/errors.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -69,6 +70,116 @@ TEST(Units, OfParametersWhoseExponentIsAParameter) {
   EXPECT_EQ(units::of_parameters(silent.graph,
                                  silent.schedule)[static_cast<std::size_t>(find_parameter(silent.graph, "H.C2"))],
             "");
+}
+
+/// What the check of units says: causes and mends.
+std::vector<Diagnostic> unit_faults(const std::string& ports, const std::string& parts, const std::string& text) {
+  try {
+    (void)compile_text("FUNCTION_BLOCK T (* @ts 1ms *) " + ports + " " + parts + " " + text + " END_FUNCTION_BLOCK");
+    return {};
+  } catch (const InputError& problem) {
+    for (const Diagnostic& one : problem.diagnostics().all()) {
+      EXPECT_EQ(one.number, error::unit_mismatch) << one.cause;
+    }
+    return problem.diagnostics().all();
+  }
+}
+const std::string bare = "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR";
+const std::string volts = "VAR_INPUT U : LREAL; (* @unit V *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit V *) END_VAR";
+const std::string integral = "VAR I : HY_INTEGRAL_FORWARD; END_VAR";
+
+std::string constant(const std::string& unit) {
+  return "VAR CONSTANT C : LREAL := 10.0; (* @unit " + unit + " *) END_VAR ";
+}
+
+TEST(Units, OfAConstantCount) {
+  const std::string loop = "Y := I.XOUT; I(XIN := C * (U - I.XOUT));";
+  EXPECT_TRUE(unit_faults(volts, constant("1/s") + integral, loop).empty());
+  EXPECT_EQ(unit_faults(volts, constant("1") + integral, loop).size(), 1U);
+  EXPECT_TRUE(unit_faults(volts, constant("V"), "Y := U + C;").empty());
+  EXPECT_EQ(unit_faults(volts, constant("m"), "Y := U + C;").size(), 1U);
+  EXPECT_EQ(unit_faults(volts, constant("m"), "Y := C;").size(), 1U);
+  EXPECT_EQ(unit_faults(volts, constant("m") + "VAR W : LREAL; (* @unit s *) END_VAR", "W := C; Y := U;").size(), 1U);
+}
+
+TEST(Units, OfConstantsGoThroughWhatIsComputedOfThem) {
+  EXPECT_TRUE(unit_faults(volts, constant("V"), "Y := U + 2.0 * C;").empty());
+  EXPECT_TRUE(unit_faults(volts, constant("V"), "Y := U + SQRT(C * C) / 2.0;").empty());
+  EXPECT_TRUE(unit_faults(volts, constant("rad"), "Y := U * SIN(C);").empty());
+  EXPECT_EQ(unit_faults(volts, constant("V"), "Y := U + C * C;").size(), 1U);
+  EXPECT_EQ(unit_faults(volts, constant("V"), "Y := U * SIN(C);").size(), 1U) << "folded only where units agree";
+  EXPECT_EQ(
+      unit_faults(volts, constant("V") + "VAR CONSTANT L : LREAL := 1.0; (* @unit m *) END_VAR", "Y := U + (C + L);")
+          .size(),
+      1U);
+}
+
+TEST(Units, OfAConstantReachTheInputOfABlock) {
+  const std::string stage =
+      "FUNCTION_BLOCK STAGE VAR_INPUT X : LREAL; (* @unit um *) END_VAR VAR_OUTPUT Z : LREAL; (* @unit um *) END_VAR "
+      "Z := X; END_FUNCTION_BLOCK ";
+  const auto compiles = [&](const std::string& unit) {
+    Diagnostics diagnostics;
+    auto parsed =
+        language::parse("test.st",
+                        stage + "FUNCTION_BLOCK T (* @ts 1ms *) VAR_OUTPUT Y : LREAL; END_VAR " + constant(unit) +
+                            " VAR S : STAGE; END_VAR S(X := C); Y := S.Z; END_FUNCTION_BLOCK",
+                        diagnostics);
+    check(std::make_shared<const language::SourceFile>(std::move(parsed)), diagnostics);
+    return !diagnostics.has_errors();
+  };
+  EXPECT_TRUE(compiles("um"));
+  EXPECT_FALSE(compiles("V"));
+}
+
+TEST(Units, WithoutAStatedUnitNothingIsRefused) {
+  EXPECT_TRUE(unit_faults(bare, integral, "Y := I.XOUT; I(XIN := U - I.XOUT);").empty());
+  EXPECT_TRUE(unit_faults(bare, integral, "Y := I.XOUT; I(XIN := 10.0 * (U - I.XOUT));").empty());
+  EXPECT_TRUE(unit_faults(bare, "VAR D : HY_DERIVATIVE; END_VAR", "D(XIN := U); Y := U + 0.1 * D.XOUT;").empty());
+}
+
+TEST(Units, AStatedUnitReachesTheWholeLoop) {
+  const std::string half = "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; (* @unit V *) END_VAR";
+  EXPECT_EQ(unit_faults(half, integral, "Y := I.XOUT; I(XIN := 10.0 * (U - I.XOUT));").size(), 1U)
+      << "found last, though the loop was met before the unit of Y";
+  EXPECT_EQ(unit_faults(bare, constant("m") + integral, "Y := I.XOUT; I(XIN := C * (U - I.XOUT));").size(), 1U);
+}
+
+TEST(Units, TheMendSaysHowANumberGetsItsUnit) {
+  const auto mend = [](const std::string& parts, const std::string& text) {
+    std::string mends;
+    for (const Diagnostic& one : unit_faults(volts, parts, text)) {
+      mends += one.mend + "\n";
+    }
+    return mends;
+  };
+  const auto says = [](const std::string& number, const std::string& unit) {
+    return ::testing::HasSubstr("VAR CONSTANT K : LREAL := " + number + "; (* @unit " + unit + " *) END_VAR");
+  };
+  const std::string rate = "VAR D : HY_DERIVATIVE; END_VAR";
+  EXPECT_THAT(mend(rate, "D(XIN := U); Y := U + 0.1 * D.XOUT;"), says("0.1", "s"));
+  EXPECT_THAT(mend(rate, "D(XIN := U); Y := 0.1 * D.XOUT + U;"), says("0.1", "s"));
+  EXPECT_THAT(mend(rate, "D(XIN := U); Y := U + D.XOUT / 4.0;"), says("4.0", "1/s"));
+  EXPECT_THAT(mend(integral, "Y := I.XOUT; I(XIN := 10.0 * (U - I.XOUT));"), says("10.0", "1/s"));
+}
+
+/// Solutions that hang on each other may be as many as the diagram has blocks.
+TEST(Units, OfALongChainAreSolved) {
+  constexpr int length = 50'000;
+  std::string parts = "VAR ";
+  std::string text;
+  for (int i = 0; i < length; ++i) {
+    parts += "L" + std::to_string(i) + " : HY_LAG; V" + std::to_string(i) + " : LREAL; ";
+    text += "L" + std::to_string(i) + "(XIN := " + (i == 0 ? std::string("U") : "V" + std::to_string(i - 1)) + "); V" +
+            std::to_string(i) + " := L" + std::to_string(i) + ".XOUT; ";
+  }
+  const std::string ports = "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; (* @unit V *) END_VAR";
+  const Program program = compile_text("FUNCTION_BLOCK T (* @ts 1ms *) " + ports + " " + parts + " END_VAR " + text +
+                                       "Y := V" + std::to_string(length - 1) + "; END_FUNCTION_BLOCK");
+  const auto units = units::of_outputs(program.graph, program.schedule);
+  for (const auto& of_node : units) {
+    ASSERT_EQ(of_node.front(), "V");
+  }
 }
 
 }  // namespace

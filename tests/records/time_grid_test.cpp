@@ -141,6 +141,16 @@ TEST(TimeGrid, AChangeOfRateAndALargeJitterAreFaults) {
   EXPECT_TRUE(grid_of(print(time, "{:.6f}")).fault);
 }
 
+/// 0, 1, 3 s may be three rows of an uneven record or of one with 1.5 s: with so few rows nobody can tell.
+TEST(TimeGrid, AFewRowsInCoarseTimesAreFaultsUnlessTheyAreEven) {
+  for (const std::vector<double>& time : {std::vector{0.0, 1.0, 3.0}, {0.0, 2.0, 3.0, 5.0}, {0.0, 1.0, 2.0, 4.0}}) {
+    EXPECT_TRUE(grid_of(print(time, "{:.0f}")).fault) << time.back();
+  }
+  EXPECT_EQ(grid_of(print({0.0, 1.0, 2.0}, "{:.0f}")).sample_time, 1.0);
+  const auto rounded = grid_of(print(even(0.0, 5.0 / 3.0, 30), "{:.0f}"));
+  EXPECT_FALSE(rounded.fault) << "many rows tell";
+}
+
 TEST(TimeGrid, TimesThatRepeatOrRunBack) {
   auto time = even(0.0, 0.01, 100);
   time[50] = time[49];

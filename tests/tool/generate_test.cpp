@@ -124,6 +124,51 @@ TEST(Generate, CompiledItWritesTheTextOfRun) {
   }
 }
 
+/// The generated main reads what a spreadsheet writes, and refuses what it would have to guess at.
+TEST(Generate, TheMainRefusesBadRecordsWithLineAndCause) {
+  const test::Workbench bench;
+  bench.write("types.st",
+              "FUNCTION_BLOCK TYPES (* @ts 1ms *) VAR_INPUT X : LREAL; B : BOOL := FALSE; N : DINT := 0; END_VAR\n"
+              "VAR_OUTPUT Y : LREAL; END_VAR\n"
+              "Y := SEL(B, X, -X) + DINT_TO_LREAL(N);\nEND_FUNCTION_BLOCK\n");
+  ASSERT_EQ(bench.shell("hysteron generate types.st --target cpp --out g").code, 0);
+  const auto built = bench.shell("c++ -std=c++20 -Wall -Wextra -Werror g/main.cpp -o program");
+  ASSERT_EQ(built.code, 0) << built.err;
+  const auto run = [&](const std::string& log) {
+    bench.write("log.csv", log);
+    return bench.shell("./program < log.csv");
+  };
+  const std::string expected = "t,Y\n0,1.5\n0.001,2\n";
+  EXPECT_EQ(run("t,x\n0,1.5\n0.001,2\n").out, expected);
+  EXPECT_EQ(run("\xEF\xBB\xBFt;\"X\";b\r\n0;+1.5;0\r\n0.001;2;0\r\n;;\r\n").out, expected);
+  EXPECT_EQ(run("t\t x [V]\n0\t1.5\n0.001\t 2 \n").out, expected);
+  struct Refused {
+    std::string log;
+    std::string message;
+  };
+  for (const auto& [log, message] : {
+           Refused{"", "line 1: there is no column t\n"},
+           Refused{"x\n1\n", "line 1: there is no column t\n"},
+           Refused{"t,b\n0,1\n", "line 1: there is no column x\n"},
+           Refused{"t,x,X\n0,1,1\n", "line 1: two columns are named x\n"},
+           Refused{"t,x\n", "line 1: there is no row of numbers\n"},
+           Refused{"t,x\n0,1\n0.001\n", "line 3: 1 columns, the header has 2\n"},
+           Refused{"t,x\n0,one\n", "line 2: column x: 'one' is not a finite number\n"},
+           Refused{"t,x\n0,nan\n", "line 2: column x: 'nan' is not a finite number\n"},
+           Refused{"t,x\n0,inf\n", "line 2: column x: 'inf' is not a finite number\n"},
+           Refused{"t,x\n0,1\n0.002,1\n", "line 3: t leaves the even steps of 0.001 s from the first row on\n"},
+           Refused{"t,x\n0,1\n-0.001,1\n", "line 3: t leaves the even steps of 0.001 s from the first row on\n"},
+           Refused{"t,x,n\n0,1,1.5\n", "line 2: column n takes whole numbers from -2147483648 to 2147483647\n"},
+           Refused{"t,x,n\n0,1,3e9\n", "line 2: column n takes whole numbers from -2147483648 to 2147483647\n"},
+           Refused{"t,x,b\n0,1,2\n", "line 2: column b takes whole numbers from 0 to 1\n"},
+       }) {
+    const auto outcome = run(log);
+    EXPECT_EQ(outcome.code, 2) << log;
+    EXPECT_EQ(outcome.err, message) << log;
+    EXPECT_EQ(outcome.out, "") << log;
+  }
+}
+
 TEST(Generate, BuildsAloneWithCMake) {
   const test::Workbench bench;
   bench.write("ff.st", feedforward);

@@ -159,7 +159,7 @@ TEST_F(Run, DamagedRecordsAreRefused) {
            Case{"t,x,x\n0,1,1\n0.001,1,1\n", "HY503 error: log.csv:1:5: "},
            Case{"t,x\n0,1\n0.002,1\n0.004,1\n",
                 "HY704 error: log.csv: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
-                "mend: state @ts 2000000ns in the diagram, or resample the record to 0.001 s.\n"},
+                "mend: state @ts 2ms in the diagram, or resample the record to 0.001 s.\n"},
            Case{"t,x,reset\n0,1,0\n0.001,1,2\n",
                 "HY707 error: log.csv:3:9: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"
                 "    3 | 0.001,1,2\n"
@@ -243,6 +243,18 @@ TEST_F(Run, NeverOverwritesItsInputs) {
   EXPECT_EQ(bench.read("log.csv"), test::plant_log);
 }
 
+TEST_F(Run, NoFolderIsMadeForTheOutput) {
+  EXPECT_THAT(refusal("hysteron run plant.st --in log.csv --out none/out.csv"),
+              AllOf(HasSubstr("HY700"), HasSubstr("mkdir -p none")));
+  EXPECT_FALSE(bench.has("none"));
+}
+
+TEST_F(Run, MillisecondsInTheColumnOfTheTimeAreNamed) {
+  bench.write("log.csv", "t,x\n0,1\n1,1\n2,1\n");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("HY704"), HasSubstr("if its column t is in milliseconds, divide it by 1000"),
+                               HasSubstr("@ts 1s ")));
+}
+
 TEST_F(Run, AnOldOutputSurvivesAFailingRun) {
   bench.write("out.csv", "precious\n");
   bench.write("log.csv", "t,x\n0,1\n0.001,one\n");
@@ -264,6 +276,7 @@ TEST_F(Run, ParametersThatDoNotFitAreRefused) {
   EXPECT_THAT(with("[parameters.AMP]\nK = 1\nk = 2\n"), HasSubstr("HY602 error: p.toml:3:1: "));
   EXPECT_THAT(with("[parameters.AMP]\nK = nan\n"), HasSubstr("HY605 error: p.toml:2:5: "));
   EXPECT_THAT(with("[parameters.AMP\n"), HasSubstr("HY601 error: p.toml:1:"));
+  EXPECT_THAT(with("[fit.AMP]\nC9 = {}\n"), AllOf(HasSubstr("HY603 error: p.toml:2:1: "), HasSubstr("AMP.C9")));
 }
 
 TEST_F(Run, TheTopBlockCanBeChosen) {

@@ -146,6 +146,40 @@ TEST_F(UserTests, GoldenRecords) {
   EXPECT_THAT(run(toml).out, HasSubstr("has 2 rows, the case 3 steps"));
 }
 
+/// What cases are made from is never written over: neither by golden records nor by the results.
+TEST_F(UserTests, NothingIsWrittenOverWhatCasesAreMadeFrom) {
+  const std::string log = "t,X\n0,1\n0.001,1\n0.002,1\n";
+  const auto toml = [](const std::string& golden) {
+    return "[[case]]\nname = \"n\"\ncsv = \"log.csv\"\ngolden = \"" + golden + "\"\n";
+  };
+  bench.write("log.csv", log);
+  for (const std::string name : {"log.csv", "./plant.st", "plant.test.toml"}) {
+    const auto outcome = run(toml(name), " --no-generated --update");
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_THAT(outcome.err, HasSubstr("HY709")) << name;
+    EXPECT_EQ(bench.read("plant.test.toml"), toml(name));
+  }
+  for (const std::string name : {"log.csv", "plant.st", "plant.test.toml", "gold.csv"}) {
+    const auto outcome = run(toml("gold.csv"), " --no-generated --junit " + name);
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_THAT(outcome.err, HasSubstr("HY709")) << name;
+  }
+  EXPECT_EQ(bench.read("log.csv"), log);
+  EXPECT_EQ(bench.read("plant.st"), test::plant);
+  EXPECT_EQ(run(toml("gold.csv"), " --no-generated --update --junit results.xml").code, 0);
+}
+
+TEST_F(UserTests, AGoldenRecordIsWrittenByOneCaseAlone) {
+  const auto one = [](const std::string& name, const std::string& x) {
+    return "[[case]]\nname = \"" + name + "\"\nsteps = 2\ninputs = {X = " + x + "}\ngolden = \"gold.csv\"\n";
+  };
+  const auto outcome = run(one("a", "1.0") + one("b", "2.0"), " --no-generated --update");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("HY709"), HasSubstr("\"a\" and \"b\" would both write gold.csv")));
+  EXPECT_FALSE(bench.has("gold.csv"));
+  EXPECT_EQ(run(one("a", "1.0") + one("b", "2.0"), " --no-generated --update --filter a").code, 0);
+}
+
 TEST_F(UserTests, AFailingCaseWritesNoGoldenRecord) {
   const auto outcome =
       run("[[case]]\nname = \"n\"\nsteps = 3\ninputs = {X = 1.0}\nexpect = {Y = 1.0}\ngolden = \"n.csv\"\n",
@@ -246,6 +280,7 @@ TEST_F(UserTests, SlipsInTheTestFileAreExplained) {
   EXPECT_THAT(with("{X = 1.0}", "{}"), AllOf(HasSubstr("HY723"), HasSubstr("inputs = {X = 0.0}")));
   EXPECT_THAT(with("[0.002, 0.004]", "[0.002]"),
               HasSubstr("HY723 error: plant.test.toml:5:15: Y has 1 values for 2 steps."));
+  EXPECT_THAT(with("X = 1.0", "X = [1.0]"), AllOf(HasSubstr("X has 1 values for 2 steps."), HasSubstr("\n1 error\n")));
   EXPECT_THAT(with("[0.002, 0.004]", "{2 = 0.006}"), HasSubstr("steps count from 0"));
   EXPECT_THAT(with("X = 1.0", "X = {1 = 1.0}"), HasSubstr("X has no value for step 0."));
   EXPECT_THAT(with("expect = {Y = [0.002, 0.004]}", ""), HasSubstr("The case \"n\" checks nothing."));

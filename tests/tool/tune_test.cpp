@@ -236,6 +236,40 @@ TEST_F(Tune, BadInputIsRefusedAndNothingIsWritten) {
   EXPECT_THAT(refuse("plant.st --params p.toml --log log.csv --out tuned.toml --start 0"), HasSubstr("HY730"));
 }
 
+/// What the end of the fit would fail on is said before it; a refused fit leaves nothing behind.
+TEST_F(Tune, OutputsAreProvedBeforeTheFit) {
+  bench.write("file", "");
+  const auto refuse = [&](const std::string& outputs, const std::string& number) {
+    const auto before = bench.names();
+    const auto outcome = bench.shell("hysteron tune plant.st --log log.csv --params p.toml " + outputs);
+    EXPECT_EQ(outcome.code, 2) << outputs;
+    EXPECT_THAT(outcome.err, HasSubstr(number)) << outputs;
+    EXPECT_EQ(bench.names(), before) << outputs;
+    return outcome.err;
+  };
+  EXPECT_THAT(refuse("--out none/tuned.toml", "HY700"), HasSubstr("mkdir -p none"));
+  refuse("--out tuned.toml --report file", "HY700");
+  refuse("--out file/tuned.toml", "HY700");
+  refuse("--out .", "HY700");
+  bench.write("report.json", "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {}\n");
+  const auto outcome =
+      bench.shell("hysteron tune plant.st --log log.csv --params report.json --out tuned.toml --report .");
+  EXPECT_THAT(outcome.err, HasSubstr("HY709"));
+}
+
+TEST_F(Tune, IntervalsOfTrainAndTestAreHeldAgainstEachOtherAndTheRecord) {
+  const auto with = [&](const std::string& intervals) {
+    bench.write("i.toml", "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {}\n[tune]\n" + intervals);
+    return bench.shell("hysteron tune plant.st --log log.csv --params i.toml --out tuned.toml");
+  };
+  EXPECT_THAT(with("test = [700.0, 800.0]\n").err, AllOf(HasSubstr("HY606 error: i.toml:6:"), HasSubstr("700 to 800")));
+  EXPECT_THAT(with("train = [0.0, 3.0]\ntest = [2.0, 4.0]\n").err, AllOf(HasSubstr("HY606"), HasSubstr("overlap")));
+  EXPECT_FALSE(bench.has("tuned.toml"));
+  const auto rest = with("test = [3.0, 4.0]\n");
+  EXPECT_EQ(rest.code, 0) << rest.err;
+  EXPECT_THAT(rest.out, Not(HasSubstr("no test intervals"))) << "train is then what test leaves";
+}
+
 TEST_F(Tune, HelpHasExamples) {
   const auto outcome = bench.shell("hysteron tune --help");
   EXPECT_EQ(outcome.code, 0);

@@ -127,6 +127,17 @@ TEST(Covariance, WarnsOfAStrongCorrelation) {
   EXPECT_LT(c.correlation(0, 1), -0.99);
 }
 
+TEST(Covariance, ParametersThatAreWellDeterminedMayGoTogether) {
+  MatrixXd a = line(50);
+  a.col(1).array() += 10.0;
+  LeastSquaresResult fit = linear_fit(a, white_noise(50, 3));
+  const Covariance rough = covariance_of(fit, {"offset", "slope"});
+  fit.x = 30.0 * rough.standard_errors;  // the same record, of a machine with larger parameters
+  EXPECT_TRUE(covariance_of(fit, {"offset", "slope"}).warnings.empty());
+  fit.x[1] = 10.0 * rough.standard_errors[1];
+  EXPECT_EQ(covariance_of(fit, {"offset", "slope"}).warnings.size(), 1U);
+}
+
 TEST(Covariance, ParametersOnBoundsHaveNone) {
   const MatrixXd a = line(50);
   LeastSquaresResult fit = linear_fit(a, white_noise(50, 4));

@@ -34,8 +34,6 @@ constexpr double above_floor = 1.2;
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
-/// So many floors may be noise after all, where the floor sees its fast part alone, or what a dwell's trend leaves.
-constexpr double hidden_noise = 1.5;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "diagnosis/noise_floor.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::diagnosis {
@@ -199,7 +200,10 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double strength = 1.0 - std::exp(-0.2 * std::max(0.0, findings.judgement.significance));
       const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
-      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score), 0.0, 0.99);
+      // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
+      const double size = so_far.gap.improved / so_far.gap.floor.value;
+      const double explained = std::min(1.0, hidden_noise / std::max(size, 1e-9));
+      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained, 0.0, 0.99);
     }
     case Verdict::None:
       return no_effect;

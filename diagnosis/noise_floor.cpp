@@ -200,9 +200,8 @@ double noise_by_differences(const std::vector<double>& values) {
 }
 
 NoiseRange noise_range(double left) {
-  constexpr double hidden = 1.5;
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
-  return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden) * (1.0 + own_error)};
+  return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
 }
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output) {

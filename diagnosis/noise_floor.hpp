@@ -14,6 +14,9 @@
 
 namespace hysteron::diagnosis {
 
+/// So many floors may be noise after all, where the floor sees its fast part alone, or what a dwell's trend leaves.
+inline constexpr double hidden_noise = 1.5;
+
 struct NoiseFloor {
   double differences = 0.0;  ///< standard deviations in the unit of the output; 0 where there is no such evidence
   double dwells = 0.0;

@@ -137,7 +137,7 @@ TEST(LeastSquares, FollowsTheCurvedValleyOfAPower) {
   task.outputs = {"Y"};
   task.scales = {0.01};
   for (const auto& [path, start] : {std::pair("HYST.C1", 9.0), {"HYST.C2", 0.4}, {"HYST.C3", 2.5}}) {
-    task.known.push_back({.path = path, .start = start, .lower = 1e-6, .upper = 100.0, .typical = start});
+    task.known.push_back({.path = path, .start = start, .lower = 1e-6, .upper = 10.0, .typical = start});
   }
   Model model(task, compile_text(test::stack()));
   const Fit found = fit(model, model.start(), {.iterations = 60, .tolerance = 1e-10});

@@ -74,7 +74,8 @@ struct Clock : PastSignal {
     const S time = to_real<S>(state.COUNT) * ts;
     const S behind = params.SKEW * time + params.LOST * passed_part(time, params.T_LOST, ts);
     Out<S> out = ago<S>(state, view(state, in), max(behind / ts, S(0.0)));
-    const S ahead = max(S(0.0) - behind / ts, S(0.0));
+    // In this order: where SKEW is 0, ago has the derivative of either side, and this term none.
+    const S ahead = max(S(0.0), S(0.0) - behind / ts);
     out.XOUT = with_term<S>(out.XOUT, ahead * (in.XIN - last(state, view(state, in))));
     return out;
   }

@@ -19,21 +19,22 @@ inline void* counted_new(std::size_t size) {
 }
 }  // namespace hysteron::test
 
-void* operator new(std::size_t size) {
+// Not inlined: GCC would see free() beside the standard's operator new, and warn.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   return hysteron::test::counted_new(size);
 }
-void* operator new[](std::size_t size) {
+[[gnu::noinline]] void* operator new[](std::size_t size) {
   return hysteron::test::counted_new(size);
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete[](void* memory) noexcept {
+[[gnu::noinline]] void operator delete[](void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
   std::free(memory);
 }
-void operator delete[](void* memory, std::size_t /*size*/) noexcept {
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t /*size*/) noexcept {
   std::free(memory);
 }

@@ -14,8 +14,8 @@ struct Derivative4 {
       .meaning =
           "Rate of change as the standard's DERIVATIVE: the slope of the least-squares line through four samples. Of "
           "white noise it passes a variance 0.1 times that of HY_DERIVATIVE. The history begins with the first "
-          "sample, so that a ramp gives 0, 0.3, 0.7 and from then on 1 times its slope; the same after RUN was "
-          "FALSE, which gives 0.",
+          "sample, so that a ramp gives 0, 0.3, 0.7 and from then on 1 times its slope; while RUN is FALSE "
+          "it gives 0, and the last of those samples counts as the first.",
       .delay =
           "Delay 1.5 samples at every frequency; gain (3·sin(3w/2) + sin(w/2))/(5w) times the ideal ω at w = ωTS: "
           "0.69 at 1 rad/sample.",

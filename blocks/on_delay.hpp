@@ -13,7 +13,7 @@ struct OnDelay : Timer {
                                .meaning =
                                    "Q follows IN, but rises only once IN has been TRUE for PT. With PT = n·TS, Q rises "
                                    "exactly n steps after IN, also where n·TS cannot be represented; with PT = 0 it "
-                                   "rises at once. PT may change while the timer runs.",
+                                   "rises at once. ET is 0 while IN is FALSE. PT may change while the timer runs.",
                                .source = "IEC 61131-3, TON"};
 
   template <class S>

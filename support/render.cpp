@@ -194,7 +194,7 @@ nlohmann::json as_json(const Diagnostics& diagnostics) {
 }
 
 std::string_view title_of(int number) {
-  for (const auto& entry : error_titles) {
+  for (const auto& entry : error_titles()) {
     if (entry.number == number) {
       return entry.title;
     }

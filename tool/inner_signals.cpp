@@ -17,7 +17,7 @@ std::vector<InnerSignal> inner_signals(const Program& program) {
       return;
     }
     const Node& node = graph.nodes[wire.index];
-    const std::string& own = units[wire.index][wire.port];
+    const std::string own = node.block == nullptr ? std::string() : units[wire.index][wire.port];
     found.push_back(
         {.name = node.block == nullptr ? sink : node.path + "." + std::string(node.block->outputs[wire.port].name),
          .unit = own.empty() ? unit : own,

@@ -29,7 +29,7 @@ std::string output_csv(std::span<const double> time, const std::vector<std::stri
   return text;
 }
 
-void check_finite(const Place& place, std::span<const double> time, const std::vector<std::string>& names,
+void check_finite(const std::vector<Place>& places, std::span<const double> time, const std::vector<std::string>& names,
                   const std::vector<Signal>& columns, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto finite = [](double value) { return std::isfinite(value); };
@@ -41,7 +41,7 @@ void check_finite(const Place& place, std::span<const double> time, const std::v
     const auto count =
         columns[i].size() - static_cast<std::size_t>(std::count_if(first, columns[i].end(), finite)) - step;
     diagnostics.error(
-        error::output_not_finite, place,
+        error::output_not_finite, places.empty() ? Place{} : places[i],
         fmt::format("{} is {} at step {} (t = {} s){}.", names[i], std::isnan(*first) ? "not a number" : "infinite",
                     step, number_text(time[step]), count > 1 ? fmt::format(", and in {} steps in all", count) : ""),
         "look for a division by 0, a root or logarithm of a negative number, or a sum that grows without bound; "

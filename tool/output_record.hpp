@@ -16,7 +16,8 @@ namespace hysteron::tool {
                                      const std::vector<Signal>& columns, bool float32);
 
 /// Reports HY706 for each column that holds an infinity or not-a-number: the first step where it does, and how many.
-void check_finite(const Place& place, std::span<const double> time, const std::vector<std::string>& names,
+/// \p places are those of the columns in the diagram; none where it is known from elsewhere.
+void check_finite(const std::vector<Place>& places, std::span<const double> time, const std::vector<std::string>& names,
                   const std::vector<Signal>& columns, Diagnostics& diagnostics);
 
 }  // namespace hysteron::tool

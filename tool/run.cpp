@@ -150,12 +150,15 @@ int run(const Options& options, Console& console) {
   const Drive drive = drive_from(record, program, {}, diagnostics);
 
   std::vector<std::string> names;
+  std::vector<Place> places;
   for (const Port& output : program.graph.outputs) {
     names.push_back(output.name);
+    places.push_back(program.graph.place(output.span));
   }
   std::vector<Wire> watched = output_wires(program.graph);
   for (const std::string& path : options.traces) {
     watched.push_back(find_signal(program.graph, path));
+    places.push_back({.file = options.diagram.file});
     // A variable T would stand in a second column t.
     names.push_back(equal_ignoring_case(path, "t") ? in_capitals(program.graph.name + "." + path) : in_capitals(path));
   }
@@ -167,7 +170,7 @@ int run(const Options& options, Console& console) {
   const auto values =
       interpret(program, drive, watched, options.diagram.float32, [&](double fraction) { progress.update(fraction); });
   progress.finish();
-  check_finite({.file = options.diagram.file}, record.time(), names, values, diagnostics);
+  check_finite(places, record.time(), names, values, diagnostics);
   const auto text = output_csv(record.time(), names, values, options.diagram.float32);
   if (options.output == "-") {
     console.print(text);

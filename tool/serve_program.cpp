@@ -9,6 +9,7 @@
 
 #include "codegen/backends/cpp.hpp"
 #include "codegen/backends/cpp_step.hpp"
+#include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/program_hash.hpp"
@@ -168,11 +169,7 @@ Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
 
 ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   const Graph& graph = program.graph;
-  if (graph.sample_time_ns <= 0) {
-    throw InputError(error::missing_sample_time, {.file = graph.source ? graph.source->path : std::string()},
-                     "The diagram states no sample time.",
-                     fmt::format("write it behind the name: FUNCTION_BLOCK {} (* @ts 1ms *).", graph.name));
-  }
+  require_sample_time(graph);
   ProgramShape shape{.name = graph.name, .period = graph.sample_time_ns};
   for (const Port& port : graph.inputs) {
     shape.inputs.push_back(signal_of(port));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "codegen/graph/defaults.hpp"
+#include "codegen/graph/sample_time.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "records/csv.hpp"
 #include "support/errors.hpp"
@@ -130,9 +132,7 @@ class CasePlan {
                          "write steps = 10, or give an input or an output as a list.");
     }
     if (graph().sample_time_ns == 0) {
-      diagnostics_.error(error::missing_sample_time, graph().place({}),
-                         fmt::format("{} states no sample time, and the case has no record.", graph().name),
-                         fmt::format("write it behind the name: FUNCTION_BLOCK {} (* @ts 1ms *).", graph().name));
+      diagnostics_.add(missing_sample_time(graph()));
     }
     for (std::size_t k = 0; k < drive.steps; ++k) {
       planned_.time.push_back(static_cast<double>(k) * graph().sample_time());

@@ -27,10 +27,6 @@ std::string unit_behind(const std::string& unit) {
   return unit.empty() || unit == "1" ? std::string() : " " + unit;
 }
 
-std::string unit_of(const OutputErrorProblem& problem, std::size_t unknown) {
-  return unknown < problem.parameters.size() ? problem.parameters[unknown].unit : std::string();
-}
-
 std::string error_text(const LeastSquaresResult& solution, double standard_error, std::size_t unknown) {
   if (solution.at_bound[unknown] == AtBound::Lower || solution.at_bound[unknown] == AtBound::Upper) {
     return solution.at_bound[unknown] == AtBound::Lower ? "on its lower bound" : "on its upper bound";
@@ -130,7 +126,7 @@ std::string page(const TuneReport& report) {
     html += fmt::format("<tr><td>{}</td><td>{:.8g}</td><td>{}</td><td>{}</td></tr>\n", escaped(report.fit.names[i]),
                         report.fit.solution.x[j],
                         error_text(report.fit.solution, report.fit.covariance.standard_errors[j], i),
-                        escaped(unit_of(report.problem, i)));
+                        escaped(report.fit.units[i]));
   }
   html += "</table>\n<table><tr><th>output</th><th>RMSE in train</th><th>RMSE in test</th><th>range</th></tr>\n";
   for (const OutputScore& score : report.fit.scores) {
@@ -166,7 +162,7 @@ std::string as_text(const TuneReport& report) {
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto j = static_cast<Index>(i);
     text += fmt::format("{:<{}}  {:<14.8g}  {:<18}  {}\n", fit.names[i], widest, fit.solution.x[j],
-                        error_text(fit.solution, fit.covariance.standard_errors[j], i), unit_of(problem, i));
+                        error_text(fit.solution, fit.covariance.standard_errors[j], i), fit.units[i]);
   }
   for (const OutputScore& score : fit.scores) {
     const auto unit = unit_behind(score.unit);
@@ -208,7 +204,7 @@ nlohmann::json as_json(const TuneReport& report) {
         {{"name", fit.names[i]},
          {"value", fit.solution.x[j]},
          {"standard_error", number(fit.covariance.standard_errors[j])},
-         {"unit", unit_of(problem, i)},
+         {"unit", fit.units[i]},
          {"at_bound", bound == AtBound::Lower   ? "lower"
                       : bound == AtBound::Upper ? "upper"
                                                 : ""}});

@@ -77,6 +77,7 @@ class Fitter {
     Index j = 0;
     for (const FreeParameter& free : problem_.parameters) {
       fit_.names.push_back(free.name);
+      fit_.units.push_back(free.unit);
       least_squares_.start[j] = free.start;
       least_squares_.lower[j] = free.lower;
       least_squares_.upper[j] = free.upper;
@@ -89,6 +90,7 @@ class Fitter {
         const bool several = problem_.experiments.size() > 1;
         fit_.names.push_back(several ? fmt::format("{} at the start of record {}", state.path, e + 1)
                                      : fmt::format("{} at the start", state.path));
+        fit_.units.push_back(state.unit);
         least_squares_.start[j] = states[i];
         least_squares_.lower[j] = state.lower;
         least_squares_.upper[j] = state.upper;
@@ -355,7 +357,7 @@ parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const Outpu
     const FreeState& state = problem.initial_states[i];
     const double error = fit.covariance.standard_errors[static_cast<Index>(problem.parameters.size() + i)];
     remarks[in_capitals("initial." + state.path)] = {
-        .unit = {},
+        .unit = state.unit,
         .meaning = state.meaning,
         .standard_error = std::isfinite(error) ? std::optional(error) : std::nullopt};
   }

@@ -45,6 +45,7 @@ struct FreeParameter {
 /// A state of type LREAL whose value after the reset is fitted, for each record on its own.
 struct FreeState {
   std::string path{};  ///< LAG.XOUT, say
+  std::string unit{};  ///< as the wires give it; empty where they do not
   std::string meaning{};
   Place place{};
   double lower = 0.0;
@@ -105,6 +106,7 @@ struct OutputScore {
 
 struct OutputErrorFit {
   std::vector<std::string> names{};  ///< parameters, then initial states record by record
+  std::vector<std::string> units{};  ///< of the same
   LeastSquaresResult solution{};     ///< residuals output by output, each in the order of records and times
   Covariance covariance{};
   std::vector<OutputScore> scores{};

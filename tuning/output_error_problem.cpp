@@ -34,6 +34,7 @@ class Builder {
 
   OutputErrorProblem build(bool may_be_fixed) {
     units_ = units::of_parameters(graph(), problem_.program.schedule);
+    state_units_ = units::of_states(graph(), problem_.program.schedule);
     for (const FitSetting& fit : file_.fits) {
       add_parameter(fit);
     }
@@ -132,6 +133,7 @@ class Builder {
       const Node& node = graph().nodes[found->node];
       const Field& field = node.block->states[found->state];
       problem_.initial_states.push_back({.path = fmt::format("{}.{}", node.path, field.name),
+                                         .unit = state_units_[found->node][found->state],
                                          .meaning = std::string(field.meaning),
                                          .place = wanted.place,
                                          .lower = field.minimum,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "codegen/graph/defaults.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "records/time_grid.hpp"
 #include "support/errors.hpp"
@@ -185,11 +186,12 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
   if (span_of_deviations(record, stated) <= 1.25 * last_decimal + 0.02 * stated) {
     return;
   }
-  diagnostics.error(error::sample_time_mismatch, {.file = record.file()},
+  diagnostics.error(error::sample_time_mismatch, record.place("t", 1),
                     fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded),
                                 graph.name, number_text(stated)),
                     fmt::format("{}state @ts {} in the diagram, or resample the record to {} s.",
-                                unit_advice(recorded / stated), duration_text(recorded), number_text(stated)));
+                                unit_advice(recorded / stated), duration_text(recorded), number_text(stated)),
+                    {{.place = graph.place(graph.sample_time_span), .text = "the sample time of the diagram"}});
 }
 
 std::vector<Signal> interpret(const Program& program, const Drive& drive, const std::vector<Wire>& watched,

@@ -26,9 +26,6 @@ struct Drive {
   double sample_time = 0.0;  ///< in seconds; of use where the diagram states none
 };
 
-/// Whether the text gives an input a value for when nothing is connected.
-[[nodiscard]] bool has_default(const Graph& graph, const Port& input);
-
 /// The columns of a record as inputs, by name without regard to case; an input without a column keeps its default.
 /// Reports HY502 for an input with neither, HY707 for a value that its type cannot take, and, as a warning, HY705
 /// for values outside of its range. `given`, by input, are signals that stand for columns; empty ones do not.

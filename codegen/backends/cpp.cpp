@@ -12,8 +12,8 @@
 #include "codegen/backends/cpp_words.hpp"
 #include "codegen/backends/identifiers.hpp"
 #include "codegen/backends/routine.hpp"
+#include "codegen/graph/sample_time.hpp"
 #include "codegen/program_hash.hpp"
-#include "support/errors.hpp"
 #include "support/name_table.hpp"
 #include "support/numbers.hpp"
 
@@ -471,14 +471,6 @@ class CppHeader {
   std::uint32_t section_ = 0;  ///< the node to which the statement at hand belongs
   bool section_begins_ = false;
 };
-
-void require_sample_time(const Graph& graph) {
-  if (graph.sample_time_ns <= 0) {
-    throw InputError(error::missing_sample_time, {.file = graph.source ? graph.source->path : std::string()},
-                     "the diagram states no sample time",
-                     fmt::format("Write it behind the name: FUNCTION_BLOCK {} (* @ts 1ms *).", graph.name));
-  }
-}
 
 }  // namespace
 

@@ -106,9 +106,11 @@ class Reader {
   }
 
   void read(Definition& definition) {
+    definition.sample_time_span = definition.block->name.span;
     for (const Annotation& annotation : definition.block->annotations) {
       const std::string key = language::upper(annotation.key);
       if (key == "TS") {
+        definition.sample_time_span = annotation.span;
         if (!duration_of(annotation.value, definition.sample_time_ns)) {
           error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a sample time", annotation.value),
                 "Write a positive whole number of nanoseconds with its unit: @ts 50us, @ts 1ms, @ts 0.5s.");

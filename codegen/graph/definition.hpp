@@ -29,9 +29,10 @@ struct Definition {
   std::vector<Declared> variables{};
   std::unordered_map<std::string, std::uint32_t> by_name{};  ///< upper-case name → variable
   std::int64_t sample_time_ns = 0;
-  std::string effect{};      ///< (* @effect creep *): joins the candidates of a diagnosis
-  std::vector<bool> late{};  ///< by variable: an output that depends on an input within the same step
-  bool usable = true;        ///< FALSE where an error makes instances pointless
+  language::Span sample_time_span{};  ///< where @ts states it; the name where nothing does
+  std::string effect{};               ///< (* @effect creep *): joins the candidates of a diagnosis
+  std::vector<bool> late{};           ///< by variable: an output that depends on an input within the same step
+  bool usable = true;                 ///< FALSE where an error makes instances pointless
 };
 
 struct Definitions {

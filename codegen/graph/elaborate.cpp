@@ -13,6 +13,7 @@ Graph Elaborator::run(std::uint32_t top) {
   const Definition& definition = definitions_.list[top];
   graph_.name = std::string(definition.block->name.text);
   graph_.sample_time_ns = definition.sample_time_ns;
+  graph_.sample_time_span = definition.sample_time_span;
   Instance instance{.definition = &definition, .first_slot = add_slots(definition), .top = true};
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     declare_top(instance, i);

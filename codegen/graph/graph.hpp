@@ -96,6 +96,7 @@ struct Graph {
   std::string name{};                                    ///< of the top block, as written
   std::shared_ptr<const language::SourceFile> source{};  ///< the text; spans point into it, fields name parts of it
   std::int64_t sample_time_ns = 0;                       ///< 0: not stated
+  language::Span sample_time_span{};                     ///< where @ts states it; the block's name where nothing does
   std::vector<Port> inputs{};
   std::vector<Port> outputs{};
   std::vector<Parameter> parameters{};

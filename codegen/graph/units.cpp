@@ -86,14 +86,15 @@ class Checker {
     return texts;
   }
 
-  /// The unit of each output of each node, after run().
-  std::vector<std::vector<std::string>> output_units() {
+  /// The units of some fields of each node, such as its outputs, after run().
+  template <class Fields>
+  std::vector<std::vector<std::string>> field_units(Fields BlockType::*fields) {
     std::vector<std::vector<std::string>> texts(graph_.nodes.size());
     for (std::uint32_t index = 0; index < graph_.nodes.size(); ++index) {
-      const Node& node = graph_.nodes[index];
-      for (std::size_t port = 0; port < output_count(node); ++port) {
-        const bool is_real = node.block != nullptr && node.block->outputs[port].type == Type::Real;
-        texts[index].push_back(is_real ? text_of_field(index, node.block->outputs[port]) : std::string());
+      if (const BlockType* const block = graph_.nodes[index].block) {
+        for (const Field& field : block->*fields) {
+          texts[index].push_back(field.type == Type::Real ? text_of_field(index, field) : std::string());
+        }
       }
     }
     return texts;
@@ -191,7 +192,7 @@ class Checker {
     const BlockType& block = *graph_.nodes[index].block;
     const auto [place, is_new] = blocks_.try_emplace(&block);
     if (is_new) {
-      for (const auto& fields : {block.outputs, block.inputs, block.params}) {
+      for (const auto& fields : {block.outputs, block.inputs, block.params, block.states}) {
         for (const Field& field : fields) {
           read_unit(field.unit, place->second);
         }
@@ -451,7 +452,14 @@ std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Sched
   Diagnostics ignored;
   Checker checker(graph, ignored);
   checker.run(schedule);
-  return checker.output_units();
+  return checker.field_units(&BlockType::outputs);
+}
+
+std::vector<std::vector<std::string>> of_states(const Graph& graph, const Schedule& schedule) {
+  Diagnostics ignored;
+  Checker checker(graph, ignored);
+  checker.run(schedule);
+  return checker.field_units(&BlockType::states);
 }
 
 }  // namespace hysteron::units

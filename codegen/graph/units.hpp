@@ -27,4 +27,7 @@ std::vector<std::string> of_parameters(const Graph& graph, const Schedule& sched
 /// The same for the outputs of all nodes, by node and output. Empty for operations.
 std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Schedule& schedule);
 
+/// The same for the states of all nodes, by node and state. Empty for operations.
+std::vector<std::vector<std::string>> of_states(const Graph& graph, const Schedule& schedule);
+
 }  // namespace hysteron::units

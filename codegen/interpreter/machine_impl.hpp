@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "codegen/graph/sample_time.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/trace/evaluate.hpp"
-#include "support/errors.hpp"
 
 namespace hysteron {
 namespace detail {
@@ -87,10 +87,7 @@ Machine<S>::Machine(const Program& program, double sample_time)
     : program_(std::make_shared<const Program>(program)),
       sample_time_(program.graph.sample_time_ns > 0 ? program.graph.sample_time() : sample_time) {
   if (!(sample_time_ > 0.0)) {
-    throw InputError(error::missing_sample_time,
-                     {.file = program.graph.source ? program.graph.source->path : std::string()},
-                     "the diagram states no sample time",
-                     "Write it behind the name: FUNCTION_BLOCK " + program.graph.name + " (* @ts 1ms *).");
+    require_sample_time(program.graph);
   }
   lay_out();
   place_instructions();

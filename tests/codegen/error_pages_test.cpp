@@ -61,7 +61,7 @@ std::vector<int> run(const std::string& text) {
 /// Numbers that a diagram can have, by the checker that finds them.
 std::vector<std::pair<int, Checker>> diagram_errors() {
   std::vector<std::pair<int, Checker>> list;
-  for (const auto& title : error_titles) {
+  for (const auto& title : error_titles()) {
     if (title.number < 500) {
       const bool is_run = title.number == error::missing_sample_time;
       list.emplace_back(title.number,
@@ -72,7 +72,7 @@ std::vector<std::pair<int, Checker>> diagram_errors() {
 }
 
 TEST(ErrorPages, EveryNumberHasItsPageWithItsTitle) {
-  for (const auto& title : error_titles) {
+  for (const auto& title : error_titles()) {
     const auto number = "HY" + std::to_string(title.number);
     try {
       const auto page = read_error_page(number);
@@ -90,7 +90,7 @@ TEST(ErrorPages, EveryPageHasItsNumber) {
     if (name == "README") {
       continue;  // their list
     }
-    EXPECT_TRUE(std::any_of(error_titles.begin(), error_titles.end(), [&](const ErrorTitle& title) {
+    EXPECT_TRUE(std::ranges::any_of(error_titles(), [&](const ErrorTitle& title) {
       return name == "HY" + std::to_string(title.number);
     })) << entry.path();
   }
@@ -103,7 +103,7 @@ TEST(ErrorPages, AreListedByTheirTitles) {
     listed += line.starts_with("| [HY") ? line + "\n" : "";
   }
   std::string expected;
-  for (const auto& title : error_titles) {
+  for (const auto& title : error_titles()) {
     expected += "| [HY" + std::to_string(title.number) + "](HY" + std::to_string(title.number) + ".md) | " +
                 std::string(title.title) + " |\n";
   }
@@ -111,8 +111,8 @@ TEST(ErrorPages, AreListedByTheirTitles) {
 }
 
 TEST(ErrorPages, NumbersAreSortedAndSingle) {
-  EXPECT_TRUE(std::is_sorted(error_titles.begin(), error_titles.end(),
-                             [](const ErrorTitle& a, const ErrorTitle& b) { return a.number <= b.number; }));
+  EXPECT_TRUE(std::ranges::is_sorted(error_titles(),
+                                     [](const ErrorTitle& a, const ErrorTitle& b) { return a.number <= b.number; }));
 }
 
 TEST(ErrorPages, DiagramsFailAndAreMendedAsThePageSays) {

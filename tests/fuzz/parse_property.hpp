@@ -17,8 +17,8 @@ namespace hysteron::test {
 namespace detail {
 
 inline std::string flaw_of_diagnostic(const Diagnostic& one, std::uint32_t lines) {
-  const bool known = std::any_of(error_titles.begin(), error_titles.end(),
-                                 [&](const ErrorTitle& title) { return title.number == one.number; });
+  const bool known =
+      std::ranges::any_of(error_titles(), [&](const ErrorTitle& title) { return title.number == one.number; });
   if (!known || one.number < 100 || one.number > 199) {
     return "a diagnostic with a number that is not of the syntax";
   }

@@ -24,7 +24,7 @@ std::string bytes_of(const test::FencedBlock& block) {
 
 TEST(ErrorPages, OfRecords) {
   int pages = 0;
-  for (const auto& [number, title] : error_titles) {
+  for (const auto& [number, title] : error_titles()) {
     if (number / 100 != 5) {
       continue;
     }

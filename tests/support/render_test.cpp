@@ -147,7 +147,7 @@ TEST(Render, JsonHasEveryField) {
 TEST(ErrorTitles, AreSortedAndUnique) {
   std::set<std::string_view> titles;
   int last = 0;
-  for (const auto& [number, title] : error_titles) {
+  for (const auto& [number, title] : error_titles()) {
     EXPECT_GT(number, last);
     EXPECT_TRUE(titles.insert(title).second) << title;
     EXPECT_EQ(title_of(number), title);

@@ -49,7 +49,7 @@ TEST(TextFile, SaysWhyItCannotBeRead) {
 TEST(ErrorPages, HY100) {
   const auto page = test::read_error_page("HY100");
   EXPECT_EQ(page.number, "HY100");
-  EXPECT_EQ(page.title, error_titles.front().title);
+  EXPECT_EQ(page.title, error_titles().front().title);
   const auto file = [](const std::string& command) {
     const auto begin = command.rfind(' ') + 1;
     return command.substr(begin, command.find_last_not_of('\n') + 1 - begin);

@@ -53,7 +53,7 @@ TEST_P(ErrorPages, FailAndMend) {
   const auto page = test::read_error_page(name);
   EXPECT_EQ(page.number, name);
   std::string title;
-  for (const auto& entry : error_titles) {
+  for (const auto& entry : error_titles()) {
     title = entry.number == number ? entry.title : title;
   }
   EXPECT_EQ(page.title, title);
@@ -75,7 +75,7 @@ TEST_P(ErrorPages, FailAndMend) {
 /// 700 is tested with the files that it is about, 710 to 719 are those of fits.
 std::vector<int> numbers() {
   std::vector<int> result;
-  for (const auto& entry : error_titles) {
+  for (const auto& entry : error_titles()) {
     if ((entry.number >= 704 && entry.number < 710) || (entry.number >= 720 && entry.number < 740)) {
       result.push_back(entry.number);
     }

@@ -158,7 +158,9 @@ TEST_F(Run, DamagedRecordsAreRefused) {
            Case{"0,1\n0.001,1\n", "HY509 error: log.csv:1:1: "},
            Case{"t,x,x\n0,1,1\n0.001,1,1\n", "HY503 error: log.csv:1:5: "},
            Case{"t,x\n0,1\n0.002,1\n0.004,1\n",
-                "HY704 error: log.csv: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
+                "HY704 error: log.csv:3:1: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
+                "    3 | 0.002,1\n"
+                "      | ^\n"
                 "mend: state @ts 2ms in the diagram, or resample the record to 0.001 s.\n"},
            Case{"t,x,reset\n0,1,0\n0.001,1,2\n",
                 "HY707 error: log.csv:3:9: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"
@@ -230,8 +232,9 @@ TEST_F(Run, NotANumberIsNeverSilent) {
   bench.write("log.csv", "t,x\n0,1\n0.001,0\n0.002,0\n0.003,2\n");
   const auto outcome = bench.shell(std::string(go));
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.err, StartsWith("HY706 error: plant.st: Y is infinite at step 1 (t = 0.001 s), and in 2 steps in "
-                                      "all.\nmend: "));
+  EXPECT_THAT(outcome.err,
+              StartsWith("HY706 error: plant.st:1:87: Y is infinite at step 1 (t = 0.001 s), and in 2 steps in "
+                         "all.\nmend: "));
   EXPECT_EQ(bench.read("out.csv"), "t,Y\n0,1\n0.001,inf\n0.002,inf\n0.003,0.5\n");
 }
 

@@ -12,6 +12,7 @@ namespace hysteron {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -131,10 +132,10 @@ TEST_F(Tune, FittedValuesRunAndTuneAgain) {
 
 constexpr std::string_view tank = R"(FUNCTION_BLOCK TANK  (* @ts 10ms *)
   VAR_INPUT
-    Q : LREAL;
+    Q : LREAL;  (* @unit l/s *)
   END_VAR
   VAR_OUTPUT
-    LEVEL : LREAL;
+    LEVEL : LREAL;  (* @unit mm *)
   END_VAR
   VAR
     AREA : HY_GAIN;
@@ -168,7 +169,7 @@ TEST_F(Tune, InitialStatesOfOneRecordAreStored) {
   ASSERT_EQ(bench.shell("hysteron tune tank.st --log log.csv --params p.toml --out tuned.toml --report report").code,
             0);
   const auto text = bench.read("tuned.toml");
-  EXPECT_THAT(text, AllOf(HasSubstr("\n[initial.SUM]\nSUM = "), HasSubstr("K = {}  # per area\n"),
+  EXPECT_THAT(text, AllOf(ContainsRegex("\n\\[initial.SUM\\]\nSUM = [^\n]*# mm, "), HasSubstr("K = {}  # per area\n"),
                           HasSubstr("\n# the tank in the yard\n")));
   // The run meets the record that the fit was made to, from its first sample on.
   const auto run = bench.shell(

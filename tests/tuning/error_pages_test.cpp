@@ -99,7 +99,7 @@ TEST(ErrorPages, OfFits) {
     SCOPED_TRACE(name);
     const auto page = test::read_error_page(name);
     EXPECT_EQ(page.number, name);
-    for (const auto& known : error_titles) {
+    for (const auto& known : error_titles()) {
       if (known.number == number) {
         EXPECT_EQ(page.title, known.title);
       }

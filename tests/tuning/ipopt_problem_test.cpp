@@ -116,6 +116,27 @@ TEST(LeastSquares, ParametersEndExactlyOnTheirBounds) {
   EXPECT_EQ(fit.at_bound[2], AtBound::Free);
 }
 
+/// The gradient does not vanish at a kink: what ends the fit is that the cost stands still.
+TEST(LeastSquares, AFitThatStandsStillAtAKinkEnds) {
+  LeastSquaresProblem problem;
+  problem.residual_count = 3;
+  problem.names = {"kinked", "smooth"};
+  problem.start = vector({1.0, 0.0});
+  problem.evaluate = [](const VectorXd& x, VectorXd& r, MatrixXd* jacobian) {
+    const double side = x[0] > 0.3 ? 1.0 : -1.0;
+    r = vector({1.0 + 5.0 * std::abs(x[0] - 0.3), 1.0 + std::abs(x[0] - 0.3), x[1] - 2.0});
+    if (jacobian != nullptr) {
+      *jacobian << 5.0 * side, 0, side, 0, 0, 1;
+    }
+    return true;
+  };
+  const LeastSquaresResult fit = solve(problem);
+  EXPECT_EQ(fit.status, FitStatus::Stalled) << fit.message;
+  EXPECT_LT(fit.iterations, 80);  // the limit is some hundreds
+  EXPECT_NEAR(fit.x[0], 0.3, 1e-3);
+  EXPECT_NEAR(fit.x[1], 2.0, 1e-3);
+}
+
 TEST(LeastSquares, AnOptimumCloseToABoundIsNotTakenForOneOnIt) {
   LeastSquaresProblem problem = bowl();
   problem.lower = vector({2.0 - 1e-7, -5.0, 0.7});  // p just above its bound, s exactly on it with gradient 0

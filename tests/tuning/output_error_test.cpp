@@ -471,8 +471,8 @@ TEST(OutputError, PagesKeepTheirWord) {
     };
     EXPECT_EQ(run(page.fails), number);
     EXPECT_EQ(run(page.mended), 0);
-    const auto title = std::ranges::find(error_titles, number, &ErrorTitle::number);
-    ASSERT_NE(title, error_titles.end());
+    const auto title = std::ranges::find(error_titles(), number, &ErrorTitle::number);
+    ASSERT_NE(title, error_titles().end());
     EXPECT_EQ(page.title, title->title);
   }
 }

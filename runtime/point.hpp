@@ -22,6 +22,13 @@ enum class PointKind {
 
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
 
+/// What a client must be allowed before it may write a point.
+enum class WriteRight {
+  inputs,      ///< inputs of the diagram, and to say that the client lives
+  parameters,  ///< parameters, and to commit or discard them
+  reset,       ///< to bring every state to its start, and to forget a fault
+};
+
 struct Point {
   std::string name{};  ///< as in the diagram: U, HYST.C1; status and commands as task.cycles
   PointKind kind = PointKind::status;
@@ -31,6 +38,7 @@ struct Point {
   double high = std::numeric_limits<double>::infinity();
   bool writable = false;
   std::string meaning{};
+  WriteRight right = WriteRight::parameters;  ///< where it is writable
 };
 
 struct PointWrite {

@@ -116,6 +116,17 @@ std::string rights_of(const runtime::RunConfig& config) {
   if (config.modbus) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }
+  if (config.modbus && config.modbus->tls) {
+    // The user of the service is made at its start and can own no file: the service manager hands them over.
+    const auto& tls = *config.modbus->tls;
+    for (const auto& [name, path] : {std::pair(runtime::modbus::certificate_credential, tls.certificate),
+                                     {runtime::modbus::key_credential, tls.key},
+                                     {runtime::modbus::clients_credential, tls.clients}}) {
+      if (std::filesystem::path(path).is_absolute()) {
+        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
+      }
+    }
+  }
   for (const std::string& folder : folders) {
     rights += fmt::format("ReadWritePaths={}\n", word("-" + folder));
   }

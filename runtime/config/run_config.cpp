@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "runtime/config/device_reader.hpp"
+#include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -72,6 +73,7 @@ class Reader {
     if (const auto* const table = table_at(root_, "modbus")) {
       read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
     }
+    TlsReader(file_, config_, found_).read(table_at(root_, "tls"), table_at(root_, "roles"));
     if (const auto* const table = table_at(root_, "addresses")) {
       read_addresses("", *table);
     }
@@ -254,6 +256,7 @@ class Reader {
   void read_modbus(TomlReader table) {
     ModbusConfig modbus{.place = table.place()};
     table.read("listen", modbus.listen);
+    modbus.port = root_.contains("tls") ? 802 : modbus.port;
     table.read_whole("port", modbus.port);
     table.read("allow", modbus.allow);
     table.read_whole("connections", modbus.connections);

@@ -10,6 +10,7 @@
 
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/heartbeat.hpp"
+#include "runtime/modbus/tls_context.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/scheduling.hpp"
@@ -61,6 +62,7 @@ struct ModbusConfig {
   std::vector<modbus::GivenAddress> addresses{};  ///< of [addresses]
   std::string first_addresses{};                  ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
+  std::optional<modbus::TlsOptions> tls{};
   Place place{};
 };
 
@@ -78,8 +80,8 @@ struct RunConfig {
   std::vector<DeviceOutput> device_outputs{};
 };
 
-/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810 and HY813; `file` stands in
-/// places.
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835 and HY836;
+/// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
 
 /// A length of time as "5ms": a number and one of ns, us, ms, s. In nanoseconds; nothing where it is none.

@@ -183,7 +183,7 @@ constexpr std::array trace_keys{
 };
 constexpr std::array modbus_keys{
     RunKey{"listen", text, "\"127.0.0.1\"", "the address of the server"},
-    RunKey{"port", whole, "1502", "its port; 0: any that is free", 0.0, 65535.0},
+    RunKey{"port", whole, "1502", "its port, with `[tls]` by default 802; 0: any that is free", 0.0, 65535.0},
     RunKey{"allow", texts, "[]", "the networks whose clients are served; none: all that reach the address"},
     RunKey{"connections", whole, "32", "clients at once", 1.0, 1000.0},
     RunKey{"read_only", flag, "false", "writes are refused"},
@@ -215,15 +215,30 @@ constexpr std::array modbus_keys{
     RunKey{"own_writes", flag, "false", "while a client that writes is there, no other may"},
 };
 
+constexpr std::array tls_keys{
+    RunKey{"certificate", text, "(required)",
+           "the server's certificate, a file in PEM, with those behind it that lead to its root"},
+    RunKey{"key", text, "(required)",
+           "its private key in PEM, without a password; its owner and group alone may read it"},
+    RunKey{"clients", text, "(required)",
+           "certificates in PEM that sign those of clients, or clients' own; no other client is served"},
+    RunKey{"without_role", texts, "[]", "what a client may do whose certificate names no role; as under `[roles]`"},
+};
+constexpr std::array role_keys{
+    RunKey{"NAME", texts, "(may nothing)",
+           "what the role NAME may do: `read` every value, write `inputs` and the heartbeat, write and commit "
+           "`parameters`, `reset` the task; else the answer is exception 01"},
+};
+
 constexpr std::array address_keys{
     RunKey{"NAME", text, "(by the map and the lock file)",
            "where the point NAME lies, as `hysteron map` lists it: `\"%QX0.3\"`, `\"%IW7\"`, `\"%ML2\"` with OpenPLC's "
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},   RunKey{"watchdog"}, RunKey{"outputs"},
-                               RunKey{"inputs"}, RunKey{"devices"},  RunKey{"retain"},
-                               RunKey{"trace"},  RunKey{"modbus"},   RunKey{"addresses"}};
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"},  RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},    RunKey{"modbus"},
+                               RunKey{"tls"},     RunKey{"roles"},    RunKey{"addresses"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -234,6 +249,8 @@ constexpr std::array tables{
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
+    RunTable{"[tls]", "Modbus/TCP Security instead of Modbus in the clear, with certificates on both sides.", tls_keys},
+    RunTable{"[roles]", "A line for each role that the certificates of clients name.", role_keys},
     RunTable{"[addresses]", "A line for each point of the server whose address is given.", address_keys},
 };
 

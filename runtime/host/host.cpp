@@ -1,6 +1,8 @@
 #include "runtime/host/host.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -26,6 +28,8 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
+
+constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
@@ -88,7 +92,17 @@ modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& 
   return map;
 }
 
-std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task) {
+/// A line to standard error, where it takes one at once: a server's thread waits for nobody who reads.
+void tell(const std::string& line) {
+  pollfd error{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
+    const std::string whole = "Modbus: " + line.substr(0, longest_line) + "\n";
+    (void)!::write(STDERR_FILENO, whole.data(), whole.size());
+  }
+}
+
+std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task,
+                                             const std::shared_ptr<const modbus::TlsContext>& tls) {
   return std::make_unique<modbus::Server>(
       register_map(config, title, task.door()), task.door(),
       modbus::ServerOptions{.listen = config.listen,
@@ -98,6 +112,8 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .read_only = config.read_only,
                             .heartbeat = config.heartbeat,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },
+                            .tls = tls,
+                            .client_refused = tell,
                             .place = config.place});
 }
 
@@ -231,8 +247,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   Task task(program, config.task,
             {.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
-  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task) : nullptr;
+  // Read after the guard was forked: the guard needs no key.
+  const auto tls =
+      config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
+  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
   how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+  how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
 
   LoopEnd end = LoopEnd::stopped;

@@ -25,10 +25,20 @@ struct ConnectionLimits {
   milliseconds frame_deadline{500};
   milliseconds idle{60'000};
   milliseconds unread{2'000};           ///< output that does not move for so long
+  milliseconds handshake{5'000};        ///< of TLS, from its connection on
   std::size_t output_bytes = 8 * 1024;  ///< beyond which no further request is taken
 };
 
-enum class Ending : std::uint8_t { frame_late, idle, unread, wrong_protocol, wrong_length };
+enum class Ending : std::uint8_t {
+  frame_late,  ///< of Modbus, or a record of TLS
+  idle,
+  unread,
+  wrong_protocol,
+  wrong_length,
+  handshake_late,
+  tls_failed,  ///< no certificate that counts, or what is no TLS
+};
+inline constexpr std::size_t endings = 7;
 
 /// What the requests of one call did.
 struct Served {

@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -64,6 +65,13 @@ std::uint16_t port_of(const Descriptor& listening) {
   sockaddr_in four{};
   std::memcpy(&four, &own, sizeof four);
   return ntohs(four.sin_port);
+}
+
+std::string address_text(const sockaddr_storage& peer) {
+  std::array<char, NI_MAXHOST> text{};
+  const int failed = ::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, text.data(), text.size(),
+                                   nullptr, 0, NI_NUMERICHOST);
+  return failed == 0 ? text.data() : "a client";
 }
 
 }  // namespace hysteron::runtime::modbus

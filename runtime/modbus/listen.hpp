@@ -1,6 +1,8 @@
 // Opens the socket on which a server listens, or says why not.
 #pragma once
 
+#include <sys/socket.h>
+
 #include <cstdint>
 #include <string>
 
@@ -14,5 +16,8 @@ namespace hysteron::runtime::modbus {
 
 /// The port that a socket listens on.
 [[nodiscard]] std::uint16_t port_of(const Descriptor& listening);
+
+/// The numeric address of a peer, for logs.
+[[nodiscard]] std::string address_text(const sockaddr_storage& peer);
 
 }  // namespace hysteron::runtime::modbus

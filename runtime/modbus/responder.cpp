@@ -43,6 +43,10 @@ constexpr bool writes(std::uint8_t function) {
   return function == 5 || function == 6 || function == 15 || function == 16 || function == 22 || function == 23;
 }
 
+constexpr bool reads(std::uint8_t function) {
+  return !writes(function) || function == 23;
+}
+
 }  // namespace
 
 Responder::Responder(const RegisterMap& map, PointDoor& door, const Identity& identity)
@@ -56,7 +60,8 @@ Responder::Responder(const RegisterMap& map, PointDoor& door, const Identity& id
 Reply Responder::answer(Pdu pdu, const Caller& caller) {
   Reply reply;
   const std::uint8_t function = pdu[0];
-  reply.exception = writes(function) && !caller.may_write ? Exception::illegal_function : serve(pdu, caller, reply);
+  const bool admitted = (!writes(function) || caller.rights.writes()) && (!reads(function) || caller.rights.read);
+  reply.exception = admitted ? serve(pdu, caller, reply) : Exception::illegal_function;
   if (reply.exception != Exception::none) {
     reply.bytes[0] = function | 0x80U;
     reply.bytes[1] = static_cast<std::uint8_t>(reply.exception);
@@ -144,8 +149,8 @@ Exception Responder::write_one_coil(Pdu pdu, const Caller& caller, Reply& reply)
     return Exception::illegal_value;
   }
   const std::uint32_t address = word_at(pdu, 1);
-  if (!writable(Area::coil, address, 1)) {
-    return Exception::illegal_address;
+  if (const auto flaw = writable(Area::coil, address, 1, caller); flaw != Exception::none) {
+    return flaw;
   }
   writes_.clear();
   const std::size_t point = map_.find(Area::coil, address)->point;
@@ -161,8 +166,8 @@ Exception Responder::write_one_register(Pdu pdu, const Caller& caller, Reply& re
     return Exception::illegal_value;
   }
   const std::uint32_t address = word_at(pdu, 1);
-  if (!writable(Area::holding_register, address, 1)) {
-    return Exception::illegal_address;
+  if (const auto flaw = writable(Area::holding_register, address, 1, caller); flaw != Exception::none) {
+    return flaw;
   }
   writes_.clear();
   if (const auto flaw = collect_words(address, pdu.subspan(3)); flaw != Exception::none) {
@@ -181,8 +186,8 @@ Exception Responder::write_coils(Pdu pdu, const Caller& caller, Reply& reply) {
   if (count < 1 || count > most_bits_written || pdu[5] != (count + 7) / 8 || pdu.size() != 6U + pdu[5]) {
     return Exception::illegal_value;
   }
-  if (!writable(Area::coil, address, count)) {
-    return Exception::illegal_address;
+  if (const auto flaw = writable(Area::coil, address, count, caller); flaw != Exception::none) {
+    return flaw;
   }
   writes_.clear();
   const MapEntry* entry = map_.find(Area::coil, address);
@@ -205,8 +210,8 @@ Exception Responder::write_registers(Pdu pdu, const Caller& caller, Reply& reply
   if (count < 1 || count > most_words_written || pdu[5] != 2 * count || pdu.size() != 6U + pdu[5]) {
     return Exception::illegal_value;
   }
-  if (!writable(Area::holding_register, address, count)) {
-    return Exception::illegal_address;
+  if (const auto flaw = writable(Area::holding_register, address, count, caller); flaw != Exception::none) {
+    return flaw;
   }
   writes_.clear();
   if (const auto flaw = collect_words(address, pdu.subspan(6)); flaw != Exception::none) {
@@ -221,8 +226,8 @@ Exception Responder::mask_register(Pdu pdu, const Caller& caller, Reply& reply) 
     return Exception::illegal_value;
   }
   const std::uint32_t address = word_at(pdu, 1);
-  if (!writable(Area::holding_register, address, 1)) {
-    return Exception::illegal_address;
+  if (const auto flaw = writable(Area::holding_register, address, 1, caller); flaw != Exception::none) {
+    return flaw;
   }
   door_.read(now_);
   const std::size_t point = map_.find(Area::holding_register, address)->point;
@@ -250,9 +255,11 @@ Exception Responder::write_and_read(Pdu pdu, const Caller& caller, Reply& reply)
       pdu[9] != 2 * write_count || pdu.size() != 10U + pdu[9]) {
     return Exception::illegal_value;
   }
-  if (!covered(Area::holding_register, read_address, read_count) ||
-      !writable(Area::holding_register, write_address, write_count)) {
+  if (!covered(Area::holding_register, read_address, read_count)) {
     return Exception::illegal_address;
+  }
+  if (const auto flaw = writable(Area::holding_register, write_address, write_count, caller); flaw != Exception::none) {
+    return flaw;
   }
   writes_.clear();
   if (const auto flaw = collect_words(write_address, pdu.subspan(10)); flaw != Exception::none) {
@@ -342,16 +349,18 @@ void Responder::put_words(Area area, std::uint32_t address, std::uint32_t count,
   }
 }
 
-bool Responder::writable(Area area, std::uint32_t address, std::uint32_t count) const {
+Exception Responder::writable(Area area, std::uint32_t address, std::uint32_t count, const Caller& caller) const {
   const std::uint32_t end = address + count;
+  bool permitted = true;
   for (std::uint32_t at = address; at < end;) {
     const MapEntry* entry = map_.find(area, at);
     if (entry == nullptr || !map_.point_of(*entry).writable || entry->at.address != at || at + entry->at.count > end) {
-      return false;
+      return Exception::illegal_address;
     }
+    permitted = permitted && caller.rights.write(map_.point_of(*entry).right);
     at += entry->at.count;
   }
-  return true;
+  return permitted ? Exception::none : Exception::illegal_function;
 }
 
 Exception Responder::collect_words(std::uint32_t address, Pdu data) {

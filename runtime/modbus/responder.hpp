@@ -2,9 +2,10 @@
 // client may do. No sockets, no time.
 //
 // A request is carried out whole or not at all. The first of these that fails is the exception:
-//   01 the function is none of ours, or the client may only read and the function writes
+//   01 the function is none of ours, or reads or writes, which the client may not do at all
 //   03 the request has not the form of its function: its length, its quantity, its byte count, a coil's value
 //   02 an address is no point's, may not be written, or the request would write a part of a wide value
+//   01 the client may write, but not one of these points
 //   03 a value is outside of its point's limits, or not a finite number
 //   06 another client owns the writes
 //   04 the program refuses
@@ -39,9 +40,27 @@ struct Identity {
   std::string revision = "0.1";
 };
 
+/// What a client may do.
+struct Rights {
+  bool read = true;  ///< every function that reads, and the discovery
+  bool inputs = true;
+  bool parameters = true;
+  bool reset = true;
+
+  [[nodiscard]] bool writes() const { return inputs || parameters || reset; }
+  [[nodiscard]] bool write(WriteRight right) const {
+    return right == WriteRight::inputs ? inputs : right == WriteRight::parameters ? parameters : reset;
+  }
+  [[nodiscard]] Rights without_writes() const {
+    return {.read = read, .inputs = false, .parameters = false, .reset = false};
+  }
+  bool operator==(const Rights&) const = default;
+};
+inline constexpr Rights no_rights{.read = false, .inputs = false, .parameters = false, .reset = false};
+
 /// Of the client that asks.
 struct Caller {
-  bool may_write = true;
+  Rights rights{};
   bool other_owns_writes = false;
 };
 
@@ -81,7 +100,7 @@ class Responder {
 
   [[nodiscard]] bool covered(Area area, std::uint32_t address, std::uint32_t count) const;
   void put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) const;
-  [[nodiscard]] bool writable(Area area, std::uint32_t address, std::uint32_t count) const;
+  [[nodiscard]] Exception writable(Area area, std::uint32_t address, std::uint32_t count, const Caller& caller) const;
   Exception collect_words(std::uint32_t address, Pdu data);
   Exception collect(const Point& point, std::size_t index, std::uint64_t bits);
   Exception hand_over(const Caller& caller, Reply& reply);

@@ -19,6 +19,7 @@
 #include "runtime/modbus/allow_list.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
+#include "runtime/modbus/transport.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -35,7 +36,7 @@ struct Counters {
   using Count = std::atomic<std::uint64_t>;
   Count open{0}, accepted{0}, refused_full{0}, refused_address{0}, requests{0}, exceptions{0}, writes{0},
       closed_by_client{0}, client_lost{0};
-  std::array<Count, 5> endings{};
+  std::array<Count, endings> ended{};
 };
 
 void add(std::atomic<std::uint64_t>& count, std::uint64_t more = 1) {
@@ -95,8 +96,12 @@ class Server::Loop {
  private:
   struct Client {
     Descriptor socket;
+    sockaddr_storage peer{};
+    std::unique_ptr<Transport> transport;
     Connection connection;
     std::uint32_t watched = EPOLLIN;
+
+    [[nodiscard]] bool has_more() const { return transport->has_buffered() && connection.wants_input() > 0; }
   };
   using Clients = std::map<std::uint64_t, Client>;
 
@@ -125,10 +130,16 @@ class Server::Loop {
         }
         if (event.data.u64 == listening_mark) {
           accept_some(now);
-        } else if (const auto client = clients_.find(event.data.u64); client != clients_.end()) {
+        } else if (const auto client = clients_.find(event.data.u64); client == clients_.end()) {
+          continue;
+        } else if (client->second.transport->is_in_handshake()) {
+          shaking_.push_back(client->first);
+        } else {
           serve(client, now);
         }
       }
+      serve_one_handshake(now);
+      serve_what_is_buffered(now);
       end_what_is_due(now);
       follow_heartbeat(now);
       if (listen_again_ && now >= *listen_again_) {
@@ -143,7 +154,13 @@ class Server::Loop {
     std::optional<Instant> next = heartbeat_.next_deadline();
     const auto earlier = [&](Instant other) { next = next ? std::min(*next, other) : other; };
     for (const auto& [mark, client] : clients_) {
+      if (client.has_more()) {
+        return 0;
+      }
       earlier(client.connection.next_deadline());
+      if (const auto deadline = client.transport->next_deadline()) {
+        earlier(*deadline);
+      }
     }
     if (listen_again_) {
       earlier(*listen_again_);
@@ -173,50 +190,75 @@ class Server::Loop {
       } else if (clients_.size() >= options_.connections) {
         add(counters_.refused_full);
       } else {
-        take(std::move(socket), now);
+        take(std::move(socket), peer, now);
       }
     }
   }
 
-  void take(Descriptor socket, Instant now) {
+  void take(Descriptor socket, const sockaddr_storage& peer, Instant now) {
     const int on = 1;
     ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     const std::uint64_t mark = next_mark_++;
     if (watch(socket, mark, EPOLLIN)) {
-      clients_.emplace(mark, Client{std::move(socket), Connection(now, options_.limits)});
+      clients_.emplace(mark, Client{.socket = std::move(socket),
+                                    .peer = peer,
+                                    .transport = make_transport(options_.tls.get(), options_.limits, now),
+                                    .connection = Connection(now, options_.limits)});
       add(counters_.accepted);
       counters_.open.store(clients_.size(), std::memory_order_relaxed);
     }
   }
 
-  void serve(Clients::iterator place, Instant now) {
-    auto& [mark, client] = *place;
-    const Caller caller{.may_write = !options_.read_only, .other_owns_writes = heartbeat_.other_owns_writes(mark)};
-    std::array<std::uint8_t, 4 * longest_frame> buffer{};
-    const std::size_t wanted = client.connection.wants_input();
-    ssize_t got = -1;
-    if (wanted > 0) {
-      got = ::recv(client.socket.number(), buffer.data(), wanted, 0);
-      if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
-        return forget(place, counters_.closed_by_client);
+  /// One of those that are in a handshake and have sent something; the others keep until the next turns, in turn.
+  void serve_one_handshake(Instant now) {
+    if (shaking_.empty()) {
+      return;
+    }
+    std::ranges::sort(shaking_);
+    const auto next = std::ranges::upper_bound(shaking_, last_shaken_);
+    last_shaken_ = next == shaking_.end() ? shaking_.front() : *next;
+    shaking_.clear();
+    serve(clients_.find(last_shaken_), now);
+  }
+
+  /// What one record brought may be more than one turn takes.
+  void serve_what_is_buffered(Instant now) {
+    for (auto next = clients_.begin(); next != clients_.end();) {
+      const auto place = next++;
+      if (place->second.has_more()) {
+        serve(place, now);
       }
     }
-    const std::span<const std::uint8_t> bytes(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-    count(mark, client.connection.received(bytes, now, responder_, caller), now);
-    while (!client.connection.output().empty()) {
-      const auto output = client.connection.output();
-      const ssize_t sent = ::send(client.socket.number(), output.data(), output.size(), MSG_NOSIGNAL);
-      if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
+  }
+
+  void serve(Clients::iterator place, Instant now) {
+    auto& [mark, client] = *place;
+    std::array<std::uint8_t, 4 * longest_frame> buffer{};
+    const std::size_t wanted = client.connection.wants_input();
+    const auto input = std::span(buffer).first(wanted);
+    const Moved got = wanted > 0 ? client.transport->receive(client.socket, input, now) : Moved{};
+    if (got.gone) {
+      return forget(place, counters_.closed_by_client);
+    }
+    const Rights rights = client.transport->rights();
+    const Caller caller{.rights = options_.read_only ? rights.without_writes() : rights,
+                        .other_owns_writes = heartbeat_.other_owns_writes(mark)};
+    count(mark, client.connection.received(input.first(got.count), now, responder_, caller), now);
+    while (!client.connection.output().empty() || client.transport->has_output()) {
+      const Moved sent = client.transport->send(client.socket, client.connection.output());
+      if (sent.gone) {
         return forget(place, counters_.closed_by_client);
       }
-      client.connection.sent(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)), now);
+      client.connection.sent(sent.count, now);
       count(mark, client.connection.resume(now, responder_, caller), now);
-      if (sent < 0) {
+      if (sent.blocked) {
         break;
       }
     }
-    const std::uint32_t events = (client.connection.wants_input() > 0 ? std::uint32_t{EPOLLIN} : 0U) |
-                                 (client.connection.output().empty() ? 0U : std::uint32_t{EPOLLOUT});
+    const bool has_output = !client.connection.output().empty() || client.transport->has_output();
+    const bool wants_input = client.connection.wants_input() > 0 && client.transport->wants_input();
+    const std::uint32_t events =
+        (wants_input ? std::uint32_t{EPOLLIN} : 0U) | (has_output ? std::uint32_t{EPOLLOUT} : 0U);
     if (events != client.watched) {
       client.watched = events;
       change_watch(client.socket, mark, events);
@@ -242,10 +284,28 @@ class Server::Loop {
   void end_what_is_due(Instant now) {
     for (auto next = clients_.begin(); next != clients_.end();) {
       const auto place = next++;
-      if (const auto ending = place->second.connection.due(now)) {
-        forget(place, counters_.endings.at(static_cast<std::size_t>(*ending)));
+      const auto below = place->second.transport->due(now);
+      if (const auto ending = below ? below : place->second.connection.due(now)) {
+        if (*ending == Ending::tls_failed || *ending == Ending::handshake_late) {
+          tell_of_refusal(place->second, now);
+        }
+        forget(place, counters_.ended.at(static_cast<std::size_t>(*ending)));
       }
     }
+  }
+
+  /// Once a second: whoever is refused cannot fill a log.
+  void tell_of_refusal(const Client& client, Instant now) {
+    if (!options_.client_refused || (told_ && now < *told_ + std::chrono::seconds(1))) {
+      ++untold_;
+      return;
+    }
+    const std::string failure = client.transport->failure();
+    options_.client_refused(fmt::format("{} is refused by TLS: {}{}.", address_text(client.peer),
+                                        failure.empty() ? "the handshake took too long" : failure,
+                                        untold_ > 0 ? fmt::format("; {} others before", untold_) : ""));
+    told_ = now;
+    untold_ = 0;
   }
 
   void follow_heartbeat(Instant now) {
@@ -271,6 +331,10 @@ class Server::Loop {
   Clients clients_;
   std::uint64_t next_mark_ = first_client;
   std::optional<Instant> listen_again_;
+  std::vector<std::uint64_t> shaking_;  ///< in a handshake, with bytes to read, in this turn
+  std::uint64_t last_shaken_ = 0;
+  std::optional<Instant> told_;  ///< when a refusal was told last
+  std::uint64_t untold_ = 0;
   std::thread thread_;
 };
 
@@ -288,7 +352,7 @@ const RegisterMap& Server::map() const {
 
 ServerStatus Server::status() const {
   const Counters& now = loop_->counters();
-  const auto ended = [&](Ending why) { return now.endings.at(static_cast<std::size_t>(why)).load(); };
+  const auto ended = [&](Ending why) { return now.ended.at(static_cast<std::size_t>(why)).load(); };
   return {.open = now.open,
           .accepted = now.accepted,
           .refused_full = now.refused_full,
@@ -302,6 +366,8 @@ ServerStatus Server::status() const {
           .unread = ended(Ending::unread),
           .wrong_protocol = ended(Ending::wrong_protocol),
           .wrong_length = ended(Ending::wrong_length),
+          .handshake_late = ended(Ending::handshake_late),
+          .tls_failed = ended(Ending::tls_failed),
           .client_lost = now.client_lost != 0};
 }
 

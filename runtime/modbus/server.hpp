@@ -2,7 +2,9 @@
 //
 // No client can hold up another: nothing in the loop waits for a client, every connection has bounded buffers and
 // deadlines (connection.hpp), there are at most `connections` of them, and one turn takes at most one buffer of each.
-// It listens on loopback unless told otherwise.
+// It listens on loopback unless told otherwise. With a TLS context it is Modbus/TCP Security: handshakes and records
+// have deadlines of their own (tls_session.hpp), and one turn takes at most one step of one handshake, because that is
+// dear.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +18,7 @@
 #include "runtime/modbus/heartbeat.hpp"
 #include "runtime/modbus/register_map.hpp"
 #include "runtime/modbus/responder.hpp"
+#include "runtime/modbus/tls_context.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -31,6 +34,10 @@ struct ServerOptions {
   Identity identity{};
   /// Called in the server's thread when the client is lost, and when it is back. Must return at once.
   std::function<void(bool lost)> client_lost{};
+  std::shared_ptr<const TlsContext> tls{};  ///< none: in the clear
+  /// Called in the server's thread with a line on a client that TLS refused, once a second at the most. Must return at
+  /// once.
+  std::function<void(const std::string& line)> client_refused{};
   Place place{};  ///< of these settings, for errors
 };
 
@@ -49,6 +56,8 @@ struct ServerStatus {
   std::uint64_t unread = 0;
   std::uint64_t wrong_protocol = 0;
   std::uint64_t wrong_length = 0;
+  std::uint64_t handshake_late = 0;
+  std::uint64_t tls_failed = 0;
   bool client_lost = false;
 };
 

@@ -34,7 +34,8 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
           .low = signal.low,
           .high = signal.high,
           .writable = writable,
-          .meaning = signal.meaning};
+          .meaning = signal.meaning,
+          .right = kind == PointKind::input ? WriteRight::inputs : WriteRight::parameters};
 }
 
 }  // namespace
@@ -79,10 +80,12 @@ TaskDoor::TaskDoor(const StepProgram& program, const std::vector<bool>& device_i
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
   add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
   first_command_ = points_.size();
-  add_command("task.commit", "any number but 0: the staged parameters count from the next step on");
-  add_command("task.discard", "any number but 0: the staged parameters are forgotten");
-  add_command("task.reset", "any number but 0: every state as after a start, and a fault is forgotten");
-  add_command("task.heartbeat", "any number: the client lives");
+  add_command("task.commit", WriteRight::parameters,
+              "any number but 0: the staged parameters count from the next step on");
+  add_command("task.discard", WriteRight::parameters, "any number but 0: the staged parameters are forgotten");
+  add_command("task.reset", WriteRight::reset,
+              "any number but 0: every state as after a start, and a fault is forgotten");
+  add_command("task.heartbeat", WriteRight::inputs, "any number: the client lives");
   for (const ProgramSignal& signal : shape.inner) {
     inner_.push_back(point_of(signal, PointKind::output, false));
   }
@@ -92,7 +95,7 @@ void TaskDoor::add_status(const char* name, PointType type, const char* unit, co
   add({.name = name, .kind = PointKind::status, .type = type, .unit = unit, .meaning = meaning});
 }
 
-void TaskDoor::add_command(const char* name, const char* meaning) {
+void TaskDoor::add_command(const char* name, WriteRight right, const char* meaning) {
   add({.name = name,
        .kind = PointKind::command,
        .type = PointType::uint16,
@@ -100,7 +103,8 @@ void TaskDoor::add_command(const char* name, const char* meaning) {
        .low = 0.0,
        .high = 65535.0,
        .writable = true,
-       .meaning = meaning});
+       .meaning = meaning,
+       .right = right});
 }
 
 void TaskDoor::read(Snapshot& into) {

@@ -76,7 +76,7 @@ void print_attacks(milliseconds time) {
       "| attack | requests | errors | wrong | p99, ms | worst, ms | plain: requests | errors | wrong | p99, ms | "
       "worst, "
       "ms |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-  for (const std::string& attack : test::attack_names()) {
+  for (const std::string& attack : test::names_of(test::attacks())) {
     const std::string ours = row_of(ServerKind::ours, attack, time);
     fmt::print("| {} | {} | {} |\n", attack, ours, row_of(ServerKind::plain, attack, time));
   }

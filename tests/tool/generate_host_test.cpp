@@ -171,6 +171,12 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
            "[retain]\nfolder = \"/srv/kept\"\n[trace]\nfile = \"/srv/traces/run.trace\"\n"),
       AllOf(HasSubstr("\nDevicePolicy=closed\nSupplementaryGroups=dialout\nDeviceAllow=/dev/ttyUSB3 rw\n"),
             HasSubstr("\nReadWritePaths=-/srv/kept\nReadWritePaths=-/srv/traces\n"), Not(HasSubstr("PrivateDevices"))));
+  EXPECT_THAT(unit("[modbus]\n[tls]\ncertificate = \"server.pem\"\nkey = \"/etc/my keys/server.key\"\n"
+                   "clients = \"/etc/ssl/clients.pem\"\n[roles]\noperator = [\"read\"]\n"),
+              AllOf(HasSubstr("\nAmbientCapabilities=CAP_NET_BIND_SERVICE\n"),
+                    HasSubstr("\nLoadCredential=\"tls-key:/etc/my keys/server.key\"\n"
+                              "LoadCredential=tls-clients:/etc/ssl/clients.pem\n"),
+                    Not(HasSubstr("tls-certificate"))));
   EXPECT_THAT(unit("[trace]\nfile = \"/srv/my runs/100%/run.trace\"\n"),
               HasSubstr("\nReadWritePaths=\"-/srv/my runs/100%%\"\n"));
 }

@@ -252,6 +252,42 @@ TEST(RunConfig, AddressesMayBeGiven) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[addresses]\nX = \"%QW5\"\n"), "804@4:5 ");
 }
 
+TEST(RunConfig, TlsAndRolesArrive) {
+  const std::string server = "[outputs.Y]\nsafe = 0\n[modbus]\n";
+  const std::string tls = "[tls]\ncertificate = \"s.pem\"\nkey = \"s.key\"\nclients = \"c.pem\"\n";
+  const auto config = parse_run_config("RUN.toml",
+                                       server + tls +
+                                           "without_role = [\"read\"]\n[roles]\noperator = [\"read\", \"inputs\"]\n"
+                                           "\"tuner (night)\" = [\"parameters\", \"reset\"]\nnobody = []\n",
+                                       plant());
+  const modbus::TlsOptions& options = config.modbus->tls.value();
+  EXPECT_EQ(config.modbus->port, 802) << "the port of Modbus/TCP Security, where none is given";
+  EXPECT_EQ(options.certificate + options.key + options.clients, "s.pems.keyc.pem");
+  EXPECT_EQ(options.key_place.line, 6U);
+  EXPECT_EQ(options.without_role, modbus::Rights{}.without_writes());
+  EXPECT_EQ(options.roles.at("operator"),
+            (modbus::Rights{.read = true, .inputs = true, .parameters = false, .reset = false}));
+  EXPECT_EQ(options.roles.at("tuner (night)"),
+            (modbus::Rights{.read = false, .inputs = false, .parameters = true, .reset = true}));
+  EXPECT_EQ(options.roles.at("nobody"), modbus::no_rights);
+  EXPECT_EQ(
+      parse_run_config("RUN.toml", server + "port = 0\n" + tls + "[roles]\na = [\"read\"]\n", plant()).modbus->port, 0);
+  EXPECT_FALSE(parse_run_config("RUN.toml", server, plant()).modbus->tls);
+}
+
+TEST(RunConfig, TlsAndRolesAreRefusedAtTheirPlace) {
+  const std::string server = "[outputs.Y]\nsafe = 0\n[modbus]\n";
+  const std::string tls = "[tls]\ncertificate = \"s.pem\"\nkey = \"s.key\"\nclients = \"c.pem\"\n";
+  EXPECT_EQ(errors_of(server + tls + "[roles]\noperator = [\"write\"]\n"), "804@9:12 ");
+  EXPECT_EQ(errors_of(server + tls + "[roles]\noperator = \"read\"\n"), "804@9:12 ");
+  EXPECT_EQ(errors_of(server + tls + "[roles]\noperator = [1]\n"), "804@9:12 ");
+  EXPECT_EQ(errors_of(server + tls + "[roles]\n\"\" = [\"read\"]\n"), "804@9:6 ");
+  EXPECT_EQ(errors_of(server + tls + "without_role = [\"all\"]\n[roles]\na = [\"read\"]\n"), "804@8:16 ");
+  EXPECT_EQ(errors_of(server + tls + "[roles]\noperator = []\n"), "835@4:1 ");
+  EXPECT_EQ(errors_of(server + "[tls]\nkey = \"s.key\"\n[roles]\na = [\"read\"]\n"), "804@4:1 804@4:1 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n" + tls), "836@3:1 ");
+}
+
 TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[outputs.y]\nsafe = 1\n"), "802@3:10 ");
 }
@@ -287,6 +323,7 @@ TEST_P(RunFilePages, FailAndMend) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, RunFilePages, testing::Range(801, 811));
+INSTANTIATE_TEST_SUITE_P(Tls, RunFilePages, testing::Values(error::no_role_may_anything, error::roles_without_tls));
 
 }  // namespace
 }  // namespace hysteron::runtime

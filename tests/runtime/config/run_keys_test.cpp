@@ -48,6 +48,13 @@ std::string before(const RunTable& table, std::string_view key) {
     return others + "[trace]\n" + (key == "file" ? "" : "file = \"run.trace\"\n") +
            (key == "before" || key == "after" ? "trigger = \"fault\"\n" : "");
   }
+  if (name == "[tls]" || name == "[roles]") {
+    std::string text = others + "[modbus]\n" + (name == "[tls]" ? "[roles]\nR = [\"read\"]\n" : "") + "[tls]\n";
+    for (const char* const file : {"certificate", "key", "clients"}) {
+      text += key == file ? "" : std::string(file) + " = \"a.pem\"\n";
+    }
+    return text + (name == "[roles]" ? "[roles]\n" : "");
+  }
   return others + (name == "[addresses]" ? "[modbus]\n" : "") + std::string(name) + "\n";
 }
 
@@ -98,6 +105,11 @@ std::string described(const RunConfig& c) {
     put(c.modbus->listen, c.modbus->port, c.modbus->allow.size(), c.modbus->connections, c.modbus->read_only,
         static_cast<int>(c.modbus->word_order), static_cast<int>(c.modbus->placing), c.modbus->lock_file,
         static_cast<int>(c.modbus->heartbeat.mode), c.modbus->heartbeat.time.count(), c.modbus->heartbeat.own_writes);
+    if (const auto& tls = c.modbus->tls) {
+      const modbus::Rights& rights = tls->without_role;
+      put(tls->certificate, tls->key, tls->clients, tls->roles.size(), rights.read, rights.inputs, rights.parameters,
+          rights.reset);
+    }
   }
   return all;
 }

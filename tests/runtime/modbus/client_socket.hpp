@@ -1,9 +1,10 @@
-// A TCP client on loopback for tests of servers: sends what it likes, well-formed or not.
+// A client on loopback for tests of servers, over TCP or TLS: sends what it likes, well-formed or not.
 #pragma once
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <openssl/ssl.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -13,6 +14,7 @@
 #include <chrono>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,7 +26,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 class ClientSocket {
  public:
-  explicit ClientSocket(std::uint16_t port, std::chrono::milliseconds patience = std::chrono::seconds(5))
+  /// Through TLS where a context is given; the handshake is done here.
+  explicit ClientSocket(std::uint16_t port, std::chrono::milliseconds patience = std::chrono::seconds(5),
+                        ssl_ctx_st* tls = nullptr)
       : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), patience_(patience) {
     sockaddr_in peer{};
     peer.sin_family = AF_INET;
@@ -36,6 +40,12 @@ class ClientSocket {
     const timeval limit{seconds.count(), std::chrono::microseconds(patience - seconds).count()};
     ::setsockopt(socket_.number(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);  // of connect, too
     connected_ = ::connect(socket_.number(), reinterpret_cast<const sockaddr*>(&peer), sizeof peer) == 0;
+    if (tls != nullptr && connected_) {
+      ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+      tls_.reset(SSL_new(tls));
+      SSL_set_fd(tls_.get(), socket_.number());
+      connected_ = SSL_connect(tls_.get()) == 1;
+    }
   }
 
   [[nodiscard]] bool connected() const { return connected_; }
@@ -43,7 +53,7 @@ class ClientSocket {
   /// False where the server has closed.
   bool send(std::span<const std::uint8_t> bytes) const {
     while (!bytes.empty()) {
-      const ssize_t sent = ::send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      const ssize_t sent = send_some(bytes, 0);
       if (sent < 0 && errno != EINTR) {
         return false;
       }
@@ -54,7 +64,7 @@ class ClientSocket {
 
   /// What can be sent without waiting; false where the server has closed.
   bool send_without_waiting(std::span<const std::uint8_t> bytes) const {
-    const ssize_t sent = ::send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    const ssize_t sent = send_some(bytes, MSG_DONTWAIT);
     return sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
   }
 
@@ -64,7 +74,7 @@ class ClientSocket {
     std::size_t have = 0;
     const auto until = std::chrono::steady_clock::now() + patience_;
     while (have < count && readable(until)) {
-      const ssize_t got = ::recv(socket_.number(), bytes.data() + have, count - have, 0);
+      const ssize_t got = receive_some(std::span(bytes).subspan(have));
       if (got <= 0) {
         break;
       }
@@ -89,7 +99,7 @@ class ClientSocket {
     const auto until = std::chrono::steady_clock::now() + patience_;
     while (readable(until)) {
       Bytes bytes(4096);
-      const ssize_t got = ::recv(socket_.number(), bytes.data(), bytes.size(), 0);
+      const ssize_t got = receive_some(bytes);
       if (got == 0 || (got < 0 && errno != EINTR)) {
         return true;
       }
@@ -103,6 +113,10 @@ class ClientSocket {
     ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
   }
 
+  /// The socket below, past TLS.
+  [[nodiscard]] int number() const { return socket_.number(); }
+  [[nodiscard]] ssl_st* tls() const { return tls_.get(); }
+
   /// Closes with a reset instead of an end.
   void reset() {
     const linger now{1, 0};
@@ -111,15 +125,53 @@ class ClientSocket {
   }
 
  private:
+  struct Free {
+    void operator()(ssl_st* session) const { SSL_free(session); }
+  };
+
+  /// As ::send. Through TLS, "would block" is told as there.
+  [[nodiscard]] ssize_t send_some(std::span<const std::uint8_t> bytes, int flags) const {
+    if (tls_ == nullptr) {
+      return ::send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | flags);
+    }
+    if (!connected_) {
+      errno = ENOTCONN;
+      return -1;
+    }
+    if ((flags & MSG_DONTWAIT) != 0) {
+      pollfd one{socket_.number(), POLLOUT, 0};
+      if (::poll(&one, 1, 0) == 0) {
+        errno = EAGAIN;
+        return -1;
+      }
+    }
+    errno = 0;
+    const int sent = SSL_write(tls_.get(), bytes.data(), static_cast<int>(bytes.size()));
+    errno = sent <= 0 && errno == EINTR ? EPIPE : errno;
+    return sent > 0 ? sent : -1;
+  }
+
+  /// As ::recv.
+  [[nodiscard]] ssize_t receive_some(std::span<std::uint8_t> into) const {
+    if (tls_ == nullptr) {
+      return ::recv(socket_.number(), into.data(), into.size(), 0);
+    }
+    return connected_ ? std::max(SSL_read(tls_.get(), into.data(), static_cast<int>(into.size())), 0) : 0;
+  }
+
   [[nodiscard]] bool readable(std::chrono::steady_clock::time_point until) const {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
     pollfd one{socket_.number(), POLLIN, 0};
+    if (tls_ != nullptr && SSL_pending(tls_.get()) > 0) {
+      return true;
+    }
     return left > 0 && ::poll(&one, 1, static_cast<int>(left)) > 0;
   }
 
   runtime::modbus::Descriptor socket_;
   std::chrono::milliseconds patience_;
   bool connected_ = false;
+  std::unique_ptr<ssl_st, Free> tls_;
 };
 
 /// A request with its header.

@@ -10,7 +10,6 @@
 #include "tests/runtime/modbus/client_socket.hpp"
 
 namespace hysteron::test {
-namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
@@ -22,10 +21,18 @@ void wait(const std::stop_token& stop, milliseconds time) {
   }
 }
 
+namespace {
+
+/// Where the server is, and what a client brings along.
+struct Way {
+  std::uint16_t port = 0;
+  ssl_ctx_st* tls = nullptr;
+};
+
 /// Sends the bytes on a new connection, again and again; waits a little where asked, so that the answer can come.
-void repeat(std::uint16_t port, const std::stop_token& stop, const std::function<Bytes()>& bytes, milliseconds stay) {
+void repeat(const Way& way, const std::stop_token& stop, const std::function<Bytes()>& bytes, milliseconds stay) {
   while (!stop.stop_requested()) {
-    const ClientSocket socket(port, milliseconds(200));
+    const ClientSocket socket(way.port, milliseconds(200), way.tls);
     for (int i = 0; i < 20 && !stop.stop_requested() && socket.send(bytes()); ++i) {
       wait(stop, stay);
     }
@@ -33,9 +40,9 @@ void repeat(std::uint16_t port, const std::stop_token& stop, const std::function
 }
 
 /// Sends a request again and again on one connection and reads what comes.
-void ask_on(std::uint16_t port, const std::stop_token& stop, const Bytes& request) {
+void ask_on(const Way& way, const std::stop_token& stop, const Bytes& request) {
   while (!stop.stop_requested()) {
-    const ClientSocket socket(port, milliseconds(700));
+    const ClientSocket socket(way.port, milliseconds(700), way.tls);
     while (!stop.stop_requested() && socket.send(request) && socket.receive_frame().size() > 6) {
     }
   }
@@ -46,20 +53,20 @@ Bytes forbidden_write() {
   return framed(7, {6, 0, 5, 0xDE, 0xAD});
 }
 
-void idle(std::uint16_t port, const std::stop_token& stop) {
+void idle(const Way& way, const std::stop_token& stop) {
   std::vector<std::unique_ptr<ClientSocket>> sockets;
   for (int i = 0; i < 30; ++i) {
-    sockets.push_back(std::make_unique<ClientSocket>(port, milliseconds(500)));
+    sockets.push_back(std::make_unique<ClientSocket>(way.port, milliseconds(500), way.tls));
   }
   while (!stop.stop_requested()) {
     wait(stop, milliseconds(50));
   }
 }
 
-void slow_sender(std::uint16_t port, const std::stop_token& stop) {
+void slow_sender(const Way& way, const std::stop_token& stop) {
   const Bytes request = framed(1, {3, 0, 0, 0, 16});
   while (!stop.stop_requested()) {
-    const ClientSocket socket(port, milliseconds(500));
+    const ClientSocket socket(way.port, milliseconds(500), way.tls);
     for (std::size_t i = 0; i < request.size() && !stop.stop_requested(); ++i) {
       if (!socket.send(std::span(request).subspan(i, 1))) {
         break;
@@ -69,14 +76,14 @@ void slow_sender(std::uint16_t port, const std::stop_token& stop) {
   }
 }
 
-void never_reads(std::uint16_t port, const std::stop_token& stop) {
+void never_reads(const Way& way, const std::stop_token& stop) {
   const Bytes request = framed(1, {3, 0, 0, 0, 32});
   Bytes many;
   for (int i = 0; i < 100; ++i) {
     many.insert(many.end(), request.begin(), request.end());
   }
   while (!stop.stop_requested()) {
-    const ClientSocket socket(port, milliseconds(500));
+    const ClientSocket socket(way.port, milliseconds(500), way.tls);
     socket.keep_little();
     while (!stop.stop_requested() && socket.send_without_waiting(many)) {
       std::this_thread::sleep_for(milliseconds(1));
@@ -84,29 +91,29 @@ void never_reads(std::uint16_t port, const std::stop_token& stop) {
   }
 }
 
-void reset_mid_transaction(std::uint16_t port, const std::stop_token& stop) {
+void reset_mid_transaction(const Way& way, const std::stop_token& stop) {
   const Bytes request = framed(1, {3, 0, 0, 0, 16});
   for (int i = 0; !stop.stop_requested(); ++i) {
-    ClientSocket socket(port, milliseconds(500));
+    ClientSocket socket(way.port, milliseconds(500), way.tls);
     socket.send(std::span(request).first(i % 2 == 0 ? request.size() : 7));
     socket.reset();
   }
 }
 
-void many_connections(std::uint16_t port, const std::stop_token& stop, std::size_t count) {
+void many_connections(const Way& way, const std::stop_token& stop, std::size_t count) {
   while (!stop.stop_requested()) {
     std::vector<std::unique_ptr<ClientSocket>> sockets;
     while (sockets.size() < count && !stop.stop_requested()) {
-      sockets.push_back(std::make_unique<ClientSocket>(port, milliseconds(500)));
+      sockets.push_back(std::make_unique<ClientSocket>(way.port, milliseconds(500), way.tls));
     }
     wait(stop, milliseconds(200));
   }
 }
 
-void random_bytes(std::uint16_t port, const std::stop_token& stop) {
+void random_bytes(const Way& way, const std::stop_token& stop) {
   std::mt19937 random(11);
   repeat(
-      port, stop,
+      way, stop,
       [&] {
         Bytes bytes(1 + random() % 300);
         for (auto& byte : bytes) {
@@ -123,58 +130,13 @@ Bytes with(Bytes frame, std::size_t at, std::uint8_t value) {
   return frame;
 }
 
-struct Attack {
-  std::string name;
-  std::function<void(std::uint16_t, const std::stop_token&, const Hostile&)> run;
-};
-
-const std::vector<Attack>& attacks() {
-  using Port = std::uint16_t;
-  using Stop = const std::stop_token&;
-  using How = const Hostile&;
-  static const std::vector<Attack> list{
-      {"none", [](Port, Stop, How) {}},
-      {"30 idle", [](Port port, Stop stop, How) { idle(port, stop); }},
-      {"slow sender", [](Port port, Stop stop, How) { slow_sender(port, stop); }},
-      {"partial frame",
-       [](Port port, Stop stop, How) {
-         repeat(
-             port, stop, [] { return Bytes{0, 1, 0, 0, 0, 6, 1, 3}; }, milliseconds(1000));
-       }},
-      {"FC 43",
-       [](Port port, Stop stop, How) {
-         ask_on(port, stop, framed(1, {43, 14, 1, 0}));
-       }},
-      {"quantity 126",
-       [](Port port, Stop stop, How) {
-         ask_on(port, stop, framed(1, {3, 0, 0, 0, 126}));
-       }},
-      {"random bytes", [](Port port, Stop stop, How) { random_bytes(port, stop); }},
-      {"length 65535",
-       [](Port port, Stop stop, How) {
-         repeat(
-             port, stop, [] { return with(with(forbidden_write(), 4, 0xFF), 5, 0xFF); }, milliseconds(5));
-       }},
-      {"wrong protocol id",
-       [](Port port, Stop stop, How) {
-         repeat(
-             port, stop, [] { return with(forbidden_write(), 3, 1); }, milliseconds(5));
-       }},
-      {"lying length",
-       [](Port port, Stop stop, How) {
-         repeat(
-             port, stop, [] { return with(forbidden_write(), 5, 9); }, milliseconds(5));
-       }},
-      {"reset mid-transaction", [](Port port, Stop stop, How) { reset_mid_transaction(port, stop); }},
-      {"never reads", [](Port port, Stop stop, How) { never_reads(port, stop); }},
-      {"1,100 connections", [](Port port, Stop stop, How how) { many_connections(port, stop, how.connections); }},
-  };
-  return list;
+Way way_of(std::uint16_t port, const Hostile& how) {
+  return {port, how.tls};
 }
 
 class Victim {
  public:
-  Victim(std::uint16_t port, milliseconds patience) : port_(port), patience_(patience), socket_(connect()) {}
+  Victim(const Way& way, milliseconds patience) : way_(way), patience_(patience), socket_(connect()) {}
 
   void poll() {
     const bool writes = ++transaction_ % 4 == 0;
@@ -203,7 +165,7 @@ class Victim {
 
  private:
   [[nodiscard]] std::unique_ptr<ClientSocket> connect() const {
-    return std::make_unique<ClientSocket>(port_, patience_);
+    return std::make_unique<ClientSocket>(way_.port, patience_, way_.tls);
   }
 
   [[nodiscard]] bool is_right(const Bytes& answer) const {
@@ -214,7 +176,7 @@ class Victim {
     return right && answer[9 + 40] == written_ >> 8 && answer[10 + 40] == (written_ & 0xFF);
   }
 
-  std::uint16_t port_;
+  Way way_;
   milliseconds patience_;
   std::unique_ptr<ClientSocket> socket_;
   VictimResult result_;
@@ -223,6 +185,59 @@ class Victim {
 };
 
 }  // namespace
+
+const std::vector<Attack>& attacks() {
+  using Port = std::uint16_t;
+  using Stop = const std::stop_token&;
+  using How = const Hostile&;
+  static const std::vector<Attack> list{
+      {"none", [](Port, Stop, How) {}},
+      {"30 idle", [](Port port, Stop stop, How how) { idle(way_of(port, how), stop); }},
+      {"slow sender", [](Port port, Stop stop, How how) { slow_sender(way_of(port, how), stop); }},
+      {"partial frame",
+       [](Port port, Stop stop, How how) {
+         repeat(
+             way_of(port, how), stop, [] { return Bytes{0, 1, 0, 0, 0, 6, 1, 3}; }, milliseconds(1000));
+       }},
+      {"FC 43",
+       [](Port port, Stop stop, How how) {
+         ask_on(way_of(port, how), stop, framed(1, {43, 14, 1, 0}));
+       }},
+      {"quantity 126",
+       [](Port port, Stop stop, How how) {
+         ask_on(way_of(port, how), stop, framed(1, {3, 0, 0, 0, 126}));
+       }},
+      {"random bytes", [](Port port, Stop stop, How how) { random_bytes(way_of(port, how), stop); }},
+      {"length 65535",
+       [](Port port, Stop stop, How how) {
+         repeat(
+             way_of(port, how), stop, [] { return with(with(forbidden_write(), 4, 0xFF), 5, 0xFF); }, milliseconds(5));
+       }},
+      {"wrong protocol id",
+       [](Port port, Stop stop, How how) {
+         repeat(
+             way_of(port, how), stop, [] { return with(forbidden_write(), 3, 1); }, milliseconds(5));
+       }},
+      {"lying length",
+       [](Port port, Stop stop, How how) {
+         repeat(
+             way_of(port, how), stop, [] { return with(forbidden_write(), 5, 9); }, milliseconds(5));
+       }},
+      {"reset mid-transaction", [](Port port, Stop stop, How how) { reset_mid_transaction(way_of(port, how), stop); }},
+      {"never reads", [](Port port, Stop stop, How how) { never_reads(way_of(port, how), stop); }},
+      {"1,100 connections",
+       [](Port port, Stop stop, How how) { many_connections(way_of(port, how), stop, how.connections); }},
+  };
+  return list;
+}
+
+std::vector<std::string> names_of(const std::vector<Attack>& attacks) {
+  std::vector<std::string> names;
+  for (const Attack& attack : attacks) {
+    names.push_back(attack.name);
+  }
+  return names;
+}
 
 std::vector<runtime::Point> registers_to_serve() {
   std::vector<runtime::Point> points;
@@ -238,21 +253,11 @@ std::vector<runtime::Point> registers_to_serve() {
   return points;
 }
 
-const std::vector<std::string>& attack_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (const Attack& attack : attacks()) {
-      list.push_back(attack.name);
-    }
-    return list;
-  }();
-  return names;
-}
-
 VictimResult victim_beside(const std::string& attack, std::uint16_t port, milliseconds time, milliseconds patience,
                            const Hostile& hostile) {
-  const auto found = std::ranges::find(attacks(), attack, &Attack::name);
-  Victim victim(port, patience);
+  const auto plain = std::ranges::find(attacks(), attack, &Attack::name);
+  const auto found = plain != attacks().end() ? plain : std::ranges::find(tls_attacks(), attack, &Attack::name);
+  Victim victim({port, hostile.tls}, patience);
   const std::jthread attacker([&](const std::stop_token& stop) { found->run(port, stop, hostile); });
   const auto end = Clock::now() + time;
   for (auto next = Clock::now(); next < end; next = std::max(next + milliseconds(5), Clock::now())) {

@@ -8,10 +8,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "runtime/point.hpp"
+
+struct ssl_ctx_st;
 
 namespace hysteron::test {
 
@@ -28,10 +32,22 @@ constexpr std::uint16_t pattern_of(std::size_t i) {
 
 struct Hostile {
   std::size_t connections = 1100;  ///< of the client that opens as many as it can
+  ssl_ctx_st* tls = nullptr;       ///< what clients bring along, where the server wants TLS
 };
 
-/// The names of the attacks, as the table of results lists them; the first is none.
-[[nodiscard]] const std::vector<std::string>& attack_names();
+struct Attack {
+  std::string name;
+  std::function<void(std::uint16_t port, const std::stop_token& stop, const Hostile& how)> run;
+};
+
+/// The attacks, as the table of results lists them; the first is none. Each through TLS where `how` has it.
+[[nodiscard]] const std::vector<Attack>& attacks();
+/// What can be done to TLS besides.
+[[nodiscard]] const std::vector<Attack>& tls_attacks();
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Attack>& attacks);
+
+/// Waits for so long, or until it is asked to stop.
+void wait(const std::stop_token& stop, std::chrono::milliseconds time);
 
 struct VictimResult {
   std::uint64_t requests = 0;

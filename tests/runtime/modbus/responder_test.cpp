@@ -227,7 +227,7 @@ TEST(Responder, APartOfAWideValueIsNotWritten) {
 
 TEST(Responder, AClientThatMayOnlyReadHasNoWritingFunctions) {
   Bench bench;
-  const Caller reader{.may_write = false};
+  const Caller reader{.rights = Rights{}.without_writes()};
   for (const int function : {5, 6, 15, 16, 22, 23}) {
     std::mt19937 random(9);
     const Bytes pdu = request_of(function, 12, random);

@@ -1,0 +1,61 @@
+// What every connection through TLS has in common: the server's certificate and key, who signs clients' certificates,
+// and what each role may do. Modbus/TCP Security: certificates on both sides, TLS 1.2 or newer, and the client's role
+// in an extension of its certificate. Only the .cpp files of TLS see OpenSSL.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/modbus/responder.hpp"
+#include "support/diagnostic.hpp"
+
+struct ssl_ctx_st;
+struct x509_st;
+
+namespace hysteron::runtime::modbus {
+
+/// Of the extension that holds a client's role, one UTF8String.
+inline constexpr const char* role_extension = "1.3.6.1.4.1.50316.802.1";
+
+struct TlsOptions {
+  std::string certificate{};  ///< files in PEM: the server's certificate, with those that lead to its root
+  std::string key{};          ///< its private key, without a password
+  std::string clients{};      ///< certificates that sign those of clients, or clients' own
+  std::map<std::string, Rights, std::less<>> roles{};
+  Rights without_role = no_rights;  ///< of a client whose certificate names no role
+  Place certificate_place{};        ///< for errors
+  Place key_place{};
+  Place clients_place{};
+};
+
+class TlsContext {
+ public:
+  /// Throws InputError HY831 to HY834.
+  explicit TlsContext(const TlsOptions& options);
+
+  /// What the owner of a certificate may do. A role that is not listed, or an extension that is not one role, may
+  /// nothing.
+  [[nodiscard]] Rights rights_of(const x509_st& certificate) const;
+  /// Until when the server's certificate counts: 2027-05-01.
+  [[nodiscard]] const std::string& valid_until() const { return valid_until_; }
+  [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
+
+ private:
+  struct Free {
+    void operator()(ssl_ctx_st* context) const;
+  };
+  std::unique_ptr<ssl_ctx_st, Free> context_;
+  std::map<std::string, Rights, std::less<>> roles_;
+  Rights without_role_;
+  std::string valid_until_;
+};
+
+/// The names under which a service manager hands over the files, because it may read what the service's user may not.
+/// A file that it hands over counts instead of the one that is named.
+inline constexpr const char* certificate_credential = "tls-certificate";
+inline constexpr const char* key_credential = "tls-key";
+inline constexpr const char* clients_credential = "tls-clients";
+
+}  // namespace hysteron::runtime::modbus

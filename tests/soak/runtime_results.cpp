@@ -16,6 +16,7 @@
 
 #include "tests/runtime/modbus/client_socket.hpp"
 #include "tests/runtime/modbus/hostile_clients.hpp"
+#include "tests/runtime/modbus/tls_files.hpp"
 #include "tests/soak/served_process.hpp"
 
 namespace hysteron::soak {
@@ -63,9 +64,17 @@ std::string milliseconds_at(std::vector<double> latencies, double part) {
   return fmt::format("{:.1f}", 1e3 * latencies[static_cast<std::size_t>(part * last)]);
 }
 
-std::string row_of(ServerKind kind, const std::string& attack, milliseconds time) {
-  const ServedProcess server(kind);
-  const auto result = test::victim_beside(attack, server.port(), time, std::chrono::seconds(2), {.connections = 1100});
+/// What clients and the server need for TLS; nothing where it is in the clear.
+struct Tls {
+  test::TlsFiles files{};
+  runtime::modbus::TlsOptions options = files.options();
+  test::ClientContext client = files.client_of("all");
+};
+
+std::string row_of(ServerKind kind, const std::string& attack, milliseconds time, const Tls* tls = nullptr) {
+  const ServedProcess server(kind, tls != nullptr ? &tls->options : nullptr);
+  const auto result = test::victim_beside(attack, server.port(), time, std::chrono::seconds(2),
+                                          {.connections = 1100, .tls = tls != nullptr ? tls->client.get() : nullptr});
   return fmt::format("{} | {} | {} | {} | {}{}", result.requests, result.errors, result.wrong,
                      milliseconds_at(result.latencies, 0.99), milliseconds_at(result.latencies, 1.0),
                      server.is_alive() ? "" : ", died");
@@ -82,13 +91,25 @@ void print_attacks(milliseconds time) {
   }
 }
 
+void print_attacks_through_tls(milliseconds time, const Tls& tls) {
+  fmt::print(
+      "\nThe same through TLS, where attackers have certificates as the victim has, and what can be done to TLS "
+      "besides:\n\n| attack | requests | errors | wrong | p99, ms | worst, ms |\n| --- | --- | --- | --- | --- | --- "
+      "|\n");
+  for (const auto* const list : {&test::attacks(), &test::tls_attacks()}) {
+    for (const std::string& attack : test::names_of(*list)) {
+      fmt::print("| {} | {} |\n", attack, row_of(ServerKind::ours, attack, time, &tls));
+    }
+  }
+}
+
 struct Throughput {
   std::uint64_t requests = 0;
   std::uint64_t wrong = 0;
 };
 
 /// 32 connections in eight threads; each asks for the 16 registers of the pattern as fast as it is answered.
-Throughput throughput(std::uint16_t port, milliseconds time) {
+Throughput throughput(std::uint16_t port, milliseconds time, ssl_ctx_st* tls) {
   std::atomic<std::uint64_t> requests{0};
   std::atomic<std::uint64_t> wrong{0};
   test::Bytes expected = test::framed(1, {3, 32});
@@ -104,7 +125,7 @@ Throughput throughput(std::uint16_t port, milliseconds time) {
       const test::Bytes request = test::framed(1, {3, 0, 0, 0, 16});
       std::vector<std::unique_ptr<test::ClientSocket>> sockets;
       for (int i = 0; i < 4; ++i) {
-        sockets.push_back(std::make_unique<test::ClientSocket>(port));
+        sockets.push_back(std::make_unique<test::ClientSocket>(port, std::chrono::seconds(5), tls));
       }
       while (Clock::now() < end) {
         for (const auto& socket : sockets) {
@@ -121,16 +142,19 @@ Throughput throughput(std::uint16_t port, milliseconds time) {
   return {requests, wrong};
 }
 
-void print_throughput(milliseconds time) {
+void print_throughput(milliseconds time, const Tls& tls) {
   fmt::print(
       "\n| server | 32 connections, FC 03 × 16, {} s: requests a second | wrong replies |\n| --- | --- | --- |\n",
       time.count() / 1000);
-  for (const ServerKind kind : {ServerKind::ours, ServerKind::plain}) {
-    const ServedProcess server(kind);
-    const Throughput done = throughput(server.port(), time);
-    fmt::print("| {} | {:.0f} | {} |\n", kind == ServerKind::ours ? "ours" : "plain",
+  const auto row = [&](const char* name, const ServedProcess& server, ssl_ctx_st* client) {
+    const Throughput done = throughput(server.port(), time, client);
+    fmt::print("| {} | {:.0f} | {} |\n", name,
                1e3 * static_cast<double>(done.requests) / static_cast<double>(time.count()), done.wrong);
-  }
+    (void)std::fflush(stdout);
+  };
+  row("ours", ServedProcess(ServerKind::ours), nullptr);
+  row("plain", ServedProcess(ServerKind::plain), nullptr);
+  row("ours, through TLS", ServedProcess(ServerKind::ours, &tls.options), tls.client.get());
 }
 
 void print_connects(int count) {
@@ -161,13 +185,16 @@ int main(int count, char** arguments) {
   ::setrlimit(RLIMIT_NOFILE, &files);
   const hysteron::soak::Steal steal;
   fmt::print(
-      "# Results of the runtime\n\nPrinted by `build/tests/soak/runtime_results` (the target `runtime_results`). The "
-      "left half is Hysteron's server, the right half\nlibmodbus' documented `select` server; both had the same attack "
-      "beside the same victim, one after the other. The victim asks 200 times a second;\nan error is an answer that "
-      "did "
-      "not come within 2 s, wrong is a value that nobody may have written.\n\n");
-  hysteron::soak::print_attacks(std::chrono::seconds(number(1, 10)));
-  hysteron::soak::print_throughput(std::chrono::seconds(number(2, 60)));
+      "# Results of the runtime\n\nPrinted by `scripts/soak`, which builds and runs the preset `soak`.\n\n## The "
+      "server "
+      "under attack\n\nThe left half is Hysteron's server, the right half libmodbus' documented `select` server; both "
+      "had the same attack\nbeside the same victim, one after the other. The victim asks 200 times a second; an error "
+      "is "
+      "an answer that did not\ncome within 2 s, wrong is a value that nobody may have written.\n\n");
+  const hysteron::soak::Tls tls;
+  hysteron::soak::print_attacks(std::chrono::seconds(number(1, 5)));
+  hysteron::soak::print_attacks_through_tls(std::chrono::seconds(number(1, 5)), tls);
+  hysteron::soak::print_throughput(std::chrono::seconds(number(2, 60)), tls);
   hysteron::soak::print_connects(number(3, 100'000));
   std::array<double, 3> load{};
   ::getloadavg(load.data(), 3);

@@ -32,13 +32,15 @@ void tell(int pipe, std::uint16_t port) {
   }
 }
 
-[[noreturn]] void serve_ours(int pipe) {
+[[noreturn]] void serve_ours(int pipe, const runtime::modbus::TlsOptions* tls) {
   namespace modbus = runtime::modbus;
   test::MemoryDoor door(test::registers_to_serve());
   for (std::size_t i = 0; i < test::pattern_registers; ++i) {
     door.set(i, test::pattern_of(i));
   }
-  const modbus::Server server(modbus::make_register_map(door.points(), {.title = "SOAK"}), door, {.port = 0});
+  const modbus::Server server(
+      modbus::make_register_map(door.points(), {.title = "SOAK"}), door,
+      {.port = 0, .tls = tls != nullptr ? std::make_shared<modbus::TlsContext>(*tls) : nullptr});
   tell(pipe, server.port());
   while (true) {
     ::pause();
@@ -94,7 +96,7 @@ void tell(int pipe, std::uint16_t port) {
 
 }  // namespace
 
-ServedProcess::ServedProcess(ServerKind kind) {
+ServedProcess::ServedProcess(ServerKind kind, const runtime::modbus::TlsOptions* tls) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) {
     throw std::runtime_error("no pipe");
@@ -103,7 +105,7 @@ ServedProcess::ServedProcess(ServerKind kind) {
   if (process_ == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::close(ends[0]);
-    kind == ServerKind::ours ? serve_ours(ends[1]) : serve_plain(ends[1]);
+    kind == ServerKind::ours ? serve_ours(ends[1], tls) : serve_plain(ends[1]);
   }
   ::close(ends[1]);
   const bool told = ::read(ends[0], &port_, sizeof port_) == sizeof port_;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/modbus/tls_context.hpp"
+
 namespace hysteron::soak {
 
 enum class ServerKind : std::uint8_t {
@@ -15,8 +17,8 @@ enum class ServerKind : std::uint8_t {
 
 class ServedProcess {
  public:
-  /// Forks; no thread may be running.
-  explicit ServedProcess(ServerKind kind);
+  /// Forks; no thread may be running. Ours is behind TLS where options are given.
+  explicit ServedProcess(ServerKind kind, const runtime::modbus::TlsOptions* tls = nullptr);
   ServedProcess(const ServedProcess&) = delete;
   ServedProcess& operator=(const ServedProcess&) = delete;
   ServedProcess(ServedProcess&&) = delete;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/modbus/heartbeat.hpp"
+#include "tests/runtime/modbus/exact_answers.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -36,27 +37,9 @@ struct Bench {
 };
 
 TEST(Connection, EveryWayToCutARequestIsAnsweredAlike) {
-  Bench whole;
-  whole.give(request, start);
-  const Bytes expected = whole.take(start);
-  ASSERT_EQ(expected.size(), 13U);
-  Bench bench;
-  int ways = 0;
-  for (unsigned cuts = 0; cuts < 1U << (request.size() - 1); ++cuts) {
-    bench.connection = Connection(start, {});
-    std::size_t from = 0;
-    for (std::size_t end = 1; end <= request.size(); ++end) {
-      if (end == request.size() || (cuts >> (end - 1) & 1U) != 0) {
-        ASSERT_TRUE(bench.take(start).empty()) << "an answer before its request is whole";
-        bench.give(std::span(request).subspan(from, end - from), start + milliseconds(end));
-        from = end;
-      }
-    }
-    ASSERT_EQ(bench.take(start), expected) << cuts;
-    ASSERT_EQ(bench.connection.due(start + milliseconds(5000)), std::nullopt);
-    ++ways;
-  }
-  EXPECT_EQ(ways, 2048);
+  const auto result = test::cut_every_way();
+  EXPECT_EQ(result.ways, 2048U);
+  EXPECT_EQ(result.wrong, 0U);
 }
 
 TEST(Connection, RequestsThatComeTogetherAreAnsweredInOrder) {

@@ -17,7 +17,7 @@
 
 #include "runtime/modbus/server.hpp"
 #include "runtime/modbus/value_bits.hpp"
-#include "tests/runtime/modbus/bad_server.hpp"
+#include "tests/runtime/modbus/bad_device.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -29,51 +29,28 @@ using test::Fault;
 
 constexpr milliseconds response{60};
 
-bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 15000 && !holds(); ++i) {
-    std::this_thread::sleep_for(milliseconds(2));
-  }
-  return holds();
-}
+using test::soon;
 
 DeviceOptions one_register(std::uint16_t port) {
-  return {.name = "DEVICE",
-          .link = TcpLink{.port = port},
-          .values = {{.at = {Area::holding_register, 0, 1}, .longest_age = std::chrono::minutes(1)}},
-          .period = milliseconds(2),
-          .response = response,
-          .first_wait = milliseconds(2),
-          .longest_wait = milliseconds(20)};
+  return test::one_register(port, response);
 }
 
-class BadDevice : public ::testing::TestWithParam<Fault> {};
+class BadDevice : public ::testing::TestWithParam<std::pair<Fault, std::string_view>> {};
 
 TEST_P(BadDevice, NeverGivesAWrongValueAndIsUsedAgainWhenItIsSound) {
-  BadServer server(response);
-  const Device device(one_register(server.port()));
-  const auto is_good = [&] { return device.read(0).quality == Quality::good; };
-  ASSERT_TRUE(soon(is_good));
-  for (int round = 0; round < 3; ++round) {
-    const auto before = server.faults();
-    server.set(GetParam());
-    EXPECT_TRUE(soon([&] {
-      EXPECT_EQ(device.read(0).value, test::right_value);
-      return server.faults() >= before + 2;
-    }));
-    server.set(Fault::none);
-    EXPECT_TRUE(soon(is_good));
-    EXPECT_EQ(device.read(0).value, test::right_value);
-  }
-  const DeviceStatus status = device.status();
-  EXPECT_GT(status.connections, 1U) << "every fault ends the connection";
-  EXPECT_GT(status.timeouts + status.closed + status.wrong_answers + status.no_link, 0U);
+  const auto result = test::meet(GetParam().first, 4, 3, 2, response);
+  EXPECT_GE(result.met, 6U);
+  EXPECT_EQ(result.wrong, 0U);
+  EXPECT_EQ(result.recovered, 3U);
+  EXPECT_GT(result.status.connections, 1U) << "every fault ends the connection";
+  EXPECT_GT(result.status.timeouts + result.status.closed + result.status.wrong_answers + result.status.no_link, 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, BadDevice,
-                         ::testing::Values(Fault::late, Fault::never, Fault::wrong_id, Fault::wrong_unit,
-                                           Fault::wrong_function, Fault::wrong_protocol, Fault::too_short,
-                                           Fault::too_long, Fault::lying_length, Fault::close, Fault::reset,
-                                           Fault::black_hole, Fault::duplicate, Fault::drip));
+INSTANTIATE_TEST_SUITE_P(Faults, BadDevice, ::testing::ValuesIn(test::link_faults), [](const auto& fault) {
+  std::string name(fault.param.second);
+  std::ranges::replace(name, ' ', '_');
+  return name;
+});
 
 TEST(Device, AnExceptionRefusesTheValueAndKeepsTheLink) {
   BadServer server(response);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/modbus/value_bits.hpp"
+#include "tests/runtime/modbus/exact_answers.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 #include "tests/runtime/modbus/oracle.hpp"
 
@@ -60,73 +61,15 @@ struct Bench {
   Responder responder;
 };
 
-std::string hex(const Bytes& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    constexpr const char* digits = "0123456789abcdef";
-    text += {digits[byte >> 4U], digits[byte & 15U], ' '};
-  }
-  return text;
-}
+using test::hex;
+using test::request_of;
 
-/// A request of a function and length, of which many are sound.
-Bytes request_of(int function, std::size_t size, std::mt19937& random) {
-  Bytes pdu(size);
-  for (auto& byte : pdu) {
-    byte = static_cast<std::uint8_t>(random());
-  }
-  pdu[0] = static_cast<std::uint8_t>(function);
-  const auto put = [&](std::size_t at, std::size_t value) {
-    if (at + 1 < size) {
-      pdu[at] = static_cast<std::uint8_t>(value >> 8U);
-      pdu[at + 1] = static_cast<std::uint8_t>(value & 0xFFU);
-    }
-  };
-  const auto address = [&] { return random() % 16 == 0 ? 40000 + random() % 700 : random() % 48; };
-  const auto count = [&](std::size_t most) { return random() % 16 == 0 ? random() % 3000 : 1 + random() % most; };
-  if (random() % 16 == 0) {
-    return pdu;
-  }
-  put(1, address());
-  put(3, count(8));
-  if (function == 5) {
-    put(3, random() % 2 * 0xFF00);
-  } else if ((function == 15 || function == 16) && size > 6) {
-    const std::size_t data = size - 6;
-    put(1, random() % 24);
-    put(3, function == 16 ? data / 2 : 8 * data - random() % 8);
-    pdu[5] = static_cast<std::uint8_t>(data);
-  } else if (function == 23 && size > 10) {
-    put(5, random() % 24);
-    put(7, (size - 10) / 2);
-    pdu[9] = static_cast<std::uint8_t>(size - 10);
-  } else if (function == 43 && size > 2) {
-    pdu[1] = 14;
-    pdu[2] = static_cast<std::uint8_t>(random() % 6);
-  }
-  return pdu;
-}
-
-/// Every function code × every length of a PDU, the longest one byte too long: each answer to the byte.
 TEST(Responder, EveryFunctionAndLengthIsAnsweredAsTheOracleSays) {
   for (const WordOrder order : word_orders) {
-    Bench bench(order);
-    test::Oracle oracle(bench.map);
-    std::mt19937 random(5 + static_cast<unsigned>(order));
-    int answers = 0;
-    int exceptions = 0;
-    for (int function = 0; function < 256; ++function) {
-      for (std::size_t size = 1; size <= 254; ++size) {
-        const Bytes pdu = request_of(function, size, random);
-        const Bytes expected = oracle.answer(pdu);
-        const Bytes got = bench.ask(pdu);
-        ASSERT_EQ(hex(got), hex(expected)) << hex(pdu);
-        ++answers;
-        exceptions += got[0] >= 128 ? 1 : 0;
-      }
-    }
-    EXPECT_EQ(answers, 65024);
-    EXPECT_LT(exceptions, 65024);
+    const auto result = test::every_function_and_length(order);
+    EXPECT_EQ(result.answers, 65024U);
+    EXPECT_EQ(result.first_wrong, "");
+    EXPECT_LT(result.exceptions, 65024U);
   }
 }
 

@@ -4,136 +4,35 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "tests/runtime/task/scripted_loop.hpp"
+
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::int64_t period = 1'000'000;
+using test::ScriptedClock;
+using test::Worker;
 
-/// What happens to one cycle.
-struct Event {
-  Cause cause = Cause::on_time;
-  std::int64_t amount = 0;  ///< of the delay
-  bool at_wake = false;     ///< host steal: before the cycle, else in it
-};
-
-/// Time passes as a script says. The body tells it that a cycle runs.
-class ScriptedClock final : public Clock {
- public:
-  std::int64_t now() noexcept override { return now_; }
-  void sleep_until(std::int64_t time) noexcept override {
-    if (time > now_) {
-      now_ = time;
-    }
-    const Event& event = next();
-    if (event.cause == Cause::late_wake || (event.cause == Cause::host_steal && event.at_wake)) {
-      now_ += event.amount;
-      stolen_ += event.cause == Cause::host_steal ? event.amount : 0;
-    }
-  }
-  std::int64_t own_cpu() noexcept override { return cpu_; }
-  std::int64_t stolen() noexcept override { return stolen_; }
-
-  void work() {
-    const Event event = next();
-    ++at;
-    now_ += 20'000;
-    cpu_ += 20'000;
-    if (event.cause == Cause::own_cpu) {
-      cpu_ += event.amount;
-      now_ += event.amount;
-    } else if (event.cause == Cause::preempted || (event.cause == Cause::host_steal && !event.at_wake)) {
-      now_ += event.amount;
-      stolen_ += event.cause == Cause::host_steal ? event.amount : 0;
-    }
-  }
-
-  std::vector<Event> script;
-  std::size_t at = 0;
-
- private:
-  [[nodiscard]] const Event& next() const {
-    static const Event nothing;
-    return at < script.size() ? script[at] : nothing;
-  }
-  std::int64_t now_ = 17'000'000;
-  std::int64_t cpu_ = 0;
-  std::int64_t stolen_ = 0;
-};
-
-class Worker final : public CycleBody {
- public:
-  explicit Worker(ScriptedClock& clock) : clock_(&clock) {}
-  bool cycle(const CycleMoment& moment) noexcept override {
-    moments.push_back(moment);
-    clock_->work();
-    return moments.size() != ends_after;
-  }
-  bool finished(const LoopStatistics& statistics, std::int64_t /*duration*/, Verdict /*verdict*/) noexcept override {
-    account_holds = account_holds && statistics.run + statistics.skipped == statistics.elapsed;
-    return true;
-  }
-  std::vector<CycleMoment> moments;
-  std::size_t ends_after = 0;
-  bool account_holds = true;
-
- private:
-  ScriptedClock* clock_;
-};
-
-struct Run {
-  LoopEnd end = LoopEnd::stopped;
-  LoopStatistics statistics;
-  std::vector<CycleMoment> moments;
-  bool account_holds = false;
-};
-
-Run run(std::vector<Event> script, LoopSettings settings) {
-  ScriptedClock clock;
-  clock.script = std::move(script);
-  Worker worker(clock);
-  Run result;
-  const std::atomic<bool> stop{false};
-  result.end = run_loop(settings, clock, worker, stop, result.statistics);
-  result.moments = worker.moments;
-  result.account_holds = worker.account_holds;
-  return result;
-}
+constexpr std::int64_t period = test::scripted_period;
 
 TEST(CyclicLoop, TenThousandInjectedDelaysAreCountedByCause) {
-  std::mt19937 random(1);
-  std::uniform_int_distribution<int> cause(1, 4);
-  std::uniform_int_distribution<std::int64_t> delay(period + 1, 4 * period);
-  std::uniform_int_distribution<std::int64_t> small_delay(period / 10 + 1, 4 * period);
-  std::vector<Event> script;
-  std::array<std::uint64_t, cause_count> injected{};
-  for (int i = 0; i < 10'000; ++i) {
-    Event event{.cause = static_cast<Cause>(cause(random)), .at_wake = i % 2 == 0};
-    const bool wakes_late = event.cause == Cause::late_wake || (event.cause == Cause::host_steal && event.at_wake);
-    event.amount = wakes_late ? small_delay(random) : delay(random);
-    ++injected[static_cast<std::size_t>(event.cause)];
-    script.push_back(event);
-    // Quiet cycles between: one may be carried, the next are on time.
-    script.insert(script.end(), static_cast<std::size_t>(2 + i % 3), Event{});
-  }
-  const auto result = run(script, {.period = period, .tolerance = period / 10, .cycles = script.size()});
-  EXPECT_EQ(result.end, LoopEnd::done);
-  EXPECT_TRUE(result.account_holds);
+  const auto result = test::inject_delays(10'000);
+  EXPECT_EQ(result.run.end, LoopEnd::done);
+  EXPECT_TRUE(result.run.account_holds);
   for (std::size_t i = 1; i < cause_count; ++i) {
-    EXPECT_EQ(result.statistics.events[i], injected[i]) << name_of(static_cast<Cause>(i));
+    EXPECT_EQ(result.run.statistics.events[i], result.injected[i]) << name_of(static_cast<Cause>(i));
   }
-  EXPECT_EQ(result.statistics.late_events(), 10'000U);
-  EXPECT_EQ(result.statistics.run, script.size());
-  EXPECT_EQ(result.statistics.events[0] + result.statistics.carried + 10'000U, script.size());
-  EXPECT_GT(result.statistics.skipped, 0U);
+  EXPECT_EQ(result.run.statistics.late_events(), 10'000U);
+  EXPECT_TRUE(result.are_counted());
+  EXPECT_GT(result.run.statistics.skipped, 0U);
 }
 
 TEST(CyclicLoop, ASkippedPeriodIsNeverRunAndTheGridIsKept) {
-  const auto result = run({{}, {.cause = Cause::late_wake, .amount = 7 * period / 2}}, {.period = period, .cycles = 4});
+  const auto result =
+      test::run_script({{}, {.cause = Cause::late_wake, .amount = 7 * period / 2}}, {.period = period, .cycles = 4});
   ASSERT_EQ(result.moments.size(), 4U);
   EXPECT_EQ(result.moments[1].period, 4U);
   EXPECT_EQ(result.moments[1].skipped, 3U);
@@ -145,8 +44,9 @@ TEST(CyclicLoop, ASkippedPeriodIsNeverRunAndTheGridIsKept) {
 }
 
 TEST(CyclicLoop, CatchingUpIsBounded) {
-  const auto result = run({{}, {.cause = Cause::own_cpu, .amount = 21 * period / 2}},
-                          {.period = period, .policy = MissedPolicy::catch_up, .catch_up = 4, .cycles = 8});
+  const auto result =
+      test::run_script({{}, {.cause = Cause::own_cpu, .amount = 21 * period / 2}},
+                       {.period = period, .policy = MissedPolicy::catch_up, .catch_up = 4, .cycles = 8});
   // The second cycle ends 10.5 periods late; periods 2 to 11 have begun, 11 is still open, 4 before it may be caught
   // up.
   ASSERT_EQ(result.moments.size(), 8U);
@@ -161,13 +61,13 @@ TEST(CyclicLoop, CatchingUpIsBounded) {
 }
 
 TEST(CyclicLoop, StopsAtAMissedPeriodWhereAsked) {
-  const auto result = run({{}, {}, {.cause = Cause::late_wake, .amount = 2 * period}},
-                          {.period = period, .policy = MissedPolicy::stop, .cycles = 9});
+  const auto result = test::run_script({{}, {}, {.cause = Cause::late_wake, .amount = 2 * period}},
+                                       {.period = period, .policy = MissedPolicy::stop, .cycles = 9});
   EXPECT_EQ(result.end, LoopEnd::missed);
   EXPECT_EQ(result.statistics.run, 2U);
   // Late, but within its period, is not missed.
-  EXPECT_EQ(run({{.cause = Cause::late_wake, .amount = period - 1}},
-                {.period = period, .policy = MissedPolicy::stop, .cycles = 9})
+  EXPECT_EQ(test::run_script({{.cause = Cause::late_wake, .amount = period - 1}},
+                             {.period = period, .policy = MissedPolicy::stop, .cycles = 9})
                 .end,
             LoopEnd::done);
 }

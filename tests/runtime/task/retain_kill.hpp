@@ -1,4 +1,5 @@
-// A process that retains as fast as it can and is killed at any moment: what can be recovered afterwards.
+// A process that retains as fast as it can and is killed at any moment: what can be recovered afterwards. And every
+// damage to a slot.
 #pragma once
 
 #include <sys/wait.h>
@@ -8,6 +9,8 @@
 #include <csignal>
 #include <ctime>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "runtime/task/retain.hpp"
 #include "tests/runtime/task/accumulator.hpp"
@@ -66,6 +69,29 @@ inline KillResult kill_while_retaining(const std::filesystem::path& folder, std:
     result.consistent = values.parameters[0] == static_cast<double>(values.sequence) &&
                         values.parameters[1] == -values.parameters[0] &&
                         values.state == std::vector<std::byte>(20'000, static_cast<std::byte>(values.sequence & 0xFF));
+  }
+  return result;
+}
+
+struct Damage {
+  std::uint64_t tried = 0;
+  std::uint64_t taken = 0;  ///< damaged slots that were taken for whole ones
+};
+
+/// Every truncation and every single-bit flip of a slot.
+inline Damage damage(const std::vector<std::byte>& slot) {
+  Damage result;
+  const auto look = [&](std::span<const std::byte> bytes) {
+    ++result.tried;
+    result.taken += decode_slot(bytes).status == SlotStatus::broken ? 0 : 1;
+  };
+  for (std::size_t length = 0; length < slot.size(); ++length) {
+    look(std::span(slot).first(length));
+  }
+  for (std::size_t bit = 0; bit < 8 * slot.size(); ++bit) {
+    auto flipped = slot;
+    flipped[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    look(flipped);
   }
   return result;
 }

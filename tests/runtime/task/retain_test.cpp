@@ -66,14 +66,9 @@ TEST(Retain, ASlotComesBackAsItWas) {
 
 TEST(Retain, EveryTruncationAndEverySingleBitFlipIsSeen) {
   const auto bytes = encode_slot(some_values(7));
-  for (std::size_t length = 0; length < bytes.size(); ++length) {
-    ASSERT_EQ(decode_slot(std::span(bytes).first(length)).status, SlotStatus::broken) << length;
-  }
-  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-    auto flipped = bytes;
-    flipped[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
-    ASSERT_EQ(decode_slot(flipped).status, SlotStatus::broken) << bit;
-  }
+  const auto result = test::damage(bytes);
+  EXPECT_EQ(result.tried, bytes.size() + 8 * bytes.size());
+  EXPECT_EQ(result.taken, 0U);
   auto longer = bytes;
   longer.push_back(std::byte{0});
   EXPECT_EQ(decode_slot(longer).status, SlotStatus::broken);

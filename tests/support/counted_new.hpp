@@ -10,9 +10,13 @@
 namespace hysteron::test {
 inline thread_local std::uint64_t allocations = 0;
 
-inline void* counted_new(std::size_t size) {
+inline void* counted_malloc(std::size_t size) noexcept {
   ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
+  return std::malloc(size == 0 ? 1 : size);
+}
+
+inline void* counted_new(std::size_t size) {
+  if (void* const memory = counted_malloc(size)) {
     return memory;
   }
   throw std::bad_alloc();
@@ -25,6 +29,12 @@ inline void* counted_new(std::size_t size) {
 }
 [[gnu::noinline]] void* operator new[](std::size_t size) {
   return hysteron::test::counted_new(size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+  return hysteron::test::counted_malloc(size);
+}
+[[gnu::noinline]] void* operator new[](std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+  return hysteron::test::counted_malloc(size);
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);

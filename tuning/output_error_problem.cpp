@@ -274,7 +274,8 @@ class Builder {
 
   const ParameterFile& file_;
   std::span<const records::Record> records_;
-  std::vector<std::string> units_{};  ///< by parameter
+  std::vector<std::string> units_{};                     ///< by parameter
+  std::vector<std::vector<std::string>> state_units_{};  ///< by node and state
   Diagnostics diagnostics_{};
   OutputErrorProblem problem_{};
 };

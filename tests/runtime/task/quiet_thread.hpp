@@ -41,7 +41,7 @@ inline bool allow_only_sleep_and_clock() {
 /// lack the rights for.
 inline void bring_pages_in() {
   (void)prctl(PR_SET_THP_DISABLE, 1UL, 0UL, 0UL, 0UL);  // joining pages takes them away for a moment
-  (void)mlockall(MCL_CURRENT);  // where the rights are there, they also stay
+  (void)mlockall(MCL_CURRENT);                          // where the rights are there, they also stay
   constexpr std::uintptr_t largest = 64U << 20U;        // what is larger is a sanitizer's shadow
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {

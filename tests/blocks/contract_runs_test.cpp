@@ -71,7 +71,7 @@ TEST(Contract, AStepAllocatesNothing) {
     EXPECT_EQ(hysteron::test::allocations, before);
   });
   const std::size_t before = hysteron::test::allocations;
-  delete new int(1);
+  delete new volatile int(1);
   EXPECT_EQ(hysteron::test::allocations, before + 1) << "the counter counts";
 }
 

@@ -160,8 +160,9 @@ TEST_F(Run, DamagedRecordsAreRefused) {
            Case{"t,x\n0,1\n0.002,1\n0.004,1\n",
                 "HY704 error: log.csv:3:1: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
                 "    3 | 0.002,1\n"
-                "      | ^\n"
-                "mend: state @ts 2ms in the diagram, or resample the record to 0.001 s.\n"},
+                "      | ^^^^^\n"
+                "mend: state @ts 2ms in the diagram, or resample the record to 0.001 s.\n"
+                "note: plant.st:1:26: the sample time of the diagram\n"},
            Case{"t,x,reset\n0,1,0\n0.001,1,2\n",
                 "HY707 error: log.csv:3:9: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"
                 "    3 | 0.001,1,2\n"

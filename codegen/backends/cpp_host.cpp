@@ -214,6 +214,7 @@ add_executable({name}_run main.cpp)
 std::vector<std::string> cpp_port_names(const std::vector<Port>& ports) {
   Identifiers identifiers(cpp_words);
   std::vector<std::string> names;
+  names.reserve(ports.size());
   for (const Port& port : ports) {
     names.emplace_back(identifiers.make({port.name}));
   }

@@ -366,7 +366,7 @@ class Reader {
 };
 
 std::string Reader::nearest_block(std::string_view name) const {
-  const std::string prefixed = "HY_" + upper(name);
+  std::string prefixed = "HY_" + upper(name);
   if (find_block_type(prefixed) != nullptr) {
     return prefixed;
   }

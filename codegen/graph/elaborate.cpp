@@ -80,8 +80,7 @@ void Elaborator::elaborate(const Instance& instance) {
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     instantiate(instance, i, parts[i]);
   }
-  for (std::size_t s = 0; s < definition.block->statements.size(); ++s) {
-    const auto& statement = definition.block->statements[s];
+  for (const auto& statement : definition.block->statements) {
     if (const auto* call = std::get_if<language::Call>(&statement)) {
       elaborate_call(instance, parts, *call);
     } else {

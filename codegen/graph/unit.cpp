@@ -234,7 +234,7 @@ class Parser {
       unit.add_variable(variable_(name.substr(1)), {1, 1});
       return unit;
     }
-    const auto found = find_symbol(name);
+    auto found = find_symbol(name);
     if (!found) {
       fail(fmt::format("the symbol '{}' is not known", name));
     }

@@ -205,7 +205,7 @@ Literal typed_literal(std::string_view text) {
   if (real != nullptr) {
     return malformed(text, fmt::format("{} holds whole numbers; leave the point out, or write LREAL#.", type));
   }
-  const auto result = integer(text, std::get<Whole>(number), negative, same_name(type, "WORD"));
+  auto result = integer(text, std::get<Whole>(number), negative, same_name(type, "WORD"));
   if (const auto* value = std::get_if<IntLiteral>(&result)) {
     return IntLiteral{.value = negative ? -value->value : value->value, .is_word = value->is_word};
   }

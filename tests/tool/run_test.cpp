@@ -234,8 +234,9 @@ TEST_F(Run, NotANumberIsNeverSilent) {
   const auto outcome = bench.shell(std::string(go));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err,
-              StartsWith("HY706 error: plant.st:1:87: Y is infinite at step 1 (t = 0.001 s), and in 2 steps in "
-                         "all.\nmend: "));
+              AllOf(StartsWith("HY706 error: plant.st:1:72: Y is infinite at step 1 (t = 0.001 s), and in 2 steps in "
+                               "all.\n    1 | FUNCTION_BLOCK P "),
+                    HasSubstr("\nmend: look for a division by 0")));
   EXPECT_EQ(bench.read("out.csv"), "t,Y\n0,1\n0.001,inf\n0.002,inf\n0.003,0.5\n");
 }
 

@@ -55,14 +55,14 @@ bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, cons
 class Enumeration {
  public:
   Enumeration(const Variant& base, const std::string& top, const CandidateOptions& options)
-      : base_(base), top_(top), options_(options) {
-    Diagnostics diagnostics;
-    source_ = std::make_shared<const language::SourceFile>(language::parse("text", base.text, diagnostics));
-    definitions_ = define(source_, diagnostics);
-    index_ = top_definition(definitions_, base.program->graph.name);
-    edges_ = edges_of(definitions_, index_);
-    places_ = instances_of(definitions_, index_);
-  }
+      : base_(base),
+        top_(top),
+        options_(options),
+        source_(parsed(base.text)),
+        definitions_(defined(source_)),
+        index_(top_definition(definitions_, base.program->graph.name)),
+        edges_(edges_of(definitions_, index_)),
+        places_(instances_of(definitions_, index_)) {}
 
   std::vector<Candidate> list() {
     for (const EffectKind& kind : effect_kinds(definitions_)) {
@@ -81,6 +81,16 @@ class Enumeration {
   }
 
  private:
+  // The text compiled before: there is nothing to report.
+  static std::shared_ptr<const language::SourceFile> parsed(const std::string& text) {
+    Diagnostics none;
+    return std::make_shared<const language::SourceFile>(language::parse("text", text, none));
+  }
+  static Definitions defined(const std::shared_ptr<const language::SourceFile>& source) {
+    Diagnostics none;
+    return define(source, none);
+  }
+
   /// Whether the effect is there already: twice the same one on two edges is a search for a better fit, not for a
   /// cause.
   [[nodiscard]] bool present(const std::string& effect) const {
@@ -236,11 +246,11 @@ class Enumeration {
   const Variant& base_;
   const std::string& top_;
   const CandidateOptions& options_;
-  std::shared_ptr<const language::SourceFile> source_{};
-  Definitions definitions_{};
-  std::uint32_t index_ = 0;
-  std::vector<Edge> edges_{};
-  std::vector<BlockInstance> places_{};
+  std::shared_ptr<const language::SourceFile> source_;
+  Definitions definitions_;
+  std::uint32_t index_;
+  std::vector<Edge> edges_;
+  std::vector<BlockInstance> places_;
   std::vector<Candidate> candidates_{};
 };
 

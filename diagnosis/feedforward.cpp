@@ -159,7 +159,7 @@ class Inverter {
     const std::string left = operand(graph_.wire(node, 0));
     const std::string text =
         infix ? fmt::format("{} {} {}", left, operation.name, operand(graph_.wire(node, 1))) : "-" + left;
-    const std::string name = text_.signal("K", text);
+    std::string name = text_.signal("K", text);
     known_[{wire.index, wire.port}] = name;
     return name;
   }

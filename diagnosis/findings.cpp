@@ -342,9 +342,9 @@ parameters::ParameterFile improved_file(const Task& task, parameters::ParameterF
 }
 
 std::string summary_of(const Diagnosis& found) {
-  const std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
-                                      found.gap.nominal, found.gap.calibrated, found.gap.improved,
-                                      found.gap.unit.empty() ? "" : " ", found.gap.unit, found.gap.floor.value);
+  std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
+                                found.gap.nominal, found.gap.calibrated, found.gap.improved,
+                                found.gap.unit.empty() ? "" : " ", found.gap.unit, found.gap.floor.value);
   std::vector<std::string> effects;
   for (const EffectFinding& effect : found.effects) {
     effects.push_back(fmt::format("{} at {}", effect.id, effect.edge));

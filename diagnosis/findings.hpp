@@ -45,6 +45,6 @@ struct Findings {
                                                       const Explanation& explanation);
 
 /// The verdict in one or two sentences.
-[[nodiscard]] std::string summary_of(const Diagnosis& diagnosis);
+[[nodiscard]] std::string summary_of(const Diagnosis& found);
 
 }  // namespace hysteron::diagnosis

@@ -84,7 +84,7 @@ Closure closure(const HeldOut& before, const HeldOut& after, double fitted, cons
     HeldOut first{.squares = {0.0}, .counts = {0.0}};
     HeldOut second = first;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t block = static_cast<std::size_t>(random() % count);
+      const auto block = static_cast<std::size_t>(random() % count);
       first.squares[0] += before.squares[block];
       first.counts[0] += before.counts[block];
       second.squares[0] += after.squares[block];

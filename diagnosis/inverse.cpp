@@ -55,7 +55,7 @@ std::span<const InverseOfEffect> inverses() {
 }
 
 InverseOfEffect inverse_of(std::string_view effect) {
-  const auto found = std::ranges::find(table, effect, &InverseOfEffect::effect);
+  const auto* const found = std::ranges::find(table, effect, &InverseOfEffect::effect);
   return found != table.end() ? *found
                               : InverseOfEffect{effect, none, "an effect of your own: its inverse is not known"};
 }

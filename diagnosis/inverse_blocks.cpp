@@ -250,9 +250,9 @@ std::string creep(InverseText& text, const BlockStage& stage) {
   const std::string from_third = text.started(2);
   const bool crept_before = stage.value("SETTLED") != 0.0 && stage.value("SINCE_START") == 0.0;
   const double settled = crept_before ? 1.0 / (1.0 + g * all) : 1.0;
-  const std::string x = text.signal(
-      stage.name + "_X", fmt::format("SEL({0}, {1} * {2}, {2} - {3}.XOUT - SEL({4}, 0.0, {3}.XOUT - {5}.XOUT))",
-                                     from_second, number(settled), stage.wanted, one, from_third, two));
+  std::string x = text.signal(stage.name + "_X",
+                              fmt::format("SEL({0}, {1} * {2}, {2} - {3}.XOUT - SEL({4}, 0.0, {3}.XOUT - {5}.XOUT))",
+                                          from_second, number(settled), stage.wanted, one, from_third, two));
   text.call(model, "XIN := " + x);
   text.call(one, fmt::format("XIN := {}.XOUT - {}", model, x));
   text.call(two, fmt::format("XIN := {}.XOUT", one));
@@ -314,9 +314,8 @@ std::string hysteresis_general(InverseText& text, const BlockStage& stage) {
   text.call(first, "XIN := " + stage.wanted);
   const std::string slope = text.signal(
       stage.name + "_SLOPE", fmt::format("SEL({}, {}, {}.XOUT)", later, real_literal(stage.value("C1")), m1));
-  const std::string x = text.signal(
-      stage.name + "_X",
-      fmt::format("SEL({0}, {1}.XOUT, {2}.XOUT + ({3} - {4}.XOUT) / {5})", later, first, x1, stage.wanted, y1, slope));
+  std::string x = text.signal(stage.name + "_X", fmt::format("SEL({0}, {1}.XOUT, {2}.XOUT + ({3} - {4}.XOUT) / {5})",
+                                                             later, first, x1, stage.wanted, y1, slope));
   text.call(model, "XIN := " + x);
   std::string tangent = model + ".SLOPE";
   if (stage.value("RETURN_POINT") != 0.0) {
@@ -374,7 +373,7 @@ constexpr std::array rules{
 }  // namespace
 
 std::string inverse_of_block(InverseText& text, const BlockStage& stage) {
-  const auto rule = std::ranges::find(rules, stage.node.block->about.name, &Rule::block);
+  const auto* const rule = std::ranges::find(rules, stage.node.block->about.name, &Rule::block);
   if (rule == rules.end()) {
     throw NoInverse(
         fmt::format("{} is a {}, which has no inverse here", stage.node.path, stage.node.block->about.name));

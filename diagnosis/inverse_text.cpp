@@ -29,7 +29,7 @@ std::string InverseText::name(std::string_view wish) {
 }
 
 std::string InverseText::instance(std::string_view wish, std::string_view block, const std::string& settings) {
-  const std::string result = name(wish);
+  std::string result = name(wish);
   locals_.push_back(settings.empty() ? fmt::format("{} : {};", result, block)
                                      : fmt::format("{} : {} := ({});", result, block, settings));
   return result;
@@ -43,7 +43,7 @@ std::string InverseText::signal(std::string_view wish, const std::string& expres
   if (is_name(expression)) {
     return expression;
   }
-  const std::string result = name(wish);
+  std::string result = name(wish);
   locals_.push_back(unit.empty() ? fmt::format("{} : LREAL;", result)
                                  : fmt::format("{} : LREAL; (* @unit {} *)", result, unit));
   statements_.push_back(fmt::format("{} := {};", result, expression));

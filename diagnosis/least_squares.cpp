@@ -96,7 +96,7 @@ double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals,
   return std::isfinite(cost) ? cost : infinity;
 }
 
-Fit fit(Model& model, VectorXd start, const FitOptions& options) {
+Fit fit(Model& model, const VectorXd& start, const FitOptions& options) {
   Fit best{.x = within_bounds(model, start), .cost = infinity};
   if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
     return best;

@@ -29,7 +29,7 @@ struct FitOptions {
 };
 
 /// From `start`, which is brought within the bounds. The prior is about the model's own start.
-[[nodiscard]] Fit fit(Model& model, VectorXd start, const FitOptions& options = {});
+[[nodiscard]] Fit fit(Model& model, const VectorXd& start, const FitOptions& options = {});
 
 /// The cost at x.
 [[nodiscard]] double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals, const VectorXd* weights);

@@ -108,6 +108,7 @@ MapFinding map_over(std::string over, std::string unit, const std::vector<Sample
                     const std::function<double(const Sample&)>& place) {
   MapFinding map{.over = std::move(over), .unit = std::move(unit)};
   std::vector<double> sorted;
+  sorted.reserve(samples.size());
   for (const Sample& sample : samples) {
     sorted.push_back(place(sample));
   }
@@ -153,6 +154,7 @@ MapFinding over_frequency(const std::vector<Sample>& samples, double sample_time
   MapFinding map{.over = "frequency", .unit = "Hz"};
   const auto spectrum = [&](bool after) {
     std::vector<double> values;
+    values.reserve(samples.size());
     for (const Sample& sample : samples) {
       values.push_back(after ? sample.after : sample.before);
     }

@@ -53,6 +53,7 @@ class Model {
   Model(const Task& task, const Program& program, std::span<const Unknown> further = {});
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
+  ~Model() = default;
 
   [[nodiscard]] Index rows() const { return rollout_->residual_count(); }
   [[nodiscard]] Index unknowns() const { return start_.size(); }

@@ -10,8 +10,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Outputs within this share of twice the change at half the strength: linear in it.
 constexpr double linear_within = 0.05;
 

@@ -289,6 +289,7 @@ class Searcher {
   /// all that it was there for, and the other one by itself the better explanation.
   void without_each(std::vector<Explanation>& found, const Search& result) const {
     std::vector<const Explanation*> best;
+    best.reserve(found.size());
     for (const Explanation& one : found) {
       best.push_back(&one);
     }

@@ -41,7 +41,7 @@ std::uint32_t Elaborator::add_slots(const Definition& definition) {
   return first;
 }
 
-Port Elaborator::port_of(const Declared& declared) const {
+Port Elaborator::port_of(const Declared& declared) {
   const Field& field = declared.field;
   return {.name = std::string(field.name),
           .unit = std::string(field.unit),

@@ -57,7 +57,7 @@ class Elaborator {
   void error(int number, Span span, std::string cause, std::string mend, std::vector<Note> notes = {});
   static Wire alias(std::uint32_t slot, Type type) { return {Wire::From::Alias, type, 0, slot}; }
   std::uint32_t add_slots(const Definition& definition);
-  Port port_of(const Declared& declared) const;
+  static Port port_of(const Declared& declared);
   void declare_top(const Instance& instance, std::size_t variable);
   /// A parameter that nothing in the text drives: it may be set from outside.
   Wire open_parameter(const std::string& path, const Declared& declared, double value);

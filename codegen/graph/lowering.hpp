@@ -25,7 +25,7 @@ class GraphBuilder {
   std::uint32_t block(const BlockType& type, std::string path, Rate rate, language::Span span);
 
   Graph& graph() { return graph_; }
-  [[nodiscard]] bool is_literal(Wire wire) const { return wire.from == Wire::From::Literal; }
+  [[nodiscard]] static bool is_literal(Wire wire) { return wire.from == Wire::From::Literal; }
   [[nodiscard]] double value(Wire wire) const { return graph_.literals[wire.index]; }
   /// Of a constant; empty for a plain number.
   [[nodiscard]] std::string_view unit(Wire wire) const {

@@ -224,9 +224,9 @@ class Formatter {
     const auto at = [&](std::size_t i) { return elements_.begin() + static_cast<std::ptrdiff_t>(i); };
     parts.is_aligned = std::none_of(at(item.first), at(item.last), [](const Element& e) { return e.is_comment; });
     if (parts.is_aligned) {
-      parts.names_width = layout_.width(elements_, item.first, parts.colon);
-      parts.type_width = layout_.width(elements_, parts.colon + 1, parts.value);
-      parts.value_width = layout_.width(elements_, parts.value, item.last);
+      parts.names_width = Layout::width(elements_, item.first, parts.colon);
+      parts.type_width = Layout::width(elements_, parts.colon + 1, parts.value);
+      parts.value_width = Layout::width(elements_, parts.value, item.last);
       parts.is_aligned = parts.names_width <= widest && parts.type_width <= widest;
     }
     return parts;

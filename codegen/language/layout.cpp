@@ -173,7 +173,7 @@ bool Layout::fits(const std::vector<Element>& elements, std::size_t from, std::s
   return column <= line_width;
 }
 
-std::size_t Layout::width(const std::vector<Element>& elements, std::size_t first, std::size_t last) const {
+std::size_t Layout::width(const std::vector<Element>& elements, std::size_t first, std::size_t last) {
   std::size_t width = 0;
   for (std::size_t i = first; i < last; ++i) {
     width += elements[i].span.length + (i > first && is_spaced(elements[i - 1], elements[i]) ? 1U : 0U);

@@ -45,7 +45,7 @@ class Layout {
   void blank_line();
 
   /// The width of [first, last) on one line, where there is no comment in it.
-  [[nodiscard]] std::size_t width(const std::vector<Element>& elements, std::size_t first, std::size_t last) const;
+  [[nodiscard]] static std::size_t width(const std::vector<Element>& elements, std::size_t first, std::size_t last);
   [[nodiscard]] std::size_t column() const { return column_; }
   [[nodiscard]] std::string take() { return std::move(out_); }
 

@@ -214,7 +214,7 @@ class Picture {
         fmt::format("<g class=\"{}{}\" transform=\"translate({:.1f} {:.1f})\">",
                     classes[static_cast<std::size_t>(box.kind)], added ? " added" : "", corner.x, corner.y);
     const bool round = box.kind == DrawnBox::Kind::Input || box.kind == DrawnBox::Kind::Output;
-    svg += fmt::format("<title>{}</title><rect width=\"{:.1f}\" height=\"{:.1f}\" rx=\"{}\"/>",
+    svg += fmt::format(R"(<title>{}</title><rect width="{:.1f}" height="{:.1f}" rx="{}"/>)",
                        escaped(box.meaning.empty() ? box.name : box.name + ": " + box.meaning), size.width, size.height,
                        round ? 15 : 4);
     const std::string name = escaped(clipped(box.name, longest_name));
@@ -226,12 +226,12 @@ class Picture {
           middle, name, escaped(box.type));
       svg += has_rows(box) ? pins_text(box, size.width) : std::string();
       if (added) {
-        svg += fmt::format("<text class=\"effect\" x=\"{:.1f}\" y=\"-6\">effect: {}</text>", middle,
+        svg += fmt::format(R"(<text class="effect" x="{:.1f}" y="-6">effect: {}</text>)", middle,
                            escaped(words_of(box.effect)));
       }
     } else {
       const bool unit = round && !box.type.empty() && box.type != "1";
-      svg += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>", middle, 0.5 * size.height + 4.5,
+      svg += fmt::format(R"(<text class="name" x="{:.1f}" y="{:.1f}">{}{}</text>)", middle, 0.5 * size.height + 4.5,
                          name, unit ? fmt::format(" <tspan class=\"type\">[{}]</tspan>", escaped(box.type)) : "");
     }
     return svg + "</g>\n";
@@ -240,11 +240,11 @@ class Picture {
   static std::string pins_text(const DrawnBox& box, double width) {
     std::string svg;
     for (std::size_t i = 0; i < box.pins.size(); ++i) {
-      svg += fmt::format("<text class=\"pin\" x=\"5\" y=\"{:.1f}\">{}</text>", 47.0 + row * static_cast<double>(i),
+      svg += fmt::format(R"(<text class="pin" x="5" y="{:.1f}">{}</text>)", 47.0 + row * static_cast<double>(i),
                          escaped(box.pins[i]));
     }
     for (std::size_t i = 0; i < box.outputs.size(); ++i) {
-      svg += fmt::format("<text class=\"pin out\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", width - 5.0,
+      svg += fmt::format(R"(<text class="pin out" x="{:.1f}" y="{:.1f}">{}</text>)", width - 5.0,
                          47.0 + row * static_cast<double>(i), escaped(box.outputs[i]));
     }
     return svg;

@@ -52,7 +52,7 @@ std::string time_of(const std::vector<double>& time) {
   for (std::size_t i = 0; i < count && even; ++i) {
     even = std::fabs(time[i] - time.front() - step * static_cast<double>(i)) <= 0.01 * step;
   }
-  return even ? fmt::format("{{\"start\":{},\"step\":{:.12g},\"count\":{}}}", number_of(time.front()), step, count)
+  return even ? fmt::format(R"({{"start":{},"step":{:.12g},"count":{}}})", number_of(time.front()), step, count)
               : fmt::format("{{\"values\":{}}}", array_of(time));
 }
 
@@ -75,7 +75,7 @@ std::string trace_of(const Diagnosis& diagnosis, const Trace& trace) {
   if (diagnosis.gap.signal == trace.signal) {
     floor = diagnosis.gap.floor.value;
   }
-  return fmt::format("{{\"record\":{},\"signal\":{},\"unit\":{},\"floor\":{},\"time\":{},\"measured\":{}{}{}{}}}",
+  return fmt::format(R"({{"record":{},"signal":{},"unit":{},"floor":{},"time":{},"measured":{}{}{}{}}})",
                      text_of(trace.record), text_of(trace.signal), text_of(trace.unit), number_of(floor),
                      time_of(trace.time), array_of(trace.measured),
                      residual_of("nominal", trace.nominal, trace.measured),
@@ -84,7 +84,7 @@ std::string trace_of(const Diagnosis& diagnosis, const Trace& trace) {
 }
 
 std::string map_of(const MapFinding& map) {
-  return fmt::format("{{\"over\":{},\"unit\":{},\"share\":{},\"places\":{},\"before\":{},\"after\":{},\"mean\":{}}}",
+  return fmt::format(R"({{"over":{},"unit":{},"share":{},"places":{},"before":{},"after":{},"mean":{}}})",
                      text_of(map.over), text_of(map.unit), number_of(map.share), array_of(map.places),
                      array_of(map.before), array_of(map.after), array_of(map.mean));
 }

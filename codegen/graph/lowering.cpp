@@ -194,7 +194,8 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
     return {};
   }
   // X ** 2: a whole exponent is the same number as an LREAL.
-  if (binary.op == Operator::Power && left.type == Type::Real && right.type == Type::Int && ::is_literal(right)) {
+  if (binary.op == Operator::Power && left.type == Type::Real && right.type == Type::Int &&
+      GraphBuilder::is_literal(right)) {
     right = builder_.literal(Type::Real, builder_.value(right));
   }
   struct Row {
@@ -329,8 +330,8 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
   }
   if (name == "EXPT") {
     if (formal({"IN1", "IN2"}) && args.size() == 2 && args[1].type == Type::Int) {
-      args[1] = ::is_literal(args[1]) ? builder_.literal(Type::Real, builder_.value(args[1]))
-                                      : apply(Op::ToReal, {args[1]}, span);
+      args[1] = GraphBuilder::is_literal(args[1]) ? builder_.literal(Type::Real, builder_.value(args[1]))
+                                                  : apply(Op::ToReal, {args[1]}, span);
     }
     return all(Type::Real, 2) ? apply(Op::Power, {args[0], args[1]}, span) : wrong("EXPT(BASE, EXPONENT) with LREALs");
   }

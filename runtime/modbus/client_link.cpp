@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <optional>
 #include <thread>
 
@@ -145,12 +146,17 @@ Exchange ClientLink::transfer(std::span<const std::uint8_t> request, std::vector
   if (const Exchange flaw = send(request); flaw != Exchange::answered) {
     return flaw;
   }
+  const auto sent = std::chrono::steady_clock::now();
   std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
   const int size = ::modbus_receive_confirmation(of(context_), bytes.data());
   if (size < 0) {
     return errno == ETIMEDOUT                                      ? Exchange::timeout
            : errno == ECONNRESET || errno == EBADF || errno == EIO ? Exchange::closed
                                                                    : Exchange::wrong_answer;
+  }
+  // Where this thread was not run meanwhile, an answer that came too late is there all the same: its age is not known.
+  if (std::chrono::steady_clock::now() - sent > response_) {
+    return Exchange::timeout;
   }
   const std::span<const std::uint8_t> got(bytes.data(), static_cast<std::size_t>(size));
   if (serial_) {

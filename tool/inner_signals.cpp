@@ -9,7 +9,7 @@ namespace hysteron::tool {
 
 std::vector<InnerSignal> inner_signals(const Program& program) {
   const Graph& graph = program.graph;
-  const auto units = units::of_outputs(graph, program.schedule);
+  const auto units = units::Solution(graph, program.schedule).outputs();
   std::vector<InnerSignal> found;
   const auto add = [&](const Wire& wire, const std::string& sink, const std::string& unit) {
     const bool known = std::ranges::any_of(found, [&](const InnerSignal& other) { return other.wire == wire; });

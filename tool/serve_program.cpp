@@ -177,7 +177,7 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   for (const Port& port : graph.outputs) {
     shape.outputs.push_back(signal_of(port));
   }
-  const auto units = units::of_parameters(graph, program.schedule);
+  const auto units = units::Solution(graph, program.schedule).parameters();
   std::size_t index = 0;
   Program plain = program;
   for (Parameter& parameter : plain.graph.parameters) {

@@ -33,8 +33,11 @@ class Builder {
   }
 
   OutputErrorProblem build(bool may_be_fixed) {
-    units_ = units::of_parameters(graph(), problem_.program.schedule);
-    state_units_ = units::of_states(graph(), problem_.program.schedule);
+    const units::Solution units(graph(), problem_.program.schedule);
+    units_ = units.parameters();
+    if (!file_.tune.initial_states.empty()) {
+      state_units_ = units.states();
+    }
     for (const FitSetting& fit : file_.fits) {
       add_parameter(fit);
     }

@@ -441,25 +441,26 @@ void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostic
   Checker(graph, diagnostics).run(schedule);
 }
 
-std::vector<std::string> of_parameters(const Graph& graph, const Schedule& schedule) {
-  Diagnostics ignored;  // whether units agree is for check to say
-  Checker checker(graph, ignored);
-  checker.run(schedule);
-  return checker.parameter_units();
+struct Solution::Solved {
+  Diagnostics ignored{};  // whether units agree is for check to say
+  Checker checker;
+
+  Solved(const Graph& graph, const Schedule& schedule) : checker(graph, ignored) { checker.run(schedule); }
+};
+
+Solution::Solution(const Graph& graph, const Schedule& schedule) : solved_(std::make_unique<Solved>(graph, schedule)) {}
+Solution::~Solution() = default;
+
+std::vector<std::string> Solution::parameters() const {
+  return solved_->checker.parameter_units();
 }
 
-std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Schedule& schedule) {
-  Diagnostics ignored;
-  Checker checker(graph, ignored);
-  checker.run(schedule);
-  return checker.field_units(&BlockType::outputs);
+std::vector<std::vector<std::string>> Solution::outputs() const {
+  return solved_->checker.field_units(&BlockType::outputs);
 }
 
-std::vector<std::vector<std::string>> of_states(const Graph& graph, const Schedule& schedule) {
-  Diagnostics ignored;
-  Checker checker(graph, ignored);
-  checker.run(schedule);
-  return checker.field_units(&BlockType::states);
+std::vector<std::vector<std::string>> Solution::states() const {
+  return solved_->checker.field_units(&BlockType::states);
 }
 
 }  // namespace hysteron::units

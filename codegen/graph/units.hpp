@@ -1,6 +1,7 @@
 // Units: what a unit text means, and whether the units along all wires of a graph agree.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,14 +21,25 @@ bool conversion(std::string_view from, std::string_view to, double& factor);
 /// are wired. A port without a unit is not checked. Reports HY301 where two units cannot agree.
 void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostics);
 
-/// The unit of each parameter of a graph, as the wires give it: C1 of a slope between um and V is um/V. Empty where the
-/// diagram does not say enough.
-std::vector<std::string> of_parameters(const Graph& graph, const Schedule& schedule);
+/// The units of a graph as its wires give them, solved once for all that is asked: C1 of a slope between um and V is
+/// um/V. A text is empty where the diagram does not say enough.
+class Solution {
+ public:
+  /// The graph must outlive it.
+  Solution(const Graph& graph, const Schedule& schedule);
+  Solution(const Solution&) = delete;
+  Solution& operator=(const Solution&) = delete;
+  ~Solution();
 
-/// The same for the outputs of all nodes, by node and output. Empty for operations.
-std::vector<std::vector<std::string>> of_outputs(const Graph& graph, const Schedule& schedule);
+  [[nodiscard]] std::vector<std::string> parameters() const;
+  /// By node and output; an operation has none.
+  [[nodiscard]] std::vector<std::vector<std::string>> outputs() const;
+  /// By node and state; an operation has none.
+  [[nodiscard]] std::vector<std::vector<std::string>> states() const;
 
-/// The same for the states of all nodes, by node and state. Empty for operations.
-std::vector<std::vector<std::string>> of_states(const Graph& graph, const Schedule& schedule);
+ private:
+  struct Solved;
+  std::unique_ptr<Solved> solved_;
+};
 
 }  // namespace hysteron::units

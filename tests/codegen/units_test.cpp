@@ -48,7 +48,7 @@ TEST(Units, OfParametersComeFromTheWires) {
       "FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; (* @unit V *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit um *) "
       "END_VAR "
       "VAR G : HY_GAIN; L : HY_LAG; END_VAR G(XIN := U); L(XIN := G.XOUT); Y := L.XOUT; END_FUNCTION_BLOCK");
-  const auto texts = units::of_parameters(program.graph, program.schedule);
+  const auto texts = units::Solution(program.graph, program.schedule).parameters();
   EXPECT_EQ(texts[static_cast<std::size_t>(find_parameter(program.graph, "G.K"))], "um/V");
   EXPECT_EQ(texts[static_cast<std::size_t>(find_parameter(program.graph, "L.T1"))], "s");
 }
@@ -59,16 +59,16 @@ TEST(Units, OfParametersWhoseExponentIsAParameter) {
                                          " *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit " + y +
                                          " *) END_VAR VAR H : HY_HYSTERESIS_RO; END_VAR H(XIN := U); Y := H.XOUT; "
                                          "END_FUNCTION_BLOCK");
-    return units::of_parameters(program.graph,
-                                program.schedule)[static_cast<std::size_t>(find_parameter(program.graph, "H.C2"))];
+    return units::Solution(program.graph, program.schedule)
+        .parameters()[static_cast<std::size_t>(find_parameter(program.graph, "H.C2"))];
   };
   EXPECT_EQ(unit_of_c2("V", "um"), "um/V^(1+C3)");
   EXPECT_EQ(unit_of_c2("A/m", "T"), "T/(A/m)^(1+C3)");
   const Program silent = compile_text(
       "FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
       "VAR H : HY_HYSTERESIS_RO; END_VAR H(XIN := U); Y := H.XOUT; END_FUNCTION_BLOCK");
-  EXPECT_EQ(units::of_parameters(silent.graph,
-                                 silent.schedule)[static_cast<std::size_t>(find_parameter(silent.graph, "H.C2"))],
+  EXPECT_EQ(units::Solution(silent.graph, silent.schedule)
+                .parameters()[static_cast<std::size_t>(find_parameter(silent.graph, "H.C2"))],
             "");
 }
 
@@ -176,7 +176,7 @@ TEST(Units, OfALongChainAreSolved) {
   const std::string ports = "VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; (* @unit V *) END_VAR";
   const Program program = compile_text("FUNCTION_BLOCK T (* @ts 1ms *) " + ports + " " + parts + " END_VAR " + text +
                                        "Y := V" + std::to_string(length - 1) + "; END_FUNCTION_BLOCK");
-  const auto units = units::of_outputs(program.graph, program.schedule);
+  const auto units = units::Solution(program.graph, program.schedule).outputs();
   for (const auto& of_node : units) {
     ASSERT_EQ(of_node.front(), "V");
   }

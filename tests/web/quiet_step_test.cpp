@@ -92,14 +92,10 @@ LoopStatistics run_task(Traffic& traffic, const std::function<bool(std::uint64_t
 TEST(WebQuietStep, TenPagesLeaveNoTraceInACycle) {
   long missing_pages = 1;
   for (int attempt = 0; attempt < test::attempts_at_no_missing_page && missing_pages > 0; ++attempt) {
-    test::QuietMeter meter;
+    test::QuietMeter meter(warm_up);
     Traffic traffic;
     const LoopStatistics statistics = run_task(traffic, [&](std::uint64_t cycle) {
-      if (cycle == warm_up) {
-        meter.start();
-      } else if (cycle > warm_up) {
-        meter.look();
-      }
+      meter.in_cycle(cycle);
       return cycle < warm_up + cycles || (!traffic.enough() && cycle < longest);
     });
     EXPECT_EQ(meter.allocated(), 0U);

@@ -66,17 +66,9 @@ TEST(QuietStep, AllocatesNothingAndMeetsNoMissingPage) {
   long missing_pages = 1;
   for (int attempt = 0; attempt < test::attempts_at_no_missing_page && missing_pages > 0; ++attempt) {
     const hysteron::test::ScratchFolder scratch;
-    test::QuietMeter meter;
+    test::QuietMeter meter(warm_up);
     run_task(
-        scratch / "kept",
-        [&](std::uint64_t cycle) {
-          if (cycle == warm_up) {
-            meter.start();
-          } else if (cycle > warm_up) {
-            meter.look();
-          }
-        },
-        true);
+        scratch / "kept", [&](std::uint64_t cycle) { meter.in_cycle(cycle); }, true);
     EXPECT_EQ(meter.allocated(), 0U);
     missing_pages = meter.missing_pages();
   }

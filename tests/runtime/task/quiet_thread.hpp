@@ -57,16 +57,19 @@ inline void bring_pages_in() {
   }
 }
 
-/// What the cycles of one thread cost since start(), up to the last look().
+/// What the cycles of one thread cost after a warm-up. To be told of each, from within it.
 class QuietMeter {
  public:
-  void start() noexcept {
-    (void)getrusage(RUSAGE_THREAD, &before_);
-    after_ = before_;
-    allocations_before_ = hysteron::test::allocations;
-  }
-  void look() noexcept {
+  explicit QuietMeter(std::uint64_t warm_up) : warm_up_(warm_up) {}
+  void in_cycle(std::uint64_t cycle) noexcept {
+    if (cycle < warm_up_) {
+      return;
+    }
     (void)getrusage(RUSAGE_THREAD, &after_);
+    if (cycle == warm_up_) {
+      before_ = after_;
+      allocations_before_ = hysteron::test::allocations;
+    }
     allocated_ = hysteron::test::allocations - allocations_before_;
   }
   [[nodiscard]] std::uint64_t allocated() const noexcept { return allocated_; }
@@ -75,6 +78,7 @@ class QuietMeter {
   }
 
  private:
+  std::uint64_t warm_up_;
   rusage before_{};
   rusage after_{};
   std::uint64_t allocations_before_ = 0;

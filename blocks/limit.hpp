@@ -24,9 +24,9 @@ struct Limit : Stateless {
     S MX;
     using Self = Params;
     static constexpr auto fields() {
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(MN).in("'x").otherwise(-infinity).neutral_at(-infinity).means("lower bound"),
-                        HY_FIELD(MX).in("'x").otherwise(infinity).neutral_at(infinity).means("upper bound")};
+      constexpr double unbounded = std::numeric_limits<double>::infinity();
+      return std::tuple{HY_FIELD(MN).in("'x").otherwise(-unbounded).neutral_at(-unbounded).means("lower bound"),
+                        HY_FIELD(MX).in("'x").otherwise(unbounded).neutral_at(unbounded).means("upper bound")};
     }
   };
   template <class S>

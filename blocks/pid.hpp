@@ -35,15 +35,15 @@ struct Pid {
     S MX;
     using Self = Params;
     static constexpr auto fields() {
-      constexpr double infinity = std::numeric_limits<double>::infinity();
+      constexpr double unbounded = std::numeric_limits<double>::infinity();
       return std::tuple{
           HY_FIELD(KP).in("'u/'e").otherwise(1.0).means("proportional gain"),
-          HY_FIELD(TR).in("s").otherwise(infinity).above(0.0).means(
+          HY_FIELD(TR).in("s").otherwise(unbounded).above(0.0).means(
               "reset time of the integral; infinite: no integral"),
           HY_FIELD(TD).in("s").otherwise(0.0).at_least(0.0).means("derivative time; 0: no derivative"),
           HY_FIELD(N).in("1").otherwise(10.0).above(0.0).means("derivative gain limit: the filter's time is TD/N"),
-          HY_FIELD(MN).in("'u").otherwise(-infinity).means("lower bound of the output"),
-          HY_FIELD(MX).in("'u").otherwise(infinity).means("upper bound of the output")};
+          HY_FIELD(MN).in("'u").otherwise(-unbounded).means("lower bound of the output"),
+          HY_FIELD(MX).in("'u").otherwise(unbounded).means("upper bound of the output")};
     }
   };
   template <class S>

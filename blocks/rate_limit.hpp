@@ -22,10 +22,10 @@ struct RateLimit : LastOutput {
     S FALL;
     using Self = Params;
     static constexpr auto fields() {
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(RISE).in("'x/s").otherwise(infinity).at_least(0.0).neutral_at(infinity).means(
+      constexpr double unbounded = std::numeric_limits<double>::infinity();
+      return std::tuple{HY_FIELD(RISE).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
                             "largest rate upwards"),
-                        HY_FIELD(FALL).in("'x/s").otherwise(infinity).at_least(0.0).neutral_at(infinity).means(
+                        HY_FIELD(FALL).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
                             "largest rate downwards, as a positive number")};
     }
   };

@@ -3,12 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 VectorXd within_bounds(const Model& model, const VectorXd& x) {
   return x.cwiseMax(model.lower()).cwiseMin(model.upper());

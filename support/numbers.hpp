@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
 namespace hysteron {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The shortest decimal text that reads back to the same bits: 0.1, 25, -1e-11. Plain from 1e-5 up to 1e16, with an
 /// exponent outside. Infinities and not-a-number are "inf", "-inf" and "nan".

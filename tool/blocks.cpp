@@ -17,7 +17,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view blocks_examples = R"(Examples:
   hysteron blocks                 all blocks, by group
   hysteron blocks HY_LAG          equation, pins, units, ranges, defaults, feedthrough, delay
   hysteron blocks lag --json
@@ -29,7 +29,7 @@ A unit with a quote, such as 'x, stands for whatever unit is connected; 'x/s is 
 constexpr std::array groups{Group::Memory,  Group::Arithmetic, Group::Function, Group::Shaping, Group::Dynamics,
                             Group::Control, Group::Logic,      Group::Time,     Group::Rate};
 
-struct Options {
+struct BlocksOptions {
   std::string name;
   bool json = false;
   bool markdown = false;
@@ -91,7 +91,7 @@ std::string reference() {
   return text;
 }
 
-int show_blocks(const Options& options, Console& console) {
+int show_blocks(const BlocksOptions& options, Console& console) {
   if (!options.name.empty()) {
     const BlockType& block = find_block(options.name);
     console.print(options.json       ? card_json(block).dump(2) + "\n"
@@ -112,11 +112,11 @@ int show_blocks(const Options& options, Console& console) {
 }  // namespace
 
 Action add_blocks(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BlocksOptions>();
   app.add_option("NAME", options->name, "The block to describe, with or without its HY_.")->option_text(" ");
   auto* const json = app.add_flag("--json", options->json, "Prints JSON.");
   app.add_flag("--markdown", options->markdown, "Prints Markdown, as in the reference.")->excludes(json);
-  app.footer(std::string(examples));
+  app.footer(std::string(blocks_examples));
   return [options](Console& console) { return show_blocks(*options, console); };
 }
 

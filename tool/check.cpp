@@ -14,7 +14,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view check_examples = R"(Examples:
   hysteron check plant.st
   hysteron check --json src/*.st
 
@@ -22,7 +22,7 @@ Each diagnostic has its cause, its mend and a number; docs/errors has a page for
 Exit codes: 0 no errors (there may be warnings); 1 errors; 2 a file cannot be read.
 )";
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> files;
   bool json = false;
 };
@@ -44,7 +44,7 @@ bool check_file(const std::string& path, Diagnostics& found) {
   return readable;
 }
 
-int check_files(const Options& options, Console& console) {
+int check_files(const CheckOptions& options, Console& console) {
   Diagnostics found;
   bool readable = true;
   Progress progress("Checking");
@@ -70,10 +70,10 @@ int check_files(const Options& options, Console& console) {
 }  // namespace
 
 Action add_check(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text(" ");
   app.add_flag("--json", options->json, "Prints the diagnostics as a list of JSON objects.");
-  app.footer(std::string(examples));
+  app.footer(std::string(check_examples));
   return [options](Console& console) { return check_files(*options, console); };
 }
 

@@ -18,7 +18,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view program_examples = R"(Examples:
   hysteron check plant.st
   hysteron run plant.st --in log.csv --out out.csv
   hysteron generate plant.st --target cpp --out generated
@@ -92,7 +92,7 @@ class CommandLine {
     app_.name("hysteron");
     app_.set_help_flag("-h,--help", "Shows this help.");
     app_.set_version_flag("--version", fmt::format("hysteron {}\n", version), "Shows the version.");
-    app_.footer(std::string(examples));
+    app_.footer(std::string(program_examples));
     app_.get_formatter()->label("SUBCOMMAND", "COMMAND");
     for (const Command& command : commands()) {
       CLI::App* const options = app_.add_subcommand(std::string(command.name), std::string(command.summary));

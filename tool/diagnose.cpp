@@ -30,7 +30,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view diagnose_examples = R"(Examples:
   hysteron diagnose plant.st --log machine.csv --params tuned.toml --out diagnosis
   hysteron diagnose plant.st --log slow.csv --log fast.csv --params tuned.toml --out diagnosis --material 0.05
   hysteron diagnose plant.st --log machine.csv --params tuned.toml --out diagnosis --effects creep,lag,delay
@@ -49,7 +49,7 @@ Exit codes: 0 a verdict; 1 the record cannot be diagnosed, verdict.json says why
 records or command line, and nothing is written.
 )";
 
-struct Options {
+struct DiagnoseOptions {
   DiagramOptions diagram;
   std::vector<std::string> logs;
   std::string output;
@@ -95,7 +95,7 @@ void check_effects(const std::vector<std::string>& wanted, const Program& progra
 }
 
 /// The controller's trace, replayed on its diagram.
-diagnosis::ControllerFinding replayed(const Options& options, Diagnostics& warnings) {
+diagnosis::ControllerFinding replayed(const DiagnoseOptions& options, Diagnostics& warnings) {
   const Replayed found = replay_trace(options.controller, options.trace, {}, warnings);
   diagnosis::ControllerFinding result{.steps = found.result.steps,
                                       .different = found.result.different,
@@ -111,7 +111,7 @@ diagnosis::ControllerFinding replayed(const Options& options, Diagnostics& warni
   return result;
 }
 
-int diagnose(Options options, Console& console) {
+int diagnose(DiagnoseOptions options, Console& console) {
   Diagnostics warnings;
   if (options.trace.empty() != options.controller.file.empty()) {
     throw InputError(error::bad_usage, {}, "--trace and --controller belong together.",
@@ -150,7 +150,7 @@ int diagnose(Options options, Console& console) {
 }  // namespace
 
 Action add_diagnose(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DiagnoseOptions>();
   options->diagnosis.threads = std::max(1U, std::thread::hardware_concurrency());
   app.add_option("FILE", options->diagram.file, "The diagram of the plant, a file in Structured Text.")
       ->required()
@@ -186,7 +186,7 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
   app.add_flag("--json", options->json, "Prints verdict.json.");
-  app.footer(std::string(examples));
+  app.footer(std::string(diagnose_examples));
   return [options](Console& console) { return diagnose(*options, console); };
 }
 

@@ -11,7 +11,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view fmt_examples = R"(Examples:
   hysteron fmt plant.st                     format in place
   hysteron fmt --check src/*.st             for a build server: lists what would change
   hysteron fmt --stdout /dev/stdin < a.st   for an editor
@@ -20,13 +20,13 @@ Comments are kept; formatting twice changes nothing. A file with syntax errors i
 Exit codes: 0 done; 1 with --check, files would change; 2 a file cannot be read, understood or written.
 )";
 
-struct Options {
+struct FmtOptions {
   std::vector<std::string> files;
   bool check = false;
   bool to_stdout = false;
 };
 
-int format_files(const Options& options, Console& console) {
+int format_files(const FmtOptions& options, Console& console) {
   Diagnostics refused;
   bool would_change = false;
   for (const std::string& path : options.files) {
@@ -64,11 +64,11 @@ int format_files(const Options& options, Console& console) {
 }  // namespace
 
 Action add_fmt(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FmtOptions>();
   app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text(" ");
   auto* const check = app.add_flag("--check", options->check, "Changes nothing; lists the files that would change.");
   app.add_flag("--stdout", options->to_stdout, "Prints the formatted text instead of writing it.")->excludes(check);
-  app.footer(std::string(examples));
+  app.footer(std::string(fmt_examples));
   return [options](Console& console) { return format_files(*options, console); };
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
@@ -33,7 +33,7 @@ All are written or none. The step has the bits that `hysteron run` shows.
 Exit codes: 0 done; 2 an error in the diagram, the parameters, the run file or the output folder.
 )";
 
-struct Options {
+struct GenerateOptions {
   DiagramOptions diagram;
   std::string target;
   std::string config;
@@ -56,7 +56,7 @@ void refuse_foreign_file(const fs::path& path, const std::string& text) {
   }
 }
 
-void check_usage(const Options& options) {
+void check_usage(const GenerateOptions& options) {
   if (options.target.empty() && !options.host) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
@@ -72,7 +72,7 @@ void check_usage(const Options& options) {
   }
 }
 
-int generate(const Options& options, Console& console) {
+int generate(const GenerateOptions& options, Console& console) {
   check_usage(options);
   Diagnostics warnings;
   const Program program = load_diagram(options.diagram, warnings);
@@ -103,7 +103,7 @@ int generate(const Options& options, Console& console) {
 }  // namespace
 
 Action add_generate(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--target", options->target, "The language: cpp (C++20).")->option_text("cpp");
   app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
@@ -112,7 +112,7 @@ Action add_generate(CLI::App& app) {
       ->required()
       ->option_text("DIR");
   app.add_flag("--force", options->force, "Overwrites files that Hysteron did not write.");
-  app.footer(std::string(examples));
+  app.footer(std::string(generate_examples));
   return [options](Console& console) { return generate(*options, console); };
 }
 

@@ -23,7 +23,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view run_examples = R"(Examples:
   hysteron run feedforward.st --in reference.csv --out voltage.csv
   hysteron run feedforward.st --in reference.csv --out voltage.csv --params tuned.toml --summary
   hysteron run feedforward.st --in reference.csv --out voltage.csv --trace INV.XOUT --trace BRANCH.Q
@@ -37,7 +37,7 @@ Exit codes: 0 done; 1 done, but an output is not a finite number (nan and inf ar
 diagram, the parameters or the record, and nothing is written.
 )";
 
-struct Options {
+struct RunOptions {
   DiagramOptions diagram;
   std::string input;
   std::string output;
@@ -134,7 +134,7 @@ std::string summary(const Program& program, const Drive& drive, const records::R
   return unused.empty() ? text : text + "columns not used:" + unused + "\n";
 }
 
-int run(const Options& options, Console& console) {
+int run(const RunOptions& options, Console& console) {
   refuse_to_overwrite(options.output == "-" ? "" : options.output,
                       {options.input, options.diagram.file, options.diagram.parameters});
   if (options.output != "-") {
@@ -187,7 +187,7 @@ int run(const Options& options, Console& console) {
 }  // namespace
 
 Action add_run(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--in", options->input, "The record that drives the inputs; - for the standard input.")
       ->required()
@@ -201,7 +201,7 @@ Action add_run(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
-  app.footer(std::string(examples));
+  app.footer(std::string(run_examples));
   return [options](Console& console) {
     options->diagram.keep_names = !options->traces.empty();
     return run(*options, console);

@@ -24,7 +24,7 @@ namespace {
 
 using BesideTask = decltype(runtime::HostOptions::beside);
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view serve_examples = R"(Examples:
   hysteron serve feedforward.st --params tuned.toml --config RUN.toml
   hysteron serve feedforward.st --config RUN.toml --virtual --cycles 100000
   hysteron serve feedforward.st --config RUN.toml --web 127.0.0.1:8080
@@ -37,7 +37,7 @@ Exit codes: 0 it ran and ended as asked; 1 a fault ended it or was there at its 
 parameters, the run file, or what the run file names.
 )";
 
-struct Options {
+struct ServeOptions {
   DiagramOptions diagram;
   std::string config;
   std::string engine;
@@ -48,7 +48,7 @@ struct Options {
 };
 
 /// Checked before anything runs.
-std::optional<runtime::web::ServerOptions> web_options(const Options& options) {
+std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& options) {
   if (options.web.empty()) {
     return {};
   }
@@ -61,7 +61,7 @@ std::optional<runtime::web::ServerOptions> web_options(const Options& options) {
   return web;
 }
 
-int serve(const Options& options, Console& console) {
+int serve(const ServeOptions& options, Console& console) {
   Diagnostics warnings;
   const Program diagram = load_diagram(options.diagram, warnings);
   const Engine engine = engine_of(options.engine);
@@ -97,7 +97,7 @@ Engine engine_of(const std::string& name) {
 }
 
 Action add_serve(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ServeOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--config", options->config, "The run file.")->required()->option_text("RUN.toml");
   app.add_option("--engine", options->engine, "interpreter, or compiled: the default where there is a compiler.")
@@ -110,7 +110,7 @@ Action add_serve(CLI::App& app) {
   app.add_option("--web-token-file", options->token_file, "Who has its token may change parameters on the page.")
       ->needs(web)
       ->option_text("FILE");
-  app.footer(std::string(examples));
+  app.footer(std::string(serve_examples));
   return [options](Console& console) { return serve(*options, console); };
 }
 

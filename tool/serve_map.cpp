@@ -12,7 +12,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view serve_map_examples = R"(Examples:
   hysteron map feedforward.st
   hysteron map feedforward.st --format csv
   hysteron map feedforward.st --format cpp --config RUN.toml
@@ -22,7 +22,7 @@ its limits, devices, word order and lock file count, as in `hysteron serve`.
 Exit codes: 0 done; 2 an error in the diagram, the run file or the lock file.
 )";
 
-struct Options {
+struct ServeMapOptions {
   DiagramOptions diagram;
   std::string format = "markdown";
   std::string config;
@@ -41,13 +41,13 @@ runtime::RunConfig run_config_or_default(const std::string& file, const runtime:
 }  // namespace
 
 Action add_map(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ServeMapOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--format", options->format, "markdown, csv, json or cpp.")
       ->check(CLI::IsMember({"markdown", "csv", "json", "cpp"}))
       ->option_text("NAME");
   app.add_option("--config", options->config, "The run file.")->option_text("RUN.toml");
-  app.footer(std::string(examples));
+  app.footer(std::string(serve_map_examples));
   return [options](Console& console) {
     Diagnostics warnings;
     const Program diagram = load_diagram(options->diagram, warnings);

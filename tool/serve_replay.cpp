@@ -14,7 +14,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view serve_replay_examples = R"(Examples:
   hysteron replay feedforward.st --trace run.trace
   hysteron replay feedforward.st --trace run.trace --out record.csv
   hysteron diagnose plant.st --params plant.toml --log record.csv
@@ -25,7 +25,7 @@ be the one that the trace was recorded with, for the bytes of its state.
 Exit codes: 0 the same bits; 1 other bits, or steps that were dropped; 2 no trace of this diagram.
 )";
 
-struct Options {
+struct ServeReplayOptions {
   DiagramOptions diagram;
   std::string trace;
   std::string output;
@@ -52,7 +52,7 @@ std::string row_of(const runtime::ProgramShape& shape, const runtime::TraceStep&
   return row + "\n";
 }
 
-int replay(const Options& options, Console& console) {
+int replay(const ServeReplayOptions& options, Console& console) {
   refuse_to_overwrite(options.output, {options.trace, options.diagram.file, options.diagram.parameters});
   Diagnostics found;
   const bool wants_record = !options.output.empty();
@@ -81,14 +81,14 @@ int replay(const Options& options, Console& console) {
 }  // namespace
 
 Action add_replay(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ServeReplayOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--trace", options->trace, "The trace.")->required()->option_text("RUN.trace");
   app.add_option("--out", options->output, "Writes the trace as a record.")->option_text("RECORD.csv");
   app.add_option("--engine", options->engine, "interpreter, or compiled: the default where there is a compiler.")
       ->check(CLI::IsMember({"interpreter", "compiled"}))
       ->option_text("NAME");
-  app.footer(std::string(examples));
+  app.footer(std::string(serve_replay_examples));
   return [options](Console& console) { return replay(*options, console); };
 }
 

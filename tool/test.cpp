@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view test_examples = R"(Examples:
   hysteron test feedforward.st              runs feedforward.test.toml
   hysteron test src/*.st --junit tests.xml
   hysteron test feedforward.st --filter dwell --no-generated
@@ -49,7 +49,7 @@ Each case is run by the interpreter and as generated C++ (compiler: CXX, else c+
 Exit codes: 0 all cases passed; 1 some failed; 2 a diagram or test file has errors, or there is nothing to run.
 )";
 
-struct Options {
+struct TestOptions {
   std::vector<std::string> diagrams;
   std::string tests;
   std::string junit;
@@ -155,7 +155,7 @@ void refuse_to_overwrite(const std::vector<PlannedCase>& cases, const std::vecto
 }
 
 /// The results are written over none of the files that a run reads. A test file that cannot be read is reported later.
-void refuse_to_overwrite(const std::string& junit, const Options& options) {
+void refuse_to_overwrite(const std::string& junit, const TestOptions& options) {
   for (const std::string& diagram : options.diagrams) {
     const std::string tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
     TestFile file;
@@ -171,7 +171,8 @@ void refuse_to_overwrite(const std::string& junit, const Options& options) {
 }
 
 /// The cases of one file that the filter selects.
-FileResult run_file(const std::string& diagram, const std::string& tests, const Options& options, Console& console) {
+FileResult run_file(const std::string& diagram, const std::string& tests, const TestOptions& options,
+                    Console& console) {
   FileResult result{.file = tests, .cases = {}};
   TestFile file = read_test_file(tests);
   TestPlanner planner(diagram, fs::path(tests).parent_path());
@@ -202,7 +203,7 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
   return result;
 }
 
-std::string existing_test_file(const std::string& diagram, const Options& options) {
+std::string existing_test_file(const std::string& diagram, const TestOptions& options) {
   auto tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
   std::error_code unknown;
   if (!fs::exists(tests, unknown)) {
@@ -213,7 +214,7 @@ std::string existing_test_file(const std::string& diagram, const Options& option
   return tests;
 }
 
-int run_tests(const Options& options, Console& console) {
+int run_tests(const TestOptions& options, Console& console) {
   if (!options.tests.empty() && options.diagrams.size() > 1) {
     throw InputError(error::bad_usage, {}, "--tests names the test file of one diagram, here are several.",
                      "give one diagram, or leave --tests out.");
@@ -256,7 +257,7 @@ int run_tests(const Options& options, Console& console) {
 }  // namespace
 
 Action add_test(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TestOptions>();
   app.add_option("FILE", options->diagrams, "Diagrams; the tests of NAME.st stand in NAME.test.toml beside it.")
       ->required()
       ->option_text(" ");
@@ -266,7 +267,7 @@ Action add_test(CLI::App& app) {
       ->option_text("FILE.xml");
   app.add_flag("--no-generated", options->no_generated, "Runs the interpreter alone; needs no compiler.");
   app.add_option("--filter", options->filter, "Runs only cases with this in their names.")->option_text("TEXT");
-  app.footer(std::string(examples));
+  app.footer(std::string(test_examples));
   return [options](Console& console) { return run_tests(*options, console); };
 }
 

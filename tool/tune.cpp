@@ -19,7 +19,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view tune_examples = R"(Examples:
   hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml
   hysteron tune plant.st --log sine.csv --log steps.csv --params plant.toml --out tuned.toml --report report
   hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml --start 10 --json
@@ -63,7 +63,7 @@ class InterruptWatch {
   void (*before_)(int);
 };
 
-struct Options {
+struct TuneOptions {
   DiagramOptions diagram;
   std::vector<std::string> logs;
   std::string output;
@@ -80,7 +80,7 @@ std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOp
                      progress.iteration, 100.0 * progress.rms, problem.outputs.size() > 1 ? "s" : "");
 }
 
-int tune(const Options& options, Console& console) {
+int tune(const TuneOptions& options, Console& console) {
   std::vector<std::string> inputs = options.logs;
   inputs.push_back(options.diagram.file);
   inputs.push_back(options.diagram.parameters);
@@ -139,7 +139,7 @@ int tune(const Options& options, Console& console) {
 }  // namespace
 
 Action add_tune(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TuneOptions>();
   app.add_option("FILE", options->diagram.file, "The diagram, a file in Structured Text.")
       ->required()
       ->option_text("FILE.st");
@@ -160,7 +160,7 @@ Action add_tune(CLI::App& app) {
       ->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
   app.add_flag("--json", options->json, "Prints JSON.");
-  app.footer(std::string(examples));
+  app.footer(std::string(tune_examples));
   return [options](Console& console) { return tune(*options, console); };
 }
 

@@ -9,7 +9,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "support/numbers.hpp"
 
 namespace hysteron {
 namespace {
@@ -17,9 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Below this share of the largest, a singular value of the scaled Jacobian is rounding.
 constexpr double null_direction = 1e-7;
@@ -36,7 +34,7 @@ struct Decomposition {
   MatrixXd v{};
 };
 
-std::string joined(const std::vector<std::string>& names, const std::vector<Index>& chosen) {
+std::string names_of(const std::vector<std::string>& names, const std::vector<Index>& chosen) {
   std::string text;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     text += k == 0 ? "" : (k + 1 == chosen.size() ? " and " : ", ");
@@ -62,11 +60,11 @@ void add_null_direction(Covariance& result, const Decomposition& d, Index k, con
     }
   }
   if (found.parameters.size() == 1) {
-    result.warnings.push_back(fmt::format("This record does not determine {}.", joined(names, found.parameters)));
+    result.warnings.push_back(fmt::format("This record does not determine {}.", names_of(names, found.parameters)));
   } else {
     result.warnings.push_back(
         fmt::format("{} cannot be told apart by this record. Hold one of them, or record more of the range.",
-                    joined(names, found.parameters)));
+                    names_of(names, found.parameters)));
   }
   result.indistinguishable.push_back(std::move(found));
 }
@@ -83,7 +81,7 @@ void warn_of_pairs(Covariance& result, const std::vector<Index>& free, const std
       if (std::fabs(correlation) > strong_correlation && std::isfinite(result.standard_errors[free[a]]) &&
           std::isfinite(result.standard_errors[free[b]]) && !(is_sharp(free[a]) && is_sharp(free[b]))) {
         result.warnings.push_back(fmt::format("{} can hardly be told apart by this record (correlation {:.4f}).",
-                                              joined(names, {free[a], free[b]}), correlation));
+                                              names_of(names, {free[a], free[b]}), correlation));
       }
     }
   }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "support/errors.hpp"
@@ -21,8 +20,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// What the heading of a tuned file begins with, and is known by when it is tuned again.
 constexpr std::string_view tuned_by = "Fitted by hysteron tune to ";
@@ -106,7 +103,7 @@ class Fitter {
 
   /// Of what was measured of an output in a part of the records: 0 where there is none.
   [[nodiscard]] double range_in(std::vector<records::RowRange> Experiment::*part, std::size_t output) const {
-    double low = std::numeric_limits<double>::infinity();
+    double low = infinity;
     double high = -low;
     for (const Experiment& experiment : problem_.experiments) {
       for (const records::RowRange& range : experiment.*part) {

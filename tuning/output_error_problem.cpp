@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -20,8 +19,6 @@ namespace {
 
 using parameters::FitSetting;
 using parameters::ParameterFile;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class Builder {
  public:

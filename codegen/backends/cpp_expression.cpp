@@ -10,7 +10,17 @@ namespace hysteron {
 namespace {
 
 // How strongly C++ binds, weakest first.
-enum Strength : int { Conditional = 1, LogicalOr, LogicalAnd, Equality, Relation, Sum, Product, Prefix, Primary };
+enum Strength : int {
+  Conditional = 1,
+  LogicalOr,
+  LogicalAnd,
+  Equality,
+  Relation,
+  Additive,
+  Multiplicative,
+  Prefix,
+  Primary
+};
 
 std::string cpp_real(double value, bool float32) {
   if (std::isnan(value)) {
@@ -119,7 +129,7 @@ void CppExpressions::print(ValueId id, int outer, std::string& out) const {
     case Op::BoolLiteral:
     case Op::WordLiteral: {
       const std::string text = literal(value.type, value.literal);
-      const bool brackets = text.front() == '-' && outer >= Product;
+      const bool brackets = text.front() == '-' && outer >= Multiplicative;
       out += brackets ? "(" + text + ")" : text;
       return;
     }
@@ -141,20 +151,20 @@ void CppExpressions::print(ValueId id, int outer, std::string& out) const {
     case Op::Pin:
       return;
     case Op::Add:
-      return binary(value, "+", Sum, outer, out);
+      return binary(value, "+", Additive, outer, out);
     case Op::Subtract:
-      return binary(value, "-", Sum, outer, out);
+      return binary(value, "-", Additive, outer, out);
     case Op::Multiply:
-      return binary(value, "*", Product, outer, out);
+      return binary(value, "*", Multiplicative, outer, out);
     case Op::Divide:
-      return binary(value, "/", Product, outer, out);
+      return binary(value, "/", Multiplicative, outer, out);
     case Op::Negate:
-      if (outer > Prefix || outer == Sum + 1) {
+      if (outer > Prefix || outer == Additive + 1) {
         out += '(';
       }
       out += '-';
       print(value.args[0], Primary, out);
-      if (outer > Prefix || outer == Sum + 1) {
+      if (outer > Prefix || outer == Additive + 1) {
         out += ')';
       }
       return;

@@ -138,7 +138,6 @@ void set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnos
 }  // namespace
 
 std::string range_fault(const Field& field, double value) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   double low = field.minimum;
   double high = field.maximum;
   if (field.type == Type::Int) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -272,7 +271,6 @@ class Reader {
   }
 
   void read_fit(const toml::table& table, const std::string& path, const Place& place) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     FitSetting fit{.path = path, .place = place};
     for (const auto& [key, node] : table) {
       if (!known_key(key, node, fit_keys, "the fit of " + path)) {

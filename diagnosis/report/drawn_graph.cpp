@@ -11,7 +11,7 @@ namespace {
 
 using language::upper;
 
-constexpr std::size_t none = static_cast<std::size_t>(-1);
+constexpr std::size_t no_box = static_cast<std::size_t>(-1);
 
 /// What the operations of an expression feed: INV.R1 of INV.R1#0.
 std::string fed_by(const std::string& path) {
@@ -45,7 +45,7 @@ std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
 
 class Drawing {
  public:
-  explicit Drawing(const Graph& graph) : graph_(graph), box_of_node_(graph.nodes.size(), none) {}
+  explicit Drawing(const Graph& graph) : graph_(graph), box_of_node_(graph.nodes.size(), no_box) {}
 
   DrawnGraph run() {
     for (const Port& port : graph_.inputs) {
@@ -72,7 +72,7 @@ class Drawing {
 
   /// Operations that feed one other operation of the same expression are drawn within it.
   void add_nodes() {
-    std::vector<std::size_t> reader(graph_.nodes.size(), none);
+    std::vector<std::size_t> reader(graph_.nodes.size(), no_box);
     std::vector<int> readers(graph_.nodes.size(), 0);
     const auto read = [&](const Wire& wire, std::size_t by) {
       if (wire.from == Wire::From::Node) {
@@ -86,12 +86,12 @@ class Drawing {
       }
     }
     for (const Port& port : graph_.outputs) {
-      read(port.wire, none);
+      read(port.wire, no_box);
     }
     whole_.resize(graph_.nodes.size());
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       std::size_t root = i;
-      while (graph_.nodes[root].block == nullptr && readers[root] == 1 && reader[root] != none &&
+      while (graph_.nodes[root].block == nullptr && readers[root] == 1 && reader[root] != no_box &&
              graph_.nodes[reader[root]].block == nullptr &&
              fed_by(graph_.nodes[reader[root]].path) == fed_by(graph_.nodes[root].path)) {
         root = reader[root];
@@ -169,7 +169,7 @@ class Drawing {
 
   /// A box without wires, as an input that nothing reads, tells nothing about the gap.
   void drop_unconnected() {
-    std::vector<std::size_t> place(drawn_.boxes.size(), none);
+    std::vector<std::size_t> place(drawn_.boxes.size(), no_box);
     std::vector<DrawnBox> kept;
     for (std::size_t i = 0; i < drawn_.boxes.size(); ++i) {
       if (!drawn_.boxes[i].pins.empty() || !drawn_.boxes[i].outputs.empty()) {

@@ -3,7 +3,7 @@
 namespace hysteron::diagnosis::report {
 namespace {
 
-constexpr std::string_view text = R"js(
+constexpr std::string_view script = R"js(
 const data = JSON.parse(document.getElementById("data").textContent);
 
 function timesOf(time) {
@@ -231,7 +231,7 @@ document.documentElement.dataset.figures = figures;
 }  // namespace
 
 std::string_view page_script() {
-  return text;
+  return script;
 }
 
 }  // namespace hysteron::diagnosis::report

@@ -3,7 +3,7 @@
 namespace hysteron::diagnosis::report {
 namespace {
 
-constexpr std::string_view text = R"js("use strict";
+constexpr std::string_view plots = R"js("use strict";
 // A page that cannot draw says so, rather than showing empty frames.
 window.addEventListener("error", event => {
   const note = document.getElementById("fault");
@@ -176,7 +176,7 @@ function keys(parent, entries) {
 }  // namespace
 
 std::string_view plot_script() {
-  return text;
+  return plots;
 }
 
 }  // namespace hysteron::diagnosis::report

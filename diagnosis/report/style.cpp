@@ -5,7 +5,7 @@ namespace {
 
 // Orange, blue and grey of Okabe and Ito, which differ for the colour-blind as well; on the wires, width says the same
 // as colour.
-constexpr std::string_view text = R"css(
+constexpr std::string_view sheet = R"css(
 :root {
   color-scheme: light dark;
   --paper: #ffffff; --card: #f6f7f9; --ink: #1b1f24; --soft: #5b6470; --line: #d5dae0; --grid: #e6e9ed;
@@ -143,7 +143,7 @@ svg.key { width: 26px; height: 12px; margin-right: .3rem; vertical-align: -2px; 
 }  // namespace
 
 std::string_view style() {
-  return text;
+  return sheet;
 }
 
 }  // namespace hysteron::diagnosis::report

@@ -13,7 +13,7 @@
 namespace hysteron::runtime::modbus {
 namespace {
 
-constexpr const char* name_of(PointKind kind) {
+constexpr const char* kind_name(PointKind kind) {
   switch (kind) {
     case PointKind::input:
       return "input";
@@ -87,7 +87,7 @@ std::string as_csv(const RegisterMap& map) {
     const Point& point = map.point_of(entry);
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", name_of(entry.at.area), entry.at.address, entry.at.count,
                         name_of(point.type), csv_cell(point.name), csv_cell(point.unit), number_text(point.low),
-                        number_text(point.high), access_of(point), name_of(point.kind), csv_cell(point.meaning));
+                        number_text(point.high), access_of(point), kind_name(point.kind), csv_cell(point.meaning));
   }
   return text;
 }
@@ -106,7 +106,7 @@ std::string as_json(const RegisterMap& map) {
                     {"low", limit(point.low)},
                     {"high", limit(point.high)},
                     {"writable", point.writable},
-                    {"kind", name_of(point.kind)},
+                    {"kind", kind_name(point.kind)},
                     {"meaning", point.meaning}});
   }
   const nlohmann::ordered_json root{{"title", map.title()},

@@ -14,7 +14,7 @@
 namespace hysteron::testing {
 namespace {
 
-constexpr double ts = 1e-3;
+constexpr double derivative_ts = 1e-3;
 
 /// The response to e^(jwk) relative to the ideal derivative, jw/TS: real and imaginary part are measured by a cosine
 /// and a sine, after `settle` samples.
@@ -25,51 +25,52 @@ std::complex<double> relative_response(Stepper<B> block, double w, int settle) {
   for (int k = 0; k <= settle; ++k) {
     last = {block({.XIN = std::cos(w * k), .RUN = true}).XOUT, other({.XIN = std::sin(w * k), .RUN = true}).XOUT};
   }
-  return last / std::polar(1.0, w * settle) / std::complex<double>(0.0, w / ts);
+  return last / std::polar(1.0, w * settle) / std::complex<double>(0.0, w / derivative_ts);
 }
 
 TEST(Derivative, DelayAndGainAreAsStated) {
   for (const double w : {0.01, 0.1, 0.5, 1.0, 2.0, 3.0}) {
-    const auto response = relative_response(Stepper<Derivative>(ts), w, 10);
+    const auto response = relative_response(Stepper<Derivative>(derivative_ts), w, 10);
     EXPECT_NEAR(std::abs(response), std::sin(w / 2) / (w / 2), 1e-12);
     EXPECT_NEAR(-std::arg(response) / w, 0.5, 1e-9) << "delay in samples";
   }
-  EXPECT_NEAR(std::abs(relative_response(Stepper<Derivative>(ts), 1.0, 10)), 0.96, 0.005);
+  EXPECT_NEAR(std::abs(relative_response(Stepper<Derivative>(derivative_ts), 1.0, 10)), 0.96, 0.005);
 }
 
 TEST(Derivative4, DelayAndGainAreAsStated) {
   for (const double w : {0.01, 0.1, 0.5, 1.0, 2.0}) {
-    const auto response = relative_response(Stepper<Derivative4>(ts), w, 10);
+    const auto response = relative_response(Stepper<Derivative4>(derivative_ts), w, 10);
     EXPECT_NEAR(std::abs(response), (3.0 * std::sin(1.5 * w) + std::sin(w / 2)) / (5.0 * w), 1e-12);
     EXPECT_NEAR(-std::arg(response) / w, 1.5, 1e-9) << "delay in samples";
   }
-  EXPECT_NEAR(std::abs(relative_response(Stepper<Derivative4>(ts), 1.0, 10)), 0.69, 0.005);
+  EXPECT_NEAR(std::abs(relative_response(Stepper<Derivative4>(derivative_ts), 1.0, 10)), 0.69, 0.005);
 }
 
 TEST(DerivativeFiltered, DelayAndGainAreAsStated) {
-  for (const double t1 : {0.0, 0.2 * ts, ts, 5.0 * ts, 20.0 * ts}) {
-    const double a = t1 > 0.0 ? std::exp(-ts / t1) : 0.0;
+  for (const double t1 : {0.0, 0.2 * derivative_ts, derivative_ts, 5.0 * derivative_ts, 20.0 * derivative_ts}) {
+    const double a = t1 > 0.0 ? std::exp(-derivative_ts / t1) : 0.0;
     for (const double w : {0.01, 0.1, 0.5, 1.0, 2.0}) {
-      const auto response = relative_response(Stepper<DerivativeFiltered>(ts, {.T1 = t1}), w, 1500);
+      const auto response = relative_response(Stepper<DerivativeFiltered>(derivative_ts, {.T1 = t1}), w, 1500);
       const double gain = std::sin(w / 2) / (w / 2) * (1.0 - a) / std::sqrt(1.0 - 2.0 * a * std::cos(w) + a * a);
       EXPECT_NEAR(std::abs(response), gain, 1e-10) << "T1 " << t1 << ", w " << w;
     }
     const double w = 1e-3;
-    const double delay = -std::arg(relative_response(Stepper<DerivativeFiltered>(ts, {.T1 = t1}), w, 1500)) / w;
+    const double delay =
+        -std::arg(relative_response(Stepper<DerivativeFiltered>(derivative_ts, {.T1 = t1}), w, 1500)) / w;
     EXPECT_NEAR(delay, 0.5 + a / (1.0 - a), 1e-2) << "T1 " << t1;
-    if (t1 >= ts) {
-      EXPECT_NEAR(delay * ts, t1 + ts * ts / (12.0 * t1), 0.01 * t1);
+    if (t1 >= derivative_ts) {
+      EXPECT_NEAR(delay * derivative_ts, t1 + derivative_ts * derivative_ts / (12.0 * t1), 0.01 * t1);
     }
   }
 }
 
 TEST(DerivativeFiltered, FollowsAPolygonExactly) {
   // x runs with slope 1 for 50 samples, then stands: D = 1 − e^(−t/T), then falls by e^(−t/T).
-  const double t1 = 7.3 * ts;
-  Stepper<DerivativeFiltered> block(ts, {.T1 = t1});
+  const double t1 = 7.3 * derivative_ts;
+  Stepper<DerivativeFiltered> block(derivative_ts, {.T1 = t1});
   for (int k = 0; k < 200; ++k) {
-    const double t = k * ts;
-    const double corner = 50 * ts;
+    const double t = k * derivative_ts;
+    const double corner = 50 * derivative_ts;
     const double expected =
         t <= corner ? 1.0 - std::exp(-t / t1) : (1.0 - std::exp(-corner / t1)) * std::exp(-(t - corner) / t1);
     EXPECT_NEAR(block({.XIN = std::min(t, corner), .RUN = true}).XOUT, expected, 1e-12) << "step " << k;
@@ -77,16 +78,16 @@ TEST(DerivativeFiltered, FollowsAPolygonExactly) {
 }
 
 TEST(DerivativeFiltered, WithoutTimeConstantIsTheTwoPointDerivative) {
-  Stepper<DerivativeFiltered> filtered(ts, {.T1 = 0.0});
-  Stepper<Derivative> two_point(ts);
+  Stepper<DerivativeFiltered> filtered(derivative_ts, {.T1 = 0.0});
+  Stepper<Derivative> two_point(derivative_ts);
   for (int k = 0; k < 100; ++k) {
     const double x = std::sin(0.3 * k);
-    EXPECT_NEAR(filtered({.XIN = x, .RUN = true}).XOUT, two_point({.XIN = x, .RUN = true}).XOUT, 1e-12 / ts);
+    EXPECT_NEAR(filtered({.XIN = x, .RUN = true}).XOUT, two_point({.XIN = x, .RUN = true}).XOUT, 1e-12 / derivative_ts);
   }
 }
 
 TEST(Derivative, StartsAtZeroAwayFromZero) {
-  Stepper<Derivative> block(ts);
+  Stepper<Derivative> block(derivative_ts);
   EXPECT_EQ(block({.XIN = 5.0, .RUN = true}).XOUT, 0.0);
   EXPECT_NEAR(block({.XIN = 5.001, .RUN = true}).XOUT, 1.0, 1e-9);
 }

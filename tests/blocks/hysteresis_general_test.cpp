@@ -15,10 +15,10 @@
 namespace hysteron::testing {
 namespace {
 
-using Params = HysteresisGeneral::Params<double>;
+using GeneralParams = HysteresisGeneral::Params<double>;
 
-Params loop_params() {
-  auto params = presets<Params>();
+GeneralParams loop_params() {
+  auto params = presets<GeneralParams>();
   params.C1 = 1.0;
   params.C2 = 0.8;
   params.C3 = 0.7;
@@ -43,7 +43,7 @@ std::vector<double> path_through_targets(std::uint64_t seed, int targets, double
 /// dy/dx of the loop in `fine` midpoint steps a sample, with reversals found from the sign of the change.
 class SteppedLoop {
  public:
-  SteppedLoop(const Params& params, double ts) : p_(params), ts_(ts) {}
+  SteppedLoop(const GeneralParams& params, double ts) : p_(params), ts_(ts) {}
   double operator()(double x) {
     const double sign = x < x_ ? -1.0 : (x > x_ ? 1.0 : sign_);
     if (sign * sign_ < 0.0) {
@@ -75,7 +75,7 @@ class SteppedLoop {
     return (p_.C1 + growth + bump * 2.0 * z * (1.0 - z)) * (1.0 + by_middle * (0.5 * (x + start_) - p_.U0)) +
            rise * by_middle / 2.0 + p_.DUHEM / p_.DUHEM_REFERENCE * (x - p_.U0) * (p_.C1 + p_.C2 * std::pow(p, p_.C3));
   }
-  Params p_;
+  GeneralParams p_;
   double ts_;
   double x_ = 0.0;
   double y_ = 0.0;
@@ -85,7 +85,7 @@ class SteppedLoop {
   bool first_ = true;
 };
 
-void expect_stepped(const Params& params, std::uint64_t seed) {
+void expect_stepped(const GeneralParams& params, std::uint64_t seed) {
   const double ts = 0.01;
   Stepper<HysteresisGeneral> block(ts, params);
   SteppedLoop second(params, ts);
@@ -213,7 +213,7 @@ class PlayBank {
 };
 
 TEST(HysteresisGeneral, ReturnPointsAreABankOfPlays) {
-  auto params = presets<Params>();
+  auto params = presets<GeneralParams>();
   params.C1 = 0.5;
   params.C2 = 1.5;
   params.RETURN_POINT = 1.0;
@@ -236,7 +236,7 @@ TEST(HysteresisGeneral, ReturnPointsAreABankOfPlays) {
 }
 
 TEST(HysteresisGeneral, NestedLoopsCloseFromTheInnermostToTheSkeleton) {
-  auto params = presets<Params>();
+  auto params = presets<GeneralParams>();
   params.C2 = 1.0;
   params.RETURN_POINT = 1.0;
   Stepper<HysteresisGeneral> block(1.0, params);
@@ -248,7 +248,7 @@ TEST(HysteresisGeneral, NestedLoopsCloseFromTheInnermostToTheSkeleton) {
 }
 
 TEST(HysteresisGeneral, TheNinthNestingForgetsTheInnermostLoopOnly) {
-  auto params = presets<Params>();
+  auto params = presets<GeneralParams>();
   params.C2 = 1.0;
   params.RETURN_POINT = 1.0;
   Stepper<HysteresisGeneral> block(1.0, params);

@@ -16,7 +16,7 @@
 namespace hysteron::testing {
 namespace {
 
-using Params = HysteresisRo::Params<double>;
+using RoParams = HysteresisRo::Params<double>;
 
 /// Equations (2) and (3) as the paper prints them, in long double, with reversals found from the sign of the change.
 class PrintedModel {
@@ -50,15 +50,15 @@ class PrintedModel {
   bool branching_ = false;
 };
 
-Params from_ramberg_osgood(double y_star, double u_star, double alpha, double gamma) {
-  auto params = presets<Params>();
+RoParams from_ramberg_osgood(double y_star, double u_star, double alpha, double gamma) {
+  auto params = presets<RoParams>();
   params.C1 = y_star / u_star;
   params.C2 = params.C1 * alpha * gamma / std::pow(2.0 * u_star, gamma - 1.0);
   params.C3 = gamma - 1.0;
   return params;
 }
 
-HysteresisRoInverse::Params<double> inverse_of(const Params& p) {
+HysteresisRoInverse::Params<double> inverse_of(const RoParams& p) {
   return {.C1 = p.C1, .C2 = p.C2, .C3 = p.C3, .EPS = 0.0, .START = p.START, .U0 = p.U0, .Y0 = p.Y0};
 }
 
@@ -133,7 +133,7 @@ TEST(HysteresisRo, IsThePrintedModelOnRandomPaths) {
 }
 
 TEST(HysteresisRo, SlopeIsThatOfTheLoopAndOfTheMomentum) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C1 = 0.3;
   params.C2 = 1.7;
   params.C3 = 1.4;
@@ -158,7 +158,7 @@ TEST(HysteresisRo, SlopeIsThatOfTheLoopAndOfTheMomentum) {
 }
 
 TEST(HysteresisRo, LoopsCloseAndAreSymmetric) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C2 = 2.0;
   params.C3 = 0.6;
   Stepper<HysteresisRo> block(1.0, params);
@@ -183,7 +183,7 @@ TEST(HysteresisRo, LoopsCloseAndAreSymmetric) {
 }
 
 TEST(HysteresisRo, WithoutGrowthIsALine) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C1 = 3.0;
   Stepper<HysteresisRo> block(1.0, params);
   Stepper<HysteresisRoInverse> inverse(1.0, inverse_of(params));
@@ -197,7 +197,7 @@ TEST(HysteresisRo, WithoutGrowthIsALine) {
 
 TEST(HysteresisRo, IsContinuousInTheExponentAtZero) {
   for (const double c3 : {0.0, 1e-13}) {
-    auto params = presets<Params>();
+    auto params = presets<RoParams>();
     params.C2 = 2.0;
     params.C3 = c3;
     Stepper<HysteresisRo> block(1.0, params);
@@ -210,7 +210,7 @@ TEST(HysteresisRo, IsContinuousInTheExponentAtZero) {
 }
 
 TEST(HysteresisRo, StartsInTheMiddleOfALoop) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C2 = 1.5;
   params.C3 = 1.2;
   Stepper<HysteresisRo> whole(1.0, params);
@@ -233,7 +233,7 @@ TEST(HysteresisRo, StartsInTheMiddleOfALoop) {
 }
 
 TEST(HysteresisRo, AStartBranchLeftBackwardsIsAReversalAtItsOrigin) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C2 = 1.0;
   params.START = 1;
   params.U0 = 2.0;
@@ -245,7 +245,7 @@ TEST(HysteresisRo, AStartBranchLeftBackwardsIsAReversalAtItsOrigin) {
 }
 
 TEST(HysteresisRo, AResetBeginsAgain) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C2 = 1.0;
   Stepper<HysteresisRo> used(1.0, params);
   Stepper<HysteresisRoInverse> used_inverse(1.0, inverse_of(params));
@@ -265,7 +265,7 @@ TEST(HysteresisRo, AResetBeginsAgain) {
 }
 
 TEST(HysteresisRo, DeadBandKeepsADwellOnItsBranch) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C2 = 2.0;
   params.EPS = 1e-3;
   Stepper<HysteresisRo> block(1.0, params);
@@ -289,7 +289,7 @@ TEST(HysteresisRo, DeadBandKeepsADwellOnItsBranch) {
 TEST(HysteresisRoInverse, IsTheIdentityAfterTheHysteresis) {
   RandomIo random(6, 1.0);
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    auto params = presets<Params>();
+    auto params = presets<RoParams>();
     params.C1 = std::pow(10.0, 8.0 * random.unit() - 9.0);
     params.C2 = params.C1 * std::pow(10.0, 3.0 * random.unit() - 2.0);
     params.C3 = seed % 5 == 0 ? 0.5 * static_cast<double>(seed % 4) : 3.0 * random.unit();
@@ -308,7 +308,7 @@ TEST(HysteresisRoInverse, IsTheIdentityAfterTheHysteresis) {
 }
 
 TEST(HysteresisRoInverse, TheHysteresisFollowsItsReference) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C1 = 2.45e-9;
   params.C2 = 1.6e-11;
   Stepper<HysteresisRoInverse> feedforward(1e-3, inverse_of(params));
@@ -322,7 +322,7 @@ TEST(HysteresisRoInverse, TheHysteresisFollowsItsReference) {
 }
 
 TEST(HysteresisRoInverse, AMillionStepsDoNotDrift) {
-  auto params = presets<Params>();
+  auto params = presets<RoParams>();
   params.C1 = 0.3;
   params.C2 = 1.1;
   params.C3 = 0.7;

@@ -11,17 +11,17 @@
 namespace hysteron::testing {
 namespace {
 
-using Params = Pid::Params<double>;
-using In = Pid::In<double>;
+using PidParams = Pid::Params<double>;
+using PidIn = Pid::In<double>;
 
-Params pi(double kp, double tr) {
-  auto params = presets<Params>();
+PidParams pi(double kp, double tr) {
+  auto params = presets<PidParams>();
   params.KP = kp;
   params.TR = tr;
   return params;
 }
 
-In automatic(double pv, double sp) {
+PidIn automatic(double pv, double sp) {
   return {.AUTO = true, .PV = pv, .SP = sp, .X0 = 0.0};
 }
 

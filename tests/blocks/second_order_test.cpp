@@ -12,16 +12,16 @@
 namespace hysteron::testing {
 namespace {
 
-using Params = SecondOrder::Params<double>;
-constexpr double ts = 1e-3;
+using SecondOrderParams = SecondOrder::Params<double>;
+constexpr double second_order_ts = 1e-3;
 
 TEST(SecondOrder, AStepFromRestIsTheClosedForm) {
-  const double t = 8.0 * ts;
+  const double t = 8.0 * second_order_ts;
   for (const double zeta : {0.0, 0.1, 0.7, 1.0, 1.5, 20.0}) {
-    Stepper<SecondOrder> block(ts, Params{.K = 3.0, .T = t, .ZETA = zeta, .SETTLED = false});
+    Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 3.0, .T = t, .ZETA = zeta, .SETTLED = false});
     for (int k = 0; k < 400; ++k) {
-      const double s = k * ts / t;  // time in units of T
-      double rest = 0.0;            // what is left of the step
+      const double s = k * second_order_ts / t;  // time in units of T
+      double rest = 0.0;                         // what is left of the step
       if (zeta < 1.0) {
         const double root = std::sqrt(1.0 - zeta * zeta);
         rest = std::exp(-zeta * s) * (std::cos(root * s) + zeta / root * std::sin(root * s));
@@ -41,10 +41,10 @@ TEST(SecondOrder, AStepFromRestIsTheClosedForm) {
 
 TEST(SecondOrder, IsExactBetweenStraightLines) {
   // Against the differential equation, solved by classical Runge-Kutta with 200 steps a sample.
-  RandomIo random(1, ts);
+  RandomIo random(1, second_order_ts);
   for (const double zeta : {0.02, 0.6, 1.0, 3.0}) {
-    for (const double t : {0.4 * ts, 1.0 * ts, 6.0 * ts}) {
-      Stepper<SecondOrder> block(ts, Params{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = false});
+    for (const double t : {0.4 * second_order_ts, 1.0 * second_order_ts, 6.0 * second_order_ts}) {
+      Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = false});
       double y = 0.0;
       double v = 0.0;
       double x = 0.0;
@@ -52,9 +52,9 @@ TEST(SecondOrder, IsExactBetweenStraightLines) {
       for (int k = 0; k < 100; ++k) {
         const double next = random.unit() - 0.5;
         const int parts = 200;
-        const double h = ts / parts;
+        const double h = second_order_ts / parts;
         const auto acceleration = [&](double time, double position, double velocity) {
-          return (x + (next - x) * time / ts - position - 2.0 * zeta * t * velocity) / (t * t);
+          return (x + (next - x) * time / second_order_ts - position - 2.0 * zeta * t * velocity) / (t * t);
         };
         for (int i = 0; i < parts; ++i) {
           const double time = i * h;
@@ -68,17 +68,17 @@ TEST(SecondOrder, IsExactBetweenStraightLines) {
         x = next;
         const auto out = block({.XIN = x, .R1 = false, .X0 = 0.0});
         ASSERT_NEAR(out.XOUT, y, 1e-6) << "ZETA " << zeta << ", T " << t << ", step " << k;
-        ASSERT_NEAR(out.RATE * ts, v * ts, 1e-5);
+        ASSERT_NEAR(out.RATE * second_order_ts, v * second_order_ts, 1e-5);
       }
     }
   }
 }
 
 TEST(SecondOrder, IsContinuousThroughCriticalDamping) {
-  const double t = 5.0 * ts;
+  const double t = 5.0 * second_order_ts;
   std::vector<Stepper<SecondOrder>> blocks;
   for (const double zeta : {0.98, 0.9999, 1.0, 1.0001, 1.02}) {
-    blocks.emplace_back(ts, Params{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = false});
+    blocks.emplace_back(second_order_ts, SecondOrderParams{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = false});
   }
   for (int k = 0; k < 100; ++k) {
     std::vector<double> y;
@@ -94,35 +94,36 @@ TEST(SecondOrder, IsContinuousThroughCriticalDamping) {
 
 TEST(SecondOrder, ResonatesAtItsFrequency) {
   // |H| at ω = 1/T is K/(2·ZETA), a quarter of a period behind.
-  const double t = 50.0 * ts;
+  const double t = 50.0 * second_order_ts;
   const double zeta = 0.05;
-  Stepper<SecondOrder> block(ts, Params{.K = 2.0, .T = t, .ZETA = zeta, .SETTLED = true});
+  Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 2.0, .T = t, .ZETA = zeta, .SETTLED = true});
   double largest = 0.0;
   for (int k = 0; k < 20000; ++k) {
-    const double y = block({.XIN = std::sin(k * ts / t), .R1 = false, .X0 = 0.0}).XOUT;
+    const double y = block({.XIN = std::sin(k * second_order_ts / t), .R1 = false, .X0 = 0.0}).XOUT;
     if (k > 10000) {
       largest = std::max(largest, y);
-      EXPECT_NEAR(y, -2.0 / (2.0 * zeta) * std::cos(k * ts / t), 0.02);
+      EXPECT_NEAR(y, -2.0 / (2.0 * zeta) * std::cos(k * second_order_ts / t), 0.02);
     }
   }
   EXPECT_NEAR(largest, 20.0, 0.02);
 }
 
 TEST(SecondOrder, AboveHalfTheSampleRateOnlyTheLagIsLeft) {
-  const double t = 0.1 * ts;
+  const double t = 0.1 * second_order_ts;
   const double zeta = 0.3;
-  Stepper<SecondOrder> block(ts, Params{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = true});
+  Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 1.0, .T = t, .ZETA = zeta, .SETTLED = true});
   double last = 1.0;
   for (int k = 0; k < 50; ++k) {
     const double x = std::cos(0.3 * k);
-    EXPECT_NEAR(block({.XIN = x, .R1 = false, .X0 = 0.0}).XOUT, x - 2.0 * zeta * t * (x - last) / ts, 1e-15);
+    EXPECT_NEAR(block({.XIN = x, .R1 = false, .X0 = 0.0}).XOUT, x - 2.0 * zeta * t * (x - last) / second_order_ts,
+                1e-15);
     last = x;
   }
 }
 
 TEST(SecondOrder, StartsSettledAndAResetLoadsX0AtRest) {
-  const double t = 4.0 * ts;
-  Stepper<SecondOrder> block(ts, Params{.K = 2.0, .T = t, .ZETA = 1.0, .SETTLED = true});
+  const double t = 4.0 * second_order_ts;
+  Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 2.0, .T = t, .ZETA = 1.0, .SETTLED = true});
   EXPECT_EQ(block({.XIN = 5.0, .R1 = false, .X0 = 0.0}).XOUT, 10.0);
   EXPECT_EQ(block({.XIN = 5.0, .R1 = false, .X0 = 0.0}).XOUT, 10.0);
   const auto reset = block({.XIN = 5.0, .R1 = true, .X0 = 4.0});
@@ -132,8 +133,8 @@ TEST(SecondOrder, StartsSettledAndAResetLoadsX0AtRest) {
 }
 
 TEST(SecondOrder, AnUndampedOscillationKeepsItsEnergy) {
-  const double t = 3.0 * ts;
-  Stepper<SecondOrder> block(ts, Params{.K = 1.0, .T = t, .ZETA = 0.0, .SETTLED = false});
+  const double t = 3.0 * second_order_ts;
+  Stepper<SecondOrder> block(second_order_ts, SecondOrderParams{.K = 1.0, .T = t, .ZETA = 0.0, .SETTLED = false});
   for (int k = 0; k < 1'000'000; ++k) {
     const auto out = block({.XIN = 0.0, .R1 = false, .X0 = 1.0});
     ASSERT_NEAR(out.XOUT * out.XOUT + t * t * out.RATE * out.RATE, 1.0, 1e-9) << "step " << k;

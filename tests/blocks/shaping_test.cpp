@@ -36,8 +36,8 @@ std::vector<double> awkward_signal() {
 
 template <class B>
 class Neutral : public ::testing::Test {};
-using Effects = ::testing::Types<Limit, DeadBand, RateLimit, Quantizer, Backlash>;
-TYPED_TEST_SUITE(Neutral, Effects);
+using ShapingEffects = ::testing::Types<Limit, DeadBand, RateLimit, Quantizer, Backlash>;
+TYPED_TEST_SUITE(Neutral, ShapingEffects);
 
 TYPED_TEST(Neutral, PassesItsInputBitForBit) {
   using B = TypeParam;

@@ -32,10 +32,10 @@ namespace {
 
 template <class B>
 class NeutralTerm : public ::testing::Test {};
-using Effects = ::testing::Types<Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction,
-                                 StribeckFriction, ViscousFriction, Cogging, PeriodicError, EvenNonlinearity,
-                                 OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock>;
-TYPED_TEST_SUITE(NeutralTerm, Effects);
+using AddedEffects = ::testing::Types<Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction,
+                                      StribeckFriction, ViscousFriction, Cogging, PeriodicError, EvenNonlinearity,
+                                      OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock>;
+TYPED_TEST_SUITE(NeutralTerm, AddedEffects);
 
 TYPED_TEST(NeutralTerm, LeavesEvenTheSignOfAZero) {
   using B = TypeParam;

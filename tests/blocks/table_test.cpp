@@ -11,12 +11,12 @@
 namespace hysteron::testing {
 namespace {
 
-using Params = Table::Params<double>;
+using TableParams = Table::Params<double>;
 
 /// count points with X at uneven distances and Y = shape(X).
 template <class Shape>
-Params curve(int count, Shape shape) {
-  Params params{};
+TableParams curve(int count, Shape shape) {
+  TableParams params{};
   double x = -1.0;
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::size_t>(i);
@@ -28,7 +28,7 @@ Params curve(int count, Shape shape) {
   return params;
 }
 
-double search_from_the_left(const Params& params, double x) {
+double search_from_the_left(const TableParams& params, double x) {
   std::size_t i = 0;
   while (i + 2 < static_cast<std::size_t>(params.COUNT) && x >= params.X[i + 1]) {
     ++i;
@@ -56,7 +56,7 @@ TEST(Table, BisectionFindsWhatASearchFromTheLeftFinds) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(-2.0, 6.0);
   for (int count = 2; count <= 32; ++count) {
-    Params params = curve(count, [](double x) { return std::sin(3.0 * x); });
+    TableParams params = curve(count, [](double x) { return std::sin(3.0 * x); });
     params.EXTRAPOLATE = true;
     Stepper<Table> table(1.0, params);
     for (int k = 0; k < 300; ++k) {
@@ -67,7 +67,7 @@ TEST(Table, BisectionFindsWhatASearchFromTheLeftFinds) {
 }
 
 TEST(Table, EndsHoldUnlessExtrapolated) {
-  Params params = curve(4, [](double x) { return 2.0 * x; });
+  TableParams params = curve(4, [](double x) { return 2.0 * x; });
   Stepper<Table> held(1.0, params);
   EXPECT_EQ(held({.XIN = -100.0}).XOUT, params.Y[0]);
   EXPECT_EQ(held({.XIN = 100.0}).XOUT, params.Y[3]);
@@ -78,7 +78,7 @@ TEST(Table, EndsHoldUnlessExtrapolated) {
 }
 
 TEST(Table, RefusesPointsThatDoNotRise) {
-  Params params = curve(8, [](double x) { return x; });
+  TableParams params = curve(8, [](double x) { return x; });
   params.X[5] = params.X[4];
   Stepper<Table> flat(1.0, params);
   const auto out = flat({.XIN = 0.0});

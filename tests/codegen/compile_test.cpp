@@ -18,7 +18,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
-using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -51,7 +50,7 @@ TEST(Compile, FindsSeveralFaultsAtOnceInTheOrderOfTheText) {
 TEST(Compile, AnAlgebraicLoopIsAPathWithTheWiresWhereADelayWouldCutIt) {
   const auto found = diagnose(block(io + "VAR A : HY_GAIN; B : HY_LAG; S : HY_SUM; END_VAR",
                                     "S(IN1 := U, IN2 := B.XOUT);\nA(XIN := S.XOUT);\nB(XIN := A.XOUT);\nY := B.XOUT;"));
-  ASSERT_THAT(found, Contains(Field(&Diagnostic::number, error::algebraic_loop)));
+  ASSERT_THAT(found, Contains(::testing::Field(&Diagnostic::number, error::algebraic_loop)));
   const auto& loop = *std::ranges::find(found, error::algebraic_loop, &Diagnostic::number);
   EXPECT_THAT(loop.cause, AllOf(HasSubstr("A → B"), HasSubstr("B → S"), HasSubstr("S → A")));
   ASSERT_EQ(loop.notes.size(), 3U);
@@ -103,7 +102,7 @@ TEST(Compile, ABlockWithADelayInsideClosesALoop) {
   const auto found = diagnose(
       inner + block("VAR_INPUT R : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR P : PLANT; K : HY_GAIN; END_VAR",
                     "K(XIN := R - P.Y); P(U := K.XOUT); Y := P.Y;"));
-  EXPECT_THAT(found, ::testing::Not(Contains(Field(&Diagnostic::severity, Severity::Error))));
+  EXPECT_THAT(found, ::testing::Not(Contains(::testing::Field(&Diagnostic::severity, Severity::Error))));
 }
 
 TEST(Compile, HierarchyIsFlattenedAndParametersKeepTheirPaths) {
@@ -129,13 +128,13 @@ TEST(Compile, ABlockCannotContainItself) {
   EXPECT_THAT(
       diagnose("FUNCTION_BLOCK A VAR_OUTPUT Y : LREAL; END_VAR VAR X : B; END_VAR X(); Y := X.Y; END_FUNCTION_BLOCK\n"
                "FUNCTION_BLOCK B VAR_OUTPUT Y : LREAL; END_VAR VAR X : A; END_VAR X(); Y := X.Y; END_FUNCTION_BLOCK"),
-      Contains(Field(&Diagnostic::number, error::recursive_block)));
+      Contains(::testing::Field(&Diagnostic::number, error::recursive_block)));
 }
 
 TEST(Compile, NamesOfTheLibraryAreReserved) {
   for (const std::string declaration : {"HY_LAG : HY_LAG;", "hy_sum : LREAL := 1.0;"}) {
     EXPECT_THAT(diagnose(block(io + "VAR " + declaration + " END_VAR", "Y := U;")),
-                Contains(Field(&Diagnostic::number, error::reserved_name)))
+                Contains(::testing::Field(&Diagnostic::number, error::reserved_name)))
         << declaration;
   }
 }
@@ -196,14 +195,16 @@ TEST(Compile, UnitsAreCarriedThroughBlocksAndExpressions) {
   const std::string lag = "VAR L : HY_LAG; END_VAR";
   EXPECT_THAT(with("um", "um", lag, "L(XIN := U); Y := L.XOUT;"), IsEmpty());
   EXPECT_THAT(with("um", "m", lag, "L(XIN := U); Y := L.XOUT;"),
-              Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+              Contains(::testing::Field(&Diagnostic::number, error::unit_mismatch)));
   EXPECT_THAT(with("um", "um/s", "VAR D : HY_DERIVATIVE; END_VAR", "D(XIN := U); Y := D.XOUT;"), IsEmpty());
   EXPECT_THAT(with("m/s", "m", "VAR I : HY_INTEGRAL; END_VAR", "I(XIN := U); Y := I.XOUT;"), IsEmpty());
   EXPECT_THAT(with("N*m/s", "W", "", "Y := 2.0 * U;"), IsEmpty());
-  EXPECT_THAT(with("V", "A", "", "Y := 2.0 * U;"), Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+  EXPECT_THAT(with("V", "A", "", "Y := 2.0 * U;"),
+              Contains(::testing::Field(&Diagnostic::number, error::unit_mismatch)));
   EXPECT_THAT(with("m^2", "m", "", "Y := SQRT(U);"), IsEmpty());
   EXPECT_THAT(with("V", "V", "", "Y := U + 1.0;"), IsEmpty()) << "a literal takes the unit of what it is added to";
-  EXPECT_THAT(with("V", "1", "", "Y := SIN(U);"), Contains(Field(&Diagnostic::number, error::unit_mismatch)));
+  EXPECT_THAT(with("V", "1", "", "Y := SIN(U);"),
+              Contains(::testing::Field(&Diagnostic::number, error::unit_mismatch)));
   EXPECT_THAT(with("V", "um", "VAR G : HY_GAIN; END_VAR", "G(XIN := U); Y := G.XOUT;"), IsEmpty())
       << "a gain changes the unit";
   EXPECT_THAT(with("°C", "degC", "", "Y := U;"), IsEmpty());
@@ -247,7 +248,7 @@ TEST(Compile, ASlowerPartRunsInItsStepsAndIsHeldBetween) {
 
 TEST(Compile, AWireBetweenTwoRatesNeedsASampleOrAHold) {
   const auto found = diagnose(block(io + "VAR A : HY_GAIN; (* @every 2 *) END_VAR", "A(XIN := U); Y := A.XOUT;"));
-  EXPECT_THAT(found, Contains(Field(&Diagnostic::number, error::rate_mismatch)));
+  EXPECT_THAT(found, Contains(::testing::Field(&Diagnostic::number, error::rate_mismatch)));
 }
 
 TEST(Compile, RatesNeedACommonPeriodThatACounterHolds) {

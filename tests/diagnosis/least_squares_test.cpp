@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <limits>
 #include <string>
 
+#include "support/numbers.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Y = K·U + BIAS: linear in both.
 const std::string line =

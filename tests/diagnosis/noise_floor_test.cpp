@@ -11,13 +11,13 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr double sample_time = 0.005;
+constexpr double step = 0.005;
 
 template <class Function>
 std::vector<double> over_time(std::size_t count, const Function& function) {
   std::vector<double> values;
   for (std::size_t k = 0; k < count; ++k) {
-    values.push_back(function(static_cast<double>(k) * sample_time));
+    values.push_back(function(static_cast<double>(k) * step));
   }
   return values;
 }
@@ -32,7 +32,7 @@ std::vector<double> sum(std::vector<double> a, const std::vector<double>& b) {
 std::vector<Experiment> experiment(std::vector<double> input, std::vector<double> output) {
   Experiment one;
   one.drive.steps = output.size();
-  one.drive.sample_time = sample_time;
+  one.drive.sample_time = step;
   one.drive.inputs = {std::move(input)};
   one.measured = {std::move(output)};
   return {one};

@@ -1,9 +1,7 @@
 // The programs of the examples: each runs, leaves its records and its picture, and says so where it cannot draw.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "examples/example.hpp"
 #include "support/text_file.hpp"
 #include "tests/examples/printed.hpp"
+#include "tests/examples/programs.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
@@ -21,13 +20,6 @@ using test::contents_of;
 using test::ScratchFolder;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-const std::string programs = HYSTERON_EXAMPLE_PROGRAMS;
-
-int run(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 
 struct Example {
   const char* program;

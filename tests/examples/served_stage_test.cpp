@@ -1,16 +1,15 @@
 // Example 8 as a user runs it: two processes over Modbus, the record of the run, and what it says of the stage.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "examples/08_served_stage/stage.hpp"
 #include "examples/example.hpp"
 #include "tests/examples/printed.hpp"
+#include "tests/examples/programs.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
@@ -19,13 +18,6 @@ namespace {
 using test::contents_of;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-const std::string programs = HYSTERON_EXAMPLE_PROGRAMS;
-
-int run(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 
 TEST(ServedStage, IsDrivenReplayedAndDiagnosed) {
   const test::ScratchFolder folder;

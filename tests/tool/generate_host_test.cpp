@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+constexpr const char* hosted_plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   VAR_INPUT
     X : LREAL := 1.25;  (* @unit V @min -5 @max 5 *)
     RESET : BOOL;
@@ -123,7 +123,7 @@ std::uint16_t port_in(const std::string& line) {
 
 TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", hosted_plant);
   bench.write("RUN.toml", std::string(safe) + "[retain]\nfolder = \"kept\"\n");
   const auto outcome = bench.shell("hysteron generate plant.st --host --config RUN.toml --out made/here");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -147,7 +147,7 @@ TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
 
 TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", hosted_plant);
   const auto unit = [&](const std::string& rest) {
     bench.write("RUN.toml", safe + rest);
     const auto outcome = bench.shell("hysteron generate plant.st --host --config RUN.toml --out host --force");
@@ -183,7 +183,7 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
 
 TEST(GenerateHost, NothingIsWrittenWhereSomethingIsWrong) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", hosted_plant);
   bench.write("RUN.toml", safe);
   bench.write("unsafe.toml", "[outputs.Y]\nsafe = 0.0\n");
   bench.write("own/main.cpp", "int main() {}\n");
@@ -209,7 +209,7 @@ TEST(GenerateHost, NothingIsWrittenWhereSomethingIsWrong) {
 /// Built once, for all that follows: that takes a minute.
 TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", hosted_plant);
   bench.write("p.toml", "[parameters.HYST]\nC1 = 1.75\n");
   bench.write("RUN.toml", std::string(safe) +
                               "[task]\nscheduling = \"other\"\nlock_memory = false\n[modbus]\nport = 0\n"

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+constexpr const char* drawn_plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   VAR_INPUT
     X : LREAL := 1.0;  (* @unit V *)
     OFF : BOOL;
@@ -55,7 +55,7 @@ std::vector<std::string> names_of(const std::vector<tool::InnerSignal>& signals)
 }
 
 TEST(InnerSignals, AreWhatBlocksAndExpressionsGiveInEveryStep) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(drawn_plant);
   const auto signals = tool::inner_signals(program);
   EXPECT_THAT(names_of(signals), ElementsAre("BACK.XOUT", "BRANCH.Q", "HYST.XIN", "HYST.XOUT", "UP", "WAVE.XOUT"));
   for (const tool::InnerSignal& one : signals) {
@@ -67,7 +67,7 @@ TEST(InnerSignals, AreWhatBlocksAndExpressionsGiveInEveryStep) {
 }
 
 TEST(InnerSignals, HaveTheSameBitsByBothEnginesAndChangeNone) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(drawn_plant);
   const auto signals = tool::inner_signals(program);
   const auto plain = tool::step_program(program, tool::Engine::compiled, false);
   const auto compiled = tool::step_program(program, tool::Engine::compiled, false, signals);
@@ -98,7 +98,7 @@ TEST(InnerSignals, HaveTheSameBitsByBothEnginesAndChangeNone) {
 }
 
 TEST(LiveDiagram, HasAPlaceForEachValue) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(drawn_plant);
   const auto signals = tool::inner_signals(program);
   const std::string svg = tool::live_diagram(program.graph, signals);
   EXPECT_THAT(svg, testing::StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\""));

@@ -14,7 +14,7 @@
 namespace hysteron {
 namespace {
 
-constexpr const char* plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+constexpr const char* served_plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   VAR_INPUT
     X : LREAL := 1.0;  (* @unit V *)
     RESET : BOOL;
@@ -41,7 +41,7 @@ END_FUNCTION_BLOCK
 constexpr const char* run_file = "[outputs.Y]\nsafe = -1.0\n[outputs.SLOW]\nsafe = 0.0\n";
 
 TEST(Serve, BothEnginesGiveTheSameBitsThroughNewParameters) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(served_plant);
   std::vector<std::vector<double>> results;
   for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
     const auto step = tool::step_program(program, engine, false);
@@ -69,7 +69,7 @@ TEST(Serve, BothEnginesGiveTheSameBitsThroughNewParameters) {
 }
 
 TEST(Serve, SavingTheStateAllocatesNothing) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(served_plant);
   for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
     const auto step = tool::step_program(program, engine, false);
     std::vector<std::byte> state(step->state_size());
@@ -85,7 +85,7 @@ TEST(Serve, SavingTheStateAllocatesNothing) {
 }
 
 TEST(Serve, AParameterKeepsTheMemoryOfTheHysteresis) {
-  const Program program = compile_text(plant);
+  const Program program = compile_text(served_plant);
   const auto changed = tool::step_program(program, tool::Engine::interpreter, false);
   const auto plain = tool::step_program(program, tool::Engine::interpreter, false);
   std::vector<double> inputs{1.0, 0.0};
@@ -105,7 +105,7 @@ TEST(Serve, AParameterKeepsTheMemoryOfTheHysteresis) {
 
 TEST(Serve, RunsOnTheVirtualClockAndReplaysToTheBit) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", served_plant);
   bench.write("RUN.toml", std::string(run_file) + "[trace]\nfile = \"run.trace\"\n[retain]\nfolder = \"kept\"\n");
   for (const std::string engine : {"interpreter", "compiled"}) {
     const auto served =
@@ -123,7 +123,7 @@ TEST(Serve, RunsOnTheVirtualClockAndReplaysToTheBit) {
 
 TEST(Serve, GoesOnFromWhatItRetained) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", served_plant);
   bench.write("RUN.toml", std::string(run_file) + "[retain]\nfolder = \"kept\"\n");
   const std::string command = "hysteron serve plant.st --config RUN.toml --virtual --cycles 1000";
   EXPECT_EQ(bench.shell(command).code, 0);
@@ -132,7 +132,7 @@ TEST(Serve, GoesOnFromWhatItRetained) {
 
 TEST(Serve, EndsInSafeOutputsAtSigterm) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", served_plant);
   bench.write("RUN.toml", std::string(run_file) + "[task]\nscheduling = \"other\"\nlock_memory = false\n");
   const auto served = bench.shell("timeout --preserve-status -s TERM 1 hysteron serve plant.st --config RUN.toml");
   EXPECT_EQ(served.code, 0) << served.err;
@@ -142,7 +142,7 @@ TEST(Serve, EndsInSafeOutputsAtSigterm) {
 
 TEST(Serve, PrintsTheMapOfItsPoints) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", served_plant);
   const auto map = bench.shell("hysteron map plant.st --format csv");
   EXPECT_EQ(map.code, 0) << map.err;
   for (const char* const name :
@@ -153,7 +153,7 @@ TEST(Serve, PrintsTheMapOfItsPoints) {
 
 TEST(Serve, RefusesAnOutputWithoutASafeValueAtItsPlace) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", served_plant);
   bench.write("RUN.toml", "[outputs.Y]\nsafe = 0.0\n");
   const auto served = bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 10");
   EXPECT_EQ(served.code, 2);
@@ -175,7 +175,7 @@ TEST(Serve, ErrorPagesKeepTheirWord) {
       "  VAR A : HY_GAIN := (K := 2.0); END_VAR\n  A(XIN := X);\n  Y := A.XOUT;\nEND_FUNCTION_BLOCK\n";
   for (const int number : {811, 812, 840, 841, 842, 843, 844}) {
     const test::Workbench bench;
-    bench.write("plant.st", plant);
+    bench.write("plant.st", served_plant);
     bench.write("RUN.toml", std::string(run_file) + "[retain]\nfolder = \"of_another_diagram\"\n");
     EXPECT_EQ(bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 10").code, 0);
     bench.write("plant.st", small);

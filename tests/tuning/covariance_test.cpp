@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A linear model r = A·x − b as a finished fit.
 LeastSquaresResult linear_fit(const MatrixXd& a, const VectorXd& b) {

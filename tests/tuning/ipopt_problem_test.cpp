@@ -8,19 +8,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <stdexcept>
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 VectorXd vector(std::initializer_list<double> values) {
   VectorXd result(static_cast<Eigen::Index>(values.size()));
@@ -311,11 +309,11 @@ TEST(LeastSquares, InputsThatCannotBeFittedAreErrors) {
   problem.upper = vector({1.0, -1.0, 1.0});
   EXPECT_EQ(error_number(problem), error::no_room_in_bounds);
   problem = bowl();
-  problem.start[1] = std::numeric_limits<double>::quiet_NaN();
+  problem.start[1] = not_a_number;
   EXPECT_EQ(error_number(problem), error::no_room_in_bounds);
   problem = bowl();
   problem.evaluate = [](const VectorXd&, VectorXd& r, MatrixXd*) {
-    r.setConstant(std::numeric_limits<double>::quiet_NaN());
+    r.setConstant(not_a_number);
     return true;
   };
   EXPECT_EQ(error_number(problem), error::start_without_value);
@@ -337,9 +335,9 @@ TEST(LeastSquares, NoOptionFileIsReadAndNothingIsPrinted) {
   std::filesystem::create_directories(directory);
   std::ofstream(directory / "ipopt.opt") << "max_iter 1\nprint_level 5\n";
   std::filesystem::current_path(directory);
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   const LeastSquaresResult fit = solve(relaxation(1.0, 1.0));
-  const std::string printed = testing::internal::GetCapturedStdout();
+  const std::string printed = ::testing::internal::GetCapturedStdout();
   std::filesystem::current_path(before);
   std::filesystem::remove_all(directory);
   EXPECT_EQ(fit.status, FitStatus::Converged);

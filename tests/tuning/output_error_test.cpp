@@ -24,7 +24,7 @@ namespace {
 using Eigen::Index;
 using namespace output_error_diagrams;
 using records::Record;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
@@ -109,7 +109,7 @@ Case axis_case() {
           {0.5, 0.01}};
 }
 
-class OutputErrorCases : public testing::TestWithParam<Case (*)()> {};
+class OutputErrorCases : public ::testing::TestWithParam<Case (*)()> {};
 
 TEST_P(OutputErrorCases, FindsTheTruthWithoutNoise) {
   const Case one = GetParam()();
@@ -179,7 +179,7 @@ TEST_P(OutputErrorCases, DualRolloutHasThePlainValuesAndTheSlopesOfDifferences) 
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Diagrams, OutputErrorCases, testing::Values(&stack_case, &oven_case, &axis_case));
+INSTANTIATE_TEST_SUITE_P(Diagrams, OutputErrorCases, ::testing::Values(&stack_case, &oven_case, &axis_case));
 
 /// More unknowns than one pass of dual numbers has: ten gains, each on an input of its own frequency.
 TEST(OutputError, MoreParametersThanOnePassHolds) {
@@ -313,7 +313,7 @@ END_FUNCTION_BLOCK
   const Record record = measured(truth, inputs("x", 0.001, 100, [](double t) { return std::sin(90.0 * t); }), {0.01});
   const auto fit = fit_output_error(problem_of(text, "[fit.FIRST]\nK = {}\n[fit.SECOND]\nK = {}\n", {record}));
   EXPECT_NEAR(fit.solution.x[0] * fit.solution.x[1], 6.0, 0.02);
-  EXPECT_THAT(fit.covariance.warnings, testing::Contains(HasSubstr("cannot be told apart by this record")));
+  EXPECT_THAT(fit.covariance.warnings, ::testing::Contains(HasSubstr("cannot be told apart by this record")));
   EXPECT_TRUE(std::isinf(fit.covariance.standard_errors[0]));
 }
 

@@ -16,7 +16,7 @@
 namespace hysteron {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr StaticMap truth{0.05, 1.3, 1.7};
 

@@ -13,6 +13,7 @@
 
 #include "runtime/web/server.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/soon.hpp"
 #include "tests/web/web_client.hpp"
 
 namespace hysteron::runtime::web {
@@ -25,13 +26,6 @@ constexpr Limits quick{.request = milliseconds(300),
                        .answer = milliseconds(1000),
                        .unread = milliseconds(300),
                        .interval = milliseconds(2)};
-
-bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 4000 && !holds(); ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return holds();
-}
 
 std::size_t descriptors() {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
@@ -46,8 +40,8 @@ std::size_t resident() {
   return held * 4;
 }
 
-struct Bench {
-  explicit Bench(Limits limits = quick)
+struct HostileBench {
+  explicit HostileBench(Limits limits = quick)
       : server(door, {.name = "T", .period = 1'000'000},
                {.endpoint = parse_endpoint("127.0.0.1:0"), .limits = limits}) {}
   /// A client in good faith: a connection, a request, the answer.
@@ -78,7 +72,7 @@ class Page {
   /// Further values come.
   [[nodiscard]] bool goes_on() const {
     const std::uint64_t before = frames_;
-    return soon([&] { return frames_ > before + 1 || !is_open_; }) && is_open_;
+    return test::soon([&] { return frames_ > before + 1 || !is_open_; }) && is_open_;
   }
 
  private:
@@ -90,7 +84,7 @@ class Page {
 };
 
 TEST(WebHostile, ASlowSenderLosesItsConnectionAtTheDeadline) {
-  const Bench bench;
+  const HostileBench bench;
   std::vector<std::unique_ptr<WebClient>> slow;
   for (int i = 0; i < 20; ++i) {
     slow.push_back(std::make_unique<WebClient>(bench.server.port()));
@@ -106,13 +100,13 @@ TEST(WebHostile, ASlowSenderLosesItsConnectionAtTheDeadline) {
   for (const auto& client : slow) {
     EXPECT_TRUE(client->socket().sees_the_end()) << "its bytes came in time, its request did not";
   }
-  EXPECT_TRUE(soon([&] { return bench.server.status().open == 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0; }));
 }
 
 TEST(WebHostile, AThousandConnectionsLeaveRoomAndNothingBehind) {
-  const Bench bench;
+  const HostileBench bench;
   EXPECT_EQ(bench.victim(), 200);
-  EXPECT_TRUE(soon([&] { return bench.server.status().open == 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0; }));
   const std::size_t before = descriptors();
   {
     std::vector<std::unique_ptr<WebClient>> many;
@@ -123,10 +117,10 @@ TEST(WebHostile, AThousandConnectionsLeaveRoomAndNothingBehind) {
         EXPECT_LE(bench.server.status().open, 32U);
       }
     }
-    EXPECT_TRUE(soon([&] { return bench.server.status().accepted >= 1000; }));
+    EXPECT_TRUE(test::soon([&] { return bench.server.status().accepted >= 1000; }));
     EXPECT_GT(bench.server.status().gave_way, 0U) << "the oldest that owe a request give way";
   }
-  EXPECT_TRUE(soon([&] { return bench.server.status().open == 0 && descriptors() == before; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0 && descriptors() == before; }));
 }
 
 /// All places are taken by streams and by clients that are being answered: then a newcomer is refused, and no stream
@@ -134,7 +128,7 @@ TEST(WebHostile, AThousandConnectionsLeaveRoomAndNothingBehind) {
 TEST(WebHostile, StreamsDoNotGiveWay) {
   Limits limits = quick;
   limits.connections = 4;
-  const Bench bench(limits);
+  const HostileBench bench(limits);
   std::vector<std::unique_ptr<Page>> streams;
   for (int i = 0; i < 4; ++i) {
     streams.push_back(std::make_unique<Page>(bench.server.port()));
@@ -150,7 +144,7 @@ TEST(WebHostile, StreamsDoNotGiveWay) {
 }
 
 TEST(WebHostile, AStreamThatDoesNotReadLosesValuesThenItsPlace) {
-  const Bench bench;
+  const HostileBench bench;
   std::vector<std::unique_ptr<WebClient>> deaf;
   for (int i = 0; i < 8; ++i) {
     deaf.push_back(std::make_unique<WebClient>(bench.server.port()));
@@ -158,18 +152,18 @@ TEST(WebHostile, AStreamThatDoesNotReadLosesValuesThenItsPlace) {
     ASSERT_EQ(deaf.back()->open_stream(), 101);
   }
   const Page reader(bench.server.port());
-  EXPECT_TRUE(soon([&] { return bench.server.status().dropped > 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().dropped > 0; }));
   const std::size_t held = resident();
-  EXPECT_TRUE(soon([&] { return bench.server.status().unread == 8; })) << bench.server.status().unread;
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().unread == 8; })) << bench.server.status().unread;
   EXPECT_TRUE(reader.goes_on());
-  EXPECT_TRUE(soon([&] { return bench.server.status().streams == 1; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().streams == 1; }));
   EXPECT_LT(resident(), held + 8 * 1024) << "KiB: what is not read is dropped, and queued nowhere";
 }
 
 TEST(WebHostile, AStreamThatAnswersNoPingEnds) {
   Limits limits = quick;
   limits.silence = milliseconds(400);
-  const Bench bench(limits);
+  const HostileBench bench(limits);
   const WebClient mute(bench.server.port());
   ASSERT_EQ(mute.open_stream(), 101);
   EXPECT_TRUE(mute.socket().sees_the_end()) << "it reads, and says nothing";
@@ -183,7 +177,7 @@ struct BadFrame {
 class WebHostileFrames : public ::testing::TestWithParam<BadFrame> {};
 
 TEST_P(WebHostileFrames, EndTheirStreamAndNoOther) {
-  const Bench bench;
+  const HostileBench bench;
   const Page other(bench.server.port());
   for (int i = 0; i < 10; ++i) {
     const WebClient bad(bench.server.port());
@@ -222,7 +216,7 @@ struct BadRequest {
 class WebHostileRequests : public ::testing::TestWithParam<BadRequest> {};
 
 TEST_P(WebHostileRequests, AreAnsweredAndEnd) {
-  const Bench bench;
+  const HostileBench bench;
   for (int i = 0; i < 20; ++i) {
     const WebClient bad(bench.server.port());
     (void)bad.send(GetParam().text);
@@ -232,7 +226,7 @@ TEST_P(WebHostileRequests, AreAnsweredAndEnd) {
     EXPECT_TRUE(bad.socket().sees_the_end());
     EXPECT_EQ(bench.victim(), 200);
   }
-  EXPECT_TRUE(soon([&] { return bench.server.status().open == 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0; }));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -264,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& request) { return std::string(request.param.name); });
 
 TEST(WebHostile, RandomBytesHarmNobody) {
-  const Bench bench;
+  const HostileBench bench;
   std::mt19937 random(7);
   const Page other(bench.server.port());
   for (int i = 0; i < 100; ++i) {
@@ -278,7 +272,7 @@ TEST(WebHostile, RandomBytesHarmNobody) {
     ASSERT_TRUE(other.goes_on());
   }
   EXPECT_EQ(bench.victim(), 200);
-  EXPECT_TRUE(soon([&] { return bench.server.status().open == 1; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 1; }));
 }
 
 }  // namespace

@@ -26,7 +26,6 @@ constexpr std::uint64_t warm_up = 500;
 constexpr std::uint64_t cycles = 2000;
 constexpr std::uint64_t longest = 60'000;  // cycles, on a machine that has no time for the clients
 constexpr int pages = 10;
-const std::string authorized = "Authorization: Bearer 0123456789abcdef\r\n";
 
 struct Traffic {
   std::atomic<std::uint64_t> frames{0};
@@ -68,8 +67,8 @@ LoopStatistics run_task(Traffic& traffic, const std::function<bool(std::uint64_t
     const hysteron::test::WebClient hand(server.port());
     for (int value = 1; !done.load(); ++value) {
       const std::string set = "{\"G.A\": " + std::to_string(value) + ", \"G.B\": " + std::to_string(-value) + "}";
-      if (hand.ask("POST", "/api/stage", authorized, set).status == 200 &&
-          hand.ask("POST", "/api/commit", authorized).status == 200) {
+      if (hand.ask("POST", "/api/stage", test::authorized, set).status == 200 &&
+          hand.ask("POST", "/api/commit", test::authorized).status == 200) {
         ++traffic.commits;
       }
     }

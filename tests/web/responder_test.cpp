@@ -10,18 +10,19 @@
 #include "runtime/task/task_door.hpp"
 #include "runtime/web/assets.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/web/web_client.hpp"
 
 namespace hysteron::runtime::web {
 namespace {
 
 using nlohmann::json;
 
-constexpr const char* token = "0123456789abcdef";
 constexpr const char* bearer = "Bearer 0123456789abcdef";
 
 /// G.A from -1e9 to 1e9, in mm; both parameters only with a sum of 0.
-struct Bench {
-  explicit Bench(Access access) : responder(door, {.name = "ACCUMULATOR", .period = 1'000'000}, std::move(access)) {}
+struct PageBench {
+  explicit PageBench(Access access)
+      : responder(door, {.name = "ACCUMULATOR", .period = 1'000'000}, std::move(access)) {}
 
   static const test::Accumulator& with_unit(test::Accumulator& program) {
     program.mutable_shape().parameters[0].unit = "mm";
@@ -55,7 +56,7 @@ struct Bench {
 };
 
 TEST(WebResponder, DescribesWhatThereIsToBeSeen) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   const Answer answer = bench.get("/api/description");
   EXPECT_EQ(answer.status, 200U);
   const json about = json::parse(answer.body);
@@ -73,7 +74,7 @@ TEST(WebResponder, DescribesWhatThereIsToBeSeen) {
 }
 
 TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {
-  Bench bench({});
+  PageBench bench({});
   const std::vector<double> inputs{0.1};
   const std::vector<double> outputs{1.0 / 3.0, std::numeric_limits<double>::quiet_NaN()};
   LoopStatistics statistics;
@@ -89,7 +90,7 @@ TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {
 }
 
 TEST(WebResponder, ASetIsStagedThenCommittedWhole) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2.5, "G.B": -2.5})").status, 200U);
   EXPECT_EQ(bench.staged().size(), 2U);
   EXPECT_EQ(bench.door.take_orders()->commits, 0U) << "staged values reach no step";
@@ -105,7 +106,7 @@ TEST(WebResponder, ASetIsStagedThenCommittedWhole) {
 }
 
 TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.B": 1, "G.A": 2e9})"),
             "G.A must be at most 1000000000 mm; 2000000000 was given.");
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": -2e9})"),
@@ -132,7 +133,7 @@ TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
 }
 
 TEST(WebResponder, WithoutATokenFileEverythingIsReadOnly) {
-  Bench bench({});
+  PageBench bench({});
   for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
     EXPECT_EQ(bench.post(target, R"({"G.A": 2})").status, 403U);
     EXPECT_EQ(bench.post(target, R"({"G.A": 2})", "Bearer ").status, 403U);
@@ -142,7 +143,7 @@ TEST(WebResponder, WithoutATokenFileEverythingIsReadOnly) {
 }
 
 TEST(WebResponder, WhoWritesHasTheToken) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
     for (const char* const wrong : {"", "Bearer ", "Bearer 0123456789abcdeg", "0123456789abcdef"}) {
       EXPECT_EQ(bench.post(target, R"({"G.A": 2})", wrong).status, 401U);
@@ -153,7 +154,7 @@ TEST(WebResponder, WhoWritesHasTheToken) {
 }
 
 TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
-  Bench bench({.is_loopback = false, .token = token});
+  PageBench bench({.is_loopback = false, .token = test::token});
   for (const char* const target : {"/api/description", "/api/values"}) {
     EXPECT_EQ(bench.get(target).status, 401U);
     EXPECT_EQ(bench.get(target).body.find("ACCUMULATOR"), std::string::npos);
@@ -163,7 +164,7 @@ TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
 }
 
 TEST(WebResponder, PagesOfOthersMayNotAsk) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   for (const char* const target : {"/", "/api/values", "/api/description"}) {
     EXPECT_EQ(bench.responder.answer({.method = "GET", .target = target, .host = "evil.example"}).status, 421U);
     EXPECT_EQ(bench.responder
@@ -182,7 +183,7 @@ TEST(WebResponder, PagesOfOthersMayNotAsk) {
 }
 
 TEST(WebResponder, WhatIsNotThereIsNotFound) {
-  Bench bench({.token = token});
+  PageBench bench({.token = test::token});
   EXPECT_EQ(bench.get("/nothing").status, 404U);
   EXPECT_EQ(bench.get("/../etc/passwd").status, 404U);
   EXPECT_EQ(bench.get("/api/stage").status, 404U);

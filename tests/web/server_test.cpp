@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "support/errors.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/soon.hpp"
 #include "tests/web/web_client.hpp"
 
 namespace hysteron::runtime::web {
@@ -19,19 +18,10 @@ using test::WebClient;
 using test::WebFrame;
 using test::WebReply;
 
-constexpr const char* token = "0123456789abcdef";
-const std::string authorized = "Authorization: Bearer 0123456789abcdef\r\n";
-
-struct Bench {
-  explicit Bench(Limits limits = {}, Access access = {.token = token})
+struct PageServerBench {
+  explicit PageServerBench(Limits limits = {}, Access access = {.token = test::token})
       : server(door, {.name = "T", .period = 1'000'000},
                {.endpoint = parse_endpoint("127.0.0.1:0"), .access = std::move(access), .limits = limits}) {}
-  static bool soon(const std::function<bool()>& holds) {
-    for (int i = 0; i < 4000 && !holds(); ++i) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return holds();
-  }
   test::MemoryDoor door{{{.name = "Y", .kind = PointKind::output, .unit = "um"},
                          {.name = "K", .kind = PointKind::parameter, .low = 0.0, .high = 9.0, .writable = true},
                          {.name = "task.commit", .kind = PointKind::command, .writable = true}}};
@@ -39,7 +29,7 @@ struct Bench {
 };
 
 TEST(WebServer, GivesThePageWithItsPolicy) {
-  const Bench bench;
+  const PageServerBench bench;
   const WebClient client(bench.server.port());
   for (const auto& [target, type, text] : {std::tuple{"/", "text/html", "<!DOCTYPE html>"},
                                            {"/page.js", "text/javascript", "use strict"},
@@ -59,13 +49,13 @@ TEST(WebServer, GivesThePageWithItsPolicy) {
 }
 
 TEST(WebServer, StagesAndCommitsForWhoHasTheToken) {
-  Bench bench;
+  PageServerBench bench;
   const WebClient client(bench.server.port());
-  EXPECT_EQ(client.ask("POST", "/api/stage", authorized, R"({"K": 4.5})").status, 200);
+  EXPECT_EQ(client.ask("POST", "/api/stage", test::authorized, R"({"K": 4.5})").status, 200);
   EXPECT_EQ(bench.door.value(1), 4.5);
-  EXPECT_EQ(client.ask("POST", "/api/commit", authorized).status, 200);
+  EXPECT_EQ(client.ask("POST", "/api/commit", test::authorized).status, 200);
   EXPECT_EQ(bench.door.value(2), 1.0);
-  const WebReply refused = client.ask("POST", "/api/stage", authorized, R"({"K": 10})");
+  const WebReply refused = client.ask("POST", "/api/stage", test::authorized, R"({"K": 10})");
   EXPECT_EQ(refused.status, 422);
   EXPECT_EQ(json::parse(refused.body)["refusal"], "K must be at most 9; 10 was given.");
   const WebReply stranger = client.ask("POST", "/api/stage", "", R"({"K": 1})");
@@ -73,11 +63,12 @@ TEST(WebServer, StagesAndCommitsForWhoHasTheToken) {
   EXPECT_EQ(stranger.headers.at("WWW-Authenticate"), "Bearer");
   EXPECT_EQ(bench.door.value(1), 4.5);
   bench.door.refuse("not while the machine moves.");
-  EXPECT_EQ(json::parse(client.ask("POST", "/api/commit", authorized).body)["refusal"], "not while the machine moves.");
+  EXPECT_EQ(json::parse(client.ask("POST", "/api/commit", test::authorized).body)["refusal"],
+            "not while the machine moves.");
 }
 
 TEST(WebServer, StreamsTheValues) {
-  Bench bench({.interval = milliseconds(5)});
+  PageServerBench bench({.interval = milliseconds(5)});
   bench.door.set(0, 0.1);
   const WebClient client(bench.server.port());
   ASSERT_EQ(client.open_stream(), 101);
@@ -94,11 +85,11 @@ TEST(WebServer, StreamsTheValues) {
   EXPECT_EQ(bench.server.status().streams, 1U);
   client.send_frame(8, std::string("\x03\xe8", 2));
   EXPECT_TRUE(client.socket().sees_the_end());
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0; }));
 }
 
 TEST(WebServer, BeyondTheLoopbackAStreamBeginsWithTheToken) {
-  Bench bench({.interval = milliseconds(5)}, {.is_loopback = false, .token = token});
+  PageServerBench bench({.interval = milliseconds(5)}, {.is_loopback = false, .token = test::token});
   const WebClient silent(bench.server.port(), milliseconds(200));
   ASSERT_EQ(silent.open_stream(), 101);
   EXPECT_FALSE(silent.frame()) << "nothing is shown before the token is";
@@ -111,24 +102,24 @@ TEST(WebServer, BeyondTheLoopbackAStreamBeginsWithTheToken) {
   EXPECT_EQ(farewell->payload.substr(0, 2), std::string("\x03\xf0", 2)) << "1008, against the policy";
   const WebClient right(bench.server.port());
   ASSERT_EQ(right.open_stream(), 101);
-  right.send_frame(1, token);
+  right.send_frame(1, test::token);
   const auto frame = right.frame();
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->opcode, 1U);
   const WebClient reader(bench.server.port());
   EXPECT_EQ(reader.ask("GET", "/api/values").status, 401);
-  EXPECT_EQ(reader.ask("GET", "/api/values", authorized).status, 200);
+  EXPECT_EQ(reader.ask("GET", "/api/values", test::authorized).status, 200);
 }
 
 TEST(WebServer, AForeignPageGetsNoStream) {
-  const Bench bench;
+  const PageServerBench bench;
   EXPECT_EQ(WebClient(bench.server.port()).open_stream("Origin: http://evil.example\r\n"), 403);
   const std::string port = std::to_string(bench.server.port());
   EXPECT_EQ(WebClient(bench.server.port()).open_stream("Origin: http://127.0.0.1:" + port + "\r\n"), 101);
 }
 
 TEST(WebServer, TheSeventeenthStreamIsTold) {
-  Bench bench;
+  PageServerBench bench;
   std::vector<std::unique_ptr<WebClient>> streams;
   for (int i = 0; i < 16; ++i) {
     streams.push_back(std::make_unique<WebClient>(bench.server.port()));
@@ -137,16 +128,16 @@ TEST(WebServer, TheSeventeenthStreamIsTold) {
   }
   EXPECT_EQ(WebClient(bench.server.port()).open_stream(), 503);
   streams.pop_back();
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().streams == 15; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().streams == 15; }));
   EXPECT_EQ(WebClient(bench.server.port()).open_stream(), 101);
 }
 
 TEST(WebServer, APortInUseIsAnErrorWithItsNumber) {
-  Bench bench;
+  PageServerBench bench;
   try {
     const Server second(
         bench.door, {},
-        {.endpoint = {.address = "127.0.0.1", .port = bench.server.port()}, .access = {.token = token}});
+        {.endpoint = {.address = "127.0.0.1", .port = bench.server.port()}, .access = {.token = test::token}});
     FAIL();
   } catch (const InputError& refused) {
     EXPECT_EQ(refused.diagnostics().all().front().number, error::port_in_use);

@@ -12,6 +12,9 @@
 
 namespace hysteron::test {
 
+inline constexpr const char* token = "0123456789abcdef";
+inline const std::string authorized = std::string("Authorization: Bearer ") + token + "\r\n";
+
 struct WebReply {
   int status = 0;  ///< 0: none came
   std::map<std::string, std::string> headers{};

@@ -50,7 +50,7 @@ TEST(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
   if (!has_browser()) {
     GTEST_SKIP() << no_browser;
   }
-  const Shown rich = shown(report_page(test::rich_diagnosis(), test::rich_program()));
+  const Shown rich = shown(report_page(fixture::rich_diagnosis(), fixture::rich_program()));
   expect_no_fault(rich);
   EXPECT_THAT(rich.page, HasSubstr("data-figures=\"10\""));  // the first trace, eight maps, the command
   for (const char* text : {"Residual, model − measured", "time since branch [s]", "mean explains 61 %", "REF [um]"}) {
@@ -66,13 +66,13 @@ TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
     GTEST_SKIP() << no_browser;
   }
   expect_no_fault(shown(report_page({}, {})));
-  expect_no_fault(shown(report_page(test::refused_diagnosis(), test::rich_program())));
-  Diagnosis odd = test::rich_diagnosis(1);  // one sample, no models, maps without places
+  expect_no_fault(shown(report_page(fixture::refused_diagnosis(), fixture::rich_program())));
+  Diagnosis odd = fixture::rich_diagnosis(1);  // one sample, no models, maps without places
   odd.traces[0].improved.clear();
   odd.traces[0].calibrated.clear();
   odd.traces[0].nominal.clear();
   odd.maps[0] = {.over = "nothing"};
-  expect_no_fault(shown(report_page(odd, test::rich_program())));
+  expect_no_fault(shown(report_page(odd, fixture::rich_program())));
 }
 
 /// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
@@ -97,7 +97,7 @@ TEST(ReportInBrowser, ADragZoomsAndADoubleClickResets) {
   if (!has_browser()) {
     GTEST_SKIP() << no_browser;
   }
-  const Shown zoomed = shown(report_page(test::rich_diagnosis(), test::rich_program()), R"(
+  const Shown zoomed = shown(report_page(fixture::rich_diagnosis(), fixture::rich_program()), R"(
     const host = document.getElementById("trace-0");
     const times = () => [...host.querySelectorAll("svg text")].map(text => text.textContent);
     const send = (name, share) => {

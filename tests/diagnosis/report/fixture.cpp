@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hysteron::diagnosis::test {
+namespace hysteron::diagnosis::fixture {
 namespace {
 
 constexpr const char* diagram = R"st(
@@ -206,4 +206,4 @@ Diagnosis refused_diagnosis() {
   return found;
 }
 
-}  // namespace hysteron::diagnosis::test
+}  // namespace hysteron::diagnosis::fixture

@@ -3,7 +3,7 @@
 
 #include "diagnosis/diagnosis.hpp"
 
-namespace hysteron::diagnosis::test {
+namespace hysteron::diagnosis::fixture {
 
 /// A piezo axis in a loop, with the effects of `rich_diagnosis` in it: a nested block, feedback, expressions.
 [[nodiscard]] Program rich_program();
@@ -14,4 +14,4 @@ namespace hysteron::diagnosis::test {
 /// Nothing but reasons why a record was refused.
 [[nodiscard]] Diagnosis refused_diagnosis();
 
-}  // namespace hysteron::diagnosis::test
+}  // namespace hysteron::diagnosis::fixture

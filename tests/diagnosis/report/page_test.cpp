@@ -52,7 +52,7 @@ std::string data_of(const std::string& page) {
 }
 
 TEST(ReportPage, NeedsNothingBesideItself) {
-  const std::string page = report_page(test::rich_diagnosis(), test::rich_program());
+  const std::string page = report_page(fixture::rich_diagnosis(), fixture::rich_program());
   EXPECT_THAT(page, Not(HasSubstr("http://")));
   EXPECT_THAT(page, Not(HasSubstr("https://")));
   EXPECT_THAT(page, Not(HasSubstr(" src=")));
@@ -62,14 +62,14 @@ TEST(ReportPage, NeedsNothingBesideItself) {
 }
 
 TEST(ReportPage, TagsAreBalancedInRichEmptyAndRefusedPages) {
-  EXPECT_EQ(unbalanced(report_page(test::rich_diagnosis(), test::rich_program())), "");
-  EXPECT_EQ(unbalanced(report_page(test::refused_diagnosis(), test::rich_program())), "");
+  EXPECT_EQ(unbalanced(report_page(fixture::rich_diagnosis(), fixture::rich_program())), "");
+  EXPECT_EQ(unbalanced(report_page(fixture::refused_diagnosis(), fixture::rich_program())), "");
   EXPECT_EQ(unbalanced(report_page({}, {})), "");
   EXPECT_EQ(unbalanced("<p><b>x</p></b>"), "</p> closes b");
 }
 
 TEST(ReportPage, SaysTheVerdictTheEffectsAndTheGap) {
-  const std::string page = report_page(test::rich_diagnosis(), test::rich_program());
+  const std::string page = report_page(fixture::rich_diagnosis(), fixture::rich_program());
   for (const char* text :
        {"Creep of the stage explains two thirds", "86 %</strong> confidence", "on PLANT.HYST.XOUT", "0.0198 … 0.0223",
         "gentler reference", "1.83 um", "0.842 um", "0.0192 um", "floor 0.0161 um", "97 % (95 % … 98 %)",
@@ -80,11 +80,11 @@ TEST(ReportPage, SaysTheVerdictTheEffectsAndTheGap) {
 }
 
 TEST(ReportPage, SaysWhichPartTheGapBelongsTo) {
-  Diagnosis found = test::rich_diagnosis();
+  Diagnosis found = fixture::rich_diagnosis();
   found.split = {.input_output = 0.25, .plant = 0.7, .open = 0.05};
   found.cuts = {{.signal = "AMP_XOUT_MEASURED", .agrees = true}};
   found.controller = ControllerFinding{.steps = 600, .outputs = {{.name = "U", .unit = "V", .limited_rms = 0.5}}};
-  const std::string page = report_page(found, test::rich_program());
+  const std::string page = report_page(found, fixture::rich_program());
   EXPECT_THAT(page, HasSubstr("Which part"));
   EXPECT_THAT(page, HasSubstr("none: 600 steps replayed, the same bits; limits and safe values change U by 0.5 V RMS"));
   EXPECT_THAT(page, HasSubstr("25 %"));
@@ -93,7 +93,7 @@ TEST(ReportPage, SaysWhichPartTheGapBelongsTo) {
 }
 
 TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
-  const std::string page = report_page(test::refused_diagnosis(), test::rich_program());
+  const std::string page = report_page(fixture::refused_diagnosis(), fixture::rich_program());
   EXPECT_THAT(page, HasSubstr("Record refused"));
   EXPECT_THAT(page, HasSubstr("nothing was excited"));
   EXPECT_THAT(page, Not(HasSubstr("</strong> confidence")));
@@ -102,7 +102,7 @@ TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
 
 TEST(ReportPage, NamesOfAnyKindAreEscaped) {
   const std::string evil = "</script><img onerror=\"x\">&'";
-  Diagnosis found = test::rich_diagnosis(50);
+  Diagnosis found = fixture::rich_diagnosis(50);
   found.summary = found.warnings[0] = found.effects[0].edge = found.effects[0].same_edges[0] = evil;
   found.effects[0].parameters[0].name = found.effects[0].parameters[0].unit = evil;
   found.rivals[0].effects[0] = found.rivals[0].edges[0] = found.edges[0].edge = found.edges[0].group[0] = evil;
@@ -111,7 +111,7 @@ TEST(ReportPage, NamesOfAnyKindAreEscaped) {
   found.next.title = found.next.reason = found.next.input = found.next.steps[0].first = evil;
   found.traces[0].record = found.traces[0].signal = found.traces[0].unit = evil;
   found.calibration[0].name = found.calibration[0].unit = evil;
-  const std::string page = report_page(found, test::rich_program());
+  const std::string page = report_page(found, fixture::rich_program());
   EXPECT_THAT(page, Not(HasSubstr("<img")));
   EXPECT_EQ(unbalanced(page), "");
   const nlohmann::json data = nlohmann::json::parse(data_of(page));
@@ -120,8 +120,8 @@ TEST(ReportPage, NamesOfAnyKindAreEscaped) {
 }
 
 TEST(ReportPage, TheDataAreTheTracesAsResiduals) {
-  const Diagnosis found = test::rich_diagnosis(200);
-  const nlohmann::json data = nlohmann::json::parse(data_of(report_page(found, test::rich_program())));
+  const Diagnosis found = fixture::rich_diagnosis(200);
+  const nlohmann::json data = nlohmann::json::parse(data_of(report_page(found, fixture::rich_program())));
   ASSERT_EQ(data["traces"].size(), found.traces.size());
   ASSERT_EQ(data["traces"][0]["improved"].size(), 200U);
   EXPECT_EQ(data["traces"][0]["time"]["count"], 200);
@@ -133,13 +133,13 @@ TEST(ReportPage, TheDataAreTheTracesAsResiduals) {
 }
 
 TEST(ReportPage, WhatIsNotFiniteIsNullOrADash) {
-  Diagnosis found = test::rich_diagnosis(50);
+  Diagnosis found = fixture::rich_diagnosis(50);
   found.traces[0].improved[3] = std::nan("");
   found.traces[0].time[7] = 0.0071;  // no longer even
   found.effects[0].parameters[0].low = -INFINITY;
   found.effects[0].parameters[0].high = INFINITY;
   found.rivals[1].improved_rms = std::nan("");
-  const std::string page = report_page(found, test::rich_program());
+  const std::string page = report_page(found, fixture::rich_program());
   const nlohmann::json data = nlohmann::json::parse(data_of(page));
   EXPECT_TRUE(data["traces"][0]["improved"][3].is_null());
   EXPECT_DOUBLE_EQ(data["traces"][0]["time"]["values"][7], 0.0071);

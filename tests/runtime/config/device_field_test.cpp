@@ -6,14 +6,14 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
 
-#include "runtime/modbus/listen.hpp"
 #include "runtime/modbus/server.hpp"
+#include "tests/runtime/modbus/free_port.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -21,21 +21,10 @@ namespace {
 using modbus::Quality;
 using std::chrono::milliseconds;
 
-bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 15'000 && !holds(); ++i) {
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  return holds();
-}
-
-std::uint16_t free_port() {
-  return modbus::port_of(modbus::listen_on("127.0.0.1", 0, {}));
-}
-
 /// Our own server as the device: it gives X in input registers and takes Y in holding registers.
-class Stage {
+class ServedDevice {
  public:
-  explicit Stage(std::uint16_t port) : port_(port) {}
+  explicit ServedDevice(std::uint16_t port) : port_(port) {}
   void start() {
     server_ = std::make_unique<modbus::Server>(modbus::make_register_map(door_.points(), {}), door_,
                                                modbus::ServerOptions{.port = port_});
@@ -77,13 +66,13 @@ constexpr double good = static_cast<double>(Quality::good);
 constexpr double lost = static_cast<double>(Quality::lost);
 
 TEST(DeviceField, ALossIsAFaultUntilTheDeviceIsBack) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.give(0.25);
   DeviceField field(config_of(port), false);
   Inputs inputs{7.0};
   const auto reads = [&](Fault fault) {
-    return soon([&] {
+    return test::soon([&] {
       field.write(std::array{0.5});
       return field.read(inputs) == fault;
     });
@@ -94,7 +83,7 @@ TEST(DeviceField, ALossIsAFaultUntilTheDeviceIsBack) {
     stage.start();
     EXPECT_TRUE(reads(Fault::none));
     EXPECT_EQ(inputs[0], 0.25);
-    EXPECT_TRUE(soon([&] {
+    EXPECT_TRUE(test::soon([&] {
       (void)field.read(inputs);
       return inputs[2] == good && inputs[3] == good && stage.taken() == 0.5;
     }));
@@ -107,8 +96,8 @@ TEST(DeviceField, ALossIsAFaultUntilTheDeviceIsBack) {
 }
 
 TEST(DeviceField, AValueThatIsReadAgainAndAgainNeverBecomesStale) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   DeviceField field(config_of(port), false);
   Inputs inputs{};
@@ -116,32 +105,32 @@ TEST(DeviceField, AValueThatIsReadAgainAndAgainNeverBecomesStale) {
     field.write(std::array{0.5});
     return field.read(inputs) == Fault::none;
   };
-  ASSERT_TRUE(soon(is_well));
+  ASSERT_TRUE(test::soon(is_well));
   std::this_thread::sleep_for(milliseconds(300));  // beyond the longest age
-  EXPECT_TRUE(soon(is_well));
+  EXPECT_TRUE(test::soon(is_well));
   EXPECT_EQ(config_of(port).task.inputs[0].longest_age, 0U) << "cycles since a server's write do not count here";
 }
 
 TEST(DeviceField, WhereTheDiagramLooksAfterItALossIsNoFault) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   DeviceField field(config_of(port, "keep"), false);
   Inputs inputs{};
   EXPECT_EQ(field.read(inputs), Fault::none);
-  EXPECT_TRUE(soon([&] { return field.read(inputs) == Fault::none && inputs[2] == good; }));
+  EXPECT_TRUE(test::soon([&] { return field.read(inputs) == Fault::none && inputs[2] == good; }));
   stage.stop();
-  EXPECT_TRUE(soon([&] { return field.read(inputs) == Fault::none && inputs[2] == lost && inputs[1] > 0.3; }));
+  EXPECT_TRUE(test::soon([&] { return field.read(inputs) == Fault::none && inputs[2] == lost && inputs[1] > 0.3; }));
 }
 
 TEST(DeviceField, WhatADeviceRefusesIsStale) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   DeviceField field(config_of(port, "fault", "50ms"), false);
   Inputs inputs{};
   const auto reads = [&](Fault fault) {
-    return soon([&] {
+    return test::soon([&] {
       field.write(std::array{0.5});
       return field.read(inputs) == fault;
     });
@@ -153,8 +142,8 @@ TEST(DeviceField, WhatADeviceRefusesIsStale) {
 }
 
 TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   DeviceField field(config_of(port), true);
   Inputs inputs{};
@@ -179,21 +168,22 @@ TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {
 }
 
 TEST(DeviceField, WhoMayNotWriteWritesNothingNotEvenAtItsEnd) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   std::atomic<bool> may_write{true};
   {
     DeviceField field(config_of(port), false, [&] { return may_write.load(); });
     field.write(std::array{0.5});
-    EXPECT_TRUE(soon([&] { return field.delivery() == Delivery::done; }));
+    EXPECT_TRUE(test::soon([&] { return field.delivery() == Delivery::done; }));
     may_write.store(false);
     std::uint64_t writes = 0;
-    EXPECT_TRUE(soon([&] { return stage.writes() == std::exchange(writes, stage.writes()); }));  // the one under way
+    EXPECT_TRUE(
+        test::soon([&] { return stage.writes() == std::exchange(writes, stage.writes()); }));  // the one under way
     field.write(std::array{99.0});
     Inputs inputs{};
     stage.give(3.0);
-    EXPECT_TRUE(soon([&] {
+    EXPECT_TRUE(test::soon([&] {
       (void)field.read(inputs);
       return inputs[0] == 3.0;
     })) << "it still reads";
@@ -202,28 +192,28 @@ TEST(DeviceField, WhoMayNotWriteWritesNothingNotEvenAtItsEnd) {
 }
 
 TEST(DeviceField, TheLastValuesArriveBeforeItEnds) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   stage.start();
   {
     DeviceField field(config_of(port), false);
     field.write(std::array{0.5});
-    EXPECT_TRUE(soon([&] { return field.delivery() == Delivery::done; }));
+    EXPECT_TRUE(test::soon([&] { return field.delivery() == Delivery::done; }));
     field.write(std::array{-1.0});
   }
   EXPECT_EQ(stage.taken(), -1.0);
 }
 
 TEST(DeviceOutputs, AreTakenFromANewConnectionAndADeadDeviceIsNotBelieved) {
-  const std::uint16_t port = free_port();
-  Stage stage(port);
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
   DeviceOutputs outputs(config_of(port));
   outputs.open();
   EXPECT_FALSE(outputs.write(std::array{-1.0}));
   stage.start();
-  EXPECT_TRUE(soon([&] { return outputs.write(std::array{-1.0}); }));
+  EXPECT_TRUE(test::soon([&] { return outputs.write(std::array{-1.0}); }));
   EXPECT_EQ(stage.taken(), -1.0);
-  EXPECT_TRUE(soon([&] { return outputs.write(std::array{-2.0}); }));
+  EXPECT_TRUE(test::soon([&] { return outputs.write(std::array{-2.0}); }));
   EXPECT_EQ(stage.taken(), -2.0);
 }
 

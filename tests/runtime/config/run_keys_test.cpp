@@ -17,7 +17,7 @@
 namespace hysteron::runtime {
 namespace {
 
-ProgramShape plant() {
+ProgramShape keyed_plant() {
   return {.name = "PLANT",
           .period = 1'000'000,
           .inputs = {{.name = "X"}},
@@ -115,7 +115,7 @@ std::string described(const RunConfig& c) {
 }
 
 RunConfig parsed(const std::string& text) {
-  return parse_run_config("RUN.toml", text, plant());
+  return parse_run_config("RUN.toml", text, keyed_plant());
 }
 
 TEST(RunKeys, EveryDeclaredKeyIsRead) {

@@ -15,12 +15,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,24 +27,15 @@
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "runtime/modbus/server.hpp"
+#include "tests/runtime/modbus/free_port.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
 
 using std::chrono::milliseconds;
-
-bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 30'000 && !holds(); ++i) {
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  return holds();
-}
-
-std::uint16_t free_port() {
-  return modbus::port_of(modbus::listen_on("127.0.0.1", 0, {}));
-}
 
 /// Y := 2 · X; where X is 13, the step never ends.
 class Twice final : public StepProgram {
@@ -72,7 +61,7 @@ class Twice final : public StepProgram {
 /// Our own server as the device: it gives X and takes Y.
 struct Stage {
   test::MemoryDoor door{{{.name = "X"}, {.name = "Y", .kind = PointKind::parameter, .writable = true}}};
-  std::uint16_t port = free_port();
+  std::uint16_t port = test::free_port();
   std::unique_ptr<modbus::Server> server;
 
   void start() {
@@ -175,8 +164,9 @@ TEST(Host, ADeviceThatDiesAndAClientThatIsLostMakeTheOutputsSafeUntilTheyAreBack
   stage.start();
   auto client = host.client({"Y", "task.fault"});
   const auto shows = [&](double y, Fault fault) {
-    return soon([&] { return client->read(0).value == y && client->read(1).value == static_cast<double>(fault); }) &&
-           soon([&] { return stage.server == nullptr || stage.taken() == y; });
+    return test::soon(
+               [&] { return client->read(0).value == y && client->read(1).value == static_cast<double>(fault); }) &&
+           test::soon([&] { return stage.server == nullptr || stage.taken() == y; });
   };
   for (int round = 0; round < 2; ++round) {
     EXPECT_TRUE(shows(0.5, Fault::none));
@@ -185,7 +175,7 @@ TEST(Host, ADeviceThatDiesAndAClientThatIsLostMakeTheOutputsSafeUntilTheyAreBack
     stage.start();
     EXPECT_TRUE(shows(0.5, Fault::none));
     client.reset();
-    EXPECT_TRUE(soon([&] { return stage.taken() == -1.0; }));
+    EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; }));
     client = host.client({"Y", "task.fault"});
   }
   EXPECT_TRUE(shows(0.5, Fault::none));
@@ -204,9 +194,9 @@ TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {
   stage.start();
   const auto client = host.client({"task.cycles", "task.fault"});
   // A cycle that waited for the device would take a minute, and this test gives up before.
-  EXPECT_TRUE(soon([&] { return client->read(0).value > 100.0; }));
+  EXPECT_TRUE(test::soon([&] { return client->read(0).value > 100.0; }));
   EXPECT_EQ(client->read(1).value, static_cast<double>(Fault::lost_link));
-  EXPECT_TRUE(soon([&] { return stage.taken() == -1.0; })) << "the other device is served meanwhile";
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; })) << "the other device is served meanwhile";
   EXPECT_EQ(host.end().first, 0);
 }
 
@@ -214,7 +204,7 @@ TEST(Host, ADeviceThatDoesNotTakeTheSafeValuesIsSaidAtTheEnd) {
   Stage stage;
   HostProcess host(run_file(stage.port, ""));
   const auto client = host.client({"task.cycles"});
-  EXPECT_TRUE(soon([&] { return client->read(0).value > 0.0; }));
+  EXPECT_TRUE(test::soon([&] { return client->read(0).value > 0.0; }));
   const auto [code, said] = host.end();
   EXPECT_EQ(code, 1);
   EXPECT_TRUE(said.ends_with("fault: lost link")) << said;
@@ -225,12 +215,12 @@ TEST(Host, WhereTheStepHangsTheGuardHoldsTheDeviceAndTheTaskWritesNoMore) {
   stage.give(0.25);
   HostProcess host(run_file(stage.port, x_on_stage));
   stage.start();
-  EXPECT_TRUE(soon([&] { return stage.taken() == 0.5; }));
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == 0.5; }));
   stage.give(13.0);
-  EXPECT_TRUE(soon([&] { return stage.taken() == -1.0; }));
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; }));
   // The hung process still lives, and so does its thread for the device.
   const auto writes = stage.door.writes();
-  EXPECT_TRUE(soon([&] {
+  EXPECT_TRUE(test::soon([&] {
     EXPECT_EQ(stage.taken(), -1.0);
     return stage.door.writes() > writes + 50;
   }));
@@ -250,10 +240,10 @@ TEST(Host, ServesOpenPlcsAddresses) {
                                     {.at = at("%MW3"), .type = PointType::uint16}},
                          .response = milliseconds(2000)});
   screen.write(0, 0.75);
-  EXPECT_TRUE(soon([&] { return screen.read(1).value == 1.5 && stage.taken() == 1.5; }));
-  EXPECT_TRUE(soon([&] { return screen.read(2).value == 1.0; })) << "task.state is running";
+  EXPECT_TRUE(test::soon([&] { return screen.read(1).value == 1.5 && stage.taken() == 1.5; }));
+  EXPECT_TRUE(test::soon([&] { return screen.read(2).value == 1.0; })) << "task.state is running";
   for (const std::size_t command : {3U, 4U}) {
-    EXPECT_TRUE(soon([&] { return screen.read(command).quality == modbus::Quality::good; })) << command;
+    EXPECT_TRUE(test::soon([&] { return screen.read(command).quality == modbus::Quality::good; })) << command;
   }
   EXPECT_EQ(host.end().first, 0);
 }

@@ -189,4 +189,7 @@ inline Bytes framed(std::uint16_t transaction, std::initializer_list<int> pdu) {
   return bytes;
 }
 
+/// Reads holding register 0.
+inline const Bytes read_one = framed(1, {3, 0, 0, 0, 1});
+
 }  // namespace hysteron::test

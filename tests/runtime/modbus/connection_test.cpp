@@ -17,8 +17,8 @@ using Bytes = std::vector<std::uint8_t>;
 const Bytes request{0x12, 0x34, 0, 0, 0, 6, 1, 3, 0, 0, 0, 2};
 const Instant start{};
 
-struct Bench {
-  Bench()
+struct ConnectionBench {
+  ConnectionBench()
       : door(test::points_of_every_type()),
         map(make_register_map(door.points(), {.title = "B"})),
         responder(map, door, {}) {}
@@ -43,7 +43,7 @@ TEST(Connection, EveryWayToCutARequestIsAnsweredAlike) {
 }
 
 TEST(Connection, RequestsThatComeTogetherAreAnsweredInOrder) {
-  Bench bench;
+  ConnectionBench bench;
   Bytes many;
   for (std::uint8_t i = 0; i < 20; ++i) {
     Bytes one = request;
@@ -61,7 +61,7 @@ TEST(Connection, RequestsThatComeTogetherAreAnsweredInOrder) {
 }
 
 TEST(Connection, AFrameMustBeWholeInTimeHoweverItDrips) {
-  Bench bench;
+  ConnectionBench bench;
   for (int i = 0; i < 5; ++i) {
     bench.give(std::span(request).subspan(static_cast<std::size_t>(i), 1), start + milliseconds(100 * i));
     EXPECT_EQ(bench.connection.due(start + milliseconds(100 * i)), std::nullopt);
@@ -72,7 +72,7 @@ TEST(Connection, AFrameMustBeWholeInTimeHoweverItDrips) {
 }
 
 TEST(Connection, IdleEndsAndARequestBeginsItAnew) {
-  Bench bench;
+  ConnectionBench bench;
   EXPECT_EQ(bench.connection.due(start + milliseconds(59'999)), std::nullopt);
   EXPECT_EQ(bench.connection.due(start + milliseconds(60'000)), Ending::idle);
   bench.give(request, start + milliseconds(59'000));
@@ -82,7 +82,7 @@ TEST(Connection, IdleEndsAndARequestBeginsItAnew) {
 }
 
 TEST(Connection, WhoNeverReadsIsAskedNoMoreAndThenDropped) {
-  Bench bench;
+  ConnectionBench bench;
   Instant now = start;
   std::size_t most = 0;
   while (bench.connection.wants_input() >= request.size()) {
@@ -99,7 +99,7 @@ TEST(Connection, WhoNeverReadsIsAskedNoMoreAndThenDropped) {
 }
 
 TEST(Connection, WhoReadsSlowlyIsServedOn) {
-  Bench bench;
+  ConnectionBench bench;
   Instant now = start;
   std::size_t answered = 0;
   std::size_t asked = 0;
@@ -118,7 +118,7 @@ TEST(Connection, WhoReadsSlowlyIsServedOn) {
 }
 
 TEST(Connection, OutputThatMovesOnceAndThenNoMoreIsDropped) {
-  Bench bench;
+  ConnectionBench bench;
   bench.give(request, start);
   bench.connection.sent(3, start + milliseconds(1500));
   EXPECT_EQ(bench.connection.due(start + milliseconds(3499)), std::nullopt);
@@ -127,7 +127,7 @@ TEST(Connection, OutputThatMovesOnceAndThenNoMoreIsDropped) {
 
 TEST(Connection, WhatIsNoFrameEndsItAfterTheRequestsBefore) {
   for (const auto& [at, ending] : {std::pair{3U, Ending::wrong_protocol}, std::pair{4U, Ending::wrong_length}}) {
-    Bench bench;
+    ConnectionBench bench;
     Bytes bytes = request;
     bytes.insert(bytes.end(), request.begin(), request.end());
     bytes[request.size() + at] = 1;

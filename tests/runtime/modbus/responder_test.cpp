@@ -16,8 +16,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-struct Bench {
-  explicit Bench(WordOrder order = WordOrder::abcd)
+struct ResponderBench {
+  explicit ResponderBench(WordOrder order = WordOrder::abcd)
       : door(test::points_of_every_type()),
         map(make_register_map(door.points(), {.title = "BENCH", .order = order})),
         responder(map, door, {}) {}
@@ -76,7 +76,7 @@ TEST(Responder, EveryFunctionAndLengthIsAnsweredAsTheOracleSays) {
 /// The same for requests of the right length, so that most of them do something.
 TEST(Responder, RandomSoundRequestsAreAnsweredAsTheOracleSays) {
   for (const WordOrder order : word_orders) {
-    Bench bench(order);
+    ResponderBench bench(order);
     test::Oracle oracle(bench.map);
     std::mt19937 random(50 + static_cast<unsigned>(order));
     std::map<int, int> done;
@@ -105,7 +105,7 @@ TEST(Responder, RandomSoundRequestsAreAnsweredAsTheOracleSays) {
 
 TEST(Responder, WritesArriveAndAreReadBack) {
   for (const WordOrder order : word_orders) {
-    Bench bench(order);
+    ResponderBench bench(order);
     for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"I16.W", -123},
                                                                                  {"U16.W", 54321},
                                                                                  {"I32.W", -123456},
@@ -125,7 +125,7 @@ TEST(Responder, WritesArriveAndAreReadBack) {
 }
 
 TEST(Responder, NotANumberInfinityAndOutOfRangeAreRefused) {
-  Bench bench;
+  ResponderBench bench;
   const double nan = std::nan("");
   for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"R64.W", nan},
                                                                                {"R64.W", HUGE_VAL},
@@ -144,7 +144,7 @@ TEST(Responder, NotANumberInfinityAndOutOfRangeAreRefused) {
 }
 
 TEST(Responder, ARefusedValueAmongGoodOnesChangesNothing) {
-  Bench bench;
+  ResponderBench bench;
   const Stretch first = bench.at("I16.W");
   const Stretch second = bench.at("U16.W");
   ASSERT_EQ(second.address, first.address + 1);
@@ -156,7 +156,7 @@ TEST(Responder, ARefusedValueAmongGoodOnesChangesNothing) {
 }
 
 TEST(Responder, APartOfAWideValueIsNotWritten) {
-  Bench bench;
+  ResponderBench bench;
   const auto at = static_cast<std::uint8_t>(bench.at("R64.W").address);
   const auto after = [&](unsigned n) { return static_cast<std::uint8_t>(at + n); };
   EXPECT_EQ(bench.ask({6, 0, at, 0, 1}), (Bytes{0x86, 2}));
@@ -169,7 +169,7 @@ TEST(Responder, APartOfAWideValueIsNotWritten) {
 }
 
 TEST(Responder, AClientThatMayOnlyReadHasNoWritingFunctions) {
-  Bench bench;
+  ResponderBench bench;
   const Caller reader{.rights = Rights{}.without_writes()};
   for (const int function : {5, 6, 15, 16, 22, 23}) {
     std::mt19937 random(9);
@@ -181,7 +181,7 @@ TEST(Responder, AClientThatMayOnlyReadHasNoWritingFunctions) {
 }
 
 TEST(Responder, OtherRefusalsComeAfterTheChecks) {
-  Bench bench;
+  ResponderBench bench;
   const Caller guest{.other_owns_writes = true};
   EXPECT_EQ(bench.ask(bench.write_request("I16.W", 5), guest), (Bytes{0x90, 6}));
   EXPECT_EQ(bench.ask(bench.write_request("I16.W", 5000), guest), (Bytes{0x90, 3}));

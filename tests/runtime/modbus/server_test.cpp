@@ -7,8 +7,6 @@
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
-#include <thread>
 
 #include "runtime/modbus/listen.hpp"
 #include "support/errors.hpp"
@@ -16,6 +14,7 @@
 #include "tests/runtime/modbus/hostile_clients.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -24,20 +23,13 @@ using test::Bytes;
 using test::ClientSocket;
 using test::framed;
 
-struct Bench {
-  explicit Bench(ServerOptions options = {})
+struct ServerBench {
+  explicit ServerBench(ServerOptions options = {})
       : door(test::registers_to_serve()), server(map_of(door), door, free_port(std::move(options))) {}
   static RegisterMap map_of(const PointDoor& door) { return make_register_map(door.points(), {.title = "T"}); }
   static ServerOptions free_port(ServerOptions options) {
     options.port = 0;
     return options;
-  }
-  /// Waits for what the server's thread will do soon.
-  static bool soon(const std::function<bool()>& holds) {
-    for (int i = 0; i < 2000 && !holds(); ++i) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return holds();
   }
   test::MemoryDoor door;
   Server server;
@@ -48,18 +40,17 @@ Bytes ask(const ClientSocket& client, const Bytes& request) {
   return client.receive_frame();
 }
 
-const Bytes read_one = framed(1, {3, 0, 0, 0, 1});
 const Bytes write_one = framed(2, {6, 0, 3, 0, 9});
 
 TEST(Server, AnswersAndCounts) {
-  Bench bench;
+  ServerBench bench;
   {
     const ClientSocket client(bench.server.port());
     EXPECT_EQ(ask(client, write_one), write_one);
     EXPECT_EQ(ask(client, framed(3, {3, 0, 3, 0, 1})), framed(3, {3, 2, 0, 9}));
     EXPECT_EQ(ask(client, framed(4, {99})), framed(4, {227, 1}));
   }
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 0; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 0; }));
   const ServerStatus status = bench.server.status();
   EXPECT_EQ(status.accepted, 1U);
   EXPECT_EQ(status.requests, 3U);
@@ -73,46 +64,47 @@ TEST(Server, ListensOnLoopbackUnlessToldOtherwise) {
 }
 
 TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
-  Bench bench;
+  ServerBench bench;
   std::vector<std::unique_ptr<ClientSocket>> clients;
   for (int i = 0; i < 32; ++i) {
     clients.push_back(std::make_unique<ClientSocket>(bench.server.port()));
-    ASSERT_EQ(ask(*clients.back(), read_one).size(), 11U);
+    ASSERT_EQ(ask(*clients.back(), test::read_one).size(), 11U);
   }
   EXPECT_TRUE(ClientSocket(bench.server.port()).sees_the_end());
   for (const auto& client : clients) {
-    EXPECT_EQ(ask(*client, read_one).size(), 11U);
+    EXPECT_EQ(ask(*client, test::read_one).size(), 11U);
   }
   EXPECT_EQ(bench.server.status().refused_full, 1U);
   clients.pop_back();
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 31; }));
-  EXPECT_EQ(ask(ClientSocket(bench.server.port()), read_one).size(), 11U) << "a place that is free is given again";
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 31; }));
+  EXPECT_EQ(ask(ClientSocket(bench.server.port()), test::read_one).size(), 11U)
+      << "a place that is free is given again";
 }
 
 TEST(Server, TheAllowListIsAskedBeforeAByteIsRead) {
-  Bench bench({.allow = {"10.0.0.0/8"}});
+  ServerBench bench({.allow = {"10.0.0.0/8"}});
   const ClientSocket client(bench.server.port());
   client.send(write_one);
   EXPECT_TRUE(client.sees_the_end());
   EXPECT_EQ(bench.server.status().refused_address, 1U);
   EXPECT_EQ(bench.server.status().requests, 0U);
   EXPECT_EQ(bench.door.writes(), 0U);
-  Bench open({.allow = {"10.0.0.0/8", "127.0.0.1"}});
+  ServerBench open({.allow = {"10.0.0.0/8", "127.0.0.1"}});
   EXPECT_EQ(ask(ClientSocket(open.server.port()), write_one), write_one);
 }
 
 TEST(Server, ReadOnly) {
-  Bench bench({.read_only = true});
+  ServerBench bench({.read_only = true});
   const ClientSocket client(bench.server.port());
   EXPECT_EQ(ask(client, write_one), framed(2, {134, 1}));
-  EXPECT_EQ(ask(client, read_one), framed(1, {3, 2, 0, 0}));
+  EXPECT_EQ(ask(client, test::read_one), framed(1, {3, 2, 0, 0}));
   EXPECT_EQ(bench.door.writes(), 0U);
 }
 
 TEST(Server, DeadlinesEndAConnection) {
-  Bench bench({.limits = {.frame_deadline = milliseconds(50), .idle = milliseconds(300)}});
+  ServerBench bench({.limits = {.frame_deadline = milliseconds(50), .idle = milliseconds(300)}});
   const ClientSocket slow(bench.server.port());
-  slow.send(std::span(read_one).first(5));
+  slow.send(std::span(test::read_one).first(5));
   EXPECT_TRUE(slow.sees_the_end());
   EXPECT_EQ(bench.server.status().frame_late, 1U);
   EXPECT_TRUE(ClientSocket(bench.server.port()).sees_the_end());
@@ -120,7 +112,7 @@ TEST(Server, DeadlinesEndAConnection) {
 }
 
 TEST(Server, WhatIsNoFrameEndsAConnectionAndWritesNothing) {
-  Bench bench;
+  ServerBench bench;
   for (const auto& [at, value] : {std::pair{3, 1}, {2, 9}, {4, 1}, {5, 0}, {5, 1}, {5, 255}}) {
     Bytes frame = write_one;
     frame[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(value);
@@ -134,29 +126,29 @@ TEST(Server, WhatIsNoFrameEndsAConnectionAndWritesNothing) {
 }
 
 TEST(Server, OneClientOwnsTheWrites) {
-  Bench bench({.heartbeat = {.own_writes = true}});
+  ServerBench bench({.heartbeat = {.own_writes = true}});
   const ClientSocket guest(bench.server.port());
   {
     const ClientSocket owner(bench.server.port());
     EXPECT_EQ(ask(owner, write_one), write_one);
     EXPECT_EQ(ask(guest, write_one), framed(2, {134, 6}));
-    EXPECT_EQ(ask(guest, read_one).size(), 11U);
+    EXPECT_EQ(ask(guest, test::read_one).size(), 11U);
   }
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().open == 1; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 1; }));
   EXPECT_EQ(ask(guest, write_one), write_one);
 }
 
 TEST(Server, ALostClientIsTold) {
   std::atomic<int> lost{0};
   std::atomic<int> back{0};
-  Bench bench({.heartbeat = {.mode = HeartbeatMode::write_telegram, .time = milliseconds(100)},
-               .client_lost = [&](bool is_lost) { ++(is_lost ? lost : back); }});
+  ServerBench bench({.heartbeat = {.mode = HeartbeatMode::write_telegram, .time = milliseconds(100)},
+                     .client_lost = [&](bool is_lost) { ++(is_lost ? lost : back); }});
   const ClientSocket client(bench.server.port());
   EXPECT_EQ(ask(client, write_one), write_one);
-  EXPECT_TRUE(Bench::soon([&] { return bench.server.status().client_lost; }));
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().client_lost; }));
   EXPECT_EQ(lost, 1);
   EXPECT_EQ(ask(client, write_one), write_one);
-  EXPECT_TRUE(Bench::soon([&] { return back == 1; }));
+  EXPECT_TRUE(test::soon([&] { return back == 1; }));
 }
 
 std::ptrdiff_t open_descriptors() {
@@ -166,7 +158,7 @@ std::ptrdiff_t open_descriptors() {
 TEST(Server, ConnectAndCloseLosesNoDescriptor) {
   const auto before = open_descriptors();
   {
-    Bench bench;
+    ServerBench bench;
     const auto serving = open_descriptors();
     for (int i = 0; i < 2000; ++i) {
       ClientSocket client(bench.server.port());
@@ -175,7 +167,7 @@ TEST(Server, ConnectAndCloseLosesNoDescriptor) {
         client.reset();
       }
     }
-    EXPECT_TRUE(Bench::soon([&] {
+    EXPECT_TRUE(test::soon([&] {
       const ServerStatus status = bench.server.status();
       return status.open == 0 && open_descriptors() == serving;
     }));
@@ -186,7 +178,7 @@ TEST(Server, ConnectAndCloseLosesNoDescriptor) {
 int number_of_refusal(const ServerOptions& options) {
   test::MemoryDoor door(test::registers_to_serve());
   try {
-    const Server server(Bench::map_of(door), door, options);
+    const Server server(ServerBench::map_of(door), door, options);
     return 0;
   } catch (const InputError& refused) {
     return refused.diagnostics().all().front().number;

@@ -72,8 +72,6 @@ class TlsServer : public ::testing::Test {
   std::unique_ptr<Server> server_;
 };
 
-const Bytes read_one = framed(1, {3, 0, 0, 0, 1});
-
 Bytes write_to(int address) {
   return framed(2, {6, 0, address, 0, 9});
 }
@@ -98,7 +96,7 @@ TEST_F(TlsServer, AnswersByTls12And13) {
 
 TEST_F(TlsServer, ARoleMayDoWhatItIsGivenAndIsElseAnsweredByException01) {
   const ClientSocket reader = connect(files_.client_of("reader"));
-  EXPECT_EQ(ask(reader, read_one), framed(1, {3, 2, 0, 0}));
+  EXPECT_EQ(ask(reader, test::read_one), framed(1, {3, 2, 0, 0}));
   EXPECT_EQ(ask(reader, write_to(0)), refused(6));
   EXPECT_EQ(ask(reader, framed(2, {43, 14, 1, 0})).at(7), 43);
 
@@ -283,7 +281,7 @@ TEST_F(TlsServer, ReadOnlyGoesBeforeRoles) {
   const auto context = files_.client_of("all");
   const ClientSocket client(server.port(), patience, context.get());
   EXPECT_EQ(ask(client, write_to(0)), refused(6));
-  EXPECT_EQ(ask(client, read_one), framed(1, {3, 2, 0, 0}));
+  EXPECT_EQ(ask(client, test::read_one), framed(1, {3, 2, 0, 0}));
 }
 
 /// Other people's clients. Both come with Debian.

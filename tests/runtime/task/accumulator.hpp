@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "runtime/task/step_program.hpp"
+#include "tests/runtime/namespaces.hpp"
 
 namespace hysteron::runtime::test {
 

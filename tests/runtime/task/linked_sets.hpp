@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "runtime/task/task.hpp"
+#include "tests/runtime/namespaces.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 
 namespace hysteron::runtime::test {

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <thread>
 
@@ -11,6 +10,7 @@
 #include "runtime/modbus/server.hpp"
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -19,13 +19,6 @@ using std::chrono::milliseconds;
 
 constexpr double safe = -7.0;
 constexpr double lost_client = static_cast<double>(Fault::lost_client);
-
-bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 10'000 && !holds(); ++i) {
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  return holds();
-}
 
 /// A task on the machine's clock with a server that waits for writes of a client.
 class ServedTask {
@@ -77,13 +70,13 @@ class ServedTask {
 
 TEST(LostClient, BringsTheOutputsToTheirSafeValuesUntilItIsBack) {
   ServedTask task(false);
-  EXPECT_TRUE(soon([&] { return task.value("Y") == 1.0; }));  // nobody was there who could be lost
+  EXPECT_TRUE(test::soon([&] { return task.value("Y") == 1.0; }));  // nobody was there who could be lost
   for (int round = 0; round < 2; ++round) {
     auto client = task.client("X", 0.5);
-    EXPECT_TRUE(soon([&] { return task.value("X") == 0.5 && task.value("Y") == 1.0; }));
+    EXPECT_TRUE(test::soon([&] { return task.value("X") == 0.5 && task.value("Y") == 1.0; }));
     EXPECT_EQ(task.value("task.fault"), 0.0);
     client.reset();
-    EXPECT_TRUE(soon([&] { return task.value("Y") == safe; }));
+    EXPECT_TRUE(test::soon([&] { return task.value("Y") == safe; }));
     EXPECT_EQ(task.value("task.fault"), lost_client);
   }
 }
@@ -91,17 +84,17 @@ TEST(LostClient, BringsTheOutputsToTheirSafeValuesUntilItIsBack) {
 TEST(LostClient, KeepsTheOutputsSafeUntilTheResetWhereOneIsAskedFor) {
   ServedTask task(true);
   auto client = task.client("X", 0.5);
-  EXPECT_TRUE(soon([&] { return task.value("X") == 0.5 && task.value("Y") == 1.0; }));
+  EXPECT_TRUE(test::soon([&] { return task.value("X") == 0.5 && task.value("Y") == 1.0; }));
   client.reset();
-  EXPECT_TRUE(soon([&] { return task.value("Y") == safe; }));
+  EXPECT_TRUE(test::soon([&] { return task.value("Y") == safe; }));
   client = task.client("X", 0.75);
-  EXPECT_TRUE(soon([&] { return task.value("X") == 0.75; }));
+  EXPECT_TRUE(test::soon([&] { return task.value("X") == 0.75; }));
   const double cycle = task.value("task.cycles");
-  EXPECT_TRUE(soon([&] { return task.value("task.cycles") > cycle + 50; }));
+  EXPECT_TRUE(test::soon([&] { return task.value("task.cycles") > cycle + 50; }));
   EXPECT_EQ(task.value("Y"), safe);
   EXPECT_EQ(task.value("task.fault"), lost_client);
   client = task.client("task.reset", 1.0);
-  EXPECT_TRUE(soon([&] { return task.value("Y") == 0.75 || task.value("Y") == 1.0; }));
+  EXPECT_TRUE(test::soon([&] { return task.value("Y") == 0.75 || task.value("Y") == 1.0; }));
   EXPECT_EQ(task.value("task.fault"), 0.0);
 }
 

@@ -18,6 +18,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/runtime/namespaces.hpp"
 #include "tests/support/counted_new.hpp"
 
 namespace hysteron::runtime::test {

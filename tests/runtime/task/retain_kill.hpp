@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/task/retain.hpp"
+#include "tests/runtime/namespaces.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 
 namespace hysteron::runtime::test {

@@ -9,12 +9,10 @@
 #include <random>
 
 #include "runtime/task/watchdog.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::runtime {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 SafeOutputs one(OutputSafety safety) {
   return {{safety}, 0.001};
@@ -71,7 +69,7 @@ TEST(SafeOutputs, HoldForEverWhereAsked) {
 TEST(SafeOutputs, WhatIsNotFiniteIsAFaultOfThatOutputAlone) {
   SafeOutputs outputs({{.value = 1.0}, {.value = 2.0}}, 0.001);
   outputs.step(std::array{5.0, 6.0}, Fault::none);
-  for (const double broken : {nan, infinity, -infinity}) {
+  for (const double broken : {not_a_number, infinity, -infinity}) {
     outputs.step(std::array{broken, 7.0}, Fault::none);
     EXPECT_EQ(outputs.values()[0], 1.0);
     EXPECT_EQ(outputs.values()[1], 7.0);
@@ -84,7 +82,7 @@ TEST(SafeOutputs, WhatIsNotFiniteIsAFaultOfThatOutputAlone) {
 TEST(SafeOutputs, StartWithinTheLimitsAndGoOnFromFiniteValuesOnly) {
   auto outputs = one({.low = 2.0, .high = 3.0, .value = 0.0});
   EXPECT_EQ(outputs.values()[0], 2.0);
-  outputs.start_from(std::array{nan});
+  outputs.start_from(std::array{not_a_number});
   EXPECT_EQ(outputs.values()[0], 2.0);
   outputs.start_from(std::array{8.0});
   EXPECT_EQ(outputs.values()[0], 3.0);
@@ -105,7 +103,7 @@ TEST(SafeOutputs, LimitsAndSlewHoldInAnyRun) {
     for (int cycle = 0; cycle < 300; ++cycle) {
       const double before = outputs.values()[0];
       const auto dice = random() % 20;
-      const double wanted = dice == 0 ? nan : dice == 1 ? infinity : dice == 2 ? -infinity : anything(random);
+      const double wanted = dice == 0 ? not_a_number : dice == 1 ? infinity : dice == 2 ? -infinity : anything(random);
       const auto fault = dice >= 14 ? static_cast<Fault>(random() % 8) : Fault::none;
       const double now = after(outputs, wanted, fault);
       ASSERT_GE(now, -10.0);

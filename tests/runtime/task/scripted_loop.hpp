@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/task/cyclic_loop.hpp"
+#include "tests/runtime/namespaces.hpp"
 
 namespace hysteron::runtime::test {
 

@@ -30,9 +30,9 @@ const Program& program() {
 
 /// Resets, runs over the whole signal and hands every output to `take`.
 struct Generated {
-  feedforward::Params params;
-  feedforward::State state;
-  feedforward::In in;
+  feedforward::Params params{};
+  feedforward::State state{};
+  feedforward::In in{};
 
   template <class Take>
   void run(Take take) {

@@ -71,7 +71,7 @@ class Machine {
   [[nodiscard]] std::size_t output_offset(const Wire& wire) const;
   [[nodiscard]] S* real_state(std::uint32_t node, std::uint32_t state);
   [[nodiscard]] const S* ts_of(const Node& node);
-  Instruction<S> instruction_of(std::uint32_t node);
+  Instruction<S> instruction_of(std::uint32_t index);
 
   struct Free {
     void operator()(std::byte* memory) const { ::operator delete[](memory, std::align_val_t{64}); }

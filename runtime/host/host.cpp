@@ -97,7 +97,7 @@ void tell(const std::string& line) {
   pollfd error{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
     const std::string whole = "Modbus: " + line.substr(0, longest_line) + "\n";
-    (void)!::write(STDERR_FILENO, whole.data(), whole.size());
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, whole.data(), whole.size());
   }
 }
 

@@ -24,9 +24,9 @@ using std::chrono::milliseconds;
 struct ConnectionLimits {
   milliseconds frame_deadline{500};
   milliseconds idle{60'000};
-  milliseconds unread{2'000};           ///< output that does not move for so long
-  milliseconds handshake{5'000};        ///< of TLS, from its connection on
-  std::size_t output_bytes = 8 * 1024;  ///< beyond which no further request is taken
+  milliseconds unread{2'000};       ///< output that does not move for so long
+  milliseconds handshake{5'000};    ///< of TLS, from its connection on
+  std::size_t output_bytes = 8192;  ///< beyond which no further request is taken
 };
 
 enum class Ending : std::uint8_t {

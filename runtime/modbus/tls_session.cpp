@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t record_header = 5;
 constexpr std::size_t input_bytes = 4096;  // of the line that are taken at once
 constexpr std::size_t most_output =
-    32 * 1024;                     // beyond which nothing more is taken: it answers no client that does not read
+    32'768;                        // beyond which nothing more is taken: it answers no client that does not read
 constexpr int records_a_read = 8;  // so that a turn is short even where each of them is a new key
 
 int as_int(std::size_t size) {

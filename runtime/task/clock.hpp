@@ -32,6 +32,8 @@ class MonotonicClock final : public Clock {
   /// Begins to read the stolen time in a thread of its own: reading it is a system call, which the task does not make.
   MonotonicClock();
   ~MonotonicClock() override;
+  MonotonicClock(const MonotonicClock&) = delete;
+  MonotonicClock& operator=(const MonotonicClock&) = delete;
   [[nodiscard]] std::int64_t now() noexcept override;
   void sleep_until(std::int64_t time) noexcept override;
   [[nodiscard]] std::int64_t own_cpu() noexcept override;

@@ -94,7 +94,7 @@ Guard::Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDe
     throw std::invalid_argument("a guard holds at most 256 outputs");
   }
   void* const memory = mmap(nullptr, sizeof(GuardPage), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) {
+  if (memory == MAP_FAILED) {  // NOLINT(performance-no-int-to-ptr): the system's own
     throw std::system_error(errno, std::generic_category(), "memory for the guard");
   }
   page_ = new (memory) GuardPage;

@@ -28,9 +28,11 @@ std::string refusal_of(const ProgramSignal& signal, double value) {
   return {};
 }
 
-StagedParameters::StagedParameters(const std::vector<ProgramSignal>& parameters, std::vector<double> values,
-                                   SetCheck check)
-    : parameters_(parameters), committed_(std::move(values)), staged_(committed_), check_(std::move(check)) {}
+StagedParameters::StagedParameters(std::vector<ProgramSignal> parameters, std::vector<double> values, SetCheck check)
+    : parameters_(std::move(parameters)),
+      committed_(std::move(values)),
+      staged_(committed_),
+      check_(std::move(check)) {}
 
 void StagedParameters::stage(std::size_t parameter, double value) {
   staged_[parameter] = value;

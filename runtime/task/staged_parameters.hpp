@@ -16,7 +16,7 @@ using SetCheck = std::function<std::string(std::span<const double>)>;
 
 class StagedParameters {
  public:
-  StagedParameters(const std::vector<ProgramSignal>& parameters, std::vector<double> values, SetCheck check = {});
+  StagedParameters(std::vector<ProgramSignal> parameters, std::vector<double> values, SetCheck check = {});
 
   /// Nothing is checked but that the number is one: a set may be out of range while it is being entered.
   void stage(std::size_t parameter, double value);

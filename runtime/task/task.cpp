@@ -39,8 +39,8 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
   settings_.loop.period = program.shape().period;
   for (const ProgramSignal& input : program.shape().inputs) {
     inputs_.push_back(input.preset);
+    last_good_.push_back(input.preset);
   }
-  last_good_ = inputs_;
 }
 
 void Task::client_lost(bool lost) noexcept {

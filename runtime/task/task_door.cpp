@@ -40,9 +40,9 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
 
 }  // namespace
 
-TaskDoor::TaskDoor(const StepProgram& program, const std::vector<bool>& device_inputs,
-                   const std::vector<OutputSafety>& safety, SetCheck check)
-    : device_inputs_(device_inputs),
+TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
+                   SetCheck check)
+    : device_inputs_(std::move(device_inputs)),
       snapshots_(width_of(program.shape())),
       published_(width_of(program.shape())),
       parameters_(program.shape().parameters, parameters_of(program), std::move(check)),

@@ -45,7 +45,7 @@ struct TaskStatus {
 class TaskDoor final : public PointDoor {
  public:
   /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
-  TaskDoor(const StepProgram& program, const std::vector<bool>& device_inputs, const std::vector<OutputSafety>& safety,
+  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
            SetCheck check = {});
 
   [[nodiscard]] std::span<const Point> points() const override { return points_; }

@@ -20,6 +20,7 @@ std::string lines_of(std::string_view word, const std::vector<TraceColumn>& colu
 
 std::vector<TraceColumn> columns_of(const std::vector<ProgramSignal>& signals) {
   std::vector<TraceColumn> columns;
+  columns.reserve(signals.size());
   for (const ProgramSignal& signal : signals) {
     columns.push_back({.name = signal.name, .unit = signal.unit});
   }

@@ -26,7 +26,7 @@ bool write_static_map_data(const std::string& folder, std::size_t points) {
 
 int main(int count, char** arguments) {
   if (count == 3 && std::string_view(arguments[1]) == "--write-static-map-data") {
-    for (const std::size_t points : {200, 10'000, 1'000'000}) {
+    for (const std::size_t points : {200U, 10'000U, 1'000'000U}) {
       if (!write_static_map_data(arguments[2], points)) {
         std::cerr << "cannot write into " << arguments[2] << '\n';
         return 1;

@@ -102,7 +102,7 @@ void step(benchmark::State& state) {
   for (auto _ : state) {
     kind.run([](double output) { benchmark::DoNotOptimize(output); });
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * samples));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(samples));
 }
 
 BENCHMARK(step<Generated>)->Name("step/generated");

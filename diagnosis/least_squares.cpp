@@ -92,7 +92,7 @@ double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals,
   const double data = weights == nullptr ? residuals.squaredNorm() : residuals.cwiseAbs2().dot(*weights);
   const double prior = (x - model.start()).cwiseProduct(model.prior()).squaredNorm();
   const double cost = 0.5 * (data + prior);
-  return std::isfinite(cost) ? cost : infinity;
+  return std::isfinite(cost) ? cost : infinity;  // NOLINT(bugprone-narrowing-conversions): both are doubles
 }
 
 Fit fit(Model& model, const VectorXd& start, const FitOptions& options) {

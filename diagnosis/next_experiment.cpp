@@ -47,8 +47,8 @@ Contender contender(const Task& task, const Explanation& explanation) {
 
 class Planner {
  public:
-  Planner(const Task& task, std::vector<Contender> contenders, double noise)
-      : task_(task), contenders_(std::move(contenders)), noise_(noise) {
+  Planner(Task task, std::vector<Contender> contenders, double noise)
+      : task_(std::move(task)), contenders_(std::move(contenders)), noise_(noise) {
     task_.file.values.clear();  // the fitted programs have them
     task_.initial_states.clear();
     task_.known.clear();

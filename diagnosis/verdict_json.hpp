@@ -7,6 +7,6 @@
 
 namespace hysteron::diagnosis {
 
-[[nodiscard]] std::string verdict_json(const Diagnosis& diagnosis);
+[[nodiscard]] std::string verdict_json(const Diagnosis& found);
 
 }  // namespace hysteron::diagnosis

@@ -48,8 +48,7 @@ class Builder {
     }
     find_outputs();
     for (const records::Record& record : records_) {
-      records::Record copy = record;
-      settle_sample_time(copy, problem_.program, diagnostics_);
+      settle_sample_time(record, problem_.program, diagnostics_);
       check_same_sample_time(record);
       add_experiment(record);
     }
@@ -105,8 +104,8 @@ class Builder {
   }
 
   void set_bounds(FreeParameter& free, const FitSetting& fit, const Field& field) {
-    free.lower = std::max(fit.minimum ? fit.minimum->value : -infinity, field.minimum);
-    free.upper = std::min(fit.maximum ? fit.maximum->value : infinity, field.maximum);
+    free.lower = fit.minimum ? std::max(fit.minimum->value, field.minimum) : field.minimum;
+    free.upper = fit.maximum ? std::min(fit.maximum->value, field.maximum) : field.maximum;
     if (!(free.lower <= free.start && free.start <= free.upper) ||
         !parameters::range_fault(field, free.start).empty()) {
       diagnostics_.error(error::contradicting_range, fit.start ? fit.start->place : fit.place,
@@ -150,6 +149,7 @@ class Builder {
           std::ranges::find_if(outputs, [&](const Port& port) { return equal_ignoring_case(port.name, wanted.text); });
       if (found == outputs.end()) {
         std::vector<std::string> names;
+        names.reserve(outputs.size());
         for (const Port& port : outputs) {
           names.push_back(port.name);
         }
@@ -173,6 +173,7 @@ class Builder {
     }
     if (problem_.outputs.empty()) {
       std::vector<std::string> names;
+      names.reserve(outputs.size());
       for (const Port& port : outputs) {
         names.push_back(port.name);
       }
@@ -258,6 +259,7 @@ class Builder {
   static std::vector<records::RowRange> rows_of(const records::Record& record,
                                                 const std::vector<parameters::Interval>& intervals) {
     std::vector<records::RowRange> ranges;
+    ranges.reserve(intervals.size());
     for (const parameters::Interval& interval : intervals) {
       ranges.push_back(record.rows_between(interval.begin, interval.end));
     }

@@ -9,6 +9,7 @@
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 #include "tuning/variable_projection.hpp"
 
 namespace hysteron {
@@ -135,7 +136,7 @@ void finish(StaticMapFit& fit, const ScaledPoints& points, const VariableProject
             const Projection& solution, double c3, bool c3_at_bound) {
   fit.map = points.unscaled(solution.c1 + problem.mean(), solution.c2, c3);
   VectorXd residuals = problem.residuals(solution, c3);
-  double weight = static_cast<double>(residuals.size());
+  auto weight = static_cast<double>(residuals.size());
   if (!points.weight.empty()) {
     const Eigen::Map<const ArrayXd> weights(points.weight.data(), std::ssize(points.weight));
     residuals.array() *= weights.sqrt();
@@ -187,8 +188,8 @@ void by_ipopt(StaticMapFit& fit, const ScaledPoints& points, const VariableProje
   least_squares.names = parameter_names;
   least_squares.residual_count = x.size();
   least_squares.start = Eigen::Vector3d(line.c1 + problem.mean(), line.c2, start_c3);
-  least_squares.lower = Eigen::Vector3d(-INFINITY, -INFINITY, options.least_C3);
-  least_squares.upper = Eigen::Vector3d(INFINITY, INFINITY, options.largest_C3);
+  least_squares.lower = Eigen::Vector3d(-infinity, -infinity, options.least_C3);
+  least_squares.upper = Eigen::Vector3d(infinity, infinity, options.largest_C3);
   least_squares.typical = Eigen::Vector3d::Ones();
   least_squares.evaluate = [&](const VectorXd& c, VectorXd& residuals, MatrixXd* jacobian) {
     const ArrayXd q = (c[2] * ln_x).exp();

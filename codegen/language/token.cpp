@@ -142,8 +142,8 @@ Keyword keyword_of(std::string_view word) {
   std::array<char, longest> buffer{};
   std::transform(word.begin(), word.end(), buffer.begin(), to_upper);
   const std::string_view wanted(buffer.data(), word.size());
-  const auto found = std::lower_bound(words.begin(), words.end(), wanted,
-                                      [](const Word& a, std::string_view b) { return a.text < b; });
+  const auto* const found = std::lower_bound(words.begin(), words.end(), wanted,
+                                             [](const Word& a, std::string_view b) { return a.text < b; });
   return found != words.end() && found->text == wanted ? found->keyword : Keyword::None;
 }
 

@@ -237,11 +237,12 @@ std::string entries_text(const std::vector<Entry>& entries, const std::vector<Co
     }
     if (i == entries.size()) {
       end += "\n" + comment.text + "\n";
-    } else if (comment.where != Comment::Where::Beside || comment.key != entries[i].key) {
-      above[i] += comment.text + "\n";
-    } else if (beside[i].empty()) {
+      continue;
+    }
+    const bool was_beside = comment.where == Comment::Where::Beside && comment.key == entries[i].key;
+    if (was_beside && beside[i].empty()) {
       beside[i] = comment.text;
-    } else if (!is_older_remark(comment.text, entries[i].remark)) {
+    } else if (!was_beside || !is_older_remark(comment.text, entries[i].remark)) {
       above[i] += comment.text + "\n";
     }
   }

@@ -29,7 +29,7 @@ class Recording {
   }
 
  private:
-  static inline thread_local Tape* current_ = nullptr;
+  static inline thread_local Tape* current_ = nullptr;  // NOLINT(readability-identifier-naming): a private member
   Tape* previous_;
 };
 

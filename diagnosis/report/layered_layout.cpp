@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <ranges>
 #include <tuple>
 
 namespace hysteron::diagnosis::report {
@@ -119,11 +120,11 @@ class Layering {
       column_[box] = column;
       last = std::max(last, column);
     }
-    for (auto box = order_.rbegin(); box != order_.rend(); ++box) {
-      if (boxes_[*box].side == Side::Right) {
-        column_[*box] = last;
-      } else if (boxes_[*box].side == Side::Any) {
-        pull_right(*box);
+    for (const std::size_t box : std::views::reverse(order_)) {
+      if (boxes_[box].side == Side::Right) {
+        column_[box] = last;
+      } else if (boxes_[box].side == Side::Any) {
+        pull_right(box);
       }
     }
     columns_.resize(last + 1);

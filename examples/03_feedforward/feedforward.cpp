@@ -50,8 +50,8 @@ records::Record feed_forward(const Form& form, Start start, double sample_time) 
   return run;
 }
 
-records::Record control(double K) {
-  const std::array settings{Setting{"K", K}};
+records::Record control(double gain) {
+  const std::array settings{Setting{"K", gain}};
   Diagram servo("03_feedforward/servo.st", settings);
   RambergOsgoodActuator actuator(Material{}.reconciled());
   records::Record run = reference(Start::Rest, servo.sample_time());

@@ -31,9 +31,9 @@ const std::array<Form, 4>& forms();
 /// Runs a form, and the actuator on its U. Columns Y_REF, U, Y.
 records::Record feed_forward(const Form& form, Start start, double sample_time);
 
-/// Runs servo.st from rest with feedback of gain K, in V/(m·s), and the actuator with a disturbance of 0.1 µm added to
-/// its output from t = 1 s on. Columns Y_REF, Y, U, E.
-records::Record control(double K);
+/// Runs servo.st from rest with feedback of this gain, in V/(m·s), and the actuator with a disturbance of 0.1 µm added
+/// to its output from t = 1 s on. Columns Y_REF, Y, U, E.
+records::Record control(double gain);
 
 /// The error Y - Y_REF from a time on, as shares of the range of the reference.
 struct FollowingError {

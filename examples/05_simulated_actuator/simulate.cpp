@@ -37,6 +37,7 @@ void reference(const std::string& out) {
   const simulated::Settings settings;
   const std::vector<double> ref = simulated::test_reference(settings.sample_time);
   std::vector<double> u;
+  u.reserve(ref.size());
   for (const double value : ref) {
     u.push_back(simulated::voltage_without_model(value));
   }

@@ -33,8 +33,10 @@ double Noise::operator()() {
 }
 
 Actuator::Actuator(const Settings& settings)
-    : settings_(settings), hysteresis_(thresholds, density), noise_(settings.seed) {
-  rest_ = settings.irreversible * hysteresis_(0.0);
+    : settings_(settings),
+      hysteresis_(thresholds, density),
+      noise_(settings.seed),
+      rest_(settings.irreversible * hysteresis_(0.0)) {
   const double step = settings.sample_time / settings.substeps;
   amplifier_keep_ = std::exp(-step / settings.amplifier_lag);
   for (std::size_t i = 0; i < creep_terms; ++i) {

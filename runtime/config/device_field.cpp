@@ -16,7 +16,7 @@ double seconds(nanoseconds time) {
 
 }  // namespace
 
-DeviceField::DeviceField(const RunConfig& config, bool in_turn, std::function<bool()> may_write)
+DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::function<bool()>& may_write)
     : inputs_(config.device_inputs),
       outputs_(config.device_outputs),
       period_(config.task.loop.period),

@@ -22,7 +22,7 @@ class DeviceField final : public FieldIo {
  public:
   /// `in_turn`: without threads. `may_write` is asked before every write to a device: a guard that has taken over must
   /// not be written over.
-  DeviceField(const RunConfig& config, bool in_turn, std::function<bool()> may_write = {});
+  DeviceField(const RunConfig& config, bool in_turn, const std::function<bool()>& may_write = {});
 
   /// lost_link where a device has not been reached for as long as a value may be old, stale_input where it was reached
   /// and refuses the value. Before that a value keeps its last number.

@@ -24,6 +24,7 @@ constexpr TomlKind run_file{error::run_file_syntax, error::run_key_twice,
 
 std::vector<std::string> names_of(const std::vector<ProgramSignal>& signals) {
   std::vector<std::string> names;
+  names.reserve(signals.size());
   for (const ProgramSignal& signal : signals) {
     names.push_back(signal.name);
   }
@@ -206,7 +207,7 @@ class Reader {
     devices_.read_input(*index, read_longest_age(table), table);
   }
 
-  std::int64_t read_longest_age(TomlReader& table) {
+  std::int64_t read_longest_age(TomlReader& table) const {
     std::int64_t age = 0;
     table.read_duration("longest_age", age, shape_.period, 1000 * second);
     return age;

@@ -256,7 +256,7 @@ constexpr std::array tables{
 
 std::string time_text(double nanoseconds) {
   constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
-  const auto unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
+  const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
   return number_text(nanoseconds / unit->first) + unit->second;
 }
 
@@ -304,7 +304,7 @@ std::span<const RunKey> top_keys() {
 }
 
 const RunTable& run_table(std::string_view name) {
-  const auto found = std::ranges::find_if(
+  const auto* const found = std::ranges::find_if(
       tables, [&](const RunTable& table) { return table.name.substr(1, table.name.find_first_of(".]") - 1) == name; });
   if (found == tables.end()) {
     throw std::invalid_argument("there is no such table in a run file");

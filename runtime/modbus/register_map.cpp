@@ -133,7 +133,7 @@ class Placer {
   }
 
   /// Keeps an address from being given anew. One that was given by hand is a point's, whoever had it before.
-  void retire(LockLine line) {
+  void retire(const LockLine& line) {
     const auto* holder = occupancy_.holder_of(line.at);
     if (holder != nullptr && holder->place.file == request_.lock_file) {
       refuse_overlap(line.name, line.at, line.place, *holder);

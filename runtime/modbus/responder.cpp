@@ -288,7 +288,7 @@ Exception Responder::identify(Pdu pdu, Reply& reply) const {
   const std::uint8_t code = pdu[2];
   const bool one = code == 4;
   const std::uint8_t last = code == 1 ? 0x02 : code == 2 ? 0x7F : 0xFF;
-  std::size_t first = static_cast<std::size_t>(std::ranges::find(object_ids, pdu[3]) - object_ids.begin());
+  auto first = static_cast<std::size_t>(std::ranges::find(object_ids, pdu[3]) - object_ids.begin());
   if (first == object_ids.size() || pdu[3] > last) {
     if (one) {
       return Exception::illegal_address;
@@ -369,7 +369,7 @@ Exception Responder::collect_words(std::uint32_t address, Pdu data) {
     const MapEntry& entry = *map_.find(Area::holding_register, at);
     std::array<std::uint16_t, 4> words{};
     for (std::uint32_t i = 0; i < entry.at.count; ++i) {
-      words[i] = word_at(data, 2 * (at - address + i));
+      words[i] = word_at(data, std::size_t{2} * (at - address + i));
     }
     const std::uint64_t bits = from_registers(std::span(words).first(entry.at.count), map_.order());
     if (const auto flaw = collect(map_.point_of(entry), entry.point, bits); flaw != Exception::none) {

@@ -103,7 +103,7 @@ std::string description_of(const SchedulingObtained& obtained) {
 }
 
 void default_floating_point() noexcept {
-  (void)std::fesetenv(FE_DFL_ENV);
+  (void)std::fesetenv(FE_DFL_ENV);  // NOLINT(performance-no-int-to-ptr): the library's own
 }
 
 void touch_stack() noexcept {

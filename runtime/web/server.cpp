@@ -255,7 +255,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::uint64_t number_;
   std::optional<beast::tcp_stream> stream_;  ///< moved into the WebSocket when it becomes one
   std::optional<websocket::stream<beast::tcp_stream>> websocket_;
-  beast::flat_buffer buffer_{16 * 1024};
+  beast::flat_buffer buffer_{16'384};
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
   beast::flat_buffer message_{longest_message};

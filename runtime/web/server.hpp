@@ -22,8 +22,8 @@ using std::chrono::milliseconds;
 struct Limits {
   std::size_t connections = 32;
   std::size_t streams = 16;
-  std::size_t header_bytes = 8 * 1024;
-  std::size_t body_bytes = 64 * 1024;
+  std::size_t header_bytes = 8192;
+  std::size_t body_bytes = 65'536;
   milliseconds request{5'000};   ///< from the connection, or from the answer before, to the end of the request
   milliseconds answer{10'000};   ///< for a client to take an answer
   milliseconds unread{5'000};    ///< for a stream to take one set of values

@@ -356,7 +356,7 @@ TEST(LoopInverse, ReachesTheLastDigitsOverAllRanges) {
       const long double middle = (low + high) / 2;
       (curve(middle) < q ? low : high) = middle;
     }
-    const double found = loop_inverse<double>({.c1 = c1, .c2 = c2, .c3 = c3}, q);
+    const auto found = loop_inverse<double>({.c1 = c1, .c2 = c2, .c3 = c3}, q);
     ASSERT_NEAR(found, static_cast<double>(low), 5e-16 * p) << "C3 " << c3;
   }
 }

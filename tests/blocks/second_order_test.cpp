@@ -82,6 +82,7 @@ TEST(SecondOrder, IsContinuousThroughCriticalDamping) {
   }
   for (int k = 0; k < 100; ++k) {
     std::vector<double> y;
+    y.reserve(blocks.size());
     for (auto& block : blocks) {
       y.push_back(block({.XIN = 1.0, .R1 = false, .X0 = 0.0}).XOUT);
     }

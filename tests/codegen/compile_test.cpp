@@ -1,6 +1,7 @@
 // What the compiler makes of a diagram: its diagnostics with their places, its schedule, its rates.
 #include "codegen/compile.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -133,7 +134,7 @@ TEST(Compile, ABlockCannotContainItself) {
 
 TEST(Compile, NamesOfTheLibraryAreReserved) {
   for (const std::string declaration : {"HY_LAG : HY_LAG;", "hy_sum : LREAL := 1.0;"}) {
-    EXPECT_THAT(diagnose(block(io + "VAR " + declaration + " END_VAR", "Y := U;")),
+    EXPECT_THAT(diagnose(block(fmt::format("{}VAR {} END_VAR", io, declaration), "Y := U;")),
                 Contains(::testing::Field(&Diagnostic::number, error::reserved_name)))
         << declaration;
   }

@@ -44,7 +44,8 @@ TEST(Glitches, NoiseAndCornersAreNone) {
   }
   auto steps = test::Noise(2).white(2000, 0.1);
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    steps[k] += 10.0 * static_cast<double>(k / 200);
+    const std::size_t tread = k / 200;
+    steps[k] += 10.0 * static_cast<double>(tread);
   }
   EXPECT_THAT(find_glitches(with(steps), 0).rows, IsEmpty());
   auto teeth = test::Noise(3).white(2000, 0.001);  // slow, with a sharp peak now and then

@@ -164,7 +164,7 @@ TEST_F(Diagnose, RefusesARecordThatCannotBeDiagnosed) {
   const auto stand = [](std::vector<double>& v) { std::ranges::fill(v, 1.0); };
   const struct {
     records::Record log;
-    const char* reason;
+    const char* reason = nullptr;
   } cases[] = {{record().slice({0, 60}), "60 samples"},
                {test::changed(record(), "FORCE", stand), "No input moves"},
                {test::changed(record(), "V", stand), "never changes"},

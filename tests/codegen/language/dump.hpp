@@ -109,12 +109,12 @@ class Dump {
     }
     return out;
   }
-  [[nodiscard]] std::string text(const language::RealLiteral& node) const { return fmt::format("{}r", node.value); }
-  [[nodiscard]] std::string text(const language::IntLiteral& node) const {
+  [[nodiscard]] static std::string text(const language::RealLiteral& node) { return fmt::format("{}r", node.value); }
+  [[nodiscard]] static std::string text(const language::IntLiteral& node) {
     return fmt::format("{}{}", node.value, node.is_word ? "w" : "i");
   }
-  [[nodiscard]] std::string text(const language::BoolLiteral& node) const { return node.value ? "TRUE" : "FALSE"; }
-  [[nodiscard]] std::string text(const language::Reference& node) const {
+  [[nodiscard]] static std::string text(const language::BoolLiteral& node) { return node.value ? "TRUE" : "FALSE"; }
+  [[nodiscard]] static std::string text(const language::Reference& node) {
     return node.pin.text.empty() ? std::string(node.name.text) : fmt::format("{}.{}", node.name.text, node.pin.text);
   }
   [[nodiscard]] std::string text(const language::Unary& node) const {

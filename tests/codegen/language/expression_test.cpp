@@ -159,7 +159,7 @@ class RandomExpression {
       const bool is_signed = operand(depth);
       if (left > 1) {
         // -A ** B is refused, so no power behind a sign.
-        std::string sign = signs[below(static_cast<std::uint32_t>(signs.size()))];
+        const std::string& sign = signs[below(static_cast<std::uint32_t>(signs.size()))];
         tokens_.push_back(is_signed && sign == "**" ? "*" : sign);
       }
     }

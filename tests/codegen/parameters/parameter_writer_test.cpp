@@ -135,7 +135,7 @@ train = [1.0, 21.0]
 }
 
 TEST(ParameterWriter, WritesWhereStatesBegin) {
-  const auto text = "[parameters.LAG]\nT1 = 0.5\n\n[initial.LAG]\nXOUT = 0.25  # begin, standard error 0.1\n";
+  const std::string text = "[parameters.LAG]\nT1 = 0.5\n\n[initial.LAG]\nXOUT = 0.25  # begin, standard error 0.1\n";
   const Remarks remarks{{"INITIAL.LAG.XOUT", {.unit = "", .meaning = "begin", .standard_error = 0.1}}};
   EXPECT_EQ(parameter_text(parse_parameter_file("p.toml", text), remarks), text);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/numbers.hpp"
 #include "tests/diagnosis/report/fixture.hpp"
 
 namespace hysteron::diagnosis {
@@ -136,8 +137,8 @@ TEST(ReportPage, WhatIsNotFiniteIsNullOrADash) {
   Diagnosis found = fixture::rich_diagnosis(50);
   found.traces[0].improved[3] = std::nan("");
   found.traces[0].time[7] = 0.0071;  // no longer even
-  found.effects[0].parameters[0].low = -INFINITY;
-  found.effects[0].parameters[0].high = INFINITY;
+  found.effects[0].parameters[0].low = -infinity;
+  found.effects[0].parameters[0].high = infinity;
   found.rivals[1].improved_rms = std::nan("");
   const std::string page = report_page(found, fixture::rich_program());
   const nlohmann::json data = nlohmann::json::parse(data_of(page));

@@ -53,7 +53,7 @@ class HostProgramTest : public testing::Test {
  protected:
   HostProgramTest() { folder.write("run.toml", "[outputs.Y]\nsafe = 0.0\n"); }
 
-  Outcome run(std::vector<std::string> words, const std::string& addresses = "") {
+  static Outcome run(std::vector<std::string> words, const std::string& addresses = "") {
     std::vector<const char*> argv{"counting_host"};
     for (const std::string& word : words) {
       argv.push_back(word.c_str());

@@ -85,7 +85,9 @@ class HostProcess {
     if (process_ == 0) {
       Twice program;
       const bool well = run_host(program, parse_run_config("RUN.toml", run_file, program.shape()), {.how = "linked"},
-                                 [&](std::string_view text) { (void)!::write(ends[1], text.data(), text.size()); });
+                                 [&](std::string_view text) {
+                                   [[maybe_unused]] const ssize_t written = ::write(ends[1], text.data(), text.size());
+                                 });
       ::_exit(well ? 0 : 1);
     }
     ::close(ends[1]);

@@ -54,10 +54,10 @@ class Oracle {
     if (function == 43) {
       return identify(pdu);
     }
-    Span read{f.area, f.read_at ? word(pdu, f.read_at) : 0, f.read_at ? word(pdu, f.read_at + 2) : 0};
-    Span write{f.area, f.write_at ? word(pdu, f.write_at) : 0, 0};
-    if (f.write_at) {
-      write.count = f.data_at ? word(pdu, f.write_at + 2) : 1;
+    Span read{f.area, f.read_at != 0 ? word(pdu, f.read_at) : 0, f.read_at != 0 ? word(pdu, f.read_at + 2) : 0};
+    Span write{f.area, f.write_at != 0 ? word(pdu, f.write_at) : 0, 0};
+    if (f.write_at != 0) {
+      write.count = f.data_at != 0 ? word(pdu, f.write_at + 2) : 1;
     }
     if (!readable(read) || !writable(write)) {
       return exception(function, 2);
@@ -69,8 +69,8 @@ class Oracle {
     for (std::size_t i = 0; i < values.size(); ++i) {
       cells_[write.area][write.address + i].word = values[i];
     }
-    if (!f.read_at) {
-      return Bytes(pdu.begin(), pdu.begin() + (function == 22 ? 7 : 5));
+    if (f.read_at == 0) {
+      return {pdu.begin(), pdu.begin() + (function == 22 ? 7 : 5)};
     }
     return read_answer(function, read);
   }

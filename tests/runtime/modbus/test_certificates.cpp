@@ -15,6 +15,7 @@ namespace {
 
 void add_extension(X509* certificate, const X509* issuer, int kind, const char* value) {
   X509V3_CTX context;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): the library does not write there
   X509V3_set_ctx(&context, const_cast<X509*>(issuer), certificate, nullptr, nullptr, 0);
   const std::unique_ptr<X509_EXTENSION, decltype(&X509_EXTENSION_free)> extension(
       X509V3_EXT_conf_nid(nullptr, &context, kind, value), X509_EXTENSION_free);

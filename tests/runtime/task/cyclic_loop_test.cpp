@@ -140,8 +140,8 @@ TEST(Clock, TheMonotonicOneKeepsTheAccount) {
   EXPECT_TRUE(worker.account_holds);
   EXPECT_EQ(statistics.run, 100U);
   EXPECT_GE(clock.now() - before, static_cast<std::int64_t>(statistics.elapsed) * period);
-  for (std::size_t i = 0; i < worker.moments.size(); ++i) {
-    EXPECT_GE(worker.moments[i].start, worker.moments[i].due);
+  for (const auto& moment : worker.moments) {
+    EXPECT_GE(moment.start, moment.due);
   }
 }
 

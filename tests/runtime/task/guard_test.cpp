@@ -19,7 +19,9 @@ TEST_P(Mishaps, EndInSafeOutputs) {
 INSTANTIATE_TEST_SUITE_P(Guard, Mishaps,
                          testing::Values(test::Mishap::hang, test::Mishap::not_finite, test::Mishap::segmentation_fault,
                                          test::Mishap::killed, test::Mishap::stopped),
-                         [](const auto& one) { return std::string(test::mishap_names[static_cast<int>(one.param)]); });
+                         [](const auto& one) {
+                           return std::string(test::mishap_names[static_cast<std::size_t>(one.param)]);
+                         });
 
 TEST(Guard, AHeartbeatIsJudgedByTimeAlone) {
   constexpr GuardSettings settings{.watchdog = {.time = 100, .sensitivity = 3}, .silence = 10'000};

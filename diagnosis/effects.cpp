@@ -164,7 +164,7 @@ std::vector<EffectKind> effect_kinds(const Definitions& definitions) {
       // With a velocity or a position beside it, it is the size of a force.
       if (one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0 &&
           kind.auxiliaries.empty()) {
-        one.role = Role::Gap;
+        one.role = one.name == "QUANTUM" ? Role::Quantum : Role::Gap;
       }
     }
   }

@@ -16,7 +16,8 @@ namespace hysteron::diagnosis {
 /// What a parameter measures, and so on which grid it is searched.
 enum class Role : std::uint8_t {
   Level,      ///< in the unit of the signal
-  Gap,        ///< likewise, a width or a quantum: nothing at 0, never negative, and its place on the signal counts
+  Gap,        ///< likewise, a width: nothing at 0, never negative, and its place on the signal counts
+  Quantum,    ///< a gap that comes again and again over the signal, as a period does
   Rate,       ///< in that unit a second
   Duration,   ///< seconds
   Instant,    ///< seconds since the start: a default of 0 that is not neutral, or of ∞ for an end that need not come

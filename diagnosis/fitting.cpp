@@ -120,11 +120,11 @@ void finish(const Task& task, Explanation& one, bool thoroughly) {
     return std::ranges::none_of(own.settings, [&](const auto& setting) { return setting.first == path; });
   });
   const Index first = model.first_further() + std::ssize(one.variant.further) - count;
-  if (own.has(Role::Gap)) {
+  if (own.has_gap()) {
     scan(model, one.fit, first, count);
   }
   one.fit = fit(model, one.fit.x, {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5});
-  if (own.has(Role::Gap)) {
+  if (own.has_gap()) {
     pattern_search(model, one.fit, 0, first + count);
   } else if (thoroughly) {
     pattern_search(model, one.fit, first, count);

@@ -276,8 +276,8 @@ class Screening {
   [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
     return std::ranges::all_of(list, [&](Index j) {
       const EffectParameter& one = parameter(j);
-      return std::isfinite(one.field.neutral) && one.role != Role::Gap && one.role != Role::Rate &&
-             one.role != Role::Duration;
+      return std::isfinite(one.field.neutral) && one.role != Role::Gap && one.role != Role::Quantum &&
+             one.role != Role::Rate && one.role != Role::Duration;
     });
   }
 

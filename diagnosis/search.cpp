@@ -160,7 +160,7 @@ class Searcher {
         return;
       }
       std::vector<double> periods;
-      if (candidates[i].own().has(Role::Period)) {
+      if (candidates[i].own().has(Role::Period) || candidates[i].own().has(Role::Quantum)) {
         periods =
             strongest_periods(shown, signals->auxiliary_values ? *signals->auxiliary_values : signals->input_values, 8);
       }
@@ -240,7 +240,7 @@ class Searcher {
     const Background background(model, calibrated.fit);
     std::vector<Screened> others(list.size());
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
-      if (candidates[i].own().has(Role::Gap) && !grids[i].parameters.empty()) {
+      if (candidates[i].own().has_gap() && !grids[i].parameters.empty()) {
         others[i] = unless_refused([&] {
           return screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
                           background, 2);

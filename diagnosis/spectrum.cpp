@@ -15,6 +15,16 @@ struct Peak {
   double height = 0.0;
 };
 
+/// Where between −1/2 and 1/2 the parabola through the logarithms of three heights has its vertex; the middle one is
+/// the highest.
+double vertex(double left, double middle, double right) {
+  const double before = std::log(left + 1e-300);
+  const double at = std::log(middle + 1e-300);
+  const double after = std::log(right + 1e-300);
+  const double bend = before - 2.0 * at + after;
+  return bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
+}
+
 std::vector<double> places_of(std::vector<Peak> peaks, std::size_t count) {
   std::ranges::stable_sort(peaks, [](const Peak& a, const Peak& b) { return a.height > b.height; });
   std::vector<double> places;
@@ -51,13 +61,8 @@ std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample
   std::vector<Peak> peaks;
   for (std::size_t k = 6; k + 1 < length / 2; ++k) {
     if (power(k) > power(k - 1) && power(k) >= power(k + 1)) {
-      const double left = std::log(power(k - 1));
-      const double middle = std::log(power(k));
-      const double right = std::log(power(k + 1));
-      const double bend = left - 2.0 * middle + right;
-      const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
-      peaks.push_back({.place = (static_cast<double>(k) + shift) / (static_cast<double>(length) * sample_time),
-                       .height = power(k)});
+      const double at = static_cast<double>(k) + vertex(power(k - 1), power(k), power(k + 1));
+      peaks.push_back({.place = at / (static_cast<double>(length) * sample_time), .height = power(k)});
     }
   }
   return places_of(std::move(peaks), count);
@@ -131,7 +136,8 @@ std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const st
   std::vector<Peak> peaks;
   for (std::size_t k = 1; k + 1 < heights.size(); ++k) {
     if (heights[k] > heights[k - 1] && heights[k] >= heights[k + 1]) {
-      peaks.push_back({.place = range / (0.25 * static_cast<double>(k + first)), .height = heights[k]});
+      const double turns = 0.25 * (static_cast<double>(k + first) + vertex(heights[k - 1], heights[k], heights[k + 1]));
+      peaks.push_back({.place = range / turns, .height = heights[k]});
     }
   }
   return places_of(std::move(peaks), count);

@@ -54,13 +54,9 @@ std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, 
         return levels_above(input, field.neutral);
       }
       return scaled(range, {0.001, 0.003, 0.01, 0.03, 0.1, 0.3});
-    case Role::Gap: {
-      std::vector<double> values = geometric(0.003 * range, 0.4 * range, 1.07);
-      if (parameter.name == "QUANTUM") {
-        values.insert(values.begin(), hints.quanta.begin(), hints.quanta.end());
-      }
-      return values;
-    }
+    case Role::Gap:
+    case Role::Quantum:
+      return geometric(0.003 * range, 0.4 * range, 1.07);
     case Role::Rate:
       return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
                                        : scaled(range / hints.duration, {0.05});
@@ -121,6 +117,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
       return parameter.field.minimum < 0.0 ? std::vector{0.0, 0.9, -0.9} : std::vector{0.02, 0.1, 0.4};
     case Role::Level:
     case Role::Gap:
+    case Role::Quantum:
       return scaled(range, {0.05, 0.15, 0.4});
     case Role::Rate:
     case Role::PerSecond:
@@ -186,10 +183,19 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     if (parameter.role == Role::Reference) {
       setting = reference(parameter, input, candidate.about_zero);
     } else {
-      grid.jagged = parameter.name == "QUANTUM";
+      grid.jagged = parameter.role == Role::Quantum;
       grid.values = parameter.strength
                         ? strength_grid(parameter, is_oscillation(candidate.own()), input, auxiliary, hints)
                         : shape_grid(parameter, input, auxiliary, hints, periods);
+      if (parameter.role == Role::Quantum) {
+        // The steps that measured values lie on, and the periods at which the residual repeats over the signal: with
+        // sixty steps over the range, a quantum that is off by a percent fits no better than any other.
+        std::vector<double> guesses = hints.quanta;
+        guesses.insert(guesses.end(), periods.begin(), periods.end());
+        std::erase_if(guesses, [&](double value) { return !in_range(parameter.field, value); });
+        grid.guessed = guesses.size();
+        grid.values.insert(grid.values.begin(), guesses.begin(), guesses.end());
+      }
       grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Period) {
         const double range = (auxiliary == nullptr ? input : *auxiliary).range();
@@ -219,9 +225,10 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
       result.parameters[j].values.resize(std::min(values.size(), strongest));
       continue;
     }
-    result.parameters[j].values.clear();
+    const std::size_t guessed = std::min(grids.parameters[j].guessed, values.size());
+    result.parameters[j].values.resize(guessed);
     const std::size_t step = role == Role::Instant ? 2 : stride;
-    for (std::size_t k = 0; k < values.size(); k += step) {
+    for (std::size_t k = guessed; k < values.size(); k += step) {
       result.parameters[j].values.push_back(values[k]);
     }
   }

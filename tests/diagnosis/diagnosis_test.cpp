@@ -127,6 +127,19 @@ TEST(Diagnosis, AsymmetryIsARicherBlock) {
   EXPECT_GE(asymmetry.high, 0.14);
 }
 
+TEST(Diagnosis, AQuantumOfAHundredStepsInsideIsFound) {
+  // A quantum that is off by a percent is out of step at the far end of the range, and fits no better than any other.
+  constexpr double quantum = 0.0317;
+  const Diagnosis found =
+      diagnosed(on_stack("quantization", {fmt::format("HY_QUANTIZER := (QUANTUM := {})", quantum), "AMP.XOUT"},
+                         {"branch_chatter", "backlash"}, {}));
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "quantization");
+  ASSERT_FALSE(found.effects.front().parameters.empty());
+  EXPECT_NEAR(found.effects.front().parameters.front().value, quantum, 0.002 * quantum);
+  EXPECT_LT(found.gap.improved, 1.15 * 0.02);
+}
+
 TEST(Diagnosis, ParametersComeBackWithTheirIntervals) {
   const Injected truth = on_stack("drift", {"HY_DRIFT := (RATE := 0.08)", "HYST.XOUT"}, {"offset"}, {});
   const Diagnosis found = diagnosed(truth);

@@ -67,8 +67,8 @@ TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {
   const auto periods = strongest_periods(ripple + noise(0.05), {position}, 1);
   ASSERT_EQ(periods.size(), 1U);
   const auto [low, high] = std::ranges::minmax(position);
-  // The grid is a quarter of a turn over the whole range, so the nearest point is an eighth away at most.
-  EXPECT_NEAR((high - low) / periods[0], (high - low) / period, 0.126);
+  // Much nearer than the grid, a quarter of a turn over the whole range: a quantum needs it.
+  EXPECT_NEAR((high - low) / periods[0], (high - low) / period, 0.03);
 }
 
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "support/markup.hpp"
 
@@ -115,12 +114,13 @@ std::string line_plot(const PlotLabels& labels, std::span<const Line> lines) {
         std::fabs(tick) < 1e-9 * y.step ? 0.0 : tick);
   }
   double at = width - right;
-  for (const auto& line : std::views::reverse(lines)) {
-    svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\"/>\n", path_of(line, x, y),
-                       line.colour);
-    svg += fmt::format("<text x=\"{}\" y=\"16\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", at, line.colour,
-                       escaped(line.name));
-    at -= 8.0 * static_cast<double>(line.name.size()) + 16.0;
+  // NOLINTNEXTLINE(modernize-loop-convert): clang 14 does not take std::views::reverse
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\"/>\n", path_of(*line, x, y),
+                       line->colour);
+    svg += fmt::format("<text x=\"{}\" y=\"16\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", at, line->colour,
+                       escaped(line->name));
+    at -= 8.0 * static_cast<double>(line->name.size()) + 16.0;
   }
   svg += fmt::format(
       "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"

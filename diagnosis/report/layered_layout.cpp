@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <ranges>
 #include <tuple>
 
 namespace hysteron::diagnosis::report {
@@ -120,11 +119,12 @@ class Layering {
       column_[box] = column;
       last = std::max(last, column);
     }
-    for (const std::size_t box : std::views::reverse(order_)) {
-      if (boxes_[box].side == Side::Right) {
-        column_[box] = last;
-      } else if (boxes_[box].side == Side::Any) {
-        pull_right(box);
+    // NOLINTNEXTLINE(modernize-loop-convert): clang 14 does not take std::views::reverse
+    for (auto box = order_.rbegin(); box != order_.rend(); ++box) {
+      if (boxes_[*box].side == Side::Right) {
+        column_[*box] = last;
+      } else if (boxes_[*box].side == Side::Any) {
+        pull_right(*box);
       }
     }
     columns_.resize(last + 1);

@@ -109,14 +109,16 @@ class Dump {
     }
     return out;
   }
-  [[nodiscard]] static std::string text(const language::RealLiteral& node) { return fmt::format("{}r", node.value); }
-  [[nodiscard]] static std::string text(const language::IntLiteral& node) {
+  // NOLINTBEGIN(readability-convert-member-functions-to-static): they are called alike
+  [[nodiscard]] std::string text(const language::RealLiteral& node) const { return fmt::format("{}r", node.value); }
+  [[nodiscard]] std::string text(const language::IntLiteral& node) const {
     return fmt::format("{}{}", node.value, node.is_word ? "w" : "i");
   }
-  [[nodiscard]] static std::string text(const language::BoolLiteral& node) { return node.value ? "TRUE" : "FALSE"; }
-  [[nodiscard]] static std::string text(const language::Reference& node) {
+  [[nodiscard]] std::string text(const language::BoolLiteral& node) const { return node.value ? "TRUE" : "FALSE"; }
+  [[nodiscard]] std::string text(const language::Reference& node) const {
     return node.pin.text.empty() ? std::string(node.name.text) : fmt::format("{}.{}", node.name.text, node.pin.text);
   }
+  // NOLINTEND(readability-convert-member-functions-to-static)
   [[nodiscard]] std::string text(const language::Unary& node) const {
     return fmt::format("({} {})", sign_of(node.op), expression(node.operand));
   }

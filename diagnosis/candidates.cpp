@@ -277,6 +277,10 @@ bool Applied::has(Role role) const {
   return std::ranges::any_of(parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
+bool Applied::has_gap() const {
+  return std::ranges::any_of(parameters, [](const EffectParameter& one) { return is_gap(one.role); });
+}
+
 std::vector<Candidate> candidates_of(const Variant& base, const std::string& top, const CandidateOptions& options) {
   return Enumeration(base, top, options).list();
 }

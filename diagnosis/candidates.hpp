@@ -26,7 +26,7 @@ struct Applied {
   std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
 
   [[nodiscard]] bool has(Role role) const;
-  [[nodiscard]] bool has_gap() const { return has(Role::Gap) || has(Role::Quantum); }
+  [[nodiscard]] bool has_gap() const;
 };
 
 /// A diagram with the effects added so far.

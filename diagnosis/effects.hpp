@@ -29,6 +29,11 @@ enum class Role : std::uint8_t {
   Other
 };
 
+/// Whether a parameter of this role is a gap in the signal, that comes once or again and again.
+constexpr bool is_gap(Role role) {
+  return role == Role::Gap || role == Role::Quantum;
+}
+
 struct EffectParameter {
   std::string name{};  ///< its own copy: of a user's block the field's name lies in a text that may be gone
   Field field{};

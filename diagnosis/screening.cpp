@@ -114,7 +114,8 @@ class Screening {
     return finished(std::move(starts), keep);
   }
 
-  /// The points of the grid about the starts that a thinner one has found; all of a grid that is jagged.
+  /// The points of the grid about the starts that a thinner one has found; all of a quantum's: what lies between two of
+  /// its points cannot be guessed from them.
   Screened run_about(const std::vector<Start>& coarse, std::size_t stride, std::size_t keep) {
     std::vector<Start> starts;
     for (const Start& start : coarse) {
@@ -124,7 +125,7 @@ class Screening {
       }
       starts.push_back({.values = values, .gain = start.gain});
       for (const Index j : free_) {
-        if (!grids_.parameters[static_cast<std::size_t>(j)].jagged || &start == &coarse.front()) {
+        if (parameter(j).role != Role::Quantum || &start == &coarse.front()) {
           try_neighbours(values, j, stride, starts);
         }
       }
@@ -163,7 +164,8 @@ class Screening {
       return;
     }
     const auto middle = static_cast<std::ptrdiff_t>(nearest(grid.values, values[j]));
-    const auto reach = grid.jagged ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
+    const bool whole = parameter(j).role == Role::Quantum;
+    const auto reach = whole ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
     for (auto k = std::max<std::ptrdiff_t>(0, middle - reach); k <= std::min(last, middle + reach); ++k) {
       if (k == middle) {
         continue;
@@ -276,8 +278,8 @@ class Screening {
   [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
     return std::ranges::all_of(list, [&](Index j) {
       const EffectParameter& one = parameter(j);
-      return std::isfinite(one.field.neutral) && one.role != Role::Gap && one.role != Role::Quantum &&
-             one.role != Role::Rate && one.role != Role::Duration;
+      return std::isfinite(one.field.neutral) && !is_gap(one.role) && one.role != Role::Rate &&
+             one.role != Role::Duration;
     });
   }
 

@@ -57,7 +57,7 @@ std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample
   std::vector<std::complex<double>> transform;
   Eigen::FFT<double> fft;
   fft.fwd(transform, windowed);
-  const auto power = [&](std::size_t k) { return std::norm(transform[k]) + 1e-300; };
+  const auto power = [&](std::size_t k) { return std::norm(transform[k]); };
   std::vector<Peak> peaks;
   for (std::size_t k = 6; k + 1 < length / 2; ++k) {
     if (power(k) > power(k - 1) && power(k) >= power(k + 1)) {

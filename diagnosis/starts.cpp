@@ -183,7 +183,14 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     if (parameter.role == Role::Reference) {
       setting = reference(parameter, input, candidate.about_zero);
     } else {
-      grid.jagged = parameter.role == Role::Quantum;
+      grid.highest = parameter.field.effect_maximum;
+      if (parameter.role == Role::Period) {
+        const double range = (auxiliary == nullptr ? input : *auxiliary).range();
+        grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
+      }
+      const auto drop_unfit = [&](std::vector<double>& values) {
+        std::erase_if(values, [&](double value) { return !in_range(parameter.field, value) || value > grid.highest; });
+      };
       grid.values = parameter.strength
                         ? strength_grid(parameter, is_oscillation(candidate.own()), input, auxiliary, hints)
                         : shape_grid(parameter, input, auxiliary, hints, periods);
@@ -192,17 +199,11 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
         // sixty steps over the range, a quantum that is off by a percent fits no better than any other.
         std::vector<double> guesses = hints.quanta;
         guesses.insert(guesses.end(), periods.begin(), periods.end());
-        std::erase_if(guesses, [&](double value) { return !in_range(parameter.field, value); });
+        drop_unfit(guesses);
         grid.guessed = guesses.size();
         grid.values.insert(grid.values.begin(), guesses.begin(), guesses.end());
       }
-      grid.highest = parameter.field.effect_maximum;
-      if (parameter.role == Role::Period) {
-        const double range = (auxiliary == nullptr ? input : *auxiliary).range();
-        grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
-      }
-      std::erase_if(grid.values,
-                    [&](double value) { return !in_range(parameter.field, value) || value > grid.highest; });
+      drop_unfit(grid.values);
     }
     grids.parameters.push_back(std::move(grid));
     grids.settings.push_back(setting);
@@ -225,7 +226,7 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
       result.parameters[j].values.resize(std::min(values.size(), strongest));
       continue;
     }
-    const std::size_t guessed = std::min(grids.parameters[j].guessed, values.size());
+    const std::size_t guessed = grids.parameters[j].guessed;
     result.parameters[j].values.resize(guessed);
     const std::size_t step = role == Role::Instant ? 2 : stride;
     for (std::size_t k = guessed; k < values.size(); k += step) {

@@ -23,7 +23,6 @@ struct Grid {
   std::vector<double> values{};
   std::size_t guessed = 0;  ///< so many at the front are guesses from the record, each of its own
   double highest = std::numeric_limits<double>::infinity();  ///< beyond which the record does not show what it is
-  bool jagged = false;  ///< what lies between two points cannot be guessed from them: a quantum
 };
 
 struct Grids {

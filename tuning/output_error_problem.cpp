@@ -17,6 +17,13 @@
 namespace hysteron {
 namespace {
 
+std::vector<std::string> names_of(const std::vector<Port>& ports) {
+  std::vector<std::string> names;
+  names.reserve(ports.size());
+  std::ranges::transform(ports, std::back_inserter(names), &Port::name);
+  return names;
+}
+
 using parameters::FitSetting;
 using parameters::ParameterFile;
 
@@ -148,11 +155,7 @@ class Builder {
       const auto found =
           std::ranges::find_if(outputs, [&](const Port& port) { return equal_ignoring_case(port.name, wanted.text); });
       if (found == outputs.end()) {
-        std::vector<std::string> names;
-        names.reserve(outputs.size());
-        for (const Port& port : outputs) {
-          names.push_back(port.name);
-        }
+        const std::vector<std::string> names = names_of(outputs);
         const auto near = nearest_name(wanted.text, names);
         diagnostics_.error(error::unknown_key, wanted.place,
                            fmt::format("{} has no output {}.", graph().name, wanted.text),
@@ -172,11 +175,7 @@ class Builder {
       }
     }
     if (problem_.outputs.empty()) {
-      std::vector<std::string> names;
-      names.reserve(outputs.size());
-      for (const Port& port : outputs) {
-        names.push_back(port.name);
-      }
+      const std::vector<std::string> names = names_of(outputs);
       diagnostics_.error(
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},
           fmt::format("No column bears the name of an output of {}: {}.", graph().name, fmt::join(names, ", ")),

@@ -3,5 +3,5 @@
 
 namespace hysteron::test {}
 namespace hysteron::runtime::test {
-using namespace hysteron::test;  // NOLINT(google-build-using-namespace): that is the purpose
+using namespace hysteron::test;
 }

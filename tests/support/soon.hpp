@@ -7,9 +7,10 @@
 
 namespace hysteron::test {
 
-/// Whether `holds` comes true within half a minute: long enough for a loaded machine, and short for one that hangs.
-inline bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 30'000 && !holds(); ++i) {
+/// Whether `holds` comes true in time; half a minute is enough for a loaded machine, and short for one that hangs.
+inline bool soon(const std::function<bool()>& holds, std::chrono::milliseconds patience = std::chrono::seconds(30)) {
+  for (auto waited = std::chrono::milliseconds(0); waited < patience && !holds();
+       waited += std::chrono::milliseconds(1)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return holds();

@@ -13,6 +13,7 @@
 
 #include "runtime/modbus/register_map.hpp"
 #include "tests/runtime/modbus/client_socket.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/tool/workbench.hpp"
 #include "tool/host_sources.hpp"
 
@@ -87,7 +88,7 @@ class Beside {
   int end() {
     ::kill(process_, SIGTERM);
     const int status = ::pclose(std::exchange(stream_, nullptr));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return test::exit_code(status);
   }
 
  private:

@@ -1,8 +1,6 @@
 // A folder in which the tool is run as a user runs it: by a shell, with files by their plain names.
 #pragma once
 
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -10,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "tests/support/exit_code.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::test {
@@ -42,9 +41,7 @@ class Workbench {
     if (status == -1) {
       throw std::runtime_error("no shell");
     }
-    return {.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            .out = contents_of(out),
-            .err = contents_of(err)};
+    return {.code = exit_code(status), .out = contents_of(out), .err = contents_of(err)};
   }
 
  private:

@@ -17,6 +17,7 @@
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/quiet_thread.hpp"
 #include "tests/support/counted_new.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/web/web_client.hpp"
 
 namespace hysteron::runtime::web {
@@ -50,7 +51,7 @@ LoopStatistics run_task(Traffic& traffic, const std::function<bool(std::uint64_t
   };
   const Server server(task.door(), {.name = "ACCUMULATOR", .period = 1'000'000},
                       {.endpoint = parse_endpoint("127.0.0.1:0"),
-                       .access = {.token = "0123456789abcdef"},
+                       .access = {.token = hysteron::test::token},
                        .limits = {.interval = milliseconds(1)}});
   std::atomic<bool> done{false};
   std::vector<std::thread> clients;
@@ -136,7 +137,7 @@ int end_of_filtered_run(bool with_a_forbidden_call) {
   }
   int status = 0;
   (void)waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return hysteron::test::exit_code(status);
 }
 
 TEST(WebQuietStep, TenPagesMakeACycleCallNothingOfTheSystem) {

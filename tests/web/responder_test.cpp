@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* bearer = "Bearer 0123456789abcdef";
+const std::string bearer = std::string("Bearer ") + test::token;
 
 /// G.A from -1e9 to 1e9, in mm; both parameters only with a sum of 0.
 struct PageBench {

@@ -29,6 +29,7 @@
 #include "runtime/modbus/server.hpp"
 #include "tests/runtime/modbus/free_port.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -132,7 +133,7 @@ class HostProcess {
     const std::string last = line();
     int status = 0;
     ::waitpid(std::exchange(process_, 0), &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), last};
+    return {test::exit_code(status), last};
   }
 
  private:

@@ -4,13 +4,12 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "runtime/modbus/device.hpp"
 #include "tests/runtime/modbus/bad_server.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::test {
 
@@ -29,14 +28,6 @@ inline constexpr std::array<std::pair<Fault, std::string_view>, 14> link_faults{
      {Fault::black_hole, "black hole"},
      {Fault::duplicate, "duplicate"},
      {Fault::drip, "drip"}}};
-
-/// Waits for what will be soon.
-inline bool soon(const std::function<bool()>& holds) {
-  for (int i = 0; i < 15000 && !holds(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return holds();
-}
 
 inline runtime::modbus::DeviceOptions one_register(std::uint16_t port, std::chrono::milliseconds response) {
   using std::chrono::milliseconds;

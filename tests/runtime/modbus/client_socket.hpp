@@ -189,6 +189,12 @@ inline Bytes framed(std::uint16_t transaction, std::initializer_list<int> pdu) {
   return bytes;
 }
 
+/// The answer to one request; empty where none came.
+inline Bytes ask(const ClientSocket& client, const Bytes& request) {
+  client.send(request);
+  return client.receive_frame();
+}
+
 /// Reads holding register 0.
 inline const Bytes read_one = framed(1, {3, 0, 0, 0, 1});
 

@@ -19,6 +19,7 @@
 namespace hysteron::runtime::modbus {
 namespace {
 
+using test::ask;
 using test::Bytes;
 using test::ClientSocket;
 using test::framed;
@@ -34,11 +35,6 @@ struct ServerBench {
   test::MemoryDoor door;
   Server server;
 };
-
-Bytes ask(const ClientSocket& client, const Bytes& request) {
-  client.send(request);
-  return client.receive_frame();
-}
 
 const Bytes write_one = framed(2, {6, 0, 3, 0, 9});
 

@@ -13,10 +13,12 @@
 #include "tests/runtime/modbus/hostile_clients.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
 #include "tests/runtime/modbus/tls_files.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
 
+using test::ask;
 using test::Bytes;
 using test::Certificate;
 using test::ClientSocket;
@@ -49,16 +51,8 @@ class TlsServer : public ::testing::Test {
     return ClientSocket(server_->port(), patience, context);
   }
   [[nodiscard]] ClientSocket connect(const test::ClientContext& context) const { return connect(context.get()); }
-  [[nodiscard]] static Bytes ask(const ClientSocket& client, const Bytes& request) {
-    client.send(request);
-    return client.receive_frame();
-  }
-  /// Waits for what the server's thread will do soon.
   [[nodiscard]] static bool soon(const std::function<bool()>& holds) {
-    for (int i = 0; i < 2000 && !holds(); ++i) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return holds();
+    return test::soon(holds, std::chrono::seconds(10));
   }
   std::string told() {
     const std::scoped_lock lock(mutex_);

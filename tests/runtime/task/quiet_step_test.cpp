@@ -19,6 +19,7 @@
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/quiet_thread.hpp"
 #include "tests/support/counted_new.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::runtime {
@@ -114,7 +115,7 @@ int end_of_filtered_run(const std::string& folder, bool with_a_forbidden_call) {
   }
   int status = 0;
   (void)waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return hysteron::test::exit_code(status);
 }
 
 TEST(QuietStep, CallsNothingOfTheSystemButSleepAndClock) {

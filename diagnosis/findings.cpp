@@ -143,10 +143,11 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
     EffectFinding finding{.id = applied.effect, .edge = applied.edge, .share = shares[i]};
     for (std::size_t j = 0; j < chosen.variant.further.size(); ++j) {
       const Unknown& unknown = chosen.variant.further[j];
-      if (std::ranges::find(applied.paths, unknown.path) == applied.paths.end()) {
+      const Index at = model.first_further() + static_cast<Index>(j);
+      const bool own = std::ranges::find(applied.paths, unknown.path) != applied.paths.end();
+      if (!own || !std::isfinite(chosen.fit.x[at])) {  // another effect's, or a bound that is not there
         continue;
       }
-      const Index at = model.first_further() + static_cast<Index>(j);
       finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
     }
@@ -324,7 +325,11 @@ parameters::ParameterFile improved_file(const Task& task, parameters::ParameterF
   }
   for (std::size_t j = 0; j < explanation.variant.further.size(); ++j) {
     const std::string& path = explanation.variant.further[j].path;
-    set(path, x[std::ssize(task.known) + static_cast<Index>(j)]);
+    const double value = x[std::ssize(task.known) + static_cast<Index>(j)];
+    if (!std::isfinite(value)) {
+      continue;  // a bound that is not there: so the block has it by itself
+    }
+    set(path, value);
     if (!file.fits.empty() && !fitted(path)) {
       file.fits.push_back({.path = path});
     }

@@ -35,6 +35,11 @@ VectorXd moved(const Model& model, const VectorXd& x, const VectorXd& step) {
   return within_bounds(model, result);
 }
 
+/// x − x⁰, 0 where no prior holds an unknown: a bound that is not set is infinite, and so is its distance.
+VectorXd off_prior(const Model& model, const VectorXd& x) {
+  return (model.prior().array() > 0.0).select(x - model.start(), 0.0);
+}
+
 /// SᵀJᵀWJS + Λ and Sᵀ(JᵀWr + Λ(x − x⁰)) with the slopes S.
 struct Normal {
   MatrixXd matrix{};
@@ -53,7 +58,7 @@ Normal normal_equations(const Model& model, const Fit& at, const VectorXd* weigh
     normal.gradient = at.jacobian.transpose() * at.residuals;
   }
   normal.matrix.diagonal() += precision;
-  normal.gradient += precision.cwiseProduct(at.x - model.start());
+  normal.gradient += precision.cwiseProduct(off_prior(model, at.x));
   const VectorXd slopes = slopes_of(model, at.x);
   normal.matrix = slopes.asDiagonal() * normal.matrix * slopes.asDiagonal();
   normal.gradient = slopes.cwiseProduct(normal.gradient);
@@ -90,7 +95,7 @@ VectorXd step_of(const Model& model, const Normal& normal, const VectorXd& x, do
 
 double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals, const VectorXd* weights) {
   const double data = weights == nullptr ? residuals.squaredNorm() : residuals.cwiseAbs2().dot(*weights);
-  const double prior = (x - model.start()).cwiseProduct(model.prior()).squaredNorm();
+  const double prior = off_prior(model, x).cwiseProduct(model.prior()).squaredNorm();
   const double cost = 0.5 * (data + prior);
   return std::isfinite(cost) ? cost : infinity;  // NOLINT(bugprone-narrowing-conversions): both are doubles
 }

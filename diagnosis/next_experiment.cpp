@@ -150,12 +150,13 @@ class Planner {
     return over_noise(Projection(others).rest(own)) * (size > 0.0 ? size : 1.0);
   }
 
-  /// The first strength of the last effect, among the unknowns.
+  /// The first strength of the last effect, among the unknowns; none is a bound that is not there.
   [[nodiscard]] static Index strength_of(const Contender& one) {
     const Applied& effect = one.explanation->variant.effects.back();
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
       for (Index j = one.first_effect; effect.parameters[k].strength && j < std::ssize(one.unknowns); ++j) {
-        if (one.unknowns[static_cast<std::size_t>(j)].path == effect.paths[k]) {
+        const Unknown& unknown = one.unknowns[static_cast<std::size_t>(j)];
+        if (unknown.path == effect.paths[k] && std::isfinite(unknown.start)) {
           return j;
         }
       }

@@ -173,7 +173,7 @@ class Screening {
       VectorXd moved = values;
       moved[j] = grid.values[static_cast<std::size_t>(k)];
       if (parameter(j).strength) {
-        try_point(moved, starts);
+        (void)try_point(moved, starts);
         continue;
       }
       VectorXd shape = moved;
@@ -185,7 +185,7 @@ class Screening {
         try_shape(shape, starts);
       }
       if (starts.size() == before) {
-        try_point(moved, starts);
+        (void)try_point(moved, starts);
       }
     }
   }
@@ -311,8 +311,7 @@ class Screening {
       for (const Index j : list) {
         there[j] += share * (values[j] - shape[j]);
       }
-      try_point(there, starts);
-      best = starts.empty() ? best : std::max(best, starts.back().gain);
+      best = std::max(best, try_point(there, starts));
       if (best > 0.8 * gain) {
         break;
       }
@@ -320,41 +319,54 @@ class Screening {
     return best > 0.3 * gain;
   }
 
-  /// Each strength by itself over its grid, and all of them at once.
+  /// Each strength by itself over its grid; of limits also all of them at once, and each at its best.
   void try_grid(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
+    const bool limits =
+        list.size() > 1 && std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
     std::size_t longest = 0;
+    VectorXd each_at_its_best = shape;
     for (const Index j : list) {
       const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
       longest = std::max(longest, grid.size());
+      double best = 0.0;
       for (const double value : grid) {
         VectorXd values = shape;
         values[j] = value;
-        try_point(values, starts);
+        const double gain = try_point(values, starts);
+        if (gain > best) {
+          best = gain;
+          each_at_its_best[j] = value;
+        }
         if (grid.size() < 5 && parameter(j).field.minimum < parameter(j).field.neutral) {
           values[j] = 2.0 * parameter(j).field.neutral - value;
-          try_point(values, starts);
+          (void)try_point(values, starts);
         }
       }
     }
-    const bool limits = std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
-    for (std::size_t k = 0; limits && list.size() > 1 && k < longest; ++k) {
+    if (!limits) {
+      return;
+    }
+    (void)try_point(each_at_its_best, starts);
+    for (std::size_t k = 0; k < longest; ++k) {
       VectorXd values = shape;
       for (const Index j : list) {
         const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
         values[j] = grid[std::min(k, grid.size() - 1)];
       }
-      try_point(values, starts);
+      (void)try_point(values, starts);
     }
   }
 
-  void try_point(const VectorXd& values, std::vector<Start>& starts) {
+  /// What the diagram gains there, which becomes a start; 0 where it has no value, or the effect does nothing.
+  double try_point(const VectorXd& values, std::vector<Start>& starts) {
     const VectorXd change = change_at(values);
     if (change.size() == 0 || change.squaredNorm() == 0.0) {
-      return;
+      return 0.0;
     }
     const VectorXd one = VectorXd::Ones(1);
     VectorXd alpha;
     starts.push_back({.values = values, .gain = background_.gain(change, one, one, alpha)});
+    return starts.back().gain;
   }
 
   const Grids& grids_;

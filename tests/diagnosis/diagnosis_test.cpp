@@ -139,6 +139,20 @@ TEST(Diagnosis, AQuantumOfAHundredStepsInsideIsFound) {
   EXPECT_NEAR(found.effects.front().parameters.front().value, quantum, 0.002 * quantum);
 }
 
+TEST(Diagnosis, ALimitOnOneSideIsFound) {
+  // The other bound is infinite, and has to stay so through fit, parameter file, verdict and next experiment.
+  const Diagnosis found =
+      diagnosed(on_axis("saturation", {"HY_LIMIT := (MX := 1.1)", "FORCE"}, {"odd_nonlinearity", "drift"}, {"FORCE"}));
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "saturation");
+  ASSERT_EQ(found.effects.front().parameters.size(), 1U);
+  EXPECT_EQ(found.effects.front().parameters.front().name, "MX");
+  EXPECT_NEAR(found.effects.front().parameters.front().value, 1.1, 0.01);
+  EXPECT_TRUE(std::isfinite(found.next.separation));
+  EXPECT_THAT(found.improved_file.values,
+              Not(Contains(testing::Field(&parameters::ParameterValue::path, HasSubstr("MN")))));
+}
+
 TEST(Diagnosis, ParametersComeBackWithTheirIntervals) {
   const Injected truth = on_stack("drift", {"HY_DRIFT := (RATE := 0.08)", "HYST.XOUT"}, {"offset"}, {});
   const Diagnosis found = diagnosed(truth);

@@ -15,15 +15,20 @@ struct HysteresisGeneral {
       .group = Group::Memory,
       .equation =
           "XOUT = y_i + (C1·d + (1 ± ASYMMETRY)·G(d) + B(d))·(1 + BIAS·(m − U0)/BIAS_REFERENCE) + D + R; d = XIN − "
-          "u_i, p = |d|, G = d·C2·p^C3/(C3+1), B = SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D "
-          "is the integral of M(p)·DUHEM·(u − U0)/DUHEM_REFERENCE along the branch; R collects G's increments times "
+          "u_i, p = |d|, e = ±ASYMMETRY_EXPONENT, G = d·C2·p^C3·(p/ASYMMETRY_REFERENCE)^e/(C3+e+1), B = "
+          "SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D is the integral of (M(p)·DUHEM/"
+          "DUHEM_REFERENCE + C2·p^C3·HARDENING/HARDENING_REFERENCE)·(u − U0) along the branch; R collects G's "
+          "increments times "
           "RATE·log10(1 + |XIN'|/RATE_REFERENCE); on the skeleton p = 2|d|",
       .meaning =
           "HY_HYSTERESIS_RO, to the bit, where all its further parameters are 0. ASYMMETRY makes C2 larger upwards "
-          "and smaller downwards; a loop then no longer closes, and wanders by the difference in each cycle. RATE lets "
+          "and smaller downwards, ASYMMETRY_EXPONENT does so with C3; a loop then no longer closes, and wanders by the "
+          "difference in each cycle. RATE lets "
           "the growth depend on the rate within each sample. BIAS changes the slopes with the middle m of the branch, "
           "so that equal loops differ with their bias, and each closes. DUHEM does so by Duhem's form: the slope "
-          "follows the input itself, and a loop wanders as it does with an asymmetry. SHAPE bends the branch by "
+          "follows the input itself, and a loop wanders as it does with an asymmetry; HARDENING is the same of the "
+          "part "
+          "C2*p^C3 alone. SHAPE bends the branch by "
           "SHAPE·C1·SHAPE_DEPTH "
           "at the momentum SHAPE_DEPTH and leaves its start and its far end: C1, C2 and C3 have no such bend. "
           "RETURN_POINT blends the output with that of a hysteresis which, when a loop closes, resumes the branch "

@@ -2,15 +2,16 @@
 // shape. Shared by HY_HYSTERESIS_GENERAL and HY_M_GENERAL.
 //
 // On a branch that left u_i the loop's rise over the distance d = u − u_i, with p = |d| (2|d| on the skeleton), is
-//   (C1·d + (1 ± A)·G(d) + B(d))·(1 + b·m),   G(d) = d·C2·p^C3/(C3+1),   B(d) = SHAPE·C1·d·z·exp(2(1 − z)),  z =
-//   p/DEPTH
-// with + upwards and − downwards, and m the middle of the branch so far, (u_i + u)/2, from the origin. Since m is the
-// same for the way up and the way down, a loop that closes without b closes with it. B is 0 at the branching point and
-// again far from it, and highest at p = DEPTH: Y(p), whose slope is monotone, cannot have that shape.
-// With Duhem's form of the bias, y' = f(u)·M(p)·u', f = 1 + h·(u − origin), the slope follows the input itself, and
-// the rise has in addition
+//   (C1·d + (1 ± A)·G(d) + B(d))·(1 + b·m),   G(d) = d·C2·p^C3·(p/r)^±E/(C3±E+1),
+//   B(d) = SHAPE·C1·d·z·exp(2(1 − z)),   z = p/DEPTH
+// with + upwards and − downwards, so that C2 and C3 differ between the two by A and E, and m the middle of the branch
+// so far, (u_i + u)/2, from the origin. Since m is the same for the way up and the way down, a loop that closes without
+// b closes with it. B is 0 at the branching point and again far from it, and highest at p = DEPTH: Y(p), whose slope is
+// monotone, cannot have that shape. With Duhem's form of the bias, y' = f(u)·M(p)·u', f = 1 + h·(u − origin), the slope
+// follows the input itself, and the rise has in addition
 //   h·((u_i − origin)·(C1·d + G(d)) + d²·(C1/2 + C2·p^C3/(C3+2)))
-// which differs on the way up and the way down: such a loop wanders by the difference in each cycle.
+// which differs on the way up and the way down: such a loop wanders by the difference in each cycle. Where the growth
+// alone follows the input, y' = (C1 + f(u)·C2·p^C3)·u', the terms in C1 are left out of that.
 // The growth is faster by the share R·log10(1 + |u'|/r) of what it grows within a sample.
 #pragma once
 
@@ -22,9 +23,12 @@ namespace hysteron {
 template <class S>
 struct LoopEffects {
   S asymmetry;
-  S bias;    ///< b, over the unit of the input
-  S duhem;   ///< h, over the unit of the input
-  S origin;  ///< where the bias is 0
+  S exponent;   ///< E
+  S reach;      ///< r, the momentum at which E changes nothing
+  S bias;       ///< b, over the unit of the input
+  S duhem;      ///< h, over the unit of the input
+  S hardening;  ///< the same of the growth alone
+  S origin;     ///< where the bias is 0
   S shape;
   S depth;
 };
@@ -33,12 +37,16 @@ struct LoopEffects {
 template <class S, class Enriched, Label rate_unit, Label rate, Label distance_unit, Label origin, Label momentum_unit>
 struct RichParams : Enriched {
   S ASYMMETRY;
+  S ASYMMETRY_EXPONENT;
+  S ASYMMETRY_REFERENCE;
   S RATE;
   S RATE_REFERENCE;
   S BIAS;
   S BIAS_REFERENCE;
   S DUHEM;
   S DUHEM_REFERENCE;
+  S HARDENING;
+  S HARDENING_REFERENCE;
   S SHAPE;
   S SHAPE_DEPTH;
   using Self = RichParams;
@@ -53,6 +61,17 @@ struct RichParams : Enriched {
                 .neutral_at(0.0)
                 .effect("asymmetry")
                 .means("C2 is larger by this share upwards and smaller downwards"),
+            HY_FIELD(ASYMMETRY_EXPONENT)
+                .in("1")
+                .within(-0.9, 0.9)
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .means("C3 is larger by this upwards and smaller downwards"),
+            HY_FIELD(ASYMMETRY_REFERENCE)
+                .in(momentum_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("momentum at which ASYMMETRY_EXPONENT changes no slope"),
             HY_FIELD(RATE)
                 .in("1")
                 .otherwise(0.0)
@@ -87,6 +106,19 @@ struct RichParams : Enriched {
                 .above(0.0)
                 .otherwise(1.0)
                 .means("distance at which DUHEM is that share"),
+            HY_FIELD(HARDENING)
+                .in("1")
+                .otherwise(0.0)
+                .neutral_at(0.0)
+                .effect("bias_dependence")
+                .means(joined<"share by which the growth of the slope, C2*p^C3, is larger where the input is "
+                              "HARDENING_REFERENCE above ",
+                              origin>),
+            HY_FIELD(HARDENING_REFERENCE)
+                .in(distance_unit)
+                .above(0.0)
+                .otherwise(1.0)
+                .means("distance at which HARDENING is that share"),
             HY_FIELD(SHAPE)
                 .in("1")
                 .within(-0.5, 0.5)
@@ -103,8 +135,11 @@ struct RichParams : Enriched {
   /// The effects, with the bias counted from where the input has the value `origin_of_bias`.
   [[nodiscard]] LoopEffects<S> effects(const S& origin_of_bias) const {
     return {.asymmetry = ASYMMETRY,
+            .exponent = ASYMMETRY_EXPONENT,
+            .reach = ASYMMETRY_REFERENCE,
             .bias = BIAS / BIAS_REFERENCE,
             .duhem = DUHEM / DUHEM_REFERENCE,
+            .hardening = HARDENING / HARDENING_REFERENCE,
             .origin = origin_of_bias,
             .shape = SHAPE,
             .depth = SHAPE_DEPTH};
@@ -131,20 +166,28 @@ RichRise<S> rich_rise(const LoopConstants<S>& loop, const LoopEffects<S>& effect
   const S bell = effects.shape * loop.c1 * z * exp(S(2.0) * (S(1.0) - z));
   const S bend = distance * bell;
   const S m_bend = S(2.0) * (S(1.0) - z) * bell;
-  const S skew = select(downwards, -effects.asymmetry, effects.asymmetry);
+  const S one_way = select(downwards, S(-1.0), S(1.0));
+  const S skew = one_way * effects.asymmetry;
+  const S tilt = one_way * effects.exponent;
   const S middle = effects.bias * (start + S(0.5) * distance - effects.origin);
-  const S skewed = growth * (S(1.0) + skew);
-  const S m_skewed = m_growth * (S(1.0) + skew);
+  // A falling exponent makes the slope infinite where a branch begins, and it is left so soon that nothing is lost.
+  constexpr double soon = 1e-9;
+  const S tilted = power(max(momentum / effects.reach, S(soon)), tilt) * (S(1.0) + skew);
+  const S m_skewed = m_growth * tilted;
+  const S changed = tilted * ((loop.c3 + S(1.0)) / (loop.c3 + tilt + S(1.0)));
+  const S skewed = growth * changed;
   const S whole = loop.c1 * distance + skewed + bend;
   const S half = S(0.5) * effects.bias;
   const S from = start - effects.origin;
-  const S wander = effects.duhem * (from * (loop.c1 * distance + growth) +
-                                    distance * distance * (S(0.5) * loop.c1 + m_growth / (loop.c3 + S(2.0))));
+  const S square = distance * distance;
+  const S hardened = from * growth + square * (m_growth / (loop.c3 + S(2.0)));
+  const S wander =
+      effects.duhem * (hardened + loop.c1 * (from * distance + S(0.5) * square)) + effects.hardening * hardened;
   return {.plain = distance * slopes.chord,
-          .excess = growth * skew + bend + whole * middle + wander,
+          .excess = growth * (changed - S(1.0)) + bend + whole * middle + wander,
           .growth = skewed * (S(1.0) + middle),
-          .slope = m_growth * skew + m_bend + (loop.c1 + m_skewed + m_bend) * middle + whole * half +
-                   effects.duhem * (from + distance) * slopes.tangent,
+          .slope = m_growth * (tilted - S(1.0)) + m_bend + (loop.c1 + m_skewed + m_bend) * middle + whole * half +
+                   (from + distance) * (effects.duhem * slopes.tangent + effects.hardening * m_growth),
           .growth_slope = m_skewed * (S(1.0) + middle) + skewed * half};
 }
 

@@ -69,8 +69,15 @@ class Run {
     base_ = {.text = input_.text, .program = std::move(program)};
     Model model(task_, *base_.program);
     floors_.clear();
+    std::vector<std::vector<Signal>> others;
+    for (const records::Record& record : task_.records) {
+      others.emplace_back();
+      for (const std::string& name : unused_columns(task_, *base_.program)) {
+        others.back().push_back(record.column(name).values);
+      }
+    }
     for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
-      floors_.push_back(noise_floor(model.problem().experiments, output));
+      floors_.push_back(noise_floor(model.problem().experiments, output, others));
       task_.scales.push_back(floors_.back().value);
       glitches_.push_back(find_glitches(model.problem().experiments, output));
       const Index rows = model.rows() / std::ssize(model.problem().outputs);
@@ -108,7 +115,7 @@ class Run {
     const std::string top = base_.program->graph.name;
     const Search found = search(task_, base_, top, floor_cost_, searching);
     result_.tried = found.tried;
-    const Judgement judgement = judge(task_, found, floor_cost_, searching.least_share);
+    const Judgement judgement = judge(task_, found, floor_cost_);
     const Explanation& chosen = *judgement.chosen;
     describe_gap(found.calibrated, judgement);
     describe_cuts();

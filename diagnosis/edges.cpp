@@ -38,7 +38,7 @@ class BlockEdges {
       for (const Read& read : reads) {
         edge.reads.push_back(read.span);
       }
-      if (reads.size() == 1) {
+      if (reads.size() == 1 && !is_output(name)) {
         if (!reads.front().consumer.empty()) {
           edge.aliases.push_back(reads.front().consumer);
         }
@@ -46,7 +46,7 @@ class BlockEdges {
         continue;
       }
       result.push_back(std::move(edge));
-      for (const Read& read : reads) {  // one branch of several
+      for (const Read& read : reads) {  // one branch of several; an output's port is one that the text does not show
         if (!read.consumer.empty()) {
           result.push_back({.name = read.consumer,
                             .definition = index_,
@@ -70,6 +70,12 @@ class BlockEdges {
   [[nodiscard]] const Declared* find(std::string_view name) const {
     const auto found = definition_.by_name.find(language::upper(name));
     return found == definition_.by_name.end() ? nullptr : &definition_.variables[found->second];
+  }
+
+  /// An output of the block itself, which the world reads as well.
+  [[nodiscard]] bool is_output(std::string_view name) const {
+    const Declared* const declared = find(name);
+    return declared != nullptr && declared->kind == Declared::Kind::Output;
   }
 
   /// Whether a name with a pin is an LREAL signal of this block: an input, a variable, an output of an instance.

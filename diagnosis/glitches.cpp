@@ -7,9 +7,10 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr std::size_t reach = 3;  // samples to either side
-constexpr double far = 6.0;       // standard deviations
-constexpr double rare = 0.03;     // of all samples: more of them are no glitches but a signal
+constexpr std::size_t reach = 3;    // samples to either side
+constexpr std::size_t longest = 3;  // samples in a row: the median of seven sees past them
+constexpr double far = 6.0;         // standard deviations
+constexpr double rare = 0.03;       // of all samples: more of them are no glitches but a signal
 
 double median_about(const std::vector<double>& values, std::size_t k) {
   std::array<double, 2 * reach + 1> window{};
@@ -18,11 +19,12 @@ double median_about(const std::vector<double>& values, std::size_t k) {
   return window[reach];
 }
 
-/// Whether the samples on either side lie level with each other, and not on the flanks of a peak of the signal.
-bool stands_alone(const std::vector<double>& values, std::size_t k, double size) {
-  const double before = std::abs(values[k - 1] - values[k - 2]);
-  const double after = std::abs(values[k + 2] - values[k + 1]);
-  const double across = std::abs(values[k + 1] - values[k - 1]);
+/// Whether the samples on either side of a run lie level with each other, and not on the flanks of a peak of the
+/// signal.
+bool stands_alone(const std::vector<double>& values, std::size_t first, std::size_t last, double size) {
+  const double before = std::abs(values[first - 1] - values[first - 2]);
+  const double after = std::abs(values[last + 2] - values[last + 1]);
+  const double across = std::abs(values[last + 1] - values[first - 1]);
   return std::max({before, after, across}) < 0.4 * size;
 }
 
@@ -57,12 +59,24 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
         differences[k] = values[k] - median_about(values, k);
       }
       const double bound = far * spread(differences);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        if (bound > 0.0 && std::abs(differences[k]) > bound && stands_alone(values, k, std::abs(differences[k]))) {
-          result.rows.push_back(offset + k);
-          squares += differences[k] * differences[k];
-          result.largest = std::max(result.largest, std::abs(differences[k]));
+      const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
+      for (std::size_t k = reach; k + reach < values.size(); ++k) {
+        if (!is_far(k)) {
+          continue;
         }
+        const std::size_t first = k;
+        double size = std::abs(differences[k]);
+        for (; is_far(k + 1); ++k) {
+          size = std::max(size, std::abs(differences[k + 1]));
+        }
+        if (k + 1 - first > longest || !stands_alone(values, first, k, size)) {
+          continue;
+        }
+        for (std::size_t row = first; row <= k; ++row) {
+          result.rows.push_back(offset + row);
+          squares += differences[row] * differences[row];
+        }
+        result.largest = std::max(result.largest, size);
       }
     }
     offset += values.size();

@@ -1,24 +1,14 @@
 #include "diagnosis/noise_floor.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "diagnosis/spectrum.hpp"
+#include "diagnosis/stretch_noise.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// The smallest step between two different values: the quantum of a sensor that has one.
 double smallest_step(std::vector<double> values) {
@@ -31,109 +21,102 @@ double smallest_step(std::vector<double> values) {
   return std::isfinite(step) ? step : 0.0;
 }
 
-/// Squares left of a stretch of values after a cubic is taken off, and the degrees of freedom.
-struct Squares {
-  double sum = 0.0;
-  double freedom = 0.0;
-};
+/// The least for an estimate, in samples.
+constexpr double fewest = 60.0;
 
-/// A line that is most of what is left is a disturbance, and so part of the gap: it is taken off.
-void take_off_line(Eigen::VectorXd& values) {
-  constexpr double most = 0.5;
-  const std::vector<double> lines = strongest_lines(values, 1.0, 1);
-  if (lines.empty()) {
-    return;
+/// Rows in which no signal moves by more than a share of its range a sample.
+std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signals, std::size_t steps, double share) {
+  constexpr std::size_t shortest = 40;
+  constexpr std::size_t longest = 250;  // of what a cubic is taken off
+  std::vector<double> most;
+  for (const Signal* const signal : signals) {
+    const auto [low, high] = std::ranges::minmax(*signal);
+    most.push_back(share * (high - low));
   }
-  Eigen::MatrixXd waves(values.size(), 2);
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const double phase = 2.0 * std::numbers::pi * lines.front() * static_cast<double>(k);
-    waves(k, 0) = std::sin(phase);
-    waves(k, 1) = std::cos(phase);
-  }
-  const Eigen::VectorXd left = values - waves * waves.householderQr().solve(values);
-  if (left.squaredNorm() < (1.0 - most) * values.squaredNorm()) {
-    values = left;
-  }
-}
-
-Squares without_trend(const Eigen::VectorXd& values, int order) {
-  const Eigen::Index count = values.size();
-  if (count < order + 3) {
-    return {};
-  }
-  Eigen::MatrixXd basis(count, order + 1);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double t = 2.0 * static_cast<double>(k) / static_cast<double>(count - 1) - 1.0;
-    double power = 1.0;
-    for (int j = 0; j <= order; ++j, power *= t) {
-      basis(k, j) = power;
-    }
-  }
-  Eigen::VectorXd left = values - basis * basis.householderQr().solve(values);
-  take_off_line(left);
-  // A glitch is no noise: what lies beyond six standard deviations counts as six.
-  std::vector<double> sizes(left.data(), left.data() + left.size());
-  std::ranges::transform(sizes, sizes.begin(), [](double r) { return std::abs(r); });
-  const double bound = 6.0 * 1.4826 * median(sizes);
-  if (bound > 0.0) {
-    left = left.cwiseMax(-bound).cwiseMin(bound);
-  }
-  return {.sum = left.squaredNorm(), .freedom = static_cast<double>(count - order - 1)};
-}
-
-Eigen::VectorXd stretch(const std::vector<double>& values, std::size_t first, std::size_t last) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data() + first, static_cast<Eigen::Index>(last - first));
-}
-
-/// Stretches of at least `shortest` samples in which no input moves.
-std::vector<records::RowRange> dwells_of(const Experiment& experiment, std::size_t shortest) {
   std::vector<records::RowRange> result;
   std::size_t first = 0;
-  const std::size_t steps = experiment.drive.steps;
   for (std::size_t k = 1; k <= steps; ++k) {
     bool moved = k == steps;
-    for (std::size_t i = 0; !moved && i < experiment.drive.inputs.size(); ++i) {
-      moved = at_step(experiment.drive.inputs[i], k) != at_step(experiment.drive.inputs[i], k - 1);
+    for (std::size_t i = 0; !moved && i < signals.size(); ++i) {
+      moved = std::abs(at_step(*signals[i], k) - at_step(*signals[i], k - 1)) > most[i];
     }
-    if (moved) {
-      if (k - first >= shortest) {
-        result.push_back({.first = first, .last = k});
+    if (!moved) {
+      continue;
+    }
+    if (k - first >= shortest) {
+      first += (k - first) / 3;  // what the machine takes to settle
+      const std::size_t parts = (k - first + longest - 1) / longest;
+      for (std::size_t part = 0; part < parts; ++part) {
+        result.push_back(
+            {.first = first + part * (k - first) / parts, .last = first + (part + 1) * (k - first) / parts});
       }
-      first = k;
+    }
+    first = k;
+  }
+  return result;
+}
+
+/// Several records' rests, of the inputs and of what else was logged; where there are too few, of what hardly moves,
+/// and at last of the inputs alone.
+std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experiment>& experiments,
+                                                     const std::vector<std::vector<Signal>>& others) {
+  constexpr double slow = 3e-4;
+  std::vector<std::vector<records::RowRange>> result;
+  for (const auto& [with_others, share] : {std::pair{true, 0.0}, std::pair{true, slow}, std::pair{false, 0.0}}) {
+    double freedom = 0.0;
+    result.clear();
+    for (std::size_t e = 0; e < experiments.size(); ++e) {
+      std::vector<const Signal*> signals;
+      for (const Signal& input : experiments[e].drive.inputs) {
+        signals.push_back(&input);
+      }
+      for (std::size_t i = 0; with_others && e < others.size() && i < others[e].size(); ++i) {
+        signals.push_back(&others[e][i]);
+      }
+      result.push_back(rests_of(signals, experiments[e].drive.steps, share));
+      for (const records::RowRange& rest : result.back()) {
+        freedom += static_cast<double>(rest.size());
+      }
+    }
+    if (freedom >= fewest) {
+      break;
     }
   }
   return result;
 }
 
-double noise_by_dwells(const std::vector<Experiment>& experiments, std::size_t output) {
-  Squares total;
-  for (const Experiment& experiment : experiments) {
-    for (const records::RowRange& dwell : dwells_of(experiment, 40)) {
-      // The first third is what the machine takes to settle.
-      const std::size_t first = dwell.first + dwell.size() / 3;
-      const Squares squares = without_trend(stretch(experiment.measured[output], first, dwell.last), 3);
-      total.sum += squares.sum;
-      total.freedom += squares.freedom;
-    }
+double noise_by_dwells(const std::vector<Experiment>& experiments, std::size_t output,
+                       const std::vector<std::vector<Signal>>& others) {
+  const auto rests = rests_of(experiments, others);
+  std::vector<StretchNoise> all;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const auto here = noise_of_stretches(experiments[e].measured[output], rests[e], 3);
+    all.insert(all.end(), here.begin(), here.end());
   }
-  return total.freedom >= 60.0 ? std::sqrt(total.sum / total.freedom) : 0.0;
+  return lower_deviation(all, fewest);
 }
 
 double noise_by_repeats(const std::vector<Experiment>& experiments, std::size_t output) {
-  Squares total;
+  std::vector<StretchNoise> all;
   for (const Experiment& experiment : experiments) {
     const std::size_t period = input_period(experiment);
-    // The first cycle still settles.
-    for (std::size_t first = period; period > 0 && first + 2 * period <= experiment.drive.steps; first += period) {
-      const auto& values = experiment.measured[output];
-      const Eigen::VectorXd difference =
-          stretch(values, first + period, first + 2 * period) - stretch(values, first, first + period);
-      const Squares squares = without_trend(difference, 1);
-      total.sum += 0.5 * squares.sum;
-      total.freedom += squares.freedom;
+    if (period == 0) {
+      continue;
     }
+    const auto& values = experiment.measured[output];
+    std::vector<double> differences;
+    std::vector<records::RowRange> cycles;
+    for (std::size_t k = 0; k + period < experiment.drive.steps; ++k) {
+      differences.push_back((values[k + period] - values[k]) * std::numbers::sqrt2 / 2.0);
+    }
+    // The first cycle still settles.
+    for (std::size_t first = period; first + 2 * period <= experiment.drive.steps; first += period) {
+      cycles.push_back({.first = first, .last = first + period});
+    }
+    const auto here = noise_of_stretches(differences, cycles, 1);
+    all.insert(all.end(), here.begin(), here.end());
   }
-  return total.freedom >= 60.0 ? std::sqrt(total.sum / total.freedom) : 0.0;
+  return lower_deviation(all, fewest);
 }
 
 }  // namespace
@@ -204,7 +187,8 @@ NoiseRange noise_range(double left) {
   return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
 }
 
-NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output) {
+NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
+                       const std::vector<std::vector<Signal>>& others) {
   NoiseFloor floor;
   double range = 0.0;
   std::vector<double> quanta;
@@ -220,7 +204,7 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
     quanta.push_back(smallest_step(values));
   }
   floor.differences = count > 0.0 ? std::sqrt(sum / count) : 0.0;
-  floor.dwells = noise_by_dwells(experiments, output);
+  floor.dwells = noise_by_dwells(experiments, output, others);
   floor.repeats = noise_by_repeats(experiments, output);
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
   const double rounding = quanta.empty() ? 0.0 : *std::ranges::min_element(quanta) / std::sqrt(12.0);

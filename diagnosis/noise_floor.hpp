@@ -3,8 +3,9 @@
 // Three estimates, of which the largest that the record allows counts:
 // - differences: the n-th difference of a slow signal is that of its noise, σ² = E(∆ⁿy)²/C(2n, n); by the median, over
 //   several orders, the smallest. It sees what is fast only: a lower bound where noise is coloured.
-// - dwells: while all inputs stand still, what is left of y after a slow course is taken off.
+// - dwells: while all that was logged stands still, what is left of y after a slow course is taken off.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
+// In the last two a line of one frequency is no noise, and quiet stretches count: in others the machine still moves.
 #pragma once
 
 #include <string>
@@ -25,8 +26,9 @@ struct NoiseFloor {
   std::string evidence{};  ///< "repeats", "dwells" or "differences"
 };
 
-/// For one measured output over all records.
-[[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output);
+/// For one measured output over all records. `others`: by record, what else was logged, and moves the machine perhaps.
+[[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
+                                     const std::vector<std::vector<Signal>>& others = {});
 
 /// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is
 /// no more than what is left; where less is left than the floor, this counted a fast effect as noise.

@@ -250,7 +250,8 @@ class Screening {
   void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
     const std::vector<Index> list = strengths();
     const bool linear = is_linear_there(shape);
-    if (!linear && !are_amplitudes(list)) {
+    const bool amplitudes = are_amplitudes(list);
+    if (!linear && !amplitudes) {
       try_grid(shape, list, starts);
       return;
     }
@@ -269,7 +270,9 @@ class Screening {
       changes.col(k) = change;
     }
     const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, linear, starts);
-    if (!linear && !kept && !std::exchange(grid_tried_, true)) {
+    // A short delay or lag is linear, and says nothing of a long one: about parameters that are off it may even seem to
+    // make things worse.
+    if ((!amplitudes || (!linear && !kept)) && !std::exchange(grid_tried_, true)) {
       try_grid(shape, list, starts);
     }
   }
@@ -378,7 +381,7 @@ class Screening {
   std::vector<Index> free_{};   ///< the parameters that are unknowns
   VectorXd neutral_{};          ///< by parameter: neutral, default or setting
   VectorXd base_{};             ///< of the model's unknowns
-  bool grid_tried_ = false;     ///< of amplitudes that are not linear, once
+  bool grid_tried_ = false;     ///< once, also where straight lines are tried for each shape
   std::vector<bool> linear_{};  ///< by strength
 };
 

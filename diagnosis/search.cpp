@@ -423,7 +423,7 @@ class Searcher {
     }
     for (const Explanation& one : found) {
       const double left = one.fit.cost - floor_cost_;
-      const bool closed = found.front().fit.cost - floor_cost_ < options_.least_share * gap;
+      const bool closed = found.front().fit.cost - floor_cost_ < least_gain(result.calibrated.fit.cost, floor_cost_);
       if (closed || correlation_time(found.front().fit.residuals) < 1.5) {
         break;  // nothing notable is left for another effect, or nothing but white noise
       }
@@ -449,6 +449,12 @@ class Searcher {
 };
 
 }  // namespace
+
+double least_gain(double calibrated_cost, double floor_cost) {
+  constexpr double share = 0.05;
+  constexpr double floors = 3.0;
+  return std::min(share * std::max(calibrated_cost - floor_cost, 0.0), floors * floor_cost);
+}
 
 Search search(const Task& task, Variant base, const std::string& top, double floor_cost, const SearchOptions& options) {
   return Searcher(task, top, floor_cost, options).run(std::move(base));

@@ -22,7 +22,6 @@ struct SearchOptions {
   std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
   std::size_t fitted_later = 10;  ///< and after each further one
   std::size_t beam = 3;       ///< sets that a second effect is added to; a further one is added to the best set alone
-  double least_share = 0.05;  ///< of the gap that a further effect has to close
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
 };
@@ -32,6 +31,10 @@ struct Search {
   std::vector<Explanation> explanations{};  ///< with effects, best first
   std::size_t tried = 0;                    ///< candidates over all rounds
 };
+
+/// What a further effect has to close, as ½Σr²: a notable share of the gap, or what stands well above the noise however
+/// large the gap is.
+[[nodiscard]] double least_gain(double calibrated_cost, double floor_cost);
 
 /// `floor_cost` is ½Σr² of noise alone: what no effect can close.
 [[nodiscard]] Search search(const Task& task, Variant base, const std::string& top, double floor_cost,

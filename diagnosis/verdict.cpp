@@ -23,8 +23,8 @@ constexpr double fewest_samples = 60.0;
 
 class Judge {
  public:
-  Judge(const Task& task, const Search& search, double floor_cost, double least_share)
-      : task_(task), search_(search), floor_cost_(floor_cost), least_share_(least_share) {}
+  Judge(const Task& task, const Search& search, double floor_cost)
+      : task_(task), search_(search), least_gain_(least_gain(search.calibrated.fit.cost, floor_cost)) {}
 
   Judgement run() {
     Judgement result{.chosen = &search_.calibrated};
@@ -75,9 +75,7 @@ class Judge {
     return -0.5 * samples_ * std::log(std::max(one.fit.cost, 1e-300)) - penalty;
   }
 
-  [[nodiscard]] double gap() const { return search_.calibrated.fit.cost - floor_cost_; }
-
-  /// Whether each effect of a set closes a notable share of the gap beyond the best set with one effect fewer.
+  /// Whether each effect of a set closes enough beyond the best set with one effect fewer.
   [[nodiscard]] bool worth_its_size(const Explanation& one) const {
     const std::size_t size = one.variant.effects.size();
     double smaller = search_.calibrated.fit.cost;
@@ -86,7 +84,7 @@ class Judge {
         smaller = std::min(smaller, other.fit.cost);
       }
     }
-    return smaller - one.fit.cost > least_share_ * std::max(gap(), 0.0);
+    return smaller - one.fit.cost > least_gain_;
   }
 
   /// Each set is refitted to halves of the record once.
@@ -130,7 +128,7 @@ class Judge {
       }
       best = simplest_near(*best);
       const bool better = support(*best) - support(*chosen) > least_significance;
-      const bool notable = chosen->fit.cost - best->fit.cost > least_share_ * std::max(gap(), 0.0);
+      const bool notable = chosen->fit.cost - best->fit.cost > least_gain_;
       if (better && notable && holds_on_unseen(*chosen, *best)) {
         chosen = best;
       } else if (size > 1) {
@@ -155,16 +153,15 @@ class Judge {
 
   const Task& task_;
   const Search& search_;
-  double floor_cost_;
-  double least_share_;
+  double least_gain_;
   double samples_ = 1.0;
   std::map<const Explanation*, VectorXd> unseen_{};
 };
 
 }  // namespace
 
-Judgement judge(const Task& task, const Search& search, double floor_cost, double least_share) {
-  return Judge(task, search, floor_cost, least_share).run();
+Judgement judge(const Task& task, const Search& search, double floor_cost) {
+  return Judge(task, search, floor_cost).run();
 }
 
 }  // namespace hysteron::diagnosis

@@ -35,6 +35,6 @@ struct Judgement {
 };
 
 /// `floor_cost` as in search().
-[[nodiscard]] Judgement judge(const Task& task, const Search& search, double floor_cost, double least_share);
+[[nodiscard]] Judgement judge(const Task& task, const Search& search, double floor_cost);
 
 }  // namespace hysteron::diagnosis

@@ -67,13 +67,18 @@ class SteppedLoop {
   [[nodiscard]] double slope(double x, double sign, double faster) const {
     const double d = x - start_;
     const double p = std::fabs(d) * (skeleton_ ? 2.0 : 1.0);
-    const double growth = p_.C2 * (1.0 + sign * p_.ASYMMETRY) * faster * std::pow(p, p_.C3);
+    const double exponent = p_.C3 + sign * p_.ASYMMETRY_EXPONENT;
+    const double growth = p_.C2 * (1.0 + sign * p_.ASYMMETRY) * faster * std::pow(p, exponent) /
+                          std::pow(p_.ASYMMETRY_REFERENCE, sign * p_.ASYMMETRY_EXPONENT);
     const double z = p / p_.SHAPE_DEPTH;
     const double bump = p_.SHAPE * p_.C1 * std::exp(2.0 - 2.0 * z);
     const double by_middle = p_.BIAS / p_.BIAS_REFERENCE;
-    const double rise = d * (p_.C1 + growth / (p_.C3 + 1.0) + bump * z);
+    const double rise = d * (p_.C1 + growth / (exponent + 1.0) + bump * z);
+    const double plain = p_.C2 * std::pow(p, p_.C3);
     return (p_.C1 + growth + bump * 2.0 * z * (1.0 - z)) * (1.0 + by_middle * (0.5 * (x + start_) - p_.U0)) +
-           rise * by_middle / 2.0 + p_.DUHEM / p_.DUHEM_REFERENCE * (x - p_.U0) * (p_.C1 + p_.C2 * std::pow(p, p_.C3));
+           rise * by_middle / 2.0 +
+           (x - p_.U0) *
+               (p_.DUHEM / p_.DUHEM_REFERENCE * (p_.C1 + plain) + p_.HARDENING / p_.HARDENING_REFERENCE * plain);
   }
   GeneralParams p_;
   double ts_;
@@ -110,6 +115,10 @@ TEST(HysteresisGeneral, EachEffectIsItsDifferentialEquation) {
     params.ASYMMETRY = 0.3;
     expect_stepped(params, seed);
     params = loop_params();
+    params.ASYMMETRY_EXPONENT = 0.25;
+    params.ASYMMETRY_REFERENCE = 0.6;
+    expect_stepped(params, seed);
+    params = loop_params();
     params.RATE = 0.2;
     params.RATE_REFERENCE = 0.5;
     expect_stepped(params, seed);
@@ -120,6 +129,10 @@ TEST(HysteresisGeneral, EachEffectIsItsDifferentialEquation) {
     params = loop_params();
     params.DUHEM = 0.3;
     params.DUHEM_REFERENCE = 0.7;
+    expect_stepped(params, seed);
+    params = loop_params();
+    params.HARDENING = 0.4;
+    params.HARDENING_REFERENCE = 0.7;
     expect_stepped(params, seed);
     params = loop_params();
     params.SHAPE = -0.3;
@@ -136,6 +149,8 @@ TEST(HysteresisGeneral, SoAreAllTogether) {
     params.RATE_REFERENCE = 2.0;
     params.BIAS = -0.3;
     params.DUHEM = 0.15;
+    params.HARDENING = -0.2;
+    params.ASYMMETRY_EXPONENT = -0.15;
     params.SHAPE = 0.4;
     params.SHAPE_DEPTH = 0.7;
     expect_stepped(params, seed);
@@ -307,6 +322,8 @@ TEST(SlopeMGeneral, FromPrimitivesItIsTheSameHysteresis) {
   params.RATE_REFERENCE = 0.3;
   params.BIAS = 0.3;
   params.DUHEM = -0.2;
+  params.HARDENING = 0.15;
+  params.ASYMMETRY_EXPONENT = 0.1;
   params.SHAPE = 0.3;
   params.SHAPE_DEPTH = 0.6;
   const double ts = 1e-5;
@@ -320,6 +337,8 @@ TEST(SlopeMGeneral, FromPrimitivesItIsTheSameHysteresis) {
   slope_params.RATE_REFERENCE = params.RATE_REFERENCE;
   slope_params.BIAS = params.BIAS;
   slope_params.DUHEM = params.DUHEM;
+  slope_params.HARDENING = params.HARDENING;
+  slope_params.ASYMMETRY_EXPONENT = params.ASYMMETRY_EXPONENT;
   slope_params.SHAPE = params.SHAPE;
   slope_params.SHAPE_DEPTH = params.SHAPE_DEPTH;
   Stepper<SlopeMGeneral> slope(ts, slope_params);

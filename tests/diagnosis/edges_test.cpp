@@ -70,6 +70,18 @@ TEST(Edges, ASignalWithSeveralReadersHasBranches) {
   EXPECT_EQ(edge_of(read.edges, "A.XIN").source, "U");
 }
 
+TEST(Edges, AMeasuredSignalThatIsReadHasABranchBehindTheMeasurement) {
+  const auto read = read_text(
+      "FUNCTION_BLOCK LOOP (* @ts 1ms *) VAR_INPUT REF : LREAL; END_VAR VAR_OUTPUT U : LREAL; Y : LREAL; END_VAR VAR "
+      "MOTOR : HY_GAIN; AXIS : HY_LAG; LOAD : HY_GAIN; END_VAR U := 3.0 * REF; MOTOR(XIN := U); AXIS(XIN := "
+      "MOTOR.XOUT); Y := AXIS.XOUT; LOAD(XIN := Y); END_FUNCTION_BLOCK\n",
+      "LOOP");
+  EXPECT_THAT(names_of(read.edges), IsSupersetOf({"U", "MOTOR.XIN", "AXIS.XOUT", "LOAD.XIN"}));
+  EXPECT_EQ(edge_of(read.edges, "U").source, "3.0 * REF");  // the measured U with it
+  EXPECT_EQ(edge_of(read.edges, "MOTOR.XIN").source, "U");  // the motor alone
+  EXPECT_EQ(edge_of(read.edges, "Y").name, "AXIS.XOUT");
+}
+
 TEST(Edges, AComputedSignalIsReadWhereItIsComputed) {
   const auto read = read_text(std::string(branched), "PLANT");
   EXPECT_EQ(edge_of(read.edges, "B.XIN").source, "u - BIAS");

@@ -133,9 +133,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"relaxation", "HY_RELAXATION := (GAIN := 0.3, T1 := 0.5)", 1e-7},
         Case{"creep", "HY_CREEP := (GAIN := 0.08, T_ONSET := 0.01)", 5e-6},
         Case{"asymmetry", "HY_HYSTERESIS_GENERAL := (" + loop + ", ASYMMETRY := 0.3)", 1e-5},
+        Case{"asymmetry_of_exponent", "HY_HYSTERESIS_GENERAL := (" + loop + ", ASYMMETRY_EXPONENT := 0.2)", 1e-5},
         Case{"rate_dependence", "HY_HYSTERESIS_GENERAL := (" + loop + ", RATE := 0.3, RATE_REFERENCE := 0.1)", 1e-5},
         Case{"bias_dependence", "HY_HYSTERESIS_GENERAL := (" + loop + ", BIAS := 0.1, BIAS_REFERENCE := 2.0)", 1e-5},
         Case{"bias_of_duhem", "HY_HYSTERESIS_GENERAL := (" + loop + ", DUHEM := 0.1, DUHEM_REFERENCE := 2.0)", 1e-5},
+        Case{"bias_of_growth", "HY_HYSTERESIS_GENERAL := (" + loop + ", HARDENING := 0.1, HARDENING_REFERENCE := 2.0)",
+             1e-5},
         Case{"curve_shape", "HY_HYSTERESIS_GENERAL := (" + loop + ", SHAPE := 0.2, SHAPE_DEPTH := 1.0)", 1e-5},
         Case{"return_point", "HY_HYSTERESIS_GENERAL := (" + loop + ", RETURN_POINT := 1.0)", 5e-4}),
     [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });

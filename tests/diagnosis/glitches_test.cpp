@@ -38,6 +38,18 @@ TEST(Glitches, AreFoundWithTheirSize) {
   EXPECT_NEAR(found.rms, std::sqrt((25.0 + 64.0) / 2000.0), 0.02);
 }
 
+TEST(Glitches, ThatDieAwayWithinThreeSamplesAreTakenWhole) {
+  auto values = smooth(4);
+  for (std::size_t k = 0; k < 3; ++k) {
+    values[700 + k] += 9.0 * std::pow(0.4, static_cast<double>(k));
+  }
+  EXPECT_THAT(find_glitches(with(values), 0).rows, ElementsAre(700U, 701U, 702U));
+  for (std::size_t k = 0; k < 6; ++k) {
+    values[900 + k] += 9.0;  // no glitch any more
+  }
+  EXPECT_THAT(find_glitches(with(values), 0).rows, ElementsAre(700U, 701U, 702U));
+}
+
 TEST(Glitches, NoiseAndCornersAreNone) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_THAT(find_glitches(with(smooth(seed)), 0).rows, IsEmpty()) << seed;

@@ -1,0 +1,167 @@
+#include "diagnosis/stretch_noise.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "diagnosis/spectrum.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A stretch without its trend, and the orthonormal columns that the trend was made of.
+struct Detrended {
+  records::RowRange rows{};
+  VectorXd left{};
+  MatrixXd trend{};
+
+  [[nodiscard]] MatrixXd without_trend(const MatrixXd& columns) const {
+    return columns - trend * (trend.transpose() * columns);
+  }
+};
+
+MatrixXd trend_of(Index count, int order) {
+  MatrixXd powers(count, order + 1);
+  for (Index k = 0; k < count; ++k) {
+    const double t = 2.0 * static_cast<double>(k) / static_cast<double>(count - 1) - 1.0;
+    double power = 1.0;
+    for (int j = 0; j <= order; ++j, power *= t) {
+      powers(k, j) = power;
+    }
+  }
+  return powers.householderQr().householderQ() * MatrixXd::Identity(count, order + 1);
+}
+
+/// A sine and a cosine that run on through the gaps between the stretches.
+struct Line {
+  double gain = 0.0;               ///< squares that it takes off
+  std::vector<VectorXd> values{};  ///< by stretch
+};
+
+Line line_at(const std::vector<Detrended>& stretches, double frequency) {
+  Line line;
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  std::vector<MatrixXd> waves;
+  for (const Detrended& one : stretches) {
+    MatrixXd here(one.left.size(), 2);
+    for (Index k = 0; k < one.left.size(); ++k) {
+      const double phase = 2.0 * std::numbers::pi * frequency * static_cast<double>(one.rows.first + k);
+      here(k, 0) = std::sin(phase);
+      here(k, 1) = std::cos(phase);
+    }
+    waves.push_back(one.without_trend(here));
+    normal += waves.back().transpose() * waves.back();
+    right += waves.back().transpose() * one.left;
+  }
+  const Eigen::Vector2d sizes = normal.completeOrthogonalDecomposition().solve(right);
+  line.gain = sizes.dot(right);
+  for (const MatrixXd& here : waves) {
+    line.values.emplace_back(here * sizes);
+  }
+  return line;
+}
+
+double squares(const std::vector<Detrended>& stretches) {
+  return std::accumulate(stretches.begin(), stretches.end(), 0.0,
+                         [](double sum, const Detrended& one) { return sum + one.left.squaredNorm(); });
+}
+
+/// Whether a line was most of what is left, and so was taken off.
+bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
+  constexpr double most = 0.5;
+  constexpr int finer = 10;  // steps to either side of a peak of the spectrum
+  VectorXd gated = VectorXd::Zero(static_cast<Index>(length));
+  for (const Detrended& one : stretches) {
+    gated.segment(static_cast<Index>(one.rows.first), one.left.size()) = one.left;
+  }
+  const std::vector<double> peaks = strongest_lines(gated, 1.0, 1);
+  if (peaks.empty()) {
+    return false;
+  }
+  Line best;
+  for (int step = -finer; step <= finer; ++step) {
+    const double frequency = peaks.front() + 0.5 * step / (finer * static_cast<double>(length));
+    Line here = line_at(stretches, frequency);
+    if (here.gain > best.gain) {
+      best = std::move(here);
+    }
+  }
+  if (best.gain < most * squares(stretches)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    stretches[i].left -= best.values[i];
+  }
+  return true;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
+                                             const std::vector<records::RowRange>& stretches, int order) {
+  constexpr int most_lines = 3;
+  constexpr double far = 6.0;
+  std::vector<Detrended> list;
+  for (const records::RowRange& rows : stretches) {
+    const auto count = static_cast<Index>(rows.size());
+    if (count < order + 3) {
+      continue;
+    }
+    Detrended one{.rows = rows, .trend = trend_of(count, order)};
+    one.left = one.without_trend(Eigen::Map<const VectorXd>(values.data() + rows.first, count));
+    list.push_back(std::move(one));
+  }
+  for (int line = 0; line < most_lines && !list.empty() && take_off_line(list, values.size()); ++line) {
+  }
+  std::vector<StretchNoise> result;
+  for (Detrended& one : list) {
+    const VectorXd sizes = one.left.cwiseAbs();
+    const double bound = far * 1.4826 * median({sizes.data(), sizes.data() + sizes.size()});
+    if (bound > 0.0) {  // a glitch is no noise
+      one.left = one.left.cwiseMax(-bound).cwiseMin(bound);
+    }
+    const double freedom = static_cast<double>(one.left.size() - order - 1);
+    result.push_back({.variance = one.left.squaredNorm() / freedom, .freedom = freedom});
+  }
+  return result;
+}
+
+double lower_deviation(std::vector<StretchNoise> stretches, double fewest) {
+  constexpr double share = 0.3;
+  constexpr double deviations = 0.524;    // of a normal distribution, from its mean down to that share
+  constexpr std::size_t distributed = 4;  // fewer stretches have no quantile
+  const double total = std::accumulate(stretches.begin(), stretches.end(), 0.0,
+                                       [](double sum, const StretchNoise& one) { return sum + one.freedom; });
+  if (total < fewest) {
+    return 0.0;
+  }
+  std::ranges::stable_sort(stretches, {}, &StretchNoise::variance);
+  double below = 0.0;
+  for (const StretchNoise& one : stretches) {
+    below += one.freedom;
+    if (below >= share * total) {
+      // The variance of n normal samples scatters by √(2/n) of itself.
+      const double chance = stretches.size() < distributed ? 0.0 : deviations * std::sqrt(2.0 / one.freedom);
+      return std::sqrt(one.variance / (1.0 - std::min(chance, 0.5)));
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace hysteron::diagnosis

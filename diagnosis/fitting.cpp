@@ -98,8 +98,9 @@ Explanation begun_from(const Task& task, const Screened& one, const Explanation&
       best.fit = std::move(here);
     }
   };
+  const double worth = one.candidate.own().has(Role::Period) ? 0.25 : 0.5;  // of the best start's gain
   for (const Start& start : one.starts) {
-    if (start.gain >= 0.5 * one.gain()) {
+    if (start.gain >= worth * one.gain()) {
       begin_at(start.about_calibration ? known_starts.calibrated : from.fit.x, start);
     }
   }

@@ -31,6 +31,11 @@ constexpr int most_edges = 5;
 constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
+/// Of a period many are tried: the one that a straight line favours before a fit is often not the one.
+std::size_t starts_kept(const Applied& effect) {
+  return effect.has(Role::Period) ? 6 : 3;
+}
+
 /// What a fit has to gain, in nats, to be followed further: a verdict asks for 6 beyond the penalties, which are as
 /// many.
 constexpr double more_than_chance = 10.0;
@@ -168,7 +173,7 @@ class Searcher {
           grids_of(candidates[i], signals->input, signals->auxiliary ? &*signals->auxiliary : nullptr, hints, periods);
       list[i] = unless_refused([&] {
         return screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), from.fit.x, background,
-                        3);
+                        starts_kept(candidates[i].own()));
       });
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
@@ -226,7 +231,8 @@ class Searcher {
     in_parallel(order.size(), options_.threads, [&](std::size_t i) {
       const std::size_t at = order[i];
       if (!list[at].starts.empty() && !must_stop()) {
-        list[at] = screened_about(list[at].starts, stride, task_, candidates[at], grids[at], from.fit.x, background, 3);
+        list[at] = screened_about(list[at].starts, stride, task_, candidates[at], grids[at], from.fit.x, background,
+                                  starts_kept(candidates[at].own()));
       }
       say(0.4 + 0.2 * static_cast<double>(++done) / static_cast<double>(order.size()), "finer grids");
     });

@@ -27,7 +27,7 @@ std::vector<double> geometric(double low, double high, double ratio) {
 /// Levels that cut a signal more and more: the share of the range that is cut off.
 std::vector<double> levels_above(const Extent& extent, double direction) {
   std::vector<double> values;
-  for (const double cut : {0.01, 0.03, 0.06, 0.1, 0.16, 0.25, 0.4}) {
+  for (const double cut : {0.004, 0.008, 0.015, 0.025, 0.04, 0.06, 0.09, 0.13, 0.19, 0.27, 0.4}) {
     values.push_back(direction > 0.0 ? extent.high - cut * extent.range() : extent.low + cut * extent.range());
   }
   return values;
@@ -110,8 +110,17 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     }
     case Role::Frequency:
       return hints.frequencies;
-    case Role::Period:
-      return periods;
+    case Role::Period: {
+      // What repeats over a position acts through the plant, which hides short periods from the residual: those that
+      // show in it, and whole numbers of turns over the range.
+      constexpr int most_turns = 20;
+      std::vector<double> values = periods;
+      for (int turns = 2; turns <= most_turns; ++turns) {
+        values.push_back(across / turns);
+      }
+      std::ranges::sort(values);
+      return values;
+    }
     case Role::Share:
       // A share to both sides is a place: the middle, and near the ends.
       return parameter.field.minimum < 0.0 ? std::vector{0.0, 0.9, -0.9} : std::vector{0.02, 0.1, 0.4};
@@ -213,17 +222,12 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
 
 Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
   constexpr std::size_t short_enough = 4;
-  constexpr std::size_t strongest = 4;  // of the periods, which stand in the order of their strength
   Grids result = grids;
   for (std::size_t j = 0; j < grids.parameters.size(); ++j) {
     const std::vector<double>& values = grids.parameters[j].values;
     const Role role = effect.parameters[j].role;
-    if (values.size() <= short_enough || role == Role::Frequency ||
+    if (values.size() <= short_enough || role == Role::Frequency || role == Role::Period ||
         (role == Role::Duration && is_oscillation(effect))) {
-      continue;
-    }
-    if (role == Role::Period) {
-      result.parameters[j].values.resize(std::min(values.size(), strongest));
       continue;
     }
     const std::size_t guessed = grids.parameters[j].guessed;

@@ -36,7 +36,9 @@
 #include "blocks/hysteresis_ro_inverse.hpp"
 #include "blocks/hysteresis_switch.hpp"
 #include "blocks/integral.hpp"
+#include "blocks/integral_bounded.hpp"
 #include "blocks/integral_forward.hpp"
+#include "blocks/integral_forward_bounded.hpp"
 #include "blocks/lag.hpp"
 #include "blocks/lead_lag.hpp"
 #include "blocks/less.hpp"
@@ -129,7 +131,7 @@ using Catalogue = BlockList<
     // time and counting
     OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
     // dynamics
-    Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, Delay, DeadTime, Lag, LeadLag, SecondOrder,
+    Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, IntegralBounded, IntegralForwardBounded, Delay, DeadTime, Lag, LeadLag, SecondOrder,
     // effects: what a machine does and its model does not
     Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, ViscousFriction,
     Cogging, PeriodicError, EvenNonlinearity, OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock,

@@ -189,7 +189,7 @@ class Enumeration {
         if (kind.change == Change::Enrich && !enriched) {
           candidate.variant.text = with_block(*source_, *declared.variable, kind.block);
         }
-        candidate.family = instance;
+        candidate.family = kind.of_output ? instance + ".XOUT" : instance;
         add(std::move(candidate),
             {.effect = kind.id, .block = kind.block, .edge = instance + ".XOUT", .instance = instance});
       }
@@ -226,6 +226,9 @@ class Enumeration {
       }
       const Wire changed{.from = Wire::From::Node, .index = static_cast<std::uint32_t>(node - graph.nodes.data())};
       candidate.upstream = sources_of(graph, candidate.input, changed).size();
+      if (candidate.kind.of_output) {
+        candidate.input = changed;
+      }
       if (!makes_sense(graph, candidate, changed)) {
         return;
       }

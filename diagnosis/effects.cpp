@@ -60,6 +60,17 @@ std::vector<EffectParameter> searched(std::span<const Field> fields) {
   return result;
 }
 
+/// Levels in the unit of the block's output, where that is another one than that of its input.
+void refer_to_output(const BlockType& block, EffectKind& kind) {
+  const auto output = std::ranges::find(block.outputs, kind.output, &Field::name);
+  for (EffectParameter& one : kind.parameters) {
+    if (one.role == Role::Other && one.strength && output != block.outputs.end() && output->unit == one.unit) {
+      one.role = Role::Level;
+      kind.of_output = true;
+    }
+  }
+}
+
 bool has_strength(const EffectKind& kind) {
   return std::ranges::any_of(kind.parameters, [](const EffectParameter& one) { return one.strength; });
 }
@@ -112,6 +123,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
         kind.parameters.push_back(one);
       }
     }
+    refer_to_output(block, kind);
     if (has_strength(kind)) {
       kinds.push_back(std::move(kind));
     }

@@ -59,6 +59,7 @@ struct EffectKind {
   std::vector<EffectParameter> parameters{};  ///< those that are searched
   std::vector<Field> choices{};               ///< of what was before the record: tried both ways
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
+  bool of_output = false;                     ///< its levels are those of the block's output, not of its input
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
 };
 

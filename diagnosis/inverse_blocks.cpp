@@ -356,7 +356,9 @@ constexpr std::array rules{
     Rule{"HY_LEAD_LAG", lead_lag},
     Rule{"HY_SECOND_ORDER", second_order},
     Rule{"HY_INTEGRAL", integral},
+    Rule{"HY_INTEGRAL_BOUNDED", integral},  // a reference within the bounds does not meet them
     Rule{"HY_INTEGRAL_FORWARD", integral_forward},
+    Rule{"HY_INTEGRAL_FORWARD_BOUNDED", integral_forward},
     Rule{"HY_RELAXATION", relaxation},
     Rule{"HY_CREEP", creep},
     Rule{"HY_BACKLASH", backlash},

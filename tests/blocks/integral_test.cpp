@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "blocks/integral_bounded.hpp"
 #include "blocks/integral_forward.hpp"
+#include "blocks/integral_forward_bounded.hpp"
 #include "tests/blocks/stepper.hpp"
 
 namespace hysteron::testing {
@@ -21,6 +24,41 @@ TEST(Integral, CountsThePresentInputForwardDoesNot) {
     before = backward({.XIN = x, .RUN = true, .R1 = false, .X0 = 0.0}).XOUT;
   }
   EXPECT_EQ(before, 0.5 * 7.5);
+}
+
+TEST(IntegralBounded, IsTheSumHeldInEachStepAndLeavesABoundAtOnce) {
+  Stepper<IntegralBounded> backward(0.5, {.MN = -1.0, .MX = 2.0});
+  Stepper<IntegralForwardBounded> forward(0.5, {.MN = -1.0, .MX = 2.0});
+  double sum = 0.0;
+  double before = 0.0;
+  int high = 0;
+  int low = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double x = 3.0 * std::sin(0.05 * k) + std::sin(0.31 * k);
+    const auto there = forward({.XIN = x, .RUN = true, .R1 = false, .X0 = 0.0});
+    EXPECT_NEAR(there.XOUT, before, 1e-15);
+    const double free = sum + 0.5 * x;
+    sum = std::clamp(free, -1.0, 2.0);
+    const auto out = backward({.XIN = x, .RUN = true, .R1 = false, .X0 = 0.0});
+    EXPECT_NEAR(out.XOUT, sum, 1e-15);
+    EXPECT_EQ(out.QHIGH, free > 2.0);
+    EXPECT_EQ(out.QLOW, free < -1.0);
+    high += out.QHIGH ? 1 : 0;
+    low += out.QLOW ? 1 : 0;
+    before = sum;
+  }
+  EXPECT_GT(high, 20);
+  EXPECT_GT(low, 20);
+}
+
+TEST(IntegralBounded, AResetBeyondABoundIsHeldToo) {
+  Stepper<IntegralBounded> backward(1.0, {.MN = 1.0, .MX = 4.0});
+  Stepper<IntegralForwardBounded> forward(1.0, {.MN = 1.0, .MX = 4.0});
+  EXPECT_EQ(forward({.XIN = 0.0, .RUN = true, .R1 = false, .X0 = 0.0}).XOUT, 1.0) << "it starts at 0, below MN";
+  EXPECT_EQ(backward({.XIN = 0.0, .RUN = true, .R1 = true, .X0 = 9.0}).XOUT, 4.0);
+  EXPECT_EQ(forward({.XIN = -2.0, .RUN = true, .R1 = true, .X0 = 9.0}).XOUT, 4.0);
+  EXPECT_EQ(backward({.XIN = -1.0, .RUN = true, .R1 = false, .X0 = 0.0}).XOUT, 3.0);
+  EXPECT_EQ(forward({.XIN = 0.0, .RUN = true, .R1 = false, .X0 = 0.0}).XOUT, 2.0);
 }
 
 template <class B>

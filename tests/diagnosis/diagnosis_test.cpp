@@ -153,6 +153,27 @@ TEST(Diagnosis, ALimitOnOneSideIsFound) {
               Not(Contains(testing::Field(&parameters::ParameterValue::path, HasSubstr("MN")))));
 }
 
+TEST(Diagnosis, AnIntegralThatStopsIsFoundWithItsBound) {
+  // A tank with a brim: what overflows is lost, so that no limit of a signal does the same.
+  const auto tank = [](std::string_view level) {
+    return fmt::format(
+        "FUNCTION_BLOCK TANK (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR PUMP : "
+        "HY_GAIN := (K := 0.5); LEVEL : {}; DRAIN : HY_GAIN := (K := 0.8); END_VAR DRAIN(XIN := LEVEL.XOUT); PUMP(XIN "
+        ":= FORCE); LEVEL(XIN := PUMP.XOUT - DRAIN.XOUT); Y := LEVEL.XOUT; END_FUNCTION_BLOCK",
+        level);
+  };
+  records::Record record = test::measured(test::program_of(tank("HY_INTEGRAL_FORWARD_BOUNDED := (MX := 0.25)")),
+                                          test::record_of("FORCE", test::rich_force()), 0.001);
+  const Diagnosis found = diagnose(
+      test::input_of(tank("HY_INTEGRAL_FORWARD"), "[fit.PUMP]\nK = {}\n[fit.DRAIN]\nK = {}\n", {std::move(record)}),
+      {.effects = {"saturation", "load", "odd_nonlinearity", "rate_limit"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "saturation");
+  EXPECT_THAT(found.improved_text, HasSubstr("HY_INTEGRAL_FORWARD_BOUNDED"));
+  ASSERT_EQ(found.effects.front().parameters.size(), 1U);
+  EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.001);
+}
+
 TEST(Diagnosis, ParametersComeBackWithTheirIntervals) {
   const Injected truth = on_stack("drift", {"HY_DRIFT := (RATE := 0.08)", "HYST.XOUT"}, {"offset"}, {});
   const Diagnosis found = diagnosed(truth);

@@ -22,24 +22,18 @@ double smallest_step(std::vector<double> values) {
 }
 
 /// The least for an estimate, in samples.
-constexpr double fewest = 60.0;
+constexpr std::size_t fewest = 60;
 
-/// Rows in which no signal moves by more than a share of its range a sample.
-std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signals, std::size_t steps, double share) {
+/// Rows in which no signal moves.
+std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signals, std::size_t steps) {
   constexpr std::size_t shortest = 40;
-  constexpr std::size_t longest = 250;  // of what a cubic is taken off
-  std::vector<double> most;
-  for (const Signal* const signal : signals) {
-    const auto [low, high] = std::ranges::minmax(*signal);
-    most.push_back(share * (high - low));
-  }
+  constexpr std::size_t longest = 600;  // of what a cubic is taken off
   std::vector<records::RowRange> result;
   std::size_t first = 0;
   for (std::size_t k = 1; k <= steps; ++k) {
-    bool moved = k == steps;
-    for (std::size_t i = 0; !moved && i < signals.size(); ++i) {
-      moved = std::abs(at_step(*signals[i], k) - at_step(*signals[i], k - 1)) > most[i];
-    }
+    const bool moved = k == steps || std::ranges::any_of(signals, [&](const Signal* signal) {
+                         return at_step(*signal, k) != at_step(*signal, k - 1);
+                       });
     if (!moved) {
       continue;
     }
@@ -56,14 +50,12 @@ std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signal
   return result;
 }
 
-/// Several records' rests, of the inputs and of what else was logged; where there are too few, of what hardly moves,
-/// and at last of the inputs alone.
+/// By record: rests of the inputs and of what else was logged; where there are too few, of the inputs alone.
 std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experiment>& experiments,
                                                      const std::vector<std::vector<Signal>>& others) {
-  constexpr double slow = 3e-4;
   std::vector<std::vector<records::RowRange>> result;
-  for (const auto& [with_others, share] : {std::pair{true, 0.0}, std::pair{true, slow}, std::pair{false, 0.0}}) {
-    double freedom = 0.0;
+  for (const bool with_others : {true, false}) {
+    std::size_t samples = 0;
     result.clear();
     for (std::size_t e = 0; e < experiments.size(); ++e) {
       std::vector<const Signal*> signals;
@@ -73,12 +65,12 @@ std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experimen
       for (std::size_t i = 0; with_others && e < others.size() && i < others[e].size(); ++i) {
         signals.push_back(&others[e][i]);
       }
-      result.push_back(rests_of(signals, experiments[e].drive.steps, share));
+      result.push_back(rests_of(signals, experiments[e].drive.steps));
       for (const records::RowRange& rest : result.back()) {
-        freedom += static_cast<double>(rest.size());
+        samples += rest.size();
       }
     }
-    if (freedom >= fewest) {
+    if (samples >= fewest) {
       break;
     }
   }

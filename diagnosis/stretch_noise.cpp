@@ -3,10 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "diagnosis/spectrum.hpp"
+#include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -76,24 +79,30 @@ double squares(const std::vector<Detrended>& stretches) {
 /// Whether a line was most of what is left, and so was taken off.
 bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
   constexpr double most = 0.5;
+  constexpr std::size_t candidates = 12;
+  constexpr std::size_t refined = 3;
   constexpr int finer = 10;  // steps to either side of a peak of the spectrum
   VectorXd gated = VectorXd::Zero(static_cast<Index>(length));
   for (const Detrended& one : stretches) {
     gated.segment(static_cast<Index>(one.rows.first), one.left.size()) = one.left;
   }
-  const std::vector<double> peaks = strongest_lines(gated, 1.0, 1);
-  if (peaks.empty()) {
-    return false;
+  // The gaps between the stretches give each line neighbours that are nearly as high: all of them are tried.
+  std::vector<std::pair<double, double>> peaks;  // gain, frequency
+  for (const double frequency : strongest_lines(gated, 1.0, candidates)) {
+    peaks.emplace_back(line_at(stretches, frequency).gain, frequency);
   }
+  std::ranges::sort(peaks, std::greater{});
+  peaks.resize(std::min(peaks.size(), refined));
   Line best;
-  for (int step = -finer; step <= finer; ++step) {
-    const double frequency = peaks.front() + 0.5 * step / (finer * static_cast<double>(length));
-    Line here = line_at(stretches, frequency);
-    if (here.gain > best.gain) {
-      best = std::move(here);
+  for (const auto& [gain, frequency] : peaks) {
+    for (int step = -finer; step <= finer; ++step) {
+      Line here = line_at(stretches, frequency + 0.5 * step / (finer * static_cast<double>(length)));
+      if (here.gain > best.gain) {
+        best = std::move(here);
+      }
     }
   }
-  if (best.gain < most * squares(stretches)) {
+  if (best.values.empty() || best.gain < most * squares(stretches)) {
     return false;
   }
   for (std::size_t i = 0; i < stretches.size(); ++i) {
@@ -136,28 +145,32 @@ std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
     if (bound > 0.0) {  // a glitch is no noise
       one.left = one.left.cwiseMax(-bound).cwiseMin(bound);
     }
-    const double freedom = static_cast<double>(one.left.size() - order - 1);
-    result.push_back({.variance = one.left.squaredNorm() / freedom, .freedom = freedom});
+    // A trend takes of slow noise as many samples as of fast noise, of fewer that it has.
+    const auto samples = static_cast<double>(one.left.size());
+    const double worth = samples / std::min(correlation_time(one.left), samples / (3.0 * (order + 1)));
+    result.push_back({.variance = one.left.squaredNorm() / (samples * (1.0 - (order + 1) / worth)),
+                      .samples = one.rows.size(),
+                      .worth = worth});
   }
   return result;
 }
 
-double lower_deviation(std::vector<StretchNoise> stretches, double fewest) {
+double lower_deviation(std::vector<StretchNoise> stretches, std::size_t fewest) {
   constexpr double share = 0.3;
   constexpr double deviations = 0.524;    // of a normal distribution, from its mean down to that share
   constexpr std::size_t distributed = 4;  // fewer stretches have no quantile
-  const double total = std::accumulate(stretches.begin(), stretches.end(), 0.0,
-                                       [](double sum, const StretchNoise& one) { return sum + one.freedom; });
+  const std::size_t total = std::accumulate(stretches.begin(), stretches.end(), std::size_t{0},
+                                            [](std::size_t sum, const StretchNoise& one) { return sum + one.samples; });
   if (total < fewest) {
     return 0.0;
   }
   std::ranges::stable_sort(stretches, {}, &StretchNoise::variance);
-  double below = 0.0;
+  std::size_t below = 0;
   for (const StretchNoise& one : stretches) {
-    below += one.freedom;
-    if (below >= share * total) {
+    below += one.samples;
+    if (static_cast<double>(below) >= share * static_cast<double>(total)) {
       // The variance of n normal samples scatters by √(2/n) of itself.
-      const double chance = stretches.size() < distributed ? 0.0 : deviations * std::sqrt(2.0 / one.freedom);
+      const double chance = stretches.size() < distributed ? 0.0 : deviations * std::sqrt(2.0 / one.worth);
       return std::sqrt(one.variance / (1.0 - std::min(chance, 0.5)));
     }
   }

@@ -1,6 +1,7 @@
 // The noise in stretches of a signal in which nothing else should move: dwells, or differences of cycles.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "records/record.hpp"
@@ -9,7 +10,8 @@ namespace hysteron::diagnosis {
 
 struct StretchNoise {
   double variance = 0.0;
-  double freedom = 0.0;  ///< samples less what was taken off
+  std::size_t samples = 0;
+  double worth = 0.0;  ///< independent samples: slow noise has fewer
 };
 
 [[nodiscard]] double median(std::vector<double> values);
@@ -22,6 +24,6 @@ struct StretchNoise {
 
 /// The standard deviation that 30 % of the samples lie in stretches below, less what chance makes of the quietest ones.
 /// Noise is as large in each stretch; what a machine still does after a motion is not. 0 where there are fewer samples.
-[[nodiscard]] double lower_deviation(std::vector<StretchNoise> stretches, double fewest);
+[[nodiscard]] double lower_deviation(std::vector<StretchNoise> stretches, std::size_t fewest);
 
 }  // namespace hysteron::diagnosis

@@ -95,8 +95,13 @@ TEST(Contract, EveryFieldIsDescribed) {
 TEST(Contract, OnlyEffectsHaveANeutralSetting) {
   for_each_block([]<class B> {
     if (B::about.effect.empty()) {
-      for (const Field& field : fields_of<DoubleParams<B>>()) {
-        EXPECT_EQ(field.has_neutral(), !field.effect.empty()) << field.name;
+      const auto fields = fields_of<DoubleParams<B>>();
+      for (const Field& field : fields) {
+        // A further parameter of an effect begins with the name of the first: ASYMMETRY, ASYMMETRY_EXPONENT.
+        const bool further = std::ranges::any_of(fields, [&](const Field& first) {
+          return !first.effect.empty() && field.name.starts_with(std::string(first.name) + "_");
+        });
+        EXPECT_TRUE(field.has_neutral() ? further || !field.effect.empty() : field.effect.empty()) << field.name;
       }
     }
   });

@@ -118,6 +118,34 @@ TEST(NoiseFloor, DwellsSeeSlowNoise) {
   EXPECT_NEAR(floor.value, 0.2, 0.04);
 }
 
+/// Steps of 1 s to levels that never come back, and the output behind them.
+double treads(double t) {
+  return std::sqrt(2.0 + std::floor(t));
+}
+
+TEST(NoiseFloor, ALineThroughAllDwellsIsADisturbance) {
+  auto y = sum(over_time(8000, treads), test::Noise(5).white(8000, 0.05));
+  y = sum(y, over_time(8000, [](double t) { return 0.5 * std::sin(test::two_pi * 2.3 * t + 0.4); }));
+  EXPECT_NEAR(noise_floor(experiment(over_time(8000, treads), y), 0).value, 0.05, 0.01);
+}
+
+TEST(NoiseFloor, WhatRingsInMostDwellsIsNoNoise) {
+  auto y = sum(over_time(8000, treads), test::Noise(6).white(8000, 0.05));
+  const auto ringing = [](double t) {
+    const double since = t - std::floor(t);
+    return static_cast<int>(t) % 2 == 0 ? 0.0 : std::exp(-since) * std::sin(test::two_pi * (3.0 + 0.1 * t) * since);
+  };
+  EXPECT_NEAR(noise_floor(experiment(over_time(8000, treads), sum(y, over_time(8000, ringing))), 0).value, 0.05, 0.01);
+}
+
+TEST(NoiseFloor, WhatElseWasLoggedHasToRestToo) {
+  // Another axis moves in the first half of the record, and the output follows it.
+  const auto other = over_time(8000, [](double t) { return t < 20.0 ? std::sin(7.0 * t * (1.0 + 0.03 * t)) : 0.0; });
+  const auto y = sum(sum(over_time(8000, treads), test::Noise(7).white(8000, 0.05)), other);
+  const auto experiments = experiment(over_time(8000, treads), y);
+  EXPECT_NEAR(noise_floor(experiments, 0, {{other}}).value, 0.05, 0.01);
+}
+
 TEST(NoiseFloor, OfAQuantisedSensorIsAtLeastItsRounding) {
   constexpr double quantum = 0.5;
   auto y = over_time(4000, slow_sine);

@@ -1,11 +1,11 @@
 // HY_RATE_LIMIT: XOUT(k) = min(max(XIN(k), XOUT(k−1) − FALL·TS), XOUT(k−1) + RISE·TS)
 #pragma once
 
-#include "blocks/last_output.hpp"
+#include "blocks/ports.hpp"
 
 namespace hysteron {
 
-struct RateLimit : LastOutput {
+struct RateLimit {
   static constexpr About about{.name = "HY_RATE_LIMIT",
                                .title = "Rate limiter",
                                .group = Group::Shaping,
@@ -30,6 +30,18 @@ struct RateLimit : LastOutput {
     }
   };
   template <class S>
+  struct State {
+    S LAST;
+    Bool<S> STARTED;
+    using Self = State;
+    static constexpr auto fields() {
+      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the step before"),
+                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
+    }
+    /// The output of the step before; in the first step the input, which so passes as it is.
+    [[nodiscard]] S before(const S& input) const { return select(STARTED, LAST, input); }
+  };
+  template <class S>
   using In = Xin<S, "'x", "signal">;
   template <class S>
   using Out = Xout<S, "'x", "signal, limited in its rate">;
@@ -42,6 +54,12 @@ struct RateLimit : LastOutput {
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     const S last = state.before(in.XIN);
     return {.XOUT = min(max(in.XIN, last - params.FALL * ts), last + params.RISE * ts)};
+  }
+  template <class S>
+  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& /*in*/, const Out<S>& out,
+                     const S& /*ts*/) {
+    state.LAST = out.XOUT;
+    state.STARTED = Bool<S>(true);
   }
 };
 

@@ -1,4 +1,4 @@
-// HY_VISCOUS_FRICTION: XOUT = XIN − COEFFICIENT·V
+// HY_VISCOUS_FRICTION: XOUT = XIN − COEFFICIENT·V − QUADRATIC·V·|V|
 #pragma once
 
 #include "blocks/effect_term.hpp"
@@ -11,9 +11,11 @@ struct ViscousFriction {
       .name = "HY_VISCOUS_FRICTION",
       .title = "Viscous friction",
       .group = Group::Dynamics,
-      .equation = "XOUT(k) = XIN(k) − COEFFICIENT·V(k−1)",
+      .equation = "XOUT(k) = XIN(k) − COEFFICIENT·V − QUADRATIC·V·|V|, V = V(k−1)",
       .meaning =
-          "Friction in proportion to the velocity, taken off a driving force. V is that of the step before, so that "
+          "Friction in proportion to the velocity, and drag with its square, taken off a driving force; a QUADRATIC "
+          "below 0 is a friction that grows less and less, within the speeds it was fitted at. V is that of the step "
+          "before, so that "
           "the block closes the loop of force and velocity; it begins with 0.",
 
       .effect = "viscous_friction"};
@@ -21,10 +23,12 @@ struct ViscousFriction {
   template <class S>
   struct Params {
     S COEFFICIENT;
+    S QUADRATIC;
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{
-          HY_FIELD(COEFFICIENT).in("'x/'v").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("force over velocity")};
+          HY_FIELD(COEFFICIENT).in("'x/'v").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("force over velocity"),
+          HY_FIELD(QUADRATIC).in("'x/'v^2").otherwise(0.0).neutral_at(0.0).means("force over the square of it")};
     }
   };
   template <class S>
@@ -46,7 +50,8 @@ struct ViscousFriction {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    return {.XOUT = with_term<S>(in.XIN, -(params.COEFFICIENT * state.V1))};
+    return {.XOUT =
+                with_term<S>(in.XIN, -(params.COEFFICIENT * state.V1 + params.QUADRATIC * (state.V1 * abs(state.V1))))};
   }
   template <class S>
   static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,

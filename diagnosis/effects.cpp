@@ -17,6 +17,9 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
   if (!strength && name == "PITCH") {
     return Role::Period;
   }
+  if (!strength && name == "SPREAD") {
+    return Role::Softness;
+  }
   if (unit == "s") {
     return !strength && (field.preset == 0.0 || std::isinf(field.preset)) && name.starts_with("T_") ? Role::Instant
                                                                                                     : Role::Duration;

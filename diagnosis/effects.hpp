@@ -24,6 +24,7 @@ enum class Role : std::uint8_t {
   Frequency,  ///< of an oscillation, Hz
   Period,     ///< in a position: of the signal or of an auxiliary input
   Share,      ///< dimensionless
+  Softness,   ///< of edges: no start depends on it
   PerSecond,  ///< share a second
   Reference,  ///< a size that others are relative to: set from the signal, not fitted
   Other

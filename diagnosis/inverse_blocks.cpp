@@ -271,13 +271,23 @@ std::string backlash(InverseText& text, const BlockStage& stage) {
   text.call(held, "XIN := " + gap);
   text.note(fmt::format("the input jumps by {} at each reversal, across the gap of {}", number_text(2.0 * half),
                         stage.node.path));
+  if (stage.value("SPREAD") > 0.0) {
+    text.note(fmt::format("the gap of {} is taken as one of its mean width", stage.node.path));
+  }
   return fmt::format("{} + {}", stage.wanted, gap);
 }
 
-std::string dead_band(InverseText& /*text*/, const BlockStage& stage) {
+/// With soft edges the band's slope is 0, 1/3, 2/3 and 1 in turn, so that its inverse is the lowest of three lines.
+std::string dead_band(InverseText& text, const BlockStage& stage) {
   const double half = 0.5 * stage.value("WIDTH");
-  return fmt::format("{0} + SEL({0} > 0.0, SEL({0} < 0.0, 0.0, {1}), {2})", stage.wanted, real_literal(-half),
-                     real_literal(half));
+  const double narrow = half * (1.0 - stage.value("SPREAD"));
+  const std::string size = text.signal(stage.name + "_SIZE", fmt::format("ABS({})", stage.wanted));
+  const std::string reached =
+      narrow == half ? fmt::format("{} + {}", size, real_literal(half))
+                     : fmt::format("MIN(MIN(3.0 * {0} + {1}, 1.5 * {0} + {2}), {0} + {3})", size, real_literal(narrow),
+                                   real_literal(0.5 * (narrow + half)), real_literal(half));
+  const std::string there = text.signal(stage.name + "_REACHED", reached);
+  return fmt::format("SEL({0} > 0.0, SEL({0} < 0.0, 0.0, -{1}), {1})", stage.wanted, there);
 }
 
 std::string ro_settings(const BlockStage& stage) {

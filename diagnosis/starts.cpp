@@ -77,6 +77,7 @@ std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, 
     case Role::Instant:
     case Role::Frequency:
     case Role::Period:
+    case Role::Softness:
     case Role::Reference:
     case Role::Other:
       break;
@@ -124,6 +125,8 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     case Role::Share:
       // A share to both sides is a place: the middle, and near the ends.
       return parameter.field.minimum < 0.0 ? std::vector{0.0, 0.9, -0.9} : std::vector{0.02, 0.1, 0.4};
+    case Role::Softness:
+      return {0.4};  // between sharp and as soft as can be; at 0 itself the first derivative is 0
     case Role::Level:
     case Role::Gap:
     case Role::Quantum:

@@ -60,7 +60,7 @@ TEST(Limit, HoldsTheBoundsAndSaysWhich) {
 }
 
 TEST(DeadBand, LeavesWhatTheLimiterCutsOff) {
-  Stepper<DeadBand> band(1.0, {.WIDTH = 1.0});
+  Stepper<DeadBand> band(1.0, {.WIDTH = 1.0, .SPREAD = 0.0});
   Stepper<Limit> limit(1.0, {.MN = -0.5, .MX = 0.5});
   for (double x = -2.0; x <= 2.0; x += 0.125) {
     EXPECT_EQ(band({.XIN = x}).XOUT, x - limit({.XIN = x}).XOUT);
@@ -143,7 +143,7 @@ TEST(Quantizer, ErrorOfARampIsWhiteWithVarianceOfATwelfth) {
 }
 
 TEST(Backlash, FollowsHalfAGapBehindAndRestsInTheGap) {
-  Stepper<Backlash> play(1.0, {.WIDTH = 0.5, .START = 0.0});
+  Stepper<Backlash> play(1.0, {{.WIDTH = 0.5, .SPREAD = 0.0}, 0.0});
   EXPECT_EQ(play({.XIN = 1.0}).XOUT, 1.0) << "starts in the middle of the gap";
   EXPECT_EQ(play({.XIN = 1.25}).XOUT, 1.0);
   EXPECT_EQ(play({.XIN = 3.0}).XOUT, 2.75);
@@ -151,13 +151,33 @@ TEST(Backlash, FollowsHalfAGapBehindAndRestsInTheGap) {
   EXPECT_EQ(play({.XIN = 0.0}).XOUT, 0.25);
 }
 
+TEST(Backlash, WithSpreadIsTheMeanOfThreePlays) {
+  Stepper<Backlash> soft(1.0, {{.WIDTH = 0.4, .SPREAD = 0.75}, 0.5});
+  Stepper<Backlash> narrow(1.0, {{.WIDTH = 0.1, .SPREAD = 0.0}, 0.5});
+  Stepper<Backlash> middle(1.0, {{.WIDTH = 0.4, .SPREAD = 0.0}, 0.5});
+  Stepper<Backlash> wide(1.0, {{.WIDTH = 0.7, .SPREAD = 0.0}, 0.5});
+  for (int k = 0; k < 300; ++k) {
+    const double x = std::sin(0.1 * k) + 0.4 * std::sin(0.37 * k);
+    const double mean = (narrow({.XIN = x}).XOUT + middle({.XIN = x}).XOUT + wide({.XIN = x}).XOUT) / 3.0;
+    EXPECT_NEAR(soft({.XIN = x}).XOUT, mean, 1e-15);
+  }
+}
+
+TEST(DeadBand, WithSpreadHasSoftEdges) {
+  Stepper<DeadBand> soft(1.0, {.WIDTH = 1.0, .SPREAD = 0.5});
+  EXPECT_EQ(soft({.XIN = 0.25}).XOUT, 0.0);
+  EXPECT_NEAR(soft({.XIN = 0.5}).XOUT, 0.25 / 3.0, 1e-15);
+  EXPECT_NEAR(soft({.XIN = -0.75}).XOUT, -(0.5 + 0.25) / 3.0, 1e-15);
+  EXPECT_NEAR(soft({.XIN = 2.0}).XOUT, 1.5, 1e-15);
+}
+
 TEST(Backlash, StartsWhereItIsToldInTheGap) {
-  Stepper<Backlash> at_the_edge(1.0, {.WIDTH = 0.5, .START = 1.0});
+  Stepper<Backlash> at_the_edge(1.0, {{.WIDTH = 0.5, .SPREAD = 0.0}, 1.0});
   EXPECT_EQ(at_the_edge({.XIN = 1.0}).XOUT, 1.0) << "the first sample passes as it is";
   EXPECT_EQ(at_the_edge({.XIN = 0.75}).XOUT, 0.75) << "followed at once downwards";
   EXPECT_EQ(at_the_edge({.XIN = 1.25}).XOUT, 0.75) << "the whole gap upwards";
   EXPECT_EQ(at_the_edge({.XIN = 2.0}).XOUT, 1.5);
-  Stepper<Backlash> a_quarter(1.0, {.WIDTH = 0.5, .START = -0.5});
+  Stepper<Backlash> a_quarter(1.0, {{.WIDTH = 0.5, .SPREAD = 0.0}, -0.5});
   EXPECT_EQ(a_quarter({.XIN = 1.0}).XOUT, 1.0);
   EXPECT_EQ(a_quarter({.XIN = 1.125}).XOUT, 1.0);
   EXPECT_EQ(a_quarter({.XIN = 2.0}).XOUT, 1.875);
@@ -168,7 +188,7 @@ TEST(Backlash, LoopNarrowerThanTheGapMovesNothingAndAWiderOneEnclosesItsArea) {
   const double width = 0.5;
   const int count = 4000;
   for (const double amplitude : {0.2, 1.0}) {
-    Stepper<Backlash> play(1.0, {.WIDTH = width, .START = 0.0});
+    Stepper<Backlash> play(1.0, {{.WIDTH = width, .SPREAD = 0.0}, 0.0});
     double area = 0.0;
     double x_before = 0.0;
     double y_before = play({.XIN = 0.0}).XOUT;
@@ -188,8 +208,8 @@ TEST(Backlash, LoopNarrowerThanTheGapMovesNothingAndAWiderOneEnclosesItsArea) {
 }
 
 TEST(Backlash, PathDoesNotDependOnHowFineItIsSampled) {
-  Stepper<Backlash> coarse(1.0, {.WIDTH = 0.3, .START = 0.0});
-  Stepper<Backlash> fine(1.0, {.WIDTH = 0.3, .START = 0.0});
+  Stepper<Backlash> coarse(1.0, {{.WIDTH = 0.3, .SPREAD = 0.0}, 0.0});
+  Stepper<Backlash> fine(1.0, {{.WIDTH = 0.3, .SPREAD = 0.0}, 0.0});
   coarse({.XIN = 0.0});
   fine({.XIN = 0.0});
   double before = 0.0;

@@ -178,10 +178,24 @@ TEST(StribeckFriction, WithoutStictionIsCoulombFriction) {
   }
 }
 
+TEST(ViscousFriction, DragOfTheSquareSlowsAMassAsOneOverTime) {
+  // v' = −q·v·|v|: v = v0/(1 + q·v0·t), and the same backwards.
+  const double ts = 1e-4;
+  for (const double start : {1.0, -1.0}) {
+    Stepper<ViscousFriction> block(ts, {.COEFFICIENT = 0.0, .QUADRATIC = 3.0});
+    double v = start;
+    block({.XIN = 0.0, .V = v});
+    for (int k = 0; k < 10'000; ++k) {
+      v += ts * block({.XIN = 0.0, .V = v}).XOUT;
+    }
+    EXPECT_NEAR(v, start / 4.0, 1e-4);
+  }
+}
+
 TEST(ViscousFriction, SlowsAMassExponentially) {
   // v' = −c·v; with the velocity of the step before, v(k) = v(k−1)·(1 − c·TS) exactly.
   const double ts = 1e-4;
-  Stepper<ViscousFriction> block(ts, {.COEFFICIENT = 2.0});
+  Stepper<ViscousFriction> block(ts, {.COEFFICIENT = 2.0, .QUADRATIC = 0.0});
   double v = 1.0;
   block({.XIN = 0.0, .V = v});
   for (int k = 0; k < 10'000; ++k) {

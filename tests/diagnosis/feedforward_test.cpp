@@ -127,6 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"backlash", "HY_BACKLASH := (WIDTH := 0.3)", 1e-14},
         Case{"backlash_from_its_edge", "HY_BACKLASH := (WIDTH := 0.3, START := 1.0)", 1e-14},
         Case{"dead_zone", "HY_DEAD_BAND := (WIDTH := 0.3)", 1e-14},
+        Case{"soft_dead_zone", "HY_DEAD_BAND := (WIDTH := 0.3, SPREAD := 0.6)", 1e-13},
         Case{"loop", "HY_HYSTERESIS_RO := (" + loop + ")", 1e-13}, Case{"lag", "HY_LAG := (T1 := 0.02)", 5e-6},
         Case{"lead_lag", "HY_LEAD_LAG := (T1 := 0.02, T2 := 0.05)", 5e-6},
         Case{"resonance", "HY_SECOND_ORDER := (T := 0.02, ZETA := 0.2)", 5e-6},

@@ -429,7 +429,9 @@ class Searcher {
     }
     for (const Explanation& one : found) {
       const double left = one.fit.cost - floor_cost_;
-      const bool closed = found.front().fit.cost - floor_cost_ < least_gain(result.calibrated.fit.cost, floor_cost_);
+      const std::size_t effects = found.front().variant.effects.size() + 1;
+      const bool closed =
+          found.front().fit.cost - floor_cost_ < least_gain(result.calibrated.fit.cost, floor_cost_, effects);
       if (closed || correlation_time(found.front().fit.residuals) < 1.5) {
         break;  // nothing notable is left for another effect, or nothing but white noise
       }
@@ -456,10 +458,11 @@ class Searcher {
 
 }  // namespace
 
-double least_gain(double calibrated_cost, double floor_cost) {
+double least_gain(double calibrated_cost, double floor_cost, std::size_t effects) {
   constexpr double share = 0.05;
   constexpr double floors = 3.0;
-  return std::min(share * std::max(calibrated_cost - floor_cost, 0.0), floors * floor_cost);
+  const double notable = share * std::max(calibrated_cost - floor_cost, 0.0);
+  return effects > 2 ? notable : std::min(notable, floors * floor_cost);
 }
 
 Search search(const Task& task, Variant base, const std::string& top, double floor_cost, const SearchOptions& options) {

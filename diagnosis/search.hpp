@@ -21,7 +21,7 @@ struct SearchOptions {
   int most_effects = 3;
   std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
   std::size_t fitted_later = 10;  ///< and after each further one
-  std::size_t beam = 3;       ///< sets that a second effect is added to; a further one is added to the best set alone
+  std::size_t beam = 3;  ///< sets that a second effect is added to; a further one is added to the best set alone
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
 };
@@ -32,9 +32,10 @@ struct Search {
   std::size_t tried = 0;                    ///< candidates over all rounds
 };
 
-/// What a further effect has to close, as ½Σr²: a notable share of the gap, or what stands well above the noise however
-/// large the gap is.
-[[nodiscard]] double least_gain(double calibrated_cost, double floor_cost);
+/// What the last effect of a set of so many has to close, as ½Σr²: a notable share of the gap; for the first two also
+/// what stands well above the noise, however large the gap is. A third one there would be for what the formulas of two
+/// leave.
+[[nodiscard]] double least_gain(double calibrated_cost, double floor_cost, std::size_t effects);
 
 /// `floor_cost` is ½Σr² of noise alone: what no effect can close.
 [[nodiscard]] Search search(const Task& task, Variant base, const std::string& top, double floor_cost,

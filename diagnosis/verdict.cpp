@@ -24,7 +24,7 @@ constexpr double fewest_samples = 60.0;
 class Judge {
  public:
   Judge(const Task& task, const Search& search, double floor_cost)
-      : task_(task), search_(search), least_gain_(least_gain(search.calibrated.fit.cost, floor_cost)) {}
+      : task_(task), search_(search), floor_cost_(floor_cost) {}
 
   Judgement run() {
     Judgement result{.chosen = &search_.calibrated};
@@ -84,7 +84,7 @@ class Judge {
         smaller = std::min(smaller, other.fit.cost);
       }
     }
-    return smaller - one.fit.cost > least_gain_;
+    return smaller - one.fit.cost > least_gain(search_.calibrated.fit.cost, floor_cost_, size);
   }
 
   /// Each set is refitted to halves of the record once.
@@ -128,7 +128,8 @@ class Judge {
       }
       best = simplest_near(*best);
       const bool better = support(*best) - support(*chosen) > least_significance;
-      const bool notable = chosen->fit.cost - best->fit.cost > least_gain_;
+      const bool notable =
+          chosen->fit.cost - best->fit.cost > least_gain(search_.calibrated.fit.cost, floor_cost_, size);
       if (better && notable && holds_on_unseen(*chosen, *best)) {
         chosen = best;
       } else if (size > 1) {
@@ -153,7 +154,7 @@ class Judge {
 
   const Task& task_;
   const Search& search_;
-  double least_gain_;
+  double floor_cost_;
   double samples_ = 1.0;
   std::map<const Explanation*, VectorXd> unseen_{};
 };

@@ -16,9 +16,9 @@ struct Backlash {
           "The play of a gear: the output moves only once the input has crossed the gap, and then follows at half the "
           "gap's width behind it. A loop narrower than WIDTH does not move it at all. The first sample passes as it "
           "is: the output's zero is chosen so. START says where in the gap that was, 0 in its middle, 1 where a step "
-          "downwards and -1 where a step upwards would be followed at once. With SPREAD it is the mean of three plays, "
-          "of "
-          "WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + SPREAD): the gap closes by and by, as with soft or worn contacts.",
+          "downwards and -1 where a step upwards would be followed at once. With SPREAD it is the mean of three "
+          "plays, of WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + SPREAD): the gap closes by and by, as with soft or worn "
+          "contacts.",
       .source = "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, 1989, play operator",
       .effect = "backlash"};
 

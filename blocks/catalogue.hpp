@@ -131,7 +131,8 @@ using Catalogue = BlockList<
     // time and counting
     OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
     // dynamics
-    Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, IntegralBounded, IntegralForwardBounded, Delay, DeadTime, Lag, LeadLag, SecondOrder,
+    Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, IntegralBounded, IntegralForwardBounded,
+    Delay, DeadTime, Lag, LeadLag, SecondOrder,
     // effects: what a machine does and its model does not
     Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, ViscousFriction,
     Cogging, PeriodicError, EvenNonlinearity, OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock,

@@ -12,10 +12,10 @@ struct DeadBand : Stateless {
       .group = Group::Shaping,
       .equation = "XOUT = max(XIN - WIDTH/2, min(XIN + WIDTH/2, 0))",
       .meaning =
-          "Gives 0 while the signal lies within WIDTH/2 of zero, and the rest of the signal "
-          "outside: slope 1, no jump at the ends of the band. As a model it is a valve that "
-          "overlaps; in a controller it keeps a loop quiet near its set point. With SPREAD it is the mean of three "
-          "bands, of WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + SPREAD): its edges are soft.",
+          "Gives 0 while the signal lies within WIDTH/2 of zero, and the rest of the signal outside: slope 1, no jump "
+          "at the ends of the band. As a model it is a valve that overlaps; in a controller it keeps a loop quiet "
+          "near its set point. With SPREAD it is the mean of three bands, of WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + "
+          "SPREAD): its edges are soft.",
       .effect = "dead_zone"};
 
   template <class S>

@@ -16,25 +16,22 @@ struct HysteresisGeneral {
       .equation =
           "XOUT = y_i + (C1·d + (1 ± ASYMMETRY)·G(d) + B(d))·(1 + BIAS·(m − U0)/BIAS_REFERENCE) + D + R; d = XIN − "
           "u_i, p = |d|, e = ±ASYMMETRY_EXPONENT, G = d·C2·p^C3·(p/ASYMMETRY_REFERENCE)^e/(C3+e+1), B = "
-          "SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D is the integral of (M(p)·DUHEM/"
-          "DUHEM_REFERENCE + C2·p^C3·HARDENING/HARDENING_REFERENCE)·(u − U0) along the branch; R collects G's "
-          "increments times "
-          "RATE·log10(1 + |XIN'|/RATE_REFERENCE); on the skeleton p = 2|d|",
+          "SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D is the integral of "
+          "(M(p)·DUHEM/DUHEM_REFERENCE + C2·p^C3·HARDENING/HARDENING_REFERENCE)·(u − U0) along the branch; R collects "
+          "G's increments times RATE·log10(1 + |XIN'|/RATE_REFERENCE); on the skeleton p = 2|d|",
       .meaning =
           "HY_HYSTERESIS_RO, to the bit, where all its further parameters are 0. ASYMMETRY makes C2 larger upwards "
-          "and smaller downwards, ASYMMETRY_EXPONENT does so with C3; a loop then no longer closes, and wanders by the "
-          "difference in each cycle. RATE lets "
-          "the growth depend on the rate within each sample. BIAS changes the slopes with the middle m of the branch, "
-          "so that equal loops differ with their bias, and each closes. DUHEM does so by Duhem's form: the slope "
-          "follows the input itself, and a loop wanders as it does with an asymmetry; HARDENING is the same of the "
-          "part "
-          "C2*p^C3 alone. SHAPE bends the branch by "
-          "SHAPE·C1·SHAPE_DEPTH "
+          "and smaller downwards, ASYMMETRY_EXPONENT does so with C3; a loop then no longer closes, and wanders by "
+          "the difference in each cycle. RATE lets the growth depend on the rate within each sample. BIAS changes the "
+          "slopes with the middle m of the branch, so that equal loops differ with their bias, and each closes. DUHEM "
+          "does so by Duhem's form: the slope follows the input itself, and a loop wanders as it does with an "
+          "asymmetry; HARDENING is the same of the part C2*p^C3 alone. SHAPE bends the branch by SHAPE·C1·SHAPE_DEPTH "
           "at the momentum SHAPE_DEPTH and leaves its start and its far end: C1, C2 and C3 have no such bend. "
           "RETURN_POINT blends the output with that of a hysteresis which, when a loop closes, resumes the branch "
-          "before it: 0 is the paper's memory of the last branching point, 1 full return-point memory of 8 interrupted "
-          "branches; a deeper nesting forgets the innermost loop. Where a loop closes that way R begins anew at 0, and "
-          "an asymmetry gives a jump. P, SLOPE and Q are those of the memory of the last branching point.",
+          "before it: 0 is the paper's memory of the last branching point, 1 full return-point memory of 8 "
+          "interrupted branches; a deeper nesting forgets the innermost loop. Where a loop closes that way R begins "
+          "anew at 0, and an asymmetry gives a jump. P, SLOPE and Q are those of the memory of the last branching "
+          "point.",
       .delay = "None.",
       .source =
           "Strijbosch and Oomen, equations (2), (3) and (17); E. Madelung, Ann. Phys. 17 (1905) 861, for return points",

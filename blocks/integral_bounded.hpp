@@ -39,7 +39,31 @@ struct BoundedOut {
   }
 };
 
-struct IntegralBounded {
+/// What the two integrals between bounds have in common.
+struct OfBoundedIntegral {
+  template <class S>
+  using Params = IntegralBounds<S>;
+  template <class S>
+  using State = Integral::State<S>;
+  template <class S>
+  using In = Integral::In<S>;
+  template <class S>
+  using Out = BoundedOut<S>;
+
+  template <class S>
+  static State<S> initial(const Params<S>& /*params*/) {
+    return {.SUM = S(0.0), .LOST = S(0.0)};
+  }
+
+ protected:
+  /// A sum as it came, held by the bounds.
+  template <class S>
+  static Out<S> shown(const Params<S>& params, const CompensatedSum<S>& sum, const In<S>& in) {
+    return {.XOUT = params.held(sum).high, .Q = !in.R1, .QLOW = params.below(sum), .QHIGH = params.above(sum)};
+  }
+};
+
+struct IntegralBounded : OfBoundedIntegral {
   static constexpr About about{
       .name = "HY_INTEGRAL_BOUNDED",
       .title = "Integral between bounds",
@@ -55,22 +79,8 @@ struct IntegralBounded {
       .enriches = "HY_INTEGRAL"};
 
   template <class S>
-  using Params = IntegralBounds<S>;
-  template <class S>
-  using State = Integral::State<S>;
-  template <class S>
-  using In = Integral::In<S>;
-  template <class S>
-  using Out = BoundedOut<S>;
-
-  template <class S>
-  static State<S> initial(const Params<S>& /*params*/) {
-    return {.SUM = S(0.0), .LOST = S(0.0)};
-  }
-  template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const CompensatedSum<S> sum = Integral::advance(state, in, ts);
-    return {.XOUT = params.held(sum).high, .Q = !in.R1, .QLOW = params.below(sum), .QHIGH = params.above(sum)};
+    return shown(params, Integral::advance(state, in, ts), in);
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {

@@ -6,7 +6,7 @@
 
 namespace hysteron {
 
-struct IntegralForwardBounded {
+struct IntegralForwardBounded : OfBoundedIntegral {
   static constexpr About about{
       .name = "HY_INTEGRAL_FORWARD_BOUNDED",
       .title = "Integral between bounds, without feedthrough",
@@ -21,22 +21,8 @@ struct IntegralForwardBounded {
       .enriches = "HY_INTEGRAL_FORWARD"};
 
   template <class S>
-  using Params = IntegralBounds<S>;
-  template <class S>
-  using State = Integral::State<S>;
-  template <class S>
-  using In = Integral::In<S>;
-  template <class S>
-  using Out = BoundedOut<S>;
-
-  template <class S>
-  static State<S> initial(const Params<S>& /*params*/) {
-    return {.SUM = S(0.0), .LOST = S(0.0)};
-  }
-  template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const CompensatedSum<S> sum = IntegralForward::present(state, in);
-    return {.XOUT = params.held(sum).high, .Q = !in.R1, .QLOW = params.below(sum), .QHIGH = params.above(sum)};
+    return shown(params, IntegralForward::present(state, in), in);
   }
   /// The sum is kept as it came, and held at the start of the next interval, where the bounds of that step count.
   template <class S>

@@ -15,18 +15,16 @@ struct SlopeMGeneral {
       .group = Group::Memory,
       .equation =
           "XOUT = M·XIN, M the derivative by u of ((C1·d + (1 ± ASYMMETRY)·(1 + r)·G(d) + B(d))·(1 + "
-          "BIAS·m/BIAS_REFERENCE)) + ((C1 + C2·P^C3)·DUHEM/DUHEM_REFERENCE + C2·P^C3·HARDENING/HARDENING_REFERENCE)·u, "
-          "d = ±P by the sign of XIN, m = u − d/2, u "
-          "the integral of XIN, r = "
-          "RATE·log10(1 + |XIN|/RATE_REFERENCE); G and B as in HY_HYSTERESIS_GENERAL",
+          "BIAS·m/BIAS_REFERENCE)) + ((C1 + C2·P^C3)·DUHEM/DUHEM_REFERENCE + "
+          "C2·P^C3·HARDENING/HARDENING_REFERENCE)·u, d = ±P by the sign of XIN, m = u − d/2, u the integral of XIN, r "
+          "= RATE·log10(1 + |XIN|/RATE_REFERENCE); G and B as in HY_HYSTERESIS_GENERAL",
       .meaning =
-          "HY_M, to the bit, where all its further parameters are 0: for diagrams that compose the hysteresis of rate, "
-          "branching point, momentum and integral. The effects are those of HY_HYSTERESIS_GENERAL, in slopes: "
-          "ASYMMETRY and its exponent by the sign of XIN, RATE by its size, SHAPE by P. BIAS, DUHEM and HARDENING need "
-          "the hysteresis' input "
-          "itself and "
-          "integrate XIN for it, from 0 at the start; m is then the middle of the branch so far. Return points need "
-          "the output and are left to HY_HYSTERESIS_GENERAL. For P < 0 the effects see |P|.",
+          "HY_M, to the bit, where all its further parameters are 0: for diagrams that compose the hysteresis of "
+          "rate, branching point, momentum and integral. The effects are those of HY_HYSTERESIS_GENERAL, in slopes: "
+          "ASYMMETRY and its exponent by the sign of XIN, RATE by its size, SHAPE by P. BIAS, DUHEM and HARDENING "
+          "need the hysteresis' input itself and integrate XIN for it, from 0 at the start; m is then the middle of "
+          "the branch so far. Return points need the output and are left to HY_HYSTERESIS_GENERAL. For P < 0 the "
+          "effects see |P|.",
       .source = "Strijbosch and Oomen, equations (5) and (17)",
       .enriches = "HY_M"};
 

@@ -21,11 +21,6 @@ struct OfThree {
   }
 };
 
-template <class S>
-OfThree<S> widths_of(const S& width, const S& spread) {
-  return {.middle = width, .narrow = width * (S(1.0) - spread), .wide = width * (S(1.0) + spread)};
-}
-
 /// The parameters of such a gap.
 template <class S>
 struct GapParams {
@@ -39,7 +34,9 @@ struct GapParams {
         HY_FIELD(SPREAD).in("1").within(0.0, 1.0).otherwise(0.0).means(
             "share of WIDTH by which a third of the gap is narrower and a third wider; 0 for sharp edges")};
   }
-  [[nodiscard]] OfThree<S> widths() const { return widths_of<S>(WIDTH, SPREAD); }
+  [[nodiscard]] OfThree<S> widths() const {
+    return {.middle = WIDTH, .narrow = WIDTH * (S(1.0) - SPREAD), .wide = WIDTH * (S(1.0) + SPREAD)};
+  }
 };
 
 }  // namespace hysteron

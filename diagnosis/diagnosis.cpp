@@ -69,10 +69,11 @@ class Run {
     base_ = {.text = input_.text, .program = std::move(program)};
     Model model(task_, *base_.program);
     floors_.clear();
+    unused_ = unused_columns(task_, *base_.program);
     std::vector<std::vector<Signal>> others;
     for (const records::Record& record : task_.records) {
       others.emplace_back();
-      for (const std::string& name : unused_columns(task_, *base_.program)) {
+      for (const std::string& name : unused_) {
         others.back().push_back(record.column(name).values);
       }
     }
@@ -107,7 +108,7 @@ class Run {
   void investigate(Clock::time_point begun) {
     SearchOptions searching{.threads = options_.threads, .most_effects = options_.most_effects};
     searching.candidates.effects = options_.effects;
-    searching.candidates.columns = unused_columns(task_, *base_.program);
+    searching.candidates.columns = unused_;
     searching.progress = options_.progress;
     searching.out_of_time = [&] {
       return std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
@@ -403,6 +404,7 @@ class Run {
   const DiagnosisOptions& options_;
   Task task_{};
   Variant base_{};
+  std::vector<std::string> unused_{};  ///< columns that the diagram does not name
   std::vector<NoiseFloor> floors_{};
   std::vector<Glitches> glitches_{};
   VectorXd nominal_{};

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -36,12 +39,7 @@ double spread(const std::vector<double>& differences) {
       sizes.push_back(std::abs(d));
     }
   }
-  if (sizes.empty()) {
-    return 0.0;
-  }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return 1.4826 * *middle;
+  return deviation_of_median * median(std::move(sizes));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "diagnosis/excitations.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/projection.hpp"
+#include "support/median.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
@@ -79,9 +80,7 @@ class Planner {
       }
       std::vector<double> values = excitation.values;
       if (!language::same_name(column.name, input)) {
-        std::vector<double> sorted = column.values;
-        std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-        values.assign(excitation.values.size(), sorted[sorted.size() / 2]);
+        values.assign(excitation.values.size(), median(column.values));
       }
       record.add({.name = column.name, .unit = column.unit, .values = std::move(values)});
     }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "diagnosis/stretch_noise.hpp"
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -169,7 +170,7 @@ double noise_by_differences(const std::vector<double>& values) {
     }
     std::vector<double> sizes(differences.size());
     std::ranges::transform(differences, sizes.begin(), [](double d) { return std::abs(d); });
-    best = std::min(best, 1.4826 * median(std::move(sizes)) / std::sqrt(gain));
+    best = std::min(best, deviation_of_median * median(std::move(sizes)) / std::sqrt(gain));
   }
   return std::isfinite(best) ? best : 0.0;
 }

@@ -173,7 +173,7 @@ class Screening {
       VectorXd moved = values;
       moved[j] = grid.values[static_cast<std::size_t>(k)];
       if (parameter(j).strength) {
-        (void)try_point(moved, starts);
+        try_point(moved, starts);
         continue;
       }
       VectorXd shape = moved;
@@ -185,7 +185,7 @@ class Screening {
         try_shape(shape, starts);
       }
       if (starts.size() == before) {
-        (void)try_point(moved, starts);
+        try_point(moved, starts);
       }
     }
   }
@@ -342,21 +342,21 @@ class Screening {
         }
         if (grid.size() < 5 && parameter(j).field.minimum < parameter(j).field.neutral) {
           values[j] = 2.0 * parameter(j).field.neutral - value;
-          (void)try_point(values, starts);
+          try_point(values, starts);
         }
       }
     }
     if (!limits) {
       return;
     }
-    (void)try_point(each_at_its_best, starts);
+    try_point(each_at_its_best, starts);
     for (std::size_t k = 0; k < longest; ++k) {
       VectorXd values = shape;
       for (const Index j : list) {
         const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
         values[j] = grid[std::min(k, grid.size() - 1)];
       }
-      (void)try_point(values, starts);
+      try_point(values, starts);
     }
   }
 

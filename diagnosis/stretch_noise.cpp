@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnosis/spectrum.hpp"
+#include "support/median.hpp"
 #include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
@@ -18,7 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A stretch without its trend, and the orthonormal columns that the trend was made of.
+/// A stretch without its trend, and the orthonormal columns that the trend was made of. A Projection would leave 1e-9
+/// of it, and an output may lie so many times its noise away from 0.
 struct Detrended {
   records::RowRange rows{};
   VectorXd left{};
@@ -113,15 +115,6 @@ bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
 
 }  // namespace
 
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
                                              const std::vector<records::RowRange>& stretches, int order) {
   constexpr int most_lines = 3;
@@ -141,7 +134,7 @@ std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
   std::vector<StretchNoise> result;
   for (Detrended& one : list) {
     const VectorXd sizes = one.left.cwiseAbs();
-    const double bound = far * 1.4826 * median({sizes.data(), sizes.data() + sizes.size()});
+    const double bound = far * deviation_of_median * median({sizes.data(), sizes.data() + sizes.size()});
     if (bound > 0.0) {  // a glitch is no noise
       one.left = one.left.cwiseMax(-bound).cwiseMin(bound);
     }

@@ -14,8 +14,6 @@ struct StretchNoise {
   double worth = 0.0;  ///< independent samples: slow noise has fewer
 };
 
-[[nodiscard]] double median(std::vector<double> values);
-
 /// The variance in each stretch after a polynomial of the order is taken off it, and from all of them together lines of
 /// one frequency, phase and size that are most of what is left: those are a disturbance, and so part of the gap.
 /// What lies beyond six standard deviations counts as six. Stretches that are too short are left out.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/median.hpp"
+
 namespace hysteron::records {
 namespace {
 
@@ -112,10 +114,7 @@ TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& r
   for (std::size_t k = 1; k < time.size(); ++k) {
     steps[k - 1] = time[k] - time[k - 1];
   }
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double usual = *middle;
+  const double usual = median(steps);
 
   const double largest = std::max(std::abs(time.front()), std::abs(time.back()));
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * largest;

@@ -12,6 +12,7 @@
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/median.hpp"
 #include "tuning/ipopt_round.hpp"
 #include "tuning/least_squares_model.hpp"
 
@@ -273,13 +274,8 @@ class Descent {
 
 double robust_threshold(const VectorXd& residuals) {
   std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
-  if (sizes.empty()) {
-    return 0.0;
-  }
-  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
   std::transform(sizes.begin(), sizes.end(), sizes.begin(), [](double r) { return std::fabs(r); });
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.345 * 1.4826 * *middle;
+  return 1.345 * deviation_of_median * median(std::move(sizes));
 }
 
 /// Whether each free parameter is known to its own size at least. On a plateau, where a peak has left the samples say,

@@ -100,35 +100,33 @@ nlohmann::json place_as_json(const Place& place) {
 
 }  // namespace
 
+Sources::Lines::Lines(std::string whole) : text(std::move(whole)) {
+  starts.push_back(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1)) {
+    starts.push_back(end + 1);
+  }
+}
+
 std::optional<std::string_view> Sources::line(const std::string& file, std::uint32_t number) {
   if (file.empty() || number == 0) {
     return std::nullopt;
   }
   auto found = texts_.find(file);
   if (found == texts_.end()) {
-    std::optional<std::string> text;
+    Lines lines;
     try {
-      text = read_text_file(file);
+      lines = Lines(read_text_file(file));
     } catch (const InputError&) {
       // The diagnostic is shown without its line: it may have been about a text that has gone since.
     }
-    found = texts_.emplace(file, std::move(text)).first;
+    found = texts_.emplace(file, std::move(lines)).first;
   }
-  if (!found->second) {
+  const Lines& lines = found->second;
+  if (number > lines.starts.size()) {
     return std::nullopt;
   }
-  std::string_view rest = *found->second;
-  if (rest.starts_with("\xEF\xBB\xBF")) {
-    rest.remove_prefix(3);
-  }
-  for (std::uint32_t current = 1; current < number; ++current) {
-    const auto line_end = rest.find('\n');
-    if (line_end == std::string_view::npos) {
-      return std::nullopt;
-    }
-    rest.remove_prefix(line_end + 1);
-  }
-  auto line = rest.substr(0, rest.find('\n'));
+  std::string_view line = std::string_view(lines.text).substr(lines.starts[number - 1]);
+  line = line.substr(0, line.find('\n'));
   if (line.ends_with('\r')) {
     line.remove_suffix(1);
   }
@@ -156,9 +154,18 @@ std::string as_text(const Diagnostics& diagnostics, Sources& sources, const Rend
   std::string text;
   std::size_t errors = 0;
   std::size_t warnings = 0;
+  std::map<int, std::size_t> by_number;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    text += as_text(diagnostic, sources, options) + "\n";
+    if (++by_number[diagnostic.number] <= options.alike) {
+      text += as_text(diagnostic, sources, options) + "\n";
+    }
     ++(diagnostic.severity == Severity::Error ? errors : warnings);
+  }
+  for (const auto& [number, count] : by_number) {
+    if (count > options.alike) {
+      text += fmt::format("HY{:03}: {} more like these; the first {} are shown.\n\n", number, count - options.alike,
+                          options.alike);
+    }
   }
   const auto counted = [](std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");

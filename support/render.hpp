@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "support/diagnostic.hpp"
 
@@ -24,24 +25,33 @@ namespace hysteron {
 /// already, or stands in no file, can be put in.
 class Sources {
  public:
-  void put(const std::string& file, std::string_view text) { texts_[file] = text; }
+  void put(const std::string& file, std::string_view text) { texts_[file] = Lines(std::string(text)); }
 
   /// A line of a file, without its end; nothing where there is no such file or line.
   [[nodiscard]] std::optional<std::string_view> line(const std::string& file, std::uint32_t number);
 
  private:
-  std::map<std::string, std::optional<std::string>, std::less<>> texts_;
+  /// A text, and where its lines begin.
+  struct Lines {
+    Lines() = default;
+    explicit Lines(std::string whole);
+    std::string text{};
+    std::vector<std::size_t> starts{};  ///< empty where there is no such file
+  };
+  std::map<std::string, Lines, std::less<>> texts_;
 };
 
 struct RenderOptions {
   bool colour = false;
   std::size_t width = 100;  ///< characters of a source line that are shown; of a longer one, an excerpt
+  std::size_t alike = 20;   ///< of one number, so many are shown; the others are counted
 };
 
 /// One diagnostic as text, each line ended.
 [[nodiscard]] std::string as_text(const Diagnostic& diagnostic, Sources& sources, const RenderOptions& options = {});
 
-/// All of them, a blank line between two, and a closing line that counts them ("2 errors, 1 warning").
+/// All of them, a blank line between two, and a closing line that counts them ("2 errors, 1 warning"). Of many with one
+/// number the first, and how many more there are.
 [[nodiscard]] std::string as_text(const Diagnostics& diagnostics, Sources& sources, const RenderOptions& options = {});
 
 /// A list of objects: number ("HY202"), title, severity, file, line, column, length, cause, mend, notes, page. A line

@@ -111,6 +111,34 @@ TEST(Render, CountsAtTheEnd) {
   EXPECT_THAT(as_text(list, sources), EndsWith("\n\n2 errors, 1 warning\n"));
 }
 
+TEST(Render, OfManyAlikeTheFirst) {
+  Sources sources;
+  Diagnostics list;
+  for (std::uint32_t line = 1; line <= 25; ++line) {
+    list.add(at(line, 1, 1));
+  }
+  list.warning(error::unit_mismatch, {}, "another cause", "mend");
+  const std::string text = as_text(list, sources, {.alike = 3});
+  EXPECT_THAT(text, HasSubstr("plant.st:3:1:"));
+  EXPECT_THAT(text, Not(HasSubstr("plant.st:4:1:")));
+  EXPECT_THAT(text, HasSubstr("another cause"));
+  EXPECT_THAT(text,
+              EndsWith("\n\nHY202: 22 more like these; the first 3 are shown.\n\n25 errors, 1 warning\n"));
+}
+
+TEST(Render, EveryLineOfALongTextIsFound) {
+  std::string text = "\xEF\xBB\xBF";
+  for (int line = 1; line <= 1000; ++line) {
+    text += "line " + std::to_string(line) + (line % 2 == 0 ? "\r\n" : "\n");
+  }
+  Sources sources = with(text + "end");
+  for (std::uint32_t line = 1; line <= 1000; ++line) {
+    EXPECT_EQ(sources.line("plant.st", line), "line " + std::to_string(line));
+  }
+  EXPECT_EQ(sources.line("plant.st", 1001), "end");
+  EXPECT_EQ(sources.line("plant.st", 1002), std::nullopt);
+}
+
 TEST(Render, ColourOnlyWhereAskedFor) {
   auto sources = with("XNI");
   EXPECT_THAT(as_text(at(1, 1, 3), sources), Not(HasSubstr("\033")));

@@ -1,4 +1,4 @@
-// HY_CROSS_COUPLING: XOUT = XIN + GAIN·Z behind a lag T1
+// HY_CROSS_COUPLING: XOUT = XIN + GAIN·(Z − Z_REFERENCE) behind a lag T1
 #pragma once
 
 #include "blocks/effect_term.hpp"
@@ -12,22 +12,23 @@ struct CrossCoupling {
       .name = "HY_CROSS_COUPLING",
       .title = "Cross coupling",
       .group = Group::Dynamics,
-      .equation = "XOUT(k) = XIN(k) + GAIN·z(k−1), T1·z' + z = Z",
+      .equation = "XOUT(k) = XIN(k) + GAIN·(z(k−1) − Z_REFERENCE), T1·z' + z = Z",
       .meaning =
           "What another axis, a temperature or any second signal Z adds, behind a first-order lag (ramp-invariant, as "
           "HY_LAG; T1 = 0 for none). Z is that of the step before, so that the block closes loops; in the first step "
-          "it counts as 0, and the lag starts as if the first Z had stood for ever.",
-
+          "nothing is added, and the lag starts as if the first Z had stood for ever.",
       .effect = "cross_coupling"};
 
   template <class S>
   struct Params {
     S GAIN;
     S T1;
+    S Z_REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
-                        HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag")};
+                        HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
+                        HY_FIELD(Z_REFERENCE).in("'z").otherwise(0.0).means("Z that adds nothing")};
     }
   };
   template <class S>
@@ -58,12 +59,12 @@ struct CrossCoupling {
   using Out = Xout<S, "'x", "signal with what the other adds">;
 
   template <class S>
-  static State<S> initial(const Params<S>& /*params*/) {
-    return {.LAGGED = S(0.0), .Z1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
+  static State<S> initial(const Params<S>& params) {
+    return {.LAGGED = params.Z_REFERENCE, .Z1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    return {.XOUT = with_term<S>(in.XIN, params.GAIN * state.LAGGED)};
+    return {.XOUT = with_term<S>(in.XIN, params.GAIN * (state.LAGGED - params.Z_REFERENCE))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {

@@ -30,7 +30,7 @@ namespace {
 /// A floor is an estimate: that of slow noise is off by a tenth, even from repeats. Less above it is no claim that
 /// something is unknown.
 constexpr double above_floor = 1.2;
-/// A calibrated residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
+/// A residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
@@ -208,7 +208,7 @@ class Run {
     result_.unknown_score = std::sqrt(open) * excess;
 
     if (has_effect && gap_calibrated) {
-      const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > 5.0;
+      const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > far_above();
       if (gap_left && much_left) {
         result_.verdict = Verdict::Partial;
       } else {

@@ -15,6 +15,8 @@ namespace hysteron::diagnosis {
 namespace {
 
 constexpr double normal_95 = 1.96;
+/// A standard error of so many values says that there is no derivative.
+constexpr double undetermined = 100.0;
 
 /// Standard errors of all unknowns: s²(JᵀJ/τ + Λ)⁻¹ with the residual deviation s; ∞ where nothing determines one.
 VectorXd standard_errors(const Model& model, const Fit& fit, double effective_samples) {
@@ -41,6 +43,29 @@ ParameterFinding finding_of(const std::string& name, const std::string& unit, do
           .low = std::max(lower, value - normal_95 * error),
           .high = std::min(upper, value + normal_95 * error),
           .unit = unit};
+}
+
+/// Where no derivative says what a parameter is worth, as with the dead band of a detector: how far it can go, the
+/// others held, until the record speaks against it.
+void widen_by_trial(Model& model, const Fit& fit, Index at, double effective_samples, ParameterFinding& finding) {
+  constexpr double ratio = 1.1;
+  constexpr int most_steps = 60;
+  const double most = fit.cost * (1.0 + normal_95 * normal_95 / effective_samples);
+  const auto end = [&](double factor) {
+    double last = finding.value;
+    VectorXd x = fit.x;
+    VectorXd residuals;
+    for (int step = 0; step < most_steps; ++step) {
+      x[at] = std::clamp(last * factor, model.lower()[at], model.upper()[at]);
+      if (x[at] == last || !model.residuals(x, residuals) || cost_of(model, x, residuals, nullptr) > most) {
+        break;
+      }
+      last = x[at];
+    }
+    return last;
+  };
+  finding.low = end(finding.value > 0.0 ? 1.0 / ratio : ratio);
+  finding.high = end(finding.value > 0.0 ? ratio : 1.0 / ratio);
 }
 
 std::string leaf(const std::string& path) {
@@ -134,8 +159,9 @@ std::vector<ParameterFinding> calibration_findings(const Findings& findings) {
 
 std::vector<EffectFinding> effect_findings(const Findings& findings) {
   const Explanation& chosen = *findings.judgement.chosen;
-  const Model model(findings.task, *chosen.variant.program, chosen.variant.further);
-  const VectorXd errors = standard_errors(model, chosen.fit, findings.judgement.effective_samples);
+  Model model(findings.task, *chosen.variant.program, chosen.variant.further);
+  const double samples = findings.judgement.effective_samples;
+  const VectorXd errors = standard_errors(model, chosen.fit, samples);
   const std::vector<double> shares = shares_of(findings, chosen);
   std::vector<EffectFinding> result;
   for (std::size_t i = 0; i < chosen.variant.effects.size(); ++i) {
@@ -150,6 +176,9 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       }
       finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
+      if (errors[at] > undetermined * std::abs(chosen.fit.x[at])) {
+        widen_by_trial(model, chosen.fit, at, samples, finding.parameters.back());
+      }
     }
     std::set<std::string> same(applied.twins.begin(), applied.twins.end());
     for (const Weighed& other : findings.judgement.same) {

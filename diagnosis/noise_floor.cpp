@@ -204,7 +204,9 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   const double least = std::max(std::min(rounding, 0.02 * range), 1e-9 * range);
   floor.value = std::max(floor.differences, least);
   floor.evidence = "differences";
-  if (floor.dwells > floor.value) {
+  // Differences count a fast signal as noise, and noise that a controller's derivative made fast more than once.
+  constexpr double too_much = 1.15;
+  if (floor.dwells > floor.value || (floor.dwells > least && floor.differences > too_much * floor.dwells)) {
     floor.value = floor.dwells;
     floor.evidence = "dwells";
   }

@@ -1,8 +1,10 @@
 // The noise floor of a measured output, from the measurement alone: the model's residual would count the gap as noise.
 //
-// Three estimates, of which the largest that the record allows counts:
+// Three estimates, of which the largest that the record allows counts, differences only where dwells do not refute
+// them:
 // - differences: the n-th difference of a slow signal is that of its noise, σ² = E(∆ⁿy)²/C(2n, n); by the median, over
-//   several orders, the smallest. It sees what is fast only: a lower bound where noise is coloured.
+//   several orders, the smallest. It sees what is fast only: too little where noise is coloured, too much where the
+//   signal itself is fast.
 // - dwells: while all that was logged stands still, what is left of y after a slow course is taken off.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
 // In the last two a line of one frequency is no noise, and quiet stretches count: in others the machine still moves.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -95,7 +96,8 @@ class Searcher {
         if (must_stop()) {
           break;
         }
-        expand(one, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
+        expanded_.insert(one.places());
+        expand(one, any, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
         begin_ += width_;
       }
       if (round > 0) {
@@ -103,6 +105,7 @@ class Searcher {
       }
       if (round == 1) {
         exchange(found, result);
+        simplify(found, result);
       }
       beam = next_beam(found, result, round == 0 ? options_.beam : 1);
       std::ranges::move(found, std::back_inserter(result.explanations));
@@ -138,15 +141,20 @@ class Searcher {
     return hints;
   }
 
-  /// To a set every effect more is added; `found` gets the best.
-  void expand(const Explanation& from, std::size_t fitted, Search& result, std::vector<Explanation>& found) {
-    expanded_.insert(from.places());
+  using Wanted = std::function<bool(const Applied&)>;
+  static bool any(const Applied& /*effect*/) { return true; }
+
+  /// To a set every effect more is added that is wanted; `found` gets the best.
+  void expand(const Explanation& from, const Wanted& wanted, std::size_t fitted, Search& result,
+              std::vector<Explanation>& found) {
     std::vector<Candidate> candidates = candidates_of(from.variant, top_, options_.candidates);
+    std::erase_if(candidates, [&](const Candidate& one) { return !wanted(one.own()); });
     const Drivers drivers(task_, candidates, from.fit.x.head(std::ssize(task_.known)), options_.threads);
     for (std::size_t i = 0, count = candidates.size(); i < count; ++i) {
       const Driven* const signals = drivers.find(candidates[i]);
       if (signals != nullptr) {
-        std::ranges::move(other_guesses(candidates[i], signals->input), std::back_inserter(candidates));
+        const Extent* const auxiliary = signals->auxiliary ? &*signals->auxiliary : nullptr;
+        std::ranges::move(other_guesses(candidates[i], signals->input, auxiliary), std::back_inserter(candidates));
       }
     }
     result.tried += candidates.size();
@@ -331,8 +339,27 @@ class Searcher {
       for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
         Explanation rest = without(best, i, result.calibrated.variant);
         if (std::isfinite(rest.fit.cost) && expanded_.insert(rest.places()).second) {
-          expand(rest, options_.fitted_later, result, found);
+          expand(rest, any, options_.fitted_later, result, found);
         }
+      }
+    }
+  }
+
+  /// Each effect of the best pair in turn gives its place to those with fewer parameters on its edge: the first part of
+  /// a warm-up is a drift, and by itself the drift may have been the worse one beside an effect that was still missing.
+  void simplify(std::vector<Explanation>& found, Search& result) {
+    if (found.empty()) {
+      return;
+    }
+    const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
+    for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
+      const Applied& richer = best.variant.effects[i];
+      Explanation rest = without(best, i, result.calibrated.variant);
+      if (std::isfinite(rest.fit.cost) && !expanded_.contains(rest.places())) {
+        const auto simpler = [&](const Applied& one) {
+          return one.paths.size() < richer.paths.size() && root_of(one.edge) == root_of(richer.edge);
+        };
+        expand(rest, simpler, options_.fitted_later, result, found);
       }
     }
   }

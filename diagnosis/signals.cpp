@@ -40,6 +40,7 @@ Extent extent_of(const RecordSignals& values, double sample_time) {
   if (extent.low > extent.high) {
     return {};
   }
+  extent.begin = values.front().empty() ? 0.0 : values.front().front();
   extent.rates = percentiles(std::move(rates));
   return extent;
 }

@@ -18,6 +18,7 @@ struct Extent {
   double low = 0.0;
   double high = 0.0;
   double first = 0.0;           ///< the largest |value| at a record's start
+  double begin = 0.0;           ///< the value at the first record's start
   std::vector<double> rates{};  ///< its |rate| a second in steps of 1 % of the samples, 101 of them
 
   [[nodiscard]] double range() const { return high - low; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -54,7 +55,12 @@ std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, 
         return levels_above(input, field.neutral);
       }
       return scaled(range, {0.001, 0.003, 0.01, 0.03, 0.1, 0.3});
-    case Role::Gap:
+    case Role::Gap: {
+      // Below what a gap does to a signal, what it does to its noise: a detector of reversals sees either.
+      std::vector<double> values = geometric(0.0005 * range, 0.0028 * range, 1.5);
+      std::ranges::move(geometric(0.003 * range, 0.4 * range, 1.07), std::back_inserter(values));
+      return values;
+    }
     case Role::Quantum:
       return geometric(0.003 * range, 0.4 * range, 1.07);
     case Role::Rate:
@@ -150,8 +156,17 @@ bool is_centre(const EffectParameter& parameter) {
   return parameter.role == Role::Reference && parameter.name.ends_with("CENTRE");
 }
 
-/// What a reference is set to: about the middle, or half the width of what it refers to, seen from the centre.
-double reference(const EffectParameter& parameter, const Extent& input, bool about_zero) {
+/// Of another signal, where it adds nothing.
+bool is_of_other(const EffectParameter& parameter) {
+  return parameter.role == Role::Reference && parameter.unit == "'z";
+}
+
+/// What a reference is set to: about the middle, or half the width of what it refers to, seen from the centre. Another
+/// signal begins where the machine stood when its working point was taken.
+double reference(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary, bool about_zero) {
+  if (is_of_other(parameter)) {
+    return about_zero || auxiliary == nullptr ? 0.0 : auxiliary->begin;
+  }
   if (is_centre(parameter)) {
     return about_zero ? 0.0 : 0.5 * (input.low + input.high);
   }
@@ -167,12 +182,16 @@ bool in_range(const Field& field, double value) {
 
 }  // namespace
 
-std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input) {
+std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input, const Extent* auxiliary) {
   constexpr double off_centre = 0.1;
   constexpr double at_rest = 0.01;
   std::vector<Candidate> others;
-  if (std::ranges::any_of(candidate.own().parameters, is_centre) &&
-      std::abs(input.low + input.high) > off_centre * input.range()) {
+  const std::vector<EffectParameter>& parameters = candidate.own().parameters;
+  const bool elsewhere =
+      (std::ranges::any_of(parameters, is_centre) && std::abs(input.low + input.high) > off_centre * input.range()) ||
+      (auxiliary != nullptr && std::ranges::any_of(parameters, is_of_other) &&
+       std::abs(auxiliary->begin) > off_centre * auxiliary->range());
+  if (elsewhere) {
     others.push_back(candidate);
     others.back().about_zero = true;
   }
@@ -193,7 +212,7 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     Grid grid;
     double setting = std::numeric_limits<double>::quiet_NaN();
     if (parameter.role == Role::Reference) {
-      setting = reference(parameter, input, candidate.about_zero);
+      setting = reference(parameter, input, auxiliary, candidate.about_zero);
     } else {
       grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Period) {

@@ -36,7 +36,8 @@ struct Grids {
 
 /// The same change with what the record does not tell taken otherwise: 0 for a centre where the middle of the signal is
 /// elsewhere; what was before the record, where its start is not 0.
-[[nodiscard]] std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input);
+[[nodiscard]] std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input,
+                                                   const Extent* auxiliary);
 
 /// With one point in so many of each long grid: enough to see which candidates deserve the whole of it.
 /// Lines and periods stay: each is a guess of its own.

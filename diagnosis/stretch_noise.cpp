@@ -45,12 +45,13 @@ MatrixXd trend_of(Index count, int order) {
 
 /// A sine and a cosine that run on through the gaps between the stretches.
 struct Line {
+  double frequency = 0.0;          ///< cycles a sample
   double gain = 0.0;               ///< squares that it takes off
   std::vector<VectorXd> values{};  ///< by stretch
 };
 
 Line line_at(const std::vector<Detrended>& stretches, double frequency) {
-  Line line;
+  Line line{.frequency = frequency};
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   std::vector<MatrixXd> waves;
@@ -78,9 +79,24 @@ double squares(const std::vector<Detrended>& stretches) {
                          [](double sum, const Detrended& one) { return sum + one.left.squaredNorm(); });
 }
 
-/// Whether a line was most of what is left, and so was taken off.
+/// What noise gives a frequency, by those about it.
+double gain_about(const std::vector<Detrended>& stretches, double frequency, std::size_t length) {
+  std::vector<double> gains;
+  for (int bin = 1; bin <= 6; ++bin) {
+    for (const double side : {-1.0, 1.0}) {
+      const double other = frequency + side * (bin + 0.5) / static_cast<double>(length);
+      if (other > 0.0 && other < 0.5) {
+        gains.push_back(line_at(stretches, other).gain);
+      }
+    }
+  }
+  return median(std::move(gains)) / std::numbers::ln2;  // of an exponential distribution, its mean
+}
+
+/// Whether a line was a good part of what is left, stood out from the frequencies about it, and so was taken off.
 bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
-  constexpr double most = 0.5;
+  constexpr double least = 0.2;
+  constexpr double above = 15.0;  // of thousands of frequencies, chance makes one 8 times as high as the mean
   constexpr std::size_t candidates = 12;
   constexpr std::size_t refined = 3;
   constexpr int finer = 10;  // steps to either side of a peak of the spectrum
@@ -104,12 +120,17 @@ bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
       }
     }
   }
-  if (best.values.empty() || best.gain < most * squares(stretches)) {
+  if (best.values.empty() || best.gain < least * squares(stretches)) {
     return false;
   }
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    stretches[i].left -= best.values[i];
+  std::vector<Detrended> without = stretches;
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    without[i].left -= best.values[i];
   }
+  if (best.gain < above * gain_about(without, best.frequency, length)) {
+    return false;
+  }
+  stretches = std::move(without);
   return true;
 }
 
@@ -117,7 +138,7 @@ bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
 
 std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
                                              const std::vector<records::RowRange>& stretches, int order) {
-  constexpr int most_lines = 3;
+  constexpr int most_lines = 6;  // a limit cycle has harmonics
   constexpr double far = 6.0;
   std::vector<Detrended> list;
   for (const records::RowRange& rows : stretches) {

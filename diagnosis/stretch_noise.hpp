@@ -15,7 +15,7 @@ struct StretchNoise {
 };
 
 /// The variance in each stretch after a polynomial of the order is taken off it, and from all of them together lines of
-/// one frequency, phase and size that are most of what is left: those are a disturbance, and so part of the gap.
+/// one frequency, phase and size that stand out from what is left: those are a disturbance, and so part of the gap.
 /// What lies beyond six standard deviations counts as six. Stretches that are too short are left out.
 [[nodiscard]] std::vector<StretchNoise> noise_of_stretches(const std::vector<double>& values,
                                                            const std::vector<records::RowRange>& stretches, int order);

@@ -21,6 +21,9 @@ constexpr double least_score = 4.0;
 /// What a record is worth at least: what another formula of the same physics leaves is slow, but no noise.
 constexpr double fewest_samples = 60.0;
 
+/// And at most: the same physics in another discretisation leaves some thousandths of the noise, and so no evidence.
+constexpr double most_samples = 2000.0;
+
 class Judge {
  public:
   Judge(const Task& task, const Search& search, double floor_cost)
@@ -30,8 +33,9 @@ class Judge {
     Judgement result{.chosen = &search_.calibrated};
     const Explanation& best = search_.explanations.empty() ? search_.calibrated : search_.explanations.front();
     const double tau = correlation_time(best.fit.residuals);
-    samples_ = std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
-    result.effective_samples = samples_;
+    result.effective_samples =
+        std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
+    samples_ = std::min(result.effective_samples, most_samples);
     result.chosen = choose();
     result.held_out = unseen(*result.chosen);
     for (const Explanation& one : search_.explanations) {

@@ -99,7 +99,7 @@ TEST(Relaxation, IsTheInputAndItsLag) {
 TEST(CrossCoupling, IsAFinelySteppedLagOfTheStepBefore) {
   const double ts = 0.01;
   const double t1 = 0.13;
-  Stepper<CrossCoupling> block(ts, {.GAIN = 0.5, .T1 = t1});
+  Stepper<CrossCoupling> block(ts, {.GAIN = 0.5, .T1 = t1, .Z_REFERENCE = 0.0});
   const auto other = [](double t) { return 3.0 + std::sin(2.0 * t); };
   double z = other(0.0);
   EXPECT_EQ(block({.XIN = 1.0, .Z = other(0.0)}).XOUT, 1.0) << "nothing is known of Z yet";

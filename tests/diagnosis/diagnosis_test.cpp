@@ -268,6 +268,25 @@ TEST(Diagnosis, AnotherColumnThatCouplesIsNamed) {
   EXPECT_THAT(found.improved_text, HasSubstr("TEMP"));
 }
 
+TEST(Diagnosis, ACouplingActsFromWhereTheOtherSignalStood) {
+  // In degrees Celsius, and before an integral: 20 of them at once would be a step of the force.
+  std::string machine = test::axis({"HY_CROSS_COUPLING := (GAIN := 0.3, Z_REFERENCE := 20.0)", "FORCE", ", Z := TEMP"});
+  machine.replace(machine.find("FORCE : LREAL;"), 14, "TEMP : LREAL; FORCE : LREAL;");
+  records::Record record = test::record_of("FORCE", test::rich_force());
+  std::vector<double> temperature;
+  for (int k = 0; k < 2000; ++k) {
+    temperature.push_back(20.0 + std::sin(0.005 * k * 1.9) + 0.5 * std::sin(0.005 * k * 4.3));
+  }
+  record.add({.name = "temp", .values = temperature});
+  record = test::measured(test::program_of(machine), record, 0.001);
+  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {record}),
+                                   {.effects = {"cross_coupling", "drift", "load", "offset"}});
+  ASSERT_FALSE(found.effects.empty()) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "cross_coupling") << found.summary;
+  EXPECT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_GT(found.gap.closed, 0.99);
+}
+
 TEST(Diagnosis, AnUnknownEffectIsNotGivenAName) {
   // Force that depends on the square of a slow copy of itself, among effects that know nothing of the sort.
   const std::string machine =

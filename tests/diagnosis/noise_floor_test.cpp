@@ -129,6 +129,31 @@ TEST(NoiseFloor, ALineThroughAllDwellsIsADisturbance) {
   EXPECT_NEAR(noise_floor(experiment(over_time(8000, treads), y), 0).value, 0.05, 0.01);
 }
 
+TEST(NoiseFloor, ALineAsStrongAsTheNoiseIsADisturbanceToo) {
+  auto y = sum(over_time(8000, treads), test::Noise(5).white(8000, 0.05));
+  y = sum(y, over_time(8000, [](double t) { return 0.07 * std::sin(test::two_pi * 2.3 * t + 0.4); }));
+  EXPECT_NEAR(noise_floor(experiment(over_time(8000, treads), y), 0).value, 0.05, 0.005);
+}
+
+TEST(NoiseFloor, SlowNoiseHasNoLines) {
+  // Of dwells as long as these, a cubic takes little; a line would take a fifth at least.
+  const auto levels = [](double t) { return std::sqrt(2.0 + std::floor(t / 4.0)); };
+  const auto y = sum(over_time(16000, levels), slow_noise(16000, 0.2));
+  EXPECT_NEAR(noise_floor(experiment(over_time(16000, levels), y), 0).value, 0.2, 0.02);
+}
+
+TEST(NoiseFloor, NoiseThatAControllerDifferentiatedCountsOnce) {
+  auto noise = test::Noise(8).white(8001, 0.05);
+  for (std::size_t k = 0; k + 1 < noise.size(); ++k) {
+    noise[k] = noise[k + 1] - noise[k];
+  }
+  noise.pop_back();
+  const auto floor = noise_floor(experiment(over_time(8000, treads), sum(over_time(8000, treads), noise)), 0);
+  EXPECT_EQ(floor.evidence, "dwells");
+  EXPECT_GT(floor.differences, 0.08);
+  EXPECT_NEAR(floor.value, 0.05 * std::sqrt(2.0), 0.007);
+}
+
 TEST(NoiseFloor, WhatRingsInMostDwellsIsNoNoise) {
   auto y = sum(over_time(8000, treads), test::Noise(6).white(8000, 0.05));
   const auto ringing = [](double t) {

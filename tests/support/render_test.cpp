@@ -122,8 +122,7 @@ TEST(Render, OfManyAlikeTheFirst) {
   EXPECT_THAT(text, HasSubstr("plant.st:3:1:"));
   EXPECT_THAT(text, Not(HasSubstr("plant.st:4:1:")));
   EXPECT_THAT(text, HasSubstr("another cause"));
-  EXPECT_THAT(text,
-              EndsWith("\n\nHY202: 22 more like these; the first 3 are shown.\n\n25 errors, 1 warning\n"));
+  EXPECT_THAT(text, EndsWith("\n\nHY202: 22 more like these; the first 3 are shown.\n\n25 errors, 1 warning\n"));
 }
 
 TEST(Render, EveryLineOfALongTextIsFound) {

@@ -97,7 +97,10 @@ double cost_of(const Model& model, const VectorXd& x, const VectorXd& residuals,
   const double data = weights == nullptr ? residuals.squaredNorm() : residuals.cwiseAbs2().dot(*weights);
   const double prior = off_prior(model, x).cwiseProduct(model.prior()).squaredNorm();
   const double cost = 0.5 * (data + prior);
-  return std::isfinite(cost) ? cost : infinity;  // NOLINT(bugprone-narrowing-conversions): both are doubles
+  if (!std::isfinite(cost)) {
+    return infinity;
+  }
+  return cost;
 }
 
 Fit fit(Model& model, const VectorXd& start, const FitOptions& options) {

@@ -58,7 +58,8 @@ Line line_at(const std::vector<Detrended>& stretches, double frequency) {
   for (const Detrended& one : stretches) {
     MatrixXd here(one.left.size(), 2);
     for (Index k = 0; k < one.left.size(); ++k) {
-      const double phase = 2.0 * std::numbers::pi * frequency * static_cast<double>(one.rows.first + k);
+      const double phase =
+          2.0 * std::numbers::pi * frequency * (static_cast<double>(one.rows.first) + static_cast<double>(k));
       here(k, 0) = std::sin(phase);
       here(k, 1) = std::cos(phase);
     }

@@ -56,7 +56,7 @@ class Dump {
   explicit Dump(const language::SourceFile& file) : file_(file) {}
 
   [[nodiscard]] std::string expression(language::ExpressionId id) const {
-    return std::visit([this](const auto& node) { return text(node); }, file_.expressions.at(id).node);
+    return std::visit([this](const auto& node) { return this->text(node); }, file_.expressions.at(id).node);
   }
 
   [[nodiscard]] std::string statement(const language::Statement& statement) const {
@@ -109,16 +109,14 @@ class Dump {
     }
     return out;
   }
-  // NOLINTBEGIN(readability-convert-member-functions-to-static): they are called alike
-  [[nodiscard]] std::string text(const language::RealLiteral& node) const { return fmt::format("{}r", node.value); }
-  [[nodiscard]] std::string text(const language::IntLiteral& node) const {
+  [[nodiscard]] static std::string text(const language::RealLiteral& node) { return fmt::format("{}r", node.value); }
+  [[nodiscard]] static std::string text(const language::IntLiteral& node) {
     return fmt::format("{}{}", node.value, node.is_word ? "w" : "i");
   }
-  [[nodiscard]] std::string text(const language::BoolLiteral& node) const { return node.value ? "TRUE" : "FALSE"; }
-  [[nodiscard]] std::string text(const language::Reference& node) const {
+  [[nodiscard]] static std::string text(const language::BoolLiteral& node) { return node.value ? "TRUE" : "FALSE"; }
+  [[nodiscard]] static std::string text(const language::Reference& node) {
     return node.pin.text.empty() ? std::string(node.name.text) : fmt::format("{}.{}", node.name.text, node.pin.text);
   }
-  // NOLINTEND(readability-convert-member-functions-to-static)
   [[nodiscard]] std::string text(const language::Unary& node) const {
     return fmt::format("({} {})", sign_of(node.op), expression(node.operand));
   }

@@ -204,8 +204,7 @@ class Run {
     const bool predictable = left.share_low > 0.02 && left.rms > 0.25 * std::min(size, 4.0);
     predictable_ = gap_left ? std::max(left.share, 0.0) : 0.0;
     const double open = open_share(found, chosen);
-    const double excess = std::max(0.0, 1.0 - std::pow(hidden_noise / std::max(size, hidden_noise), 2));
-    result_.unknown_score = std::sqrt(open) * excess;
+    result_.unknown_score = std::pow(open, 0.25) * excess_of(size);
 
     if (has_effect && gap_calibrated) {
       const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > far_above();
@@ -223,6 +222,11 @@ class Run {
     }
   }
 
+  /// Of what is left, as a multiple of the floor, the share of its energy that no noise explains which the floor
+  /// misses.
+  [[nodiscard]] static double excess_of(double size) {
+    return 1.0 - std::pow(hidden_noise / std::max(size, hidden_noise), 2);
+  }
   [[nodiscard]] double least_above() const {
     return result_.gap.floor.evidence == "repeats" ? above_floor : hidden_noise;
   }
@@ -343,7 +347,10 @@ class Run {
       if (alone) {
         result_.verdict = Verdict::Named;
         result_.rivals = {{.effects = {"glitches"}, .edges = {result_.effects.back().edge}, .probability = 1.0}};
-        result_.confidence = 0.9;
+        const GapFinding& gap = result_.gaps[output];
+        const double beside = std::sqrt(std::max(0.0, gap.improved * gap.improved - found.rms * found.rms));
+        result_.unknown_score = excess_of(beside / floors_[output].value);
+        result_.confidence = 0.9 * (1.0 - result_.unknown_score);
       }
     }
   }

@@ -13,7 +13,9 @@ struct PulseTimer : Timer {
       .equation = "Q = n·TS < PT, ET = min(n·TS, PT), n = steps since the rise of IN that began the pulse",
       .meaning =
           "A rise of IN begins a pulse at Q that lasts exactly PT, whatever IN does meanwhile; a rise during the pulse "
-          "does not lengthen it. ET stays at PT until IN is FALSE, and is 0 then. With PT = 0 there is no pulse.",
+          "does not lengthen it. ET stays at PT until IN is FALSE, and is 0 then. With PT = 0 there is no pulse. PT "
+          "may "
+          "change while the pulse lasts; one that is over does not come back.",
       .source = "IEC 61131-3, TP"};
 
   template <class S>
@@ -21,8 +23,8 @@ struct PulseTimer : Timer {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(COUNT).otherwise(-1.0).means("steps since the pulse began, -1 when ready for the next")};
+      return std::tuple{HY_FIELD(COUNT).otherwise(-1.0).means(
+          "steps since the pulse began, -1 when ready for the next, 2^31 - 1 once it is over")};
     }
   };
 
@@ -47,7 +49,7 @@ struct PulseTimer : Timer {
   template <class S>
   static Int<S> advance(const State<S>& state, const In<S>& in, const Int<S>& steps) {
     const Bool<S> running = state.COUNT >= Int<S>(0);
-    const Int<S> count = select(running || in.IN, one_more(state.COUNT), Int<S>(-1));
+    const Int<S> count = select(running || in.IN, count_on<S>(state.COUNT, steps), Int<S>(-1));
     return select(!in.IN && count >= steps, Int<S>(-1), count);
   }
 };

@@ -7,6 +7,13 @@
 namespace hysteron {
 
 struct Timer {
+  /// The next count of a timer that runs. One that has timed out stays so until it starts anew, whatever becomes of PT.
+  template <class S>
+  static Int<S> count_on(const Int<S>& count, const Int<S>& steps) {
+    const Int<S> next = one_more(count);
+    return select(next >= steps, Int<S>(2147483647), next);
+  }
+
   template <class S>
   using Params = NoFields<S>;
   template <class S>

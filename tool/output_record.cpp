@@ -10,6 +10,17 @@
 
 namespace hysteron::tool {
 
+namespace {
+
+/// A whole number is written out: a DINT, of which a float does not hold every one, has no shorter text.
+std::string float_text(double value) {
+  constexpr double of_dint = 2147483648.0;
+  const bool whole = std::abs(value) <= of_dint && value == std::floor(value);
+  return whole ? number_text(value) : number_text(static_cast<float>(value));
+}
+
+}  // namespace
+
 std::string output_csv(std::span<const double> time, const std::vector<std::string>& names,
                        const std::vector<Signal>& columns, bool float32) {
   std::string text = "t";
@@ -22,7 +33,7 @@ std::string output_csv(std::span<const double> time, const std::vector<std::stri
     text += number_text(time[k]);
     for (const Signal& column : columns) {
       text += ',';
-      text += float32 ? number_text(static_cast<float>(column[k])) : number_text(column[k]);
+      text += float32 ? float_text(column[k]) : number_text(column[k]);
     }
     text += '\n';
   }

@@ -71,23 +71,23 @@ class InterpretedProgram final : public runtime::StepProgram {
   void reset() noexcept override { machine_.reset(); }
   void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      machine_.set_input(i, static_cast<S>(inputs[i]));
+      machine_.set_input(i, inputs[i]);
     }
     machine_.step();
     for (std::size_t i = 0; i < outputs.size(); ++i) {
-      outputs[i] = static_cast<double>(machine_.output(i));
+      outputs[i] = machine_.output(i);
     }
   }
   void inner_values(std::span<double> into) const noexcept override {
     for (std::size_t i = 0; i < into.size(); ++i) {
-      into[i] = static_cast<double>(machine_.value(inner_[i]));
+      into[i] = machine_.value(inner_[i]);
     }
   }
   void set_parameter(std::size_t parameter, double value) noexcept override {
-    machine_.set_parameter(places_[parameter].first, static_cast<S>(value), places_[parameter].second);
+    machine_.set_parameter(places_[parameter].first, value, places_[parameter].second);
   }
   [[nodiscard]] double parameter(std::size_t parameter) const noexcept override {
-    return static_cast<double>(machine_.parameter(places_[parameter].first, places_[parameter].second));
+    return machine_.parameter(places_[parameter].first, places_[parameter].second);
   }
   [[nodiscard]] std::size_t state_size() const noexcept override { return machine_.saved_size(); }
   void save(std::span<std::byte> bytes) const noexcept override { machine_.save(bytes); }

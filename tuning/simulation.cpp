@@ -76,11 +76,11 @@ std::vector<Signal> run(const Program& program, const Drive& drive, const std::v
   std::vector<Signal> values(watched.size(), Signal(drive.steps));
   for (std::size_t k = 0; k < drive.steps; ++k) {
     for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
-      machine.set_input(i, static_cast<S>(at_step(drive.inputs[i], k)));
+      machine.set_input(i, at_step(drive.inputs[i], k));
     }
     machine.step();
     for (std::size_t i = 0; i < watched.size(); ++i) {
-      values[i][k] = static_cast<double>(machine.value(watched[i]));
+      values[i][k] = machine.value(watched[i]);
     }
     if (progress && k % 64 == 0) {
       progress(static_cast<double>(k) / static_cast<double>(drive.steps));

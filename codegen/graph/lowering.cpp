@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -252,11 +253,12 @@ Wire Lowering::round_to_int(Wire x, language::Span span) {
       {apply(Op::IntModulo, {whole, builder_.literal(Type::Int, 2)}, span), builder_.literal(Type::Int, 0)}, span);
   const auto beyond = [&](double half) {
     const Wire limit = builder_.literal(Type::Real, half);
-    const Wire end = builder_.literal(Type::Real, 2.0 * half);
+    const Wire end = builder_.literal(
+        Type::Int, half > 0 ? std::numeric_limits<std::int32_t>::max() : std::numeric_limits<std::int32_t>::min());
     const Wire past = half > 0 ? apply(Op::Less, {limit, rest}, span) : apply(Op::Less, {rest, limit}, span);
-    const Wire inside = half > 0 ? apply(Op::Less, {rest, end}, span) : apply(Op::Less, {end, rest}, span);
+    const Wire inside = apply(Op::IntNotEqual, {whole, end}, span);  // at its ends DINT saturates
     const Wire tie = apply(Op::And, {apply(Op::Equal, {rest, limit}, span), odd}, span);
-    return apply(Op::And, {apply(Op::Or, {past, tie}, span), inside}, span);  // `inside`: not where DINT saturates
+    return apply(Op::And, {apply(Op::Or, {past, tie}, span), inside}, span);
   };
   const Wire one = builder_.literal(Type::Int, 1);
   const Wire up = apply(Op::IntAdd, {whole, one}, span);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "codegen/compile.hpp"
@@ -17,9 +18,16 @@
 
 namespace hysteron {
 
+/// How a value of any type is given to a machine and read from it: as the scalar itself, but of float as a double, for
+/// a float does not hold every DINT.
+template <class S>
+using NumberOf = std::conditional_t<std::is_same_v<S, float>, double, S>;
+
 template <class S>
 class Machine {
  public:
+  using Number = NumberOf<S>;
+
   /// Lays out a program and resets it. The sample time is the program's own, or the one given in seconds where the
   /// program has none. Throws InputError (HY404) without either.
   explicit Machine(const Program& program, double sample_time = 0.0);
@@ -30,19 +38,19 @@ class Machine {
   Machine& operator=(Machine&&) noexcept = default;
 
   /// Sets an element of a parameter, by its place in the graph. Takes effect at once; reset() starts from it.
-  void set_parameter(std::size_t parameter, const S& value, std::size_t element = 0);
-  [[nodiscard]] S parameter(std::size_t parameter, std::size_t element = 0) const;
+  void set_parameter(std::size_t parameter, const Number& value, std::size_t element = 0);
+  [[nodiscard]] Number parameter(std::size_t parameter, std::size_t element = 0) const;
 
   /// Every state as its block says, or as the program does; steps counted from 0.
   void reset();
 
-  void set_input(std::size_t input, const S& value);  ///< of any type: not 0 is TRUE
+  void set_input(std::size_t input, const Number& value);  ///< of any type: not 0 is TRUE
   /// One step: allocates nothing, calls nothing of the system, throws nothing.
   void step() noexcept;
-  [[nodiscard]] S output(std::size_t output) const;  ///< of any type, as a number
+  [[nodiscard]] Number output(std::size_t output) const;  ///< of any type, as a number
 
   /// The value that a wire carries after a step, as a number.
-  [[nodiscard]] S value(const Wire& wire) const;
+  [[nodiscard]] Number value(const Wire& wire) const;
   /// A state of type LREAL, to be read or set between steps; null where there is none of that name.
   [[nodiscard]] S* real_state(std::string_view path);
 

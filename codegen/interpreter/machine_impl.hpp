@@ -67,16 +67,17 @@ void write_as(void* target, Type type, double number) {
 }
 
 template <class S>
-S read_as(const void* source, Type type) {
+NumberOf<S> read_as(const void* source, Type type) {
+  using Number = NumberOf<S>;
   switch (type) {
     case Type::Real:
       return *static_cast<const S*>(source);
     case Type::Bool:
-      return S(*static_cast<const bool*>(source) ? 1.0 : 0.0);
+      return Number(*static_cast<const bool*>(source) ? 1.0 : 0.0);
     case Type::Int:
-      return to_real<S>(*static_cast<const std::int32_t*>(source));
+      return to_real<Number>(*static_cast<const std::int32_t*>(source));
     default:
-      return S(static_cast<double>(*static_cast<const std::uint16_t*>(source)));
+      return Number(static_cast<double>(*static_cast<const std::uint16_t*>(source)));
   }
 }
 
@@ -244,18 +245,18 @@ void Machine<S>::place_instructions() {
 }
 
 template <class S>
-void Machine<S>::set_parameter(std::size_t parameter, const S& value, std::size_t element) {
+void Machine<S>::set_parameter(std::size_t parameter, const Number& value, std::size_t element) {
   const Type type = program_->graph.parameters[parameter].field.type;
   std::byte* target = memory_.get() + parameters_[parameter] + element * sizeof(S);
   if (type == Type::Real) {
-    *reinterpret_cast<S*>(target) = value;
+    *reinterpret_cast<S*>(target) = static_cast<S>(value);
   } else {
     detail::write_as<S>(target, type, value_of(value));
   }
 }
 
 template <class S>
-S Machine<S>::parameter(std::size_t parameter, std::size_t element) const {
+typename Machine<S>::Number Machine<S>::parameter(std::size_t parameter, std::size_t element) const {
   return detail::read_as<S>(memory_.get() + parameters_[parameter] + element * sizeof(S),
                             program_->graph.parameters[parameter].field.type);
 }
@@ -273,9 +274,9 @@ void Machine<S>::reset() {
 }
 
 template <class S>
-void Machine<S>::set_input(std::size_t input, const S& value) {
+void Machine<S>::set_input(std::size_t input, const Number& value) {
   if (program_->graph.inputs[input].type == Type::Real) {
-    *reinterpret_cast<S*>(memory_.get() + inputs_[input]) = value;
+    *reinterpret_cast<S*>(memory_.get() + inputs_[input]) = static_cast<S>(value);
   } else {
     detail::write_as<S>(memory_.get() + inputs_[input], program_->graph.inputs[input].type, value_of(value));
   }
@@ -295,12 +296,12 @@ void Machine<S>::step() noexcept {
 }
 
 template <class S>
-S Machine<S>::output(std::size_t output) const {
+typename Machine<S>::Number Machine<S>::output(std::size_t output) const {
   return value(program_->graph.outputs[output].wire);
 }
 
 template <class S>
-S Machine<S>::value(const Wire& wire) const {
+typename Machine<S>::Number Machine<S>::value(const Wire& wire) const {
   return detail::read_as<S>(source_of(wire), wire.type);
 }
 

@@ -41,12 +41,13 @@ void ask_to_stop(int /*signal*/) {
 std::string status_line(const Task& task, const std::string& how) {
   const LoopStatistics& s = task.statistics();
   const auto events = [&](Cause cause) { return s.events[static_cast<std::size_t>(cause)]; };
+  const Fault fault = task.fault() == Fault::stop ? Fault::none : task.fault();  // to end as asked is none
   return fmt::format(
       "{}; {} cycles, {} skipped; late: {} woken, {} own CPU, {} pre-empted, {} steal; start p99.99 {:.1f} us, worst "
       "{:.1f} us in cycle {}; fault: {}\n",
       how, s.run, s.skipped, events(Cause::late_wake), events(Cause::own_cpu), events(Cause::preempted),
       events(Cause::host_steal), static_cast<double>(s.lateness.percentile(0.9999)) * 1e-3,
-      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), name_of(task.fault()));
+      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), name_of(fault));
 }
 
 /// What the run file asks to keep: read before the program starts.

@@ -107,6 +107,26 @@ TEST(Lag, FloatKeepsSlowTimeConstants) {
   EXPECT_EQ(y, 1.0F);
 }
 
+TEST(Lag, FloatLosesAShareOfTheRateThatGrowsWithTheTimeConstant) {
+  // Each step takes TS/T1 of the rate off it, to a float's last digit: of a step's answer up to T1/10, at
+  // most T1/TS times half of 2^-23 is wrong.
+  for (const float samples : {1e4F, 1e5F, 1e6F}) {
+    Stepper<Lag, float> block(1e-3F, {.T1 = samples * 1e-3F, .SETTLED = false});
+    float y = 0.0F;
+    const int steps = static_cast<int>(samples / 10.0F);
+    for (int k = 0; k <= steps; ++k) {
+      y = block({.XIN = 1.0F, .R1 = false, .X0 = 0.0F}).XOUT;
+    }
+    EXPECT_NEAR(y / (1.0 - std::exp(-0.1)), 1.0, samples * 0x1p-24 + 1e-5) << samples << " samples";
+  }
+  Stepper<Lag, float> still(1e-3F, {.T1 = 36000.0F, .SETTLED = false});
+  float y = 0.0F;
+  for (int k = 0; k < 100'000; ++k) {
+    y = still({.XIN = 1.0F, .R1 = false, .X0 = 0.0F}).XOUT;
+  }
+  EXPECT_LT(y, 1e-6F) << "beyond 2^24 samples nothing moves, as docs/explanation/numerics.md says";
+}
+
 TEST(Lag, DecaysToZeroWithoutDenormalNumbers) {
   Stepper<Lag> wide(lag_ts, {.T1 = 4.0 * lag_ts, .SETTLED = false});
   Stepper<Lag, float> narrow(1e-3F, {.T1 = 4e-3F, .SETTLED = false});

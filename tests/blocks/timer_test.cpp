@@ -162,6 +162,39 @@ TEST(PulseTimer, AgreesWithItsTimingDiagramOnAnyInput) {
   }
 }
 
+/// On-delay by its states; the off-delay is one of NOT IN, begun by the first TRUE, with NOT Q.
+struct DelayModel {
+  bool over = false;
+  int count = -1;
+  bool step(bool in, int n) {
+    count = in ? count + 1 : -1;
+    over = in && (over || count >= n);
+    return over;
+  }
+};
+
+TEST(Timers, WhatHasTimedOutStaysSoWhateverBecomesOfThePreset) {
+  constexpr double ts = 5e-5;
+  std::mt19937 random(29);
+  Stepper<PulseTimer> pulse(ts);
+  Stepper<OnDelay> on(ts);
+  Stepper<OffDelay> off(ts);
+  PulseModel pulse_model;
+  DelayModel on_model;
+  DelayModel off_model;
+  bool in = true;
+  off({.IN = true, .PT = ts});  // from here on it has been TRUE once
+  for (int k = 0; k < 50000; ++k) {
+    if ((random() & 7U) == 0) {
+      in = !in;
+    }
+    const int n = static_cast<int>(random() & 7U);
+    ASSERT_EQ(pulse({.IN = in, .PT = n * ts}).Q, pulse_model.step(in, n)) << "step " << k;
+    ASSERT_EQ(on({.IN = in, .PT = n * ts}).Q, on_model.step(in, n)) << "step " << k;
+    ASSERT_EQ(off({.IN = in, .PT = n * ts}).Q, !off_model.step(!in, n)) << "step " << k;
+  }
+}
+
 TEST(Blink, EdgesNeitherDriftNorJitter) {
   const double ts = 5e-5;
   Stepper<Blink> blink(ts, {.THIGH = 3 * ts, .TLOW = 7 * ts});

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -244,6 +245,37 @@ TEST(Compile, ASlowerPartRunsInItsStepsAndIsHeldBetween) {
     machine.step();
     sum += k % 4 == 1 ? k * 4e-3 : 0.0;
     ASSERT_NEAR(machine.output(0), sum, 1e-15) << "step " << k;
+  }
+}
+
+TEST(Compile, AFloatMachineTakesAndGivesEveryDint) {
+  Machine<float> machine(compile_text(block("VAR_INPUT N : DINT; END_VAR VAR_OUTPUT M : DINT; END_VAR", "M := N;")));
+  for (const double n : {16777217.0, -16777217.0, 2147483647.0, -2147483648.0}) {  // the first has no float
+    machine.set_input(0, n);
+    machine.step();
+    EXPECT_EQ(machine.output(0), n);
+  }
+}
+
+TEST(Compile, RoundingToDintIsToTheNearestEvenAndEndsWhereDintEnds) {
+  Machine<double> machine(
+      compile_text(block("VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT N : DINT; END_VAR", "N := LREAL_TO_DINT(X);")));
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> exponents(-2.0, 34.0);
+  const auto expect_rounded = [&](double x) {
+    machine.set_input(0, x);
+    machine.step();
+    ASSERT_EQ(machine.output(0), std::clamp(std::nearbyint(x), -2147483648.0, 2147483647.0)) << x;
+  };
+  for (const double x : {2147483646.5, 2147483647.0, 2147483647.5, 2147483647.9, 2147483648.0, -2147483647.5,
+                         -2147483648.0, -2147483648.5, -2147483648.9, 1e300, -1e300}) {
+    expect_rounded(x);
+  }
+  for (int k = -9; k <= 9; ++k) {
+    expect_rounded(0.5 * k);
+  }
+  for (int k = 0; k < 10000; ++k) {
+    expect_rounded((k % 2 == 0 ? 1.0 : -1.0) * std::exp2(exponents(random)));
   }
 }
 

@@ -75,7 +75,7 @@ std::uint64_t interpreted(const Program& program) {
     machine.set_input(5, static_cast<Real>(inputs.next() % 5));
     machine.step();
     for (std::size_t i = 0; i < program.graph.outputs.size(); ++i) {
-      mix(hash, machine.output(i));
+      mix(hash, static_cast<Real>(machine.output(i)));
     }
   }
   return hash;

@@ -64,6 +64,15 @@ TEST_F(Run, Float32HasTheBitsOfAFloat) {
   EXPECT_EQ(bench.read("out.csv"), "t,Y\n0,0.30000000000000004\n0.001,0.30000000000000004\n");
 }
 
+TEST_F(Run, Float32KeepsEveryDint) {
+  bench.write("log.csv", "t,n\n0,16777217\n0.001,-2147483647\n");
+  bench.write("plant.st",
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT N : DINT; END_VAR VAR_OUTPUT M : DINT; END_VAR\n"
+              "M := N;\nEND_FUNCTION_BLOCK\n");
+  EXPECT_EQ(bench.shell(std::string(go) + " --float32").code, 0);
+  EXPECT_EQ(bench.read("out.csv"), "t,M\n0,16777217\n0.001,-2147483647\n");
+}
+
 TEST_F(Run, ReadsAndWritesStreams) {
   const auto outcome = bench.shell("hysteron run plant.st --in - --out - < log.csv");
   EXPECT_EQ(outcome.code, 0);

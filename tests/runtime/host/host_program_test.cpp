@@ -77,7 +77,7 @@ TEST_F(HostProgramTest, RunsOnTheVirtualClockAndSaysHow) {
   const Outcome ran = run({run_file, "--virtual", "--cycles", "500"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_THAT(ran.out, AllOf(StartsWith("COUNTING: generated; virtual clock\nCOUNTING: done; 500 cycles, 0 skipped; "),
-                             HasSubstr("; fault: stop\n")));
+                             HasSubstr("; fault: none\n")));
 }
 
 TEST_F(HostProgramTest, PrintsItsRegisters) {

@@ -59,7 +59,7 @@ void example(const std::filesystem::path& folder) {
   fmt::print("A straight line from the power leaves {:.0f} % of the range of y1 and {:.0f} % of y2: wide loops.\n",
              100.0 * left_by_a_line(*record, "u1", "y1"), 100.0 * left_by_a_line(*record, "u2", "y2"));
   fmt::print("  {:<10} {:<32} {:<24} {}\n", "diagram", "effect", "RMSE", "not ruled out in its place");
-  (void)tell("heaters", "heaters.toml", 1, *record, folder);
+  (void)tell("heaters", "heaters.toml", 3, *record, folder);
   const Story first = tell("heater1", "heater.toml", 2, *record, folder);
   const Story second = tell("heater2", "heater.toml", 2, *record, folder);
   std::vector<records::Column> columns{{.name = "t", .values = {record->time().begin(), record->time().end()}}};

@@ -8,6 +8,7 @@
 
 #include "codegen/compile.hpp"
 #include "examples/example.hpp"
+#include "records/data_folder.hpp"
 #include "support/text_file.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"
@@ -70,6 +71,22 @@ INSTANTIATE_TEST_SUITE_P(
         Example{"example_03_feedforward", "feedforward.png", {"closed_form.csv", "servo_closed.csv", "order.csv"}},
         Example{"example_05_simulated_actuator", "simulated_actuator.png", {"simulated_identify.csv"}}),
     [](const auto& example) { return std::string(example.param.program).substr(8); });
+
+/// Those that read measured records: where there is a folder of them, what their pages tell must be what they print.
+class MeasuredExample : public testing::TestWithParam<const char*> {};
+
+TEST_P(MeasuredExample, ReadmeShowsWhatItPrints) {
+  if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
+    GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
+  }
+  const ScratchFolder folder;
+  ASSERT_EQ(run(programs + "/example_" + GetParam() + " " + folder / "out" + " > " + folder / "printed"), 0);
+  const std::string printed = contents_of(folder / "printed");
+  expect_readme_shows(GetParam(), printed.substr(0, printed.find("Records and pictures")));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MeasuredExample, testing::Values("06_piezo_diagnosis", "07_heater_diagnosis"),
+                         [](const auto& example) { return std::string(example.param); });
 
 TEST(ExampleDiagrams, AreInTheLayoutOfTheHouse) {
   std::size_t count = 0;

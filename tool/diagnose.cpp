@@ -25,6 +25,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
 #include "tool/diagram.hpp"
+#include "tool/option_values.hpp"
 #include "tool/replayed.hpp"
 
 namespace hysteron::tool {
@@ -165,7 +166,7 @@ Action add_diagnose(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--material", options->diagnosis.material,
                  "The smallest gap that matters, RMS in the unit of the output; a quarter of the noise at least.")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->option_text("SIZE");
   app.add_option("--effects", options->effects, "Tries these effects alone, by their identifiers.")
       ->delimiter(',')
@@ -177,13 +178,13 @@ Action add_diagnose(CLI::App& app) {
       ->option_text("INPUT=SIZE")
       ->allow_extra_args(false);
   app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->option_text("SECONDS");
   app.add_option("--trace", options->trace, "What `hysteron serve` recorded of the controller while the log was taken.")
       ->option_text("RUN.trace");
   app.add_option("--controller", options->controller.file, "The diagram that it ran.")->option_text("CONTROLLER.st");
   app.add_option("--controller-params", options->controller.parameters, "Its parameters.")->option_text("P.toml");
-  app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->option_text("N");
+  app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->check(whole_number_from(0))->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
   app.add_flag("--json", options->json, "Prints verdict.json.");
   app.footer(std::string(diagnose_examples));

@@ -17,6 +17,7 @@
 #include "tool/diagram.hpp"
 #include "tool/inner_signals.hpp"
 #include "tool/live_diagram.hpp"
+#include "tool/option_values.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::tool {
@@ -103,7 +104,9 @@ Action add_serve(CLI::App& app) {
   app.add_option("--engine", options->engine, "interpreter, or compiled: the default where there is a compiler.")
       ->check(CLI::IsMember({"interpreter", "compiled"}))
       ->option_text("NAME");
-  app.add_option("--cycles", options->cycles, "Ends after so many cycles.")->option_text("N");
+  app.add_option("--cycles", options->cycles, "Ends after so many cycles.")
+      ->check(whole_number_from(1))
+      ->option_text("N");
   app.add_flag("--virtual", options->virtual_time, "Runs as fast as it can, on a clock of its own.");
   auto* const web =
       app.add_option("--web", options->web, "Serves the live page there: 127.0.0.1:8080.")->option_text("ADDRESS:PORT");

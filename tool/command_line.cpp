@@ -67,10 +67,15 @@ std::string nearest_option(const CLI::App& app, std::string option) {
 /// most often a variable of the shell that is not set. To go on would be to leave the option out without a word.
 void refuse_empty_arguments(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto full_name = "hysteron " + arguments.front();
-  const auto refuse_value = [&](const std::string& option) {
-    throw bad_usage(
-        fmt::format("{}: the value of {} is empty.", full_name, option),
-        fmt::format("give a value, or leave {} out; of a variable of the shell, see whether it is set.", option));
+  const auto takes_value = [&](const std::string& name) {
+    const CLI::Option* const option = app.get_option_no_throw(name);
+    return option != nullptr && !option->get_positional() && option->get_expected_max() > 0;
+  };
+  const auto refuse_value = [&](const std::string& name) {
+    const bool required = takes_value(name) && app.get_option(name)->get_required();
+    throw bad_usage(fmt::format("{}: the value of {} is empty.", full_name, name),
+                    fmt::format("give a value{}; of a variable of the shell, see whether it is set.",
+                                required ? "" : fmt::format(", or leave {} out", name)));
   };
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
@@ -80,8 +85,7 @@ void refuse_empty_arguments(const CLI::App& app, const std::vector<std::string>&
     if (!argument.empty()) {
       continue;
     }
-    const CLI::Option* const option = app.get_option_no_throw(arguments[i - 1]);
-    if (option != nullptr && !option->get_positional() && option->get_expected_max() > 0) {
+    if (takes_value(arguments[i - 1])) {
       refuse_value(arguments[i - 1]);
     }
     throw bad_usage(fmt::format("{}: an argument is empty.", full_name),

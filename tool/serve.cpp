@@ -70,6 +70,10 @@ int serve(const ServeOptions& options, Console& console) {
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
   const auto program = step_program(diagram, engine, options.diagram.float32, inner);
   auto config = runtime::parse_run_config(options.config, read_text_file(options.config), program->shape());
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.config, .named_by = "--config"});
+  inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
+  runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
   console.report(warnings);
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
     const runtime::web::Subject subject{.name = program->shape().name,

@@ -24,6 +24,8 @@ namespace fs = std::filesystem;
   std::string mend = "choose a folder that can be written to, with room on the disk.";
   if (reason == EISDIR) {
     mend = "give the name of a file, or remove the folder of that name.";
+  } else if (reason == ENAMETOOLONG) {
+    mend = "give it a shorter name; a generated file is named after its block.";
   } else if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) {
     mend = "make room on the disk, or choose another one.";
   }

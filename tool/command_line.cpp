@@ -63,6 +63,36 @@ std::string nearest_option(const CLI::App& app, std::string option) {
   return std::string(nearest_name(option, names));
 }
 
+/// HY730 for an argument that is empty: no option and no argument of any command takes one, and what stands there is
+/// most often a variable of the shell that is not set. To go on would be to leave the option out without a word.
+void refuse_empty_arguments(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto full_name = "hysteron " + arguments.front();
+  const auto takes_value = [&](const std::string& name) {
+    const CLI::Option* const option = app.get_option_no_throw(name);
+    return option != nullptr && !option->get_positional() && option->get_expected_max() > 0;
+  };
+  const auto refuse_value = [&](const std::string& name) {
+    const bool required = takes_value(name) && app.get_option(name)->get_required();
+    throw bad_usage(fmt::format("{}: the value of {} is empty.", full_name, name),
+                    fmt::format("give a value{}; of a variable of the shell, see whether it is set.",
+                                required ? "" : fmt::format(", or leave {} out", name)));
+  };
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument.starts_with("--") && argument.find('=') == argument.size() - 1) {
+      refuse_value(argument.substr(0, argument.size() - 1));
+    }
+    if (!argument.empty()) {
+      continue;
+    }
+    if (takes_value(arguments[i - 1])) {
+      refuse_value(arguments[i - 1]);
+    }
+    throw bad_usage(fmt::format("{}: an argument is empty.", full_name),
+                    "give a name, or leave it out; of a variable of the shell, see whether it is set.");
+  }
+}
+
 /// What the library says of a bad command line, as a diagnostic.
 InputError translated(const CLI::App& app, const CLI::ParseError& said) {
   const auto chosen = app.get_subcommands();
@@ -81,6 +111,10 @@ InputError translated(const CLI::App& app, const CLI::ParseError& said) {
   }
   const std::string text = said.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&said) != nullptr && text.starts_with('-')) {
+    if (text.find(": At Most ") != std::string::npos) {
+      return bad_usage(fmt::format("{}: {} is given more than once.", full_name, text.substr(0, text.find(':'))),
+                       "give it once: it takes one value.");
+    }
     return bad_usage(fmt::format("{}: {} needs a value.", full_name, text.substr(0, text.find(':'))), see);
   }
   return bad_usage(fmt::format("{}: {}.", full_name, text), see);
@@ -116,6 +150,7 @@ class CommandLine {
     }
     if (!arguments.front().starts_with('-')) {
       check_command(arguments.front());
+      refuse_empty_arguments(*app_.get_subcommand(arguments.front()), arguments);
     }
     try {
       std::reverse(arguments.begin(), arguments.end());  // so the library wants them

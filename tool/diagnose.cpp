@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -16,16 +17,19 @@
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/effects.hpp"
 #include "diagnosis/verdict_json.hpp"
-#include "records/csv.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/overwriting.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
 #include "tool/diagram.hpp"
+#include "tool/measured_records.hpp"
+#include "tool/option_values.hpp"
 #include "tool/replayed.hpp"
+#include "tool/writable.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -111,8 +115,28 @@ diagnosis::ControllerFinding replayed(const DiagnoseOptions& options, Diagnostic
   return result;
 }
 
+/// What is found may take the place of no file that it is found from: often the folder is one of an earlier diagnosis,
+/// whose improved diagram is diagnosed now. A folder of a name that cannot be made is refused too.
+void prove_outputs(const DiagnoseOptions& options) {
+  refuse_unwritable_folder(options.output);
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  for (const std::string& log : options.logs) {
+    inputs.push_back({.file = log, .named_by = "--log"});
+  }
+  inputs.push_back({.file = options.trace, .named_by = "--trace"});
+  inputs.push_back({.file = options.controller.file, .named_by = "--controller"});
+  inputs.push_back({.file = options.controller.parameters, .named_by = "--controller-params"});
+  std::error_code unknown;
+  for (const auto& entry : std::filesystem::directory_iterator(options.output, unknown)) {
+    if (is_diagnosis_file(entry.path().filename().string())) {
+      refuse_to_overwrite({.file = entry.path().string(), .mend = "give another folder for --out."}, inputs);
+    }
+  }
+}
+
 int diagnose(DiagnoseOptions options, Console& console) {
   Diagnostics warnings;
+  prove_outputs(options);
   if (options.trace.empty() != options.controller.file.empty()) {
     throw InputError(error::bad_usage, {}, "--trace and --controller belong together.",
                      "give the trace of `hysteron serve` and the diagram that it ran.");
@@ -122,9 +146,7 @@ int diagnose(DiagnoseOptions options, Console& console) {
   check_effects(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
-  for (const std::string& log : options.logs) {
-    input.records.push_back(records::read_csv(log));
-  }
+  input.records = read_measured_records(options.logs);
   options.diagnosis.effects = options.effects;
   for (const std::string& limit : options.limits) {
     options.diagnosis.limits.push_back(limit_of(limit));
@@ -165,7 +187,7 @@ Action add_diagnose(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--material", options->diagnosis.material,
                  "The smallest gap that matters, RMS in the unit of the output; a quarter of the noise at least.")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->option_text("SIZE");
   app.add_option("--effects", options->effects, "Tries these effects alone, by their identifiers.")
       ->delimiter(',')
@@ -177,13 +199,13 @@ Action add_diagnose(CLI::App& app) {
       ->option_text("INPUT=SIZE")
       ->allow_extra_args(false);
   app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above_zero())
       ->option_text("SECONDS");
   app.add_option("--trace", options->trace, "What `hysteron serve` recorded of the controller while the log was taken.")
       ->option_text("RUN.trace");
   app.add_option("--controller", options->controller.file, "The diagram that it ran.")->option_text("CONTROLLER.st");
   app.add_option("--controller-params", options->controller.parameters, "Its parameters.")->option_text("P.toml");
-  app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->option_text("N");
+  app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->check(whole_number_from(0))->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
   app.add_flag("--json", options->json, "Prints verdict.json.");
   app.footer(std::string(diagnose_examples));

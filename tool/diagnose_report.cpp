@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+
 #include "codegen/compile.hpp"
 #include "diagnosis/report/page.hpp"
 #include "diagnosis/verdict_json.hpp"
@@ -42,6 +45,18 @@ records::Record command_record(const diagnosis::NextExperiment& next) {
   records::Record record = records::Record::even(next.time.front(), step, rows);
   record.add({.name = next.input, .unit = next.unit, .values = next.values});
   return record;
+}
+
+constexpr std::string_view verdict_file = "verdict.json";
+constexpr std::string_view report_file = "report.html";
+constexpr std::string_view improved_diagram_file = "improved.st";
+constexpr std::string_view improved_parameters_file = "improved.toml";
+constexpr std::string_view feedforward_file = "feedforward.st";
+constexpr std::string_view next_experiment_file = "next_experiment.csv";
+
+/// The only one, or one of several that are numbered from 1.
+std::string traces_file(std::size_t number, std::size_t count) {
+  return count == 1 ? "traces.csv" : fmt::format("traces{}.csv", number);
 }
 
 Program improved_program(const Diagnosis& found) {
@@ -136,27 +151,33 @@ std::string diagnosis_text(const Diagnosis& found) {
   return text + fmt::format("{} candidates, {:.1f} s\n", found.tried, found.seconds);
 }
 
+bool is_diagnosis_file(std::string_view name) {
+  constexpr std::array fixed{verdict_file,     report_file,         improved_diagram_file, improved_parameters_file,
+                             feedforward_file, next_experiment_file};
+  // How many traces there will be is not known before the diagnosis.
+  return std::ranges::find(fixed, name) != fixed.end() || (name.starts_with("traces") && name.ends_with(".csv"));
+}
+
 std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, const Diagnosis& found) {
-  std::vector<OutputFile> files{{.path = folder / "verdict.json", .contents = diagnosis::verdict_json(found)}};
+  std::vector<OutputFile> files{{.path = folder / verdict_file, .contents = diagnosis::verdict_json(found)}};
   if (!found.refusals.empty()) {
-    files.push_back({.path = folder / "report.html", .contents = diagnosis::report_page(found, {})});
+    files.push_back({.path = folder / report_file, .contents = diagnosis::report_page(found, {})});
     return files;
   }
-  files.push_back({.path = folder / "improved.st", .contents = found.improved_text});
+  files.push_back({.path = folder / improved_diagram_file, .contents = found.improved_text});
   files.push_back(
-      {.path = folder / "improved.toml",
+      {.path = folder / improved_parameters_file,
        .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});
-  files.push_back({.path = folder / "report.html", .contents = diagnosis::report_page(found, improved_program(found))});
+  files.push_back({.path = folder / report_file, .contents = diagnosis::report_page(found, improved_program(found))});
   if (!found.feedforward_text.empty()) {
-    files.push_back({.path = folder / "feedforward.st", .contents = found.feedforward_text});
+    files.push_back({.path = folder / feedforward_file, .contents = found.feedforward_text});
   }
   if (!found.next.time.empty()) {
-    files.push_back(
-        {.path = folder / "next_experiment.csv", .contents = records::csv_text(command_record(found.next))});
+    files.push_back({.path = folder / next_experiment_file, .contents = records::csv_text(command_record(found.next))});
   }
   for (std::size_t i = 0; i < found.traces.size(); ++i) {
-    const std::string name = found.traces.size() == 1 ? "traces.csv" : fmt::format("traces{}.csv", i + 1);
-    files.push_back({.path = folder / name, .contents = records::csv_text(trace_record(found.traces[i]))});
+    files.push_back({.path = folder / traces_file(i + 1, found.traces.size()),
+                     .contents = records::csv_text(trace_record(found.traces[i]))});
   }
   return files;
 }

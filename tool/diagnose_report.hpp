@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
@@ -12,6 +13,9 @@ namespace hysteron::tool {
 
 /// The verdict for the terminal.
 [[nodiscard]] std::string diagnosis_text(const diagnosis::Diagnosis& found);
+
+/// Whether a file of this name may be among those of a diagnosis.
+[[nodiscard]] bool is_diagnosis_file(std::string_view name);
 
 /// All files of a diagnosis, below a folder.
 [[nodiscard]] std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder,

@@ -1,10 +1,6 @@
 #include "tool/diagram.hpp"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "codegen/parameters/apply.hpp"
@@ -44,15 +40,8 @@ void refuse_ports_named_as_time(const Diagnostics& warnings) {
   }
 }
 
-void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs) {
-  for (const std::string& input : inputs) {
-    std::error_code unknown;
-    if (!output.empty() && !input.empty() && (output == input || std::filesystem::equivalent(output, input, unknown))) {
-      throw InputError(error::overwrites_input, {.file = output},
-                       fmt::format("The output {} would overwrite the input {}.", output, input),
-                       "give the output another name.");
-    }
-  }
+std::vector<InputFile> inputs_of(const DiagramOptions& options) {
+  return {{.file = options.file}, {.file = options.parameters, .named_by = "--params"}};
 }
 
 }  // namespace hysteron::tool

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "codegen/compile.hpp"
 #include "support/diagnostic.hpp"
+#include "support/overwriting.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library is so named
 class App;
@@ -30,7 +32,7 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram);
 /// Refuses a diagram with a port that no record can hold: throws InputError where HY216 is among its warnings.
 void refuse_ports_named_as_time(const Diagnostics& warnings);
 
-/// Refuses an output that is one of the inputs, under whatever name. Throws InputError HY709. Empty names are ignored.
-void refuse_to_overwrite(const std::string& output, std::initializer_list<std::string> inputs);
+/// What a diagram is read from, for refuse_to_overwrite.
+[[nodiscard]] std::vector<InputFile> inputs_of(const DiagramOptions& options);
 
 }  // namespace hysteron::tool

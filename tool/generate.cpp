@@ -77,11 +77,14 @@ int generate(const GenerateOptions& options, Console& console) {
   Diagnostics warnings;
   const Program program = load_diagram(options.diagram, warnings);
   const bool float32 = options.diagram.float32;
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.config, .named_by = "--config"});
   std::vector<OutputFile> files;
-  for (GeneratedFile& file : options.host ? generate_host(program, {.run_file = options.config, .float32 = float32})
-                                          : generate_cpp(program, {.float32 = float32})) {
+  for (GeneratedFile& file :
+       options.host ? generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})
+                    : generate_cpp(program, {.float32 = float32})) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = std::move(file.text)});
-    refuse_to_overwrite(files.back().path.string(), {options.diagram.file, options.diagram.parameters, options.config});
+    refuse_to_overwrite({.file = files.back().path.string(), .mend = "give another folder for --out."}, inputs);
     if (!options.force) {
       refuse_foreign_file(files.back().path, files.back().contents);
     }

@@ -210,6 +210,7 @@ std::vector<GeneratedFile> generate_host(const Program& program, const HostReque
   const ProgramShape shape = shape_of(program, Engine::compiled, request.float32);
   const std::string run_text = read_text_file(request.run_file);
   const runtime::RunConfig config = runtime::parse_run_config(request.run_file, run_text, shape);
+  runtime::refuse_to_overwrite_inputs(config, request.inputs);
   std::string addresses;
   if (config.modbus) {
     const auto interpreted = step_program(program, Engine::interpreter, request.float32);

@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "codegen/backends/cpp.hpp"
+#include "support/overwriting.hpp"
 
 namespace hysteron::tool {
 
 struct HostRequest {
-  std::string run_file{};  ///< its path, for errors and for the head of its copy
+  std::string run_file{};           ///< its path, for errors and for the head of its copy
+  std::vector<InputFile> inputs{};  ///< over which the lock file must not be written
   bool float32 = false;
 };
 

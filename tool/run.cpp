@@ -135,8 +135,9 @@ std::string summary(const Program& program, const Drive& drive, const records::R
 }
 
 int run(const RunOptions& options, Console& console) {
-  refuse_to_overwrite(options.output == "-" ? "" : options.output,
-                      {options.input, options.diagram.file, options.diagram.parameters});
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.input, .named_by = "--in"});
+  refuse_to_overwrite({.file = options.output == "-" ? "" : options.output}, inputs);
   if (options.output != "-") {
     refuse_unwritable(options.output);
   }

@@ -17,6 +17,7 @@
 #include "tool/diagram.hpp"
 #include "tool/inner_signals.hpp"
 #include "tool/live_diagram.hpp"
+#include "tool/option_values.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::tool {
@@ -69,6 +70,10 @@ int serve(const ServeOptions& options, Console& console) {
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
   const auto program = step_program(diagram, engine, options.diagram.float32, inner);
   auto config = runtime::parse_run_config(options.config, read_text_file(options.config), program->shape());
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.config, .named_by = "--config"});
+  inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
+  runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
   console.report(warnings);
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
     const runtime::web::Subject subject{.name = program->shape().name,
@@ -103,7 +108,9 @@ Action add_serve(CLI::App& app) {
   app.add_option("--engine", options->engine, "interpreter, or compiled: the default where there is a compiler.")
       ->check(CLI::IsMember({"interpreter", "compiled"}))
       ->option_text("NAME");
-  app.add_option("--cycles", options->cycles, "Ends after so many cycles.")->option_text("N");
+  app.add_option("--cycles", options->cycles, "Ends after so many cycles.")
+      ->check(whole_number_from(1))
+      ->option_text("N");
   app.add_flag("--virtual", options->virtual_time, "Runs as fast as it can, on a clock of its own.");
   auto* const web =
       app.add_option("--web", options->web, "Serves the live page there: 127.0.0.1:8080.")->option_text("ADDRESS:PORT");

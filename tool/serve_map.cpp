@@ -1,6 +1,8 @@
 // hysteron map: the registers under which a served diagram shows itself.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "runtime/host/host.hpp"
 #include "runtime/modbus/map_text.hpp"
@@ -53,6 +55,9 @@ Action add_map(CLI::App& app) {
     const Program diagram = load_diagram(options->diagram, warnings);
     const auto program = step_program(diagram, Engine::interpreter, options->diagram.float32);
     const runtime::RunConfig config = run_config_or_default(options->config, program->shape());
+    std::vector<InputFile> inputs = inputs_of(options->diagram);
+    inputs.push_back({.file = options->config, .named_by = "--config"});
+    runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
     const auto map = runtime::register_map_of(config, *program);
     console.report(warnings);
     console.print(options->format == "csv"    ? runtime::modbus::as_csv(map)

@@ -53,7 +53,9 @@ std::string row_of(const runtime::ProgramShape& shape, const runtime::TraceStep&
 }
 
 int replay(const ServeReplayOptions& options, Console& console) {
-  refuse_to_overwrite(options.output, {options.trace, options.diagram.file, options.diagram.parameters});
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.trace, .named_by = "--trace"});
+  refuse_to_overwrite({.file = options.output}, inputs);
   Diagnostics found;
   const bool wants_record = !options.output.empty();
   std::string rows;

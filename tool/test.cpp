@@ -121,13 +121,13 @@ CaseResult run_case(std::size_t number, const PlannedCase& planned, const Genera
 }
 
 /// The files that a test file names, and what else its cases are made from.
-std::vector<std::string> inputs_of(const std::string& diagram, const std::string& tests, const TestFile& file,
-                                   bool with_golden) {
-  std::vector<std::string> inputs{diagram, tests};
+std::vector<InputFile> inputs_of(const std::string& diagram, const std::string& tests, const TestFile& file,
+                                 bool with_golden) {
+  std::vector<InputFile> inputs{{.file = diagram}, {.file = tests}};
   for (const TestCase& test : file.cases) {
     for (const TestText* named : {&test.csv, &test.parameter_file, &test.golden}) {
       if (!named->text.empty() && (with_golden || named != &test.golden)) {
-        inputs.push_back((fs::path(tests).parent_path() / named->text).string());
+        inputs.push_back({.file = (fs::path(tests).parent_path() / named->text).string(), .named_by = tests});
       }
     }
   }
@@ -135,15 +135,13 @@ std::vector<std::string> inputs_of(const std::string& diagram, const std::string
 }
 
 /// Golden records are written over nothing that a case is made from, and each by one case alone.
-void refuse_to_overwrite(const std::vector<PlannedCase>& cases, const std::vector<std::string>& inputs) {
+void refuse_to_overwrite(const std::vector<PlannedCase>& cases, const std::vector<InputFile>& inputs) {
   std::map<fs::path, const PlannedCase*> written;
   for (const PlannedCase& planned : cases) {
     if (planned.golden.empty()) {
       continue;
     }
-    for (const std::string& input : inputs) {
-      tool::refuse_to_overwrite(planned.golden.string(), {input});
-    }
+    hysteron::refuse_to_overwrite({.file = planned.golden.string(), .place = planned.test.golden.place}, inputs);
     const auto [first, is_new] = written.emplace(planned.golden.lexically_normal(), &planned);
     if (!is_new) {
       throw InputError(error::overwrites_input, planned.test.golden.place,
@@ -164,9 +162,7 @@ void refuse_to_overwrite(const std::string& junit, const TestOptions& options) {
     } catch (const InputError&) {
       file = {};
     }
-    for (const std::string& input : inputs_of(diagram, tests, file, true)) {
-      tool::refuse_to_overwrite(junit, {input});
-    }
+    hysteron::refuse_to_overwrite({.file = junit}, inputs_of(diagram, tests, file, true));
   }
 }
 

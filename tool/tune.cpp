@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "records/csv.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/overwriting.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
+#include "tool/measured_records.hpp"
 #include "tool/tune_report.hpp"
 #include "tool/writable.hpp"
 
@@ -80,31 +83,44 @@ std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOp
                      progress.iteration, 100.0 * progress.rms, problem.outputs.size() > 1 ? "s" : "");
 }
 
-int tune(const TuneOptions& options, Console& console) {
-  std::vector<std::string> inputs = options.logs;
-  inputs.push_back(options.diagram.file);
-  inputs.push_back(options.diagram.parameters);
-  for (const std::string& input : inputs) {
-    refuse_to_overwrite(options.output, {input});
-    for (const char* name : {"report.html", "report.json", "residuals.csv"}) {
-      refuse_to_overwrite(options.report.empty() ? "" : (std::filesystem::path(options.report) / name).string(),
-                          {input});
+/// What the end of the fit would fail on is said before it.
+void prove_outputs(const TuneOptions& options) {
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  for (const std::string& log : options.logs) {
+    inputs.push_back({.file = log, .named_by = "--log"});
+  }
+  refuse_to_overwrite({.file = options.output}, inputs);
+  refuse_unwritable(options.output);
+  if (options.report.empty()) {
+    return;
+  }
+  for (const std::filesystem::path& file : report_paths(options.report, options.logs.size())) {
+    refuse_to_overwrite({.file = file.string(), .mend = "give another folder for --report."}, inputs);
+    if (same_file(file.string(), options.output)) {
+      throw InputError(error::overwrites_input, {.file = file.string()},
+                       fmt::format("--out and --report would both write {}.", options.output),
+                       "give another name for --out, or another folder for --report.");
     }
   }
-  refuse_unwritable(options.output);
-  if (!options.report.empty()) {
-    refuse_unwritable_folder(options.report);
+  const std::filesystem::path report = std::filesystem::absolute(options.report).lexically_normal();
+  for (std::filesystem::path folder = report; folder.has_relative_path(); folder = folder.parent_path()) {
+    if (same_file(folder.string(), options.output)) {
+      throw InputError(error::overwrites_input, {.file = options.output},
+                       fmt::format("--out would write the file {} where --report needs a folder.", options.output),
+                       "give another name for --out, or another folder for --report.");
+    }
   }
+  refuse_unwritable_folder(options.report);
+}
+
+int tune(const TuneOptions& options, Console& console) {
+  prove_outputs(options);
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
   refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
-  std::vector<records::Record> records;
-  records.reserve(options.logs.size());
-  for (const std::string& log : options.logs) {
-    records.push_back(records::read_csv(log));
-  }
+  const std::vector<records::Record> records = read_measured_records(options.logs);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
 
   OutputErrorFit fit;
@@ -123,11 +139,12 @@ int tune(const TuneOptions& options, Console& console) {
   }
 
   const TuneReport report{.problem = problem, .fit = fit};
-  if (!options.report.empty()) {
-    write_report(options.report, report);
-  }
-  parameters::write_parameter_file(options.output, tuned_file(file, problem, fit), tuned_remarks(problem, fit),
-                                   tuned_heading(problem, fit));
+  std::vector<OutputFile> files =
+      options.report.empty() ? std::vector<OutputFile>() : report_files(options.report, report);
+  files.push_back({.path = options.output,
+                   .contents = parameters::parameter_text(tuned_file(file, problem, fit), tuned_remarks(problem, fit),
+                                                          tuned_heading(problem, fit))});
+  write_files_atomically(files);
   console.print(options.json ? as_json(report).dump(2) + "\n" : as_text(report));
   console.report(warnings);
   if (fit.solution.status == FitStatus::Cancelled) {

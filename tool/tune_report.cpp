@@ -6,11 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <utility>
 
 #include "records/csv.hpp"
-#include "support/atomic_file.hpp"
-#include "support/errors.hpp"
 #include "support/markup.hpp"
 #include "tool/line_plot.hpp"
 
@@ -231,16 +229,17 @@ nlohmann::json as_json(const TuneReport& report) {
   return json;
 }
 
-void write_report(const std::filesystem::path& folder, const TuneReport& report) {
-  std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (fault) {
-    throw InputError(error::unwritable_file, {.file = folder.string()},
-                     fmt::format("The folder {} cannot be made: {}.", folder.string(), fault.message()),
-                     "choose a folder that can be written.");
+std::vector<std::filesystem::path> report_paths(const std::filesystem::path& folder, std::size_t records) {
+  std::vector<std::filesystem::path> paths{folder / "report.html", folder / "report.json"};
+  for (std::size_t record = 0; record < records; ++record) {
+    paths.push_back(folder /
+                    (record == 0 ? std::string("residuals.csv") : fmt::format("residuals-{}.csv", record + 1)));
   }
-  write_file_atomically(folder / "report.html", page(report));
-  write_file_atomically(folder / "report.json", as_json(report).dump(2) + "\n");
+  return paths;
+}
+
+std::vector<OutputFile> report_files(const std::filesystem::path& folder, const TuneReport& report) {
+  std::vector<std::string> contents{page(report), as_json(report).dump(2) + "\n"};
   for (std::size_t record = 0; record < report.problem.experiments.size(); ++record) {
     const Experiment& experiment = report.problem.experiments[record];
     std::vector<records::Column> columns;
@@ -250,10 +249,14 @@ void write_report(const std::filesystem::path& folder, const TuneReport& report)
       columns.push_back({port.name + "_MODEL", port.unit, report.fit.model[record][output]});
       columns.push_back({port.name + "_RESIDUAL", port.unit, residuals_of(report, record, output)});
     }
-    const records::Record residuals(experiment.time, experiment.drive.sample_time, std::move(columns), {});
-    records::write_csv(
-        folder / (record == 0 ? std::string("residuals.csv") : fmt::format("residuals-{}.csv", record + 1)), residuals);
+    contents.push_back(records::csv_text({experiment.time, experiment.drive.sample_time, std::move(columns), {}}));
   }
+  const auto paths = report_paths(folder, report.problem.experiments.size());
+  std::vector<OutputFile> files;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    files.push_back({.path = paths[i], .contents = std::move(contents[i])});
+  }
+  return files;
 }
 
 }  // namespace hysteron::tool

@@ -1,10 +1,13 @@
 // What a fit says: as text, as JSON, as a page with pictures, and the residuals as a record.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
+#include "support/atomic_file.hpp"
 #include "tuning/output_error.hpp"
 
 namespace hysteron::tool {
@@ -17,8 +20,11 @@ struct TuneReport {
 [[nodiscard]] std::string as_text(const TuneReport& report);
 [[nodiscard]] nlohmann::json as_json(const TuneReport& report);
 
-/// Writes report.html, report.json and residuals.csv (residuals-2.csv … for further records) into a folder, which is
-/// made. Throws InputError HY700.
-void write_report(const std::filesystem::path& folder, const TuneReport& report);
+/// The names of the files of a report in a folder: report.html, report.json and residuals.csv, residuals-2.csv … for
+/// further records.
+[[nodiscard]] std::vector<std::filesystem::path> report_paths(const std::filesystem::path& folder, std::size_t records);
+
+/// The files of these names.
+[[nodiscard]] std::vector<OutputFile> report_files(const std::filesystem::path& folder, const TuneReport& report);
 
 }  // namespace hysteron::tool

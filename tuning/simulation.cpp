@@ -123,7 +123,8 @@ std::string type_fault(Type type, double value) {
     case Type::Bool:
       return value == 0.0 || value == 1.0 ? "" : "takes 0 or 1";
     case Type::Int:
-      return value == std::floor(value) && std::abs(value) <= std::numeric_limits<std::int32_t>::max()
+      return value == std::floor(value) && value >= std::numeric_limits<std::int32_t>::min() &&
+                     value <= std::numeric_limits<std::int32_t>::max()
                  ? ""
                  : "takes whole numbers of 32 bits";
     case Type::Word:

@@ -127,8 +127,4 @@ using Remarks = std::map<std::string, Remark>;
 [[nodiscard]] std::string parameter_text(const ParameterFile& file, const Remarks& remarks = {},
                                          std::string_view heading = {});
 
-/// Writes it, whole or not at all. Throws InputError HY700 as well.
-void write_parameter_file(const std::filesystem::path& path, const ParameterFile& file, const Remarks& remarks = {},
-                          std::string_view heading = {});
-
 }  // namespace hysteron::parameters

@@ -300,9 +300,4 @@ std::string parameter_text(const ParameterFile& file, const Remarks& remarks, st
   return text;
 }
 
-void write_parameter_file(const std::filesystem::path& path, const ParameterFile& file, const Remarks& remarks,
-                          std::string_view heading) {
-  write_file_atomically(path, parameter_text(file, remarks, heading));
-}
-
 }  // namespace hysteron::parameters

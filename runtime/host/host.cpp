@@ -209,6 +209,34 @@ modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& 
   return register_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
 }
 
+void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs) {
+  if (config.modbus && config.modbus->tls) {
+    const modbus::TlsOptions& tls = *config.modbus->tls;
+    for (const std::string& file : {tls.certificate, tls.key, tls.clients}) {
+      inputs.push_back({.file = file, .named_by = "[tls]"});
+    }
+  }
+  const std::string mend = "name another file in the run file.";
+  // Each is read by the next start, so what is written after it must not take its place either.
+  if (config.modbus) {
+    const std::string& file = config.modbus->lock_file;
+    refuse_to_overwrite({.file = file, .mend = mend, .place = config.modbus->place}, inputs);
+    inputs.push_back({.file = file, .named_by = "[modbus] lock_file"});
+  }
+  if (config.retain) {
+    const RetainFolder folder(config.retain->folder);
+    for (const std::size_t slot : {0, 1}) {
+      const std::string file = folder.path_of(slot).string();
+      refuse_to_overwrite({.file = file, .mend = "name another folder in the run file.", .place = config.retain->place},
+                          inputs);
+      inputs.push_back({.file = file, .named_by = "[retain] folder"});
+    }
+  }
+  if (config.trace) {
+    refuse_to_overwrite({.file = config.trace->file.string(), .mend = mend, .place = config.trace_place}, inputs);
+  }
+}
+
 bool run_host(StepProgram& program, RunConfig config, const HostOptions& options,
               const std::function<void(std::string_view)>& print) {
   const ProgramShape& shape = program.shape();

@@ -7,11 +7,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/modbus/register_map.hpp"
 #include "runtime/point.hpp"
 #include "runtime/task/step_program.hpp"
+#include "support/overwriting.hpp"
 
 namespace hysteron::runtime {
 
@@ -26,6 +28,10 @@ struct HostOptions {
 /// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew
 /// where points came.
 [[nodiscard]] modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program);
+
+/// Throws InputError HY709 where the run file has the trace, the lock file or what is retained written over one of the
+/// inputs, or over a file that it names itself. The inputs are those that the run file does not name, and the run file.
+void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs);
 
 /// Runs until SIGTERM, Ctrl-C, a fault that ends it or its number of cycles. Prints a line when it runs, and another at
 /// its end. True where it ended as asked, with its outputs safe. Throws InputError HY811, HY812 and those of the

@@ -89,6 +89,7 @@ int run(StepProgram& program, const HostProgram& host, std::span<const char* con
     return 0;
   }
   RunConfig config = parse_run_config(line.run_file, read_text_file(line.run_file), program.shape());
+  refuse_to_overwrite_inputs(config, {{.file = line.run_file}});
   if (config.modbus) {
     config.modbus->first_addresses = host.addresses;
   }

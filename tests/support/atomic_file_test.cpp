@@ -106,6 +106,18 @@ TEST(AtomicFile, RefusesAFolderAndAFileAsFolder) {
   EXPECT_THAT(folder.names(), UnorderedElementsAre("d", "f"));
 }
 
+TEST(AtomicFile, ANameThatIsTooLongIsNoMatterOfRoom) {
+  const test::ScratchFolder folder;
+  try {
+    write_file_atomically(folder / (std::string(300, 'A') + ".hpp"), "text");
+    FAIL() << "it was written";
+  } catch (const InputError& refused) {
+    EXPECT_EQ(refused.diagnostics().all().front().number, error::unwritable_file);
+    EXPECT_EQ(refused.diagnostics().all().front().mend,
+              "give it a shorter name; a generated file is named after its block.");
+  }
+}
+
 TEST(AtomicFile, ADeviceIsWrittenInPlaceAndStays) {
   write_file_atomically("/dev/null", "text");
   struct stat status {};

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/tool/workbench.hpp"
 
@@ -49,6 +51,77 @@ TEST(CommandLine, SlipsAreExplained) {
   EXPECT_THAT(refused("hysteron generate plant.st --target ada --out g"), HasSubstr("There is no target ada."));
   EXPECT_THAT(refused("hysteron check"), HasSubstr("FILE"));
   EXPECT_THAT(refused("hysteron blocks HY_LAG HY_GAIN"), HasSubstr("does not take the argument HY_GAIN"));
+}
+
+/// An empty value is most often a variable of the shell that is not set: no command goes on as if the option were not
+/// there, and none writes into the current folder instead.
+TEST(CommandLine, EmptyValuesAreRefused) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  bench.write("log.csv", test::plant_log);
+  bench.write("p.toml", "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {}\n");
+  bench.write("plant.test.toml", "[[case]]\nname = \"a\"\nsteps = 1\nexpect = {BUSY = 0}\n");
+  const auto before = bench.names();
+  const std::string tune = "hysteron tune plant.st --log log.csv --params p.toml ";
+  const std::string diagnose = "hysteron diagnose plant.st --log log.csv --params p.toml ";
+  for (const auto& [line, option] : std::vector<std::pair<std::string, std::string>>{
+           {"hysteron run plant.st --in log.csv --out out.csv --params \"$UNSET\"", "--params"},
+           {"hysteron run plant.st --in log.csv --out out.csv --params=\"$UNSET\"", "--params"},
+           {"hysteron run plant.st --in log.csv --out out.csv --top ''", "--top"},
+           {"hysteron run plant.st --in log.csv --out out.csv --trace ''", "--trace"},
+           {"hysteron run plant.st --in log.csv --out ''", "--out"},
+           {"hysteron run plant.st --in '' --out out.csv", "--in"},
+           {"hysteron generate plant.st --target cpp --out ''", "--out"},
+           {tune + "--out ''", "--out"},
+           {tune + "--out tuned.toml --report ''", "--report"},
+           {diagnose + "--out ''", "--out"},
+           {diagnose + "--out found --effects ''", "--effects"},
+           {diagnose + "--out found --controller ''", "--controller"},
+           {"hysteron test plant.st --junit ''", "--junit"},
+           {"hysteron test plant.st --filter ''", "--filter"},
+           {"hysteron map plant.st --config ''", "--config"},
+           {"hysteron map plant.st --format ''", "--format"},
+           {"hysteron serve plant.st --config RUN.toml --engine ''", "--engine"},
+           {"hysteron replay plant.st --trace run.trace --out ''", "--out"}}) {
+    const auto outcome = bench.shell(line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_EQ(outcome.out, "") << line;
+    EXPECT_THAT(outcome.err,
+                AllOf(StartsWith("HY730 error: hysteron "), HasSubstr(": the value of " + option + " is empty.\n")))
+        << line;
+  }
+  for (const std::string line : {"check ''", "blocks ''", "blocks --json ''", "fmt plant.st ''", "test ''"}) {
+    const auto outcome = bench.shell("hysteron " + line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_THAT(outcome.err, HasSubstr(": an argument is empty.\n")) << line;
+  }
+  EXPECT_EQ(bench.names(), before);
+}
+
+TEST(CommandLine, AnOptionGivenTwiceIsSaidToBe) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron run plant.st --in a.csv --in b.csv --out out.csv");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, StartsWith("HY730 error: hysteron run: --in is given more than once.\nmend: give it once"));
+}
+
+/// The limits of a number are told as a person would, and held.
+TEST(CommandLine, NumbersOutOfTheirLimits) {
+  const test::Workbench bench;
+  const std::string diagnose = "hysteron diagnose plant.st --log log.csv --params p.toml --out found ";
+  const std::string serve = "hysteron serve plant.st --config RUN.toml --virtual ";
+  for (const auto& [line, said] : std::vector<std::pair<std::string, std::string>>{
+           {diagnose + "--budget -1", "--budget: a number above 0 is needed, not -1."},
+           {diagnose + "--budget nan", "--budget: a number above 0 is needed, not nan."},
+           {diagnose + "--material -3", "--material: a number from 0 on is needed, not -3."},
+           {diagnose + "--seed -1", "--seed: a whole number from 0 on is needed, not -1."},
+           {serve + "--cycles -1", "--cycles: a whole number from 1 on is needed, not -1."},
+           {serve + "--cycles 0", "--cycles: a whole number from 1 on is needed, not 0."},
+           {serve + "--cycles 1e3", "--cycles: a whole number from 1 on is needed, not 1e3."}}) {
+    const auto outcome = bench.shell(line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_THAT(outcome.err, AllOf(StartsWith("HY730 error: "), HasSubstr(said))) << line;
+  }
 }
 
 TEST(CommandLine, FilesThatAreNotThere) {

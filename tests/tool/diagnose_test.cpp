@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -111,6 +112,52 @@ TEST_F(Diagnose, TracesAreThoseOfTheRecord) {
     difference = std::max(difference, std::abs(nominal[k] - traces.column("V_nominal").values[k]));
   }
   EXPECT_LT(difference, 1e-12);
+}
+
+/// The natural second step: what was found is diagnosed, into the folder where it lies. Each file that a diagnosis
+/// writes is tried as each input; nothing is lost, and nothing is computed first.
+TEST_F(Diagnose, OverwritesNoneOfItsInputs) {
+  ASSERT_EQ(bench.shell(command).code, 0);
+  std::vector<std::string> written;
+  for (const std::string& name : bench.names()) {
+    if (name.starts_with("found/") && !std::filesystem::is_directory(bench.path() / name)) {
+      written.push_back(name);
+    }
+  }
+  ASSERT_GE(written.size(), 5U);
+  const auto refused = [&](const std::string& line, const std::string& input, const std::string& named) {
+    const std::string before = bench.read(input);
+    const auto outcome = bench.shell("hysteron diagnose " + line);
+    EXPECT_EQ(outcome.code, 2) << line;
+    EXPECT_THAT(outcome.err,
+                AllOf(testing::StartsWith("HY709 error: "), HasSubstr("would overwrite the input " + input),
+                      HasSubstr(named), HasSubstr("mend: give another folder for --out.")))
+        << line;
+    EXPECT_EQ(outcome.out, "") << line;
+    EXPECT_EQ(bench.read(input), before) << line;
+  };
+  const std::string to = " --out found --effects load";
+  for (const std::string& file : written) {
+    refused(file + " --log log.csv --params p.toml" + to, file, "");
+    refused("plant.st --log " + file + " --params p.toml" + to, file, "which --log names");
+    refused("plant.st --log log.csv --params " + file + to, file, "which --params names");
+    const std::string rest = "plant.st --log log.csv --params p.toml" + to;
+    refused(rest + " --trace " + file + " --controller c.st", file, "which --trace names");
+    refused(rest + " --trace run.trace --controller " + file, file, "which --controller names");
+    refused(rest + " --trace run.trace --controller c.st --controller-params " + file, file, "--controller-params");
+  }
+  ASSERT_EQ(bench.shell("ln -s found/traces.csv linked.csv && ln -s found link").code, 0);
+  refused("plant.st --log linked.csv --params p.toml --out link --effects load", "linked.csv", "--log");
+  bench.write("kept/traces2.csv", bench.read("log.csv"));
+  refused("plant.st --log log.csv --log kept/traces2.csv --params p.toml --out kept", "kept/traces2.csv", "--log");
+}
+
+TEST_F(Diagnose, CountsEachRecordOnce) {
+  const auto refused =
+      bench.shell("hysteron diagnose plant.st --log log.csv --log ./log.csv --params p.toml --out twice");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, testing::StartsWith("HY730 error: ./log.csv: --log names one record as log.csv and as "));
+  EXPECT_FALSE(bench.has("twice"));
 }
 
 TEST_F(Diagnose, PrintsTheVerdictAsJson) {

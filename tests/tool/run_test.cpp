@@ -229,6 +229,21 @@ TEST_F(Run, ValuesOutsideTheRangeAreAWarning) {
   EXPECT_TRUE(bench.has("out.csv"));
 }
 
+/// What a run writes of a DINT, a run reads; the least of them has no positive partner.
+TEST_F(Run, ReadsEveryWholeNumberOf32Bits) {
+  bench.write("count.st",
+              "FUNCTION_BLOCK COUNT (* @ts 1ms *)\n  VAR_INPUT N : DINT; END_VAR\n  VAR_OUTPUT M : DINT; END_VAR\n"
+              "  M := N;\nEND_FUNCTION_BLOCK\n");
+  bench.write("count.csv", "t,N\n0,-2147483648\n0.001,2147483647\n0.002,0\n");
+  const auto outcome = bench.shell("hysteron run count.st --in count.csv --out -");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "t,M\n0,-2147483648\n0.001,2147483647\n0.002,0\n");
+  for (const std::string beyond : {"-2147483649", "2147483648", "0.5"}) {
+    bench.write("count.csv", "t,N\n0," + beyond + "\n0.001,0\n0.002,0\n");
+    EXPECT_THAT(bench.shell("hysteron run count.st --in count.csv --out -").err, HasSubstr("HY707")) << beyond;
+  }
+}
+
 TEST_F(Run, NamesPlacesInTheStandardInput) {
   const auto outcome = bench.shell("printf 't,x\\n0,1\\n0.001,11\\n' | hysteron run plant.st --in - --out out.csv");
   EXPECT_EQ(outcome.code, 0);

@@ -160,6 +160,43 @@ TEST(Serve, RefusesAnOutputWithoutASafeValueAtItsPlace) {
   EXPECT_TRUE(served.err.starts_with("HY806 error: RUN.toml: The output SLOW has no safe value.")) << served.err;
 }
 
+/// What a run file has written takes the place of nothing that is read; nothing runs before that is known.
+TEST(Serve, OverwritesNoneOfItsInputs) {
+  const test::Workbench bench;
+  bench.write("plant.st", served_plant);
+  bench.write("p.toml", "");
+  bench.write("token", "a-token-of-some-length");
+  bench.write("kept/retain_a", served_plant);
+  EXPECT_EQ(bench.shell("chmod 600 token && ln -s plant.st link.st").code, 0);
+  const std::string web = " --web 127.0.0.1:0 --web-token-file token";
+  const auto refused = [&](const std::string& keys, const std::string& output, const std::string& command,
+                           const std::string& diagram = "plant.st") {
+    bench.write("RUN.toml", run_file + keys);
+    const auto before = bench.names();
+    const auto outcome = bench.shell("hysteron " + command);
+    EXPECT_EQ(outcome.code, 2) << keys;
+    EXPECT_TRUE(outcome.err.starts_with("HY709 error: RUN.toml:")) << keys << outcome.err;
+    EXPECT_NE(outcome.err.find("The output " + output + " would overwrite the input "), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find(" in the run file."), std::string::npos) << outcome.err;
+    EXPECT_EQ(bench.read(diagram), served_plant) << keys;
+    EXPECT_EQ(bench.read("RUN.toml"), run_file + keys);
+    EXPECT_EQ(bench.names(), before) << keys;
+  };
+  const std::string serve = "serve plant.st --params p.toml --config RUN.toml --virtual --cycles 5" + web;
+  for (const std::string output : {"plant.st", "./plant.st", "link.st", "RUN.toml", "p.toml", "token"}) {
+    refused("[trace]\nfile = \"" + output + "\"\n", output, serve);
+    refused("[modbus]\nport = 0\nlock_file = \"" + output + "\"\n", output, serve);
+  }
+  refused("[modbus]\nport = 0\nlock_file = \"a.lock\"\n[trace]\nfile = \"./a.lock\"\n", "./a.lock", serve);
+  refused("[retain]\nfolder = \"fresh\"\n[trace]\nfile = \"fresh/retain_b\"\n", "fresh/retain_b", serve);
+  refused("[retain]\nfolder = \"kept\"\n", "kept/retain_a",
+          "serve kept/retain_a --config RUN.toml --virtual --cycles 5", "kept/retain_a");
+  const std::string lock = "[modbus]\nlock_file = \"p.toml\"\n";
+  refused(lock, "p.toml", "map plant.st --params p.toml --config RUN.toml");
+  refused(lock, "p.toml", "generate plant.st --params p.toml --host --config RUN.toml --out host");
+}
+
 /// Runs a page's run file, or its command.
 test::Outcome run_page(const test::Workbench& bench, const test::FencedBlock& block) {
   if (block.kind == "sh") {

@@ -256,6 +256,26 @@ TEST_F(Tune, OutputsAreProvedBeforeTheFit) {
   const auto outcome =
       bench.shell("hysteron tune plant.st --log log.csv --params report.json --out tuned.toml --report .");
   EXPECT_THAT(outcome.err, HasSubstr("HY709"));
+  ASSERT_EQ(bench.shell("mkdir old").code, 0);
+  for (const char* const clash : {"--out t.toml --report t.toml", "--out t.toml --report ./t.toml/sub",
+                                  "--out old/report.html --report old", "--out ./report.html --report ."}) {
+    EXPECT_THAT(refuse(clash, "HY709"), HasSubstr("give another name for --out"));
+  }
+}
+
+/// A record that is given twice would shrink the standard errors as if it had been measured twice.
+TEST_F(Tune, CountsEachRecordOnce) {
+  const auto before = bench.names();
+  const std::string rest = " --params p.toml --out tuned.toml";
+  const auto twice = bench.shell("hysteron tune plant.st --log log.csv --log log.csv" + rest);
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_THAT(twice.err, AllOf(testing::StartsWith("HY730 error: log.csv: --log names the record log.csv twice."),
+                               HasSubstr("mend: give each record once")));
+  EXPECT_EQ(bench.names(), before);
+  EXPECT_EQ(bench.shell("ln -s log.csv same.csv").code, 0);
+  EXPECT_EQ(bench.shell("hysteron tune plant.st --log log.csv --log same.csv" + rest).code, 2);
+  EXPECT_EQ(bench.shell("cp log.csv other.csv").code, 0);
+  EXPECT_EQ(bench.shell("hysteron tune plant.st --log log.csv --log other.csv" + rest).code, 0);
 }
 
 TEST_F(Tune, IntervalsOfTrainAndTestAreHeldAgainstEachOtherAndTheRecord) {

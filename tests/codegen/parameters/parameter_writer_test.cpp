@@ -156,8 +156,7 @@ TEST(ParameterWriter, ReadsBackToTheSameBits) {
   file.values.push_back(value("Z.MIN", std::int64_t{std::numeric_limits<std::int64_t>::min()}));
   file.values.push_back(value("Z.MINUS", -0.0));
   const test::ScratchFolder folder;
-  write_parameter_file(folder / "out.toml", file);
-  const auto read = read_parameter_file(folder / "out.toml");
+  const auto read = read_parameter_file(folder.write("out.toml", parameter_text(file)));
   ASSERT_EQ(read.values.size(), file.values.size());
   for (const auto& written : file.values) {
     const auto* const found = read.find(written.path);

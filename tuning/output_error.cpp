@@ -200,6 +200,27 @@ class Fitter {
     return result.huber_threshold > 0.0 ? result.huber_threshold : result.cost;
   }
 
+  /// HY711 where the parameters are named whose starts it may be. Which of several it is, only the user knows.
+  [[nodiscard]] InputError start_error() const {
+    const auto& free = problem_.parameters;
+    Place place = free.empty() ? Place{} : free.front().place;
+    std::vector<Note> notes;
+    if (free.size() > 1) {
+      place = {.file = place.file};
+      for (const FreeParameter& one : free) {
+        notes.push_back({.place = one.place, .text = fmt::format("{} starts at {}", one.name, number_text(one.start))});
+      }
+    }
+    Diagnostics diagnostics;
+    diagnostics.error(error::start_without_value, std::move(place),
+                      free.size() == 1 ? fmt::format("The model has no finite value at the start of the fit, {} = {}.",
+                                                     free.front().name, number_text(free.front().start))
+                                       : "The model has no finite value at the start of the fit.",
+                      "start from values at which the diagram runs without overflow or division by zero.",
+                      std::move(notes));
+    return InputError(std::move(diagnostics));
+  }
+
   void fit_from(int start) {
     LeastSquaresProblem problem = least_squares_;
     problem.start = start_point(start);
@@ -208,7 +229,7 @@ class Fitter {
       result = solve(problem, solver_options(start));
     } catch (const InputError&) {
       if (start == 0) {
-        throw;
+        throw start_error();
       }
       fit_.start_costs.push_back(not_a_number);  // no value there: the other starts go on
       return;

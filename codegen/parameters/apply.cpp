@@ -84,22 +84,27 @@ std::optional<std::vector<double>> numbers_of(const Value& value, const Field& f
   return field.type == Type::Real ? std::optional(std::vector{std::get<double>(value)}) : std::nullopt;
 }
 
+struct NamedPin {
+  const Node* instance = nullptr;
+  bool is_input = false;  ///< of the block, which is no parameter even where nothing is connected to it
+};
+
 /// The instance that a path names by its front, if it has the pin that it names by its end.
-const Node* instance_with_pin(const Graph& graph, std::string_view path) {
+NamedPin find_pin(const Graph& graph, std::string_view path) {
   const auto dot = path.rfind('.');
   if (dot == std::string_view::npos) {
-    return nullptr;
+    return {};
   }
   for (const Node& node : graph.nodes) {
     if (node.block != nullptr && equal_ignoring_case(node.path, path.substr(0, dot))) {
       for (std::size_t i = 0; i < node.block->pin_count(); ++i) {
         if (equal_ignoring_case(node.block->pin(i).name, path.substr(dot + 1))) {
-          return &node;
+          return {.instance = &node, .is_input = i < node.block->inputs.size()};
         }
       }
     }
   }
-  return nullptr;
+  return {};
 }
 
 bool is_input(const Graph& graph, std::string_view path) {
@@ -158,7 +163,15 @@ std::string range_fault(const Field& field, double value) {
 }
 
 void report_unknown_parameter(const Graph& graph, std::string_view path, const Place& place, Diagnostics& diagnostics) {
-  if (const Node* const node = instance_with_pin(graph, path)) {
+  const auto [node, is_pin_input] = find_pin(graph, path);
+  if (is_pin_input) {
+    diagnostics.error(error::unknown_key, place,
+                      fmt::format("{} is an input of {}, not a parameter.", path, node->block->about.name),
+                      "remove it here, or connect an input of the diagram to that pin and mark it (* @param *).",
+                      {{.place = graph.place(node->span), .text = fmt::format("{} in the diagram", node->path)}});
+    return;
+  }
+  if (node != nullptr) {
     diagnostics.error(error::unknown_key, place,
                       fmt::format("{} is not free to be set: the diagram connects or fixes it.", path),
                       "remove it here, or remove what the diagram gives to that pin.",

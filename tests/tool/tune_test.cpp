@@ -237,6 +237,19 @@ TEST_F(Tune, BadInputIsRefusedAndNothingIsWritten) {
   EXPECT_THAT(refuse("plant.st --params p.toml --log log.csv --out tuned.toml --start 0"), HasSubstr("HY730"));
 }
 
+/// A start from which the model overflows is shown where it is written.
+TEST_F(Tune, AStartWithoutAValueHasAPlace) {
+  bench.write("far.toml", "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {start = 1e308}\n");
+  const auto outcome = bench.shell("hysteron tune plant.st --log log.csv --params far.toml --out tuned.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("HY711 error: far.toml:4:"), HasSubstr("AMP.K = 1e308")));
+  bench.write("far.toml",
+              "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {start = 1e308}\n[fit.BODY]\nT1 = {start = 0.5}\n");
+  EXPECT_THAT(bench.shell("hysteron tune plant.st --log log.csv --params far.toml --out tuned.toml").err,
+              AllOf(testing::StartsWith("HY711 error: far.toml: "), HasSubstr("far.toml:4:1: AMP.K starts at 1e308"),
+                    HasSubstr("far.toml:6:1: BODY.T1 starts at 0.5")));
+}
+
 /// What the end of the fit would fail on is said before it; a refused fit leaves nothing behind.
 TEST_F(Tune, OutputsAreProvedBeforeTheFit) {
   bench.write("file", "");

@@ -148,6 +148,9 @@ TEST_F(Apply, NamesAreChecked) {
   EXPECT_THAT(refusal("[parameters]\nX = 1.0\n"), HasSubstr("X is an input of the diagram, not a parameter."));
   EXPECT_THAT(refusal("[parameters.FIXED]\nK = 1.0\n"),
               HasSubstr("FIXED.K is not free to be set: the diagram connects or fixes it."));
+  EXPECT_THAT(refusal("[parameters.FIXED]\nXIN = 1.0\n"),
+              AllOf(HasSubstr("HY603 error: p.toml:2:1: FIXED.XIN is an input of HY_GAIN, not a parameter."),
+                    HasSubstr("mark it (* @param *)")));
 }
 
 TEST_F(Apply, SetsWhereStatesBegin) {

@@ -22,14 +22,14 @@ void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics)
     return std::tie(one.place.file, one.place.line, one.place.column, one.number, one.cause);
   };
   std::ranges::stable_sort(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (i > 0 && key(list[i]) == key(list[i - 1])) {
-      continue;
+  const auto again =
+      std::ranges::unique(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) == key(b); });
+  list.erase(again.begin(), again.end());
+  for (Diagnostic& one : list) {
+    if (any_order && one.number == error::hidden_delay) {
+      one.severity = Severity::Warning;
     }
-    if (any_order && list[i].number == error::hidden_delay) {
-      list[i].severity = Severity::Warning;
-    }
-    diagnostics.add(std::move(list[i]));
+    diagnostics.add(std::move(one));
   }
 }
 
@@ -54,9 +54,10 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, bool keep_
     Program& program = result.programs[index];
     Diagnostics own;
     if (definition.usable) {
-      program.graph = elaborate(definitions, index, own, keep_names);
+      OuterPlaces places;
+      program.graph = elaborate(definitions, index, own, keep_names, &places);
       if (!own.has_errors() && !blocks_work(diagnostics)) {
-        program.schedule = schedule(program.graph, own);
+        program.schedule = schedule(program.graph, places, own);
       }
       if (!own.has_errors() && !blocks_work(diagnostics)) {
         check_text_order(definitions, index, program.graph, own);

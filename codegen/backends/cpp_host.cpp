@@ -170,7 +170,7 @@ int main() {{
       refuse(row, "t leaves the even steps of {period} s from the first row on");
     }}
     ++step;
-{inputs}    const auto out = {name}::step(params, state, in);
+{inputs}    {unused}const auto out = {name}::step(params, state, in);
     append(text, t);
 {outputs}    text += '\n';
   }}
@@ -272,7 +272,8 @@ GeneratedFile cpp_host_main(const Program& program) {
           fmt::format(fmt::runtime(main_text), fmt::arg("name", namespace_identifier(graph.name)),
                       fmt::arg("period", number_text(graph.sample_time())), fmt::arg("places", places),
                       fmt::arg("helpers", has_whole ? whole_text : std::string_view()), fmt::arg("inputs", inputs),
-                      fmt::arg("outputs", outputs), fmt::arg("header", header))};
+                      fmt::arg("unused", outputs.empty() ? "[[maybe_unused]] " : ""), fmt::arg("outputs", outputs),
+                      fmt::arg("header", header))};
 }
 
 GeneratedFile cpp_host_cmake(const Program& program) {

@@ -20,15 +20,17 @@ using language::SourceFile;
 using language::upper;
 using language::Variable;
 
-constexpr std::array<std::string_view, 8> variable_keys{"unit",    "min", "max",   "param",
-                                                        "neutral", "doc", "every", "phase"};
+using Keys = std::span<const std::string_view>;
+constexpr std::array<std::string_view, 6> input_keys{"unit", "min", "max", "param", "neutral", "doc"};
+constexpr std::array<std::string_view, 2> value_keys{"unit", "doc"};
+constexpr std::array<std::string_view, 3> instance_keys{"every", "phase", "doc"};
 constexpr std::array<std::string_view, 3> block_keys{"ts", "effect", "doc"};
 
 /// The most that a block may hold, and the most levels of blocks in blocks.
 constexpr std::uint64_t most_instances = 2'000'000;
 constexpr std::uint32_t most_levels = 1000;
 
-std::string known_keys(std::span<const std::string_view> keys) {
+std::string known_keys(Keys keys) {
   std::string text;
   for (const auto key : keys) {
     text += (text.empty() ? "@" : ", @") + std::string(key);
@@ -107,6 +109,7 @@ class Reader {
 
   void read(Definition& definition) {
     definition.sample_time_span = definition.block->name.span;
+    check_keys(definition.block->annotations, block_keys);
     for (const Annotation& annotation : definition.block->annotations) {
       const std::string key = language::upper(annotation.key);
       if (key == "TS") {
@@ -117,8 +120,6 @@ class Reader {
         }
       } else if (key == "EFFECT") {
         definition.effect = annotation.value;
-      } else if (key != "DOC") {
-        unknown_key(annotation, block_keys);
       }
     }
     definition.variables.reserve(definition.block->variables.size());
@@ -163,8 +164,12 @@ class Reader {
             fmt::format("the instance '{}' stands among inputs, outputs or constants", variable.name.text),
             "Declare instances between VAR and END_VAR.");
     }
-    for (const Annotation& annotation : variable.annotations) {
-      annotate(annotation, instance, declared);
+    if (declared.kind != Declared::Kind::Unknown) {  // of which nobody knows what it is
+      const bool input = declared.kind == Declared::Kind::Input;
+      check_keys(variable.annotations, instance ? Keys(instance_keys) : input ? Keys(input_keys) : Keys(value_keys));
+      for (const Annotation& annotation : variable.annotations) {
+        annotate(annotation, instance, declared);
+      }
     }
     if (declared.rate.phase >= declared.rate.every) {
       error(error::bad_annotation, variable.name.span,
@@ -173,7 +178,10 @@ class Reader {
       declared.rate.phase = 0;
     }
     const Field& field = declared.field;
-    if (!instance && declared.has_preset && (field.preset < field.minimum || field.preset > field.maximum)) {
+    if (field.minimum > field.maximum) {
+      error(error::bad_annotation, variable.name.span,
+            fmt::format("@min {} is above @max {}", field.minimum, field.maximum), "Write the lower bound as @min.");
+    } else if (!instance && declared.has_preset && (field.preset < field.minimum || field.preset > field.maximum)) {
       error(error::parameter_out_of_range, variable.name.span,
             fmt::format("the default {} of '{}' lies outside its range", field.preset, field.name),
             fmt::format("Give a value from {} to {}.", field.minimum, field.maximum));
@@ -233,7 +241,8 @@ class Reader {
       if (!number_of(annotation.value, value) || value != std::floor(value) || value < (key == "EVERY" ? 1.0 : 0.0) ||
           value > 1e6) {
         error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a number of steps", annotation.value),
-              "Write a whole number from 1 to 1000000: @every 4.");
+              key == "EVERY" ? "Write a whole number from 1 to 1000000: @every 4."
+                             : "Write a whole number from 0 on, below that of @every: @phase 1.");
       } else {
         (key == "EVERY" ? declared.rate.every : declared.rate.phase) = static_cast<std::uint32_t>(value);
       }
@@ -245,24 +254,39 @@ class Reader {
               "Write SI symbols: um, V, m/s, N*m, 1/K, degC, % or 1.");
         field.unit = {};
       }
-    } else if (!instance && key == "MIN") {
+    } else if (is_input(declared) && key == "MIN") {
       number(field.minimum);
-    } else if (!instance && key == "MAX") {
+    } else if (is_input(declared) && key == "MAX") {
       number(field.maximum);
-    } else if (!instance && key == "NEUTRAL" && declared.kind != Declared::Kind::Output) {
+    } else if (is_input(declared) && key == "NEUTRAL") {
       number(field.neutral);
       declared.kind = Declared::Kind::Parameter;
-    } else if (key == "PARAM" && declared.kind == Declared::Kind::Input) {
+    } else if (is_input(declared) && key == "PARAM") {
       declared.kind = Declared::Kind::Parameter;
-    } else {
-      unknown_key(annotation, variable_keys);
     }
   }
 
-  void unknown_key(const Annotation& annotation, std::span<const std::string_view> keys) {
-    error(error::bad_annotation, annotation.span,
-          fmt::format("@{} is not an annotation that fits here", annotation.key),
-          fmt::format("Known here: {}.", known_keys(keys)));
+  static bool is_input(const Declared& declared) {
+    return declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Parameter;
+  }
+
+  /// Refuses annotations that do not fit, and a second one of a kind: it would contradict the first, or say nothing.
+  void check_keys(const std::vector<Annotation>& annotations, Keys keys) {
+    for (std::size_t i = 0; i < annotations.size(); ++i) {
+      const Annotation& one = annotations[i];
+      const auto is_same = [&](std::string_view key) { return language::same_name(key, one.key); };
+      if (std::ranges::none_of(keys, is_same)) {
+        error(error::bad_annotation, one.span, fmt::format("@{} is not an annotation that fits here", one.key),
+              fmt::format("Known here: {}.", known_keys(keys)));
+        continue;
+      }
+      const auto before = annotations.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto first = std::find_if(annotations.begin(), before, [&](const Annotation& a) { return is_same(a.key); });
+      if (first != before) {
+        diagnostics_.error(error::bad_annotation, source_.place(one.span), fmt::format("@{} is given twice", one.key),
+                           "Keep one of the two.", {{source_.place(first->span), "the other is here"}});
+      }
+    }
   }
 
   void unknown_type(const Variable& variable) {

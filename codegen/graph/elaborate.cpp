@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "codegen/graph/elaborator.hpp"
 #include "support/names.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron {
 
-Graph Elaborator::run(std::uint32_t top) {
+Graph Elaborator::run(std::uint32_t top, OuterPlaces& places) {
   const Definition& definition = definitions_.list[top];
   graph_.name = std::string(definition.block->name.text);
   graph_.sample_time_ns = definition.sample_time_ns;
@@ -27,7 +29,8 @@ Graph Elaborator::run(std::uint32_t top) {
       graph_.outputs.push_back(std::move(port));
     }
   }
-  finish(graph_, slots_, open_parameters_, diagnostics_);
+  finish(graph_, slots_, open_parameters_, levels_, places, diagnostics_);
+  check_relations();
   return std::move(graph_);
 }
 
@@ -79,6 +82,7 @@ void Elaborator::elaborate(const Instance& instance) {
   std::vector<Part> parts(definition.variables.size());
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     instantiate(instance, i, parts[i]);
+    levels_.resize(graph_.nodes.size(), instance.level);
   }
   for (const auto& statement : definition.block->statements) {
     if (const auto* call = std::get_if<language::Call>(&statement)) {
@@ -87,6 +91,7 @@ void Elaborator::elaborate(const Instance& instance) {
       elaborate_assignment(instance, parts, std::get<language::Assignment>(statement));
     }
   }
+  levels_.resize(graph_.nodes.size(), instance.level);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     close(instance, i, parts[i]);
     note_unit(instance, i);
@@ -129,6 +134,25 @@ Rate Elaborator::rate_within(Rate outer, const Declared& declared) {
   return {static_cast<std::uint32_t>(every), outer.phase + outer.every * declared.rate.phase};
 }
 
+void Elaborator::check_sample_time(const Declared& declared, Rate rate) {
+  const Definition& inner = definitions_.list[declared.definition];
+  if (inner.sample_time_ns <= 0 || graph_.sample_time_ns <= 0) {
+    return;
+  }
+  const double own = static_cast<double>(inner.sample_time_ns) * 1e-9;
+  const double period = graph_.sample_time() * rate.every;
+  if (std::abs(period - own) > 1e-12 * own) {
+    const auto name = inner.block->name.text;
+    error(error::bad_annotation, declared.variable->name.span,
+          fmt::format("'{}' runs every {} s here, but {} states @ts {} s", declared.field.name, number_text(period),
+                      name, number_text(own)),
+          fmt::format("The top's @ts holds for all that is inside: take @ts away from {}, or run the instance at that "
+                      "rate by @every.",
+                      name),
+          {{source_.place(inner.sample_time_span), "stated here"}});
+  }
+}
+
 void Elaborator::instantiate(const Instance& instance, std::size_t variable, Part& part) {
   const Declared& declared = instance.definition->variables[variable];
   Slot& slot = slots_[instance.first_slot + variable];
@@ -148,7 +172,12 @@ void Elaborator::instantiate(const Instance& instance, std::size_t variable, Par
       part.first_slot = add_slots(inner);
       apply_settings(instance, declared, part);
       if (inner.usable && instance.definition->usable) {
-        elaborate({.definition = &inner, .path = path + ".", .first_slot = part.first_slot, .rate = rate});
+        check_sample_time(declared, rate);
+        elaborate({.definition = &inner,
+                   .path = path + ".",
+                   .first_slot = part.first_slot,
+                   .rate = rate,
+                   .level = instance.level + 1});
       }
       break;
     }
@@ -211,7 +240,7 @@ void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& par
       wrong_type(span, fmt::format("{}.{}", declared.field.name, pin.field.name), pin.field.type, wire.type);
     } else {
       pin_wire(declared, part, pin) = wire;
-      set_span(declared, part, pin, span);
+      set_span(instance, declared, part, pin, span);
     }
   }
 }
@@ -246,6 +275,7 @@ void Elaborator::elaborate_assignment(const Instance& instance, std::vector<Part
   }
   target.driven = true;
   target.span = assignment.target.span;
+  target.level = instance.level;
   if (wire.from == Wire::From::Nothing) {
     return;
   }
@@ -385,8 +415,10 @@ void Elaborator::check_called(const Declared& declared, const Part& part) {
   }
 }
 
-Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics, bool keep_names) {
-  return Elaborator(definitions, diagnostics, keep_names).run(top);
+Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics, bool keep_names,
+                OuterPlaces* places) {
+  OuterPlaces unasked;
+  return Elaborator(definitions, diagnostics, keep_names).run(top, places != nullptr ? *places : unasked);
 }
 
 }  // namespace hysteron

@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include "codegen/graph/elaborator.hpp"
+#include "codegen/graph/relations.hpp"
 #include "support/names.hpp"
 
 namespace hysteron {
@@ -109,12 +113,14 @@ Wire& Elaborator::pin_wire(const Declared& declared, const Part& part, const Pin
                                                        : slots_[part.first_slot + pin.index].wire;
 }
 
-void Elaborator::set_span(const Declared& declared, const Part& part, const Pin& pin, Span span) {
+void Elaborator::set_span(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin,
+                          Span span) {
   if (declared.kind == Declared::Kind::LibraryBlock) {
     graph_.wire_spans[graph_.nodes[part.node].first_wire + pin.index] = span;
   } else {
     slots_[part.first_slot + pin.index].span = span;
     slots_[part.first_slot + pin.index].driven = true;
+    slots_[part.first_slot + pin.index].level = instance.level;
   }
 }
 
@@ -142,6 +148,8 @@ void Elaborator::set_constant(const Instance& instance, const Declared& declared
   if (pin.parameter) {
     std::vector<double> all = values;
     all.resize(pin.field.length, 0.0);
+    given_.emplace(upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name),
+                   values.size());
     open_parameters_.push_back(
         {.path = upper(instance.path + std::string(declared.field.name)) + "." + upper(pin.field.name),
          .field = pin.field,
@@ -152,7 +160,7 @@ void Elaborator::set_constant(const Instance& instance, const Declared& declared
     wire = builder_.literal(pin.field.type, values.front());
   }
   pin_wire(declared, part, pin) = wire;
-  set_span(declared, part, pin, span);
+  set_span(instance, declared, part, pin, span);
 }
 
 void Elaborator::check_range(const Field& field, double value, Span span) {
@@ -163,6 +171,25 @@ void Elaborator::check_range(const Field& field, double value, Span span) {
                       field.maximum < std::numeric_limits<double>::infinity()
                           ? fmt::format(" and at most {}", field.maximum)
                           : ""));
+  }
+}
+
+void Elaborator::check_relations() {
+  for (const Node& node : graph_.nodes) {
+    if (node.block == nullptr || node.block->params.empty()) {
+      continue;
+    }
+    const auto values = numbers_of_params(graph_, node, [&](std::size_t parameter) {
+      const Parameter& one = graph_.parameters[parameter];
+      const auto given = given_.find(one.path);
+      return std::span(one.value).first(given == given_.end() ? 0 : given->second);
+    });
+    // Named without the way to it, so that a block that is used twice has its faults once.
+    const std::string_view name = std::string_view(node.path).substr(node.path.rfind('.') + 1);
+    for (Contradiction& one : contradictions(*node.block, name, values, period_of(graph_, node))) {
+      error(error::parameter_out_of_range, graph_.wire_spans[node.first_wire + node.block->inputs.size() + one.param],
+            std::move(one.cause), std::move(one.mend));
+    }
   }
 }
 

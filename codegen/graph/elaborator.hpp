@@ -1,7 +1,9 @@
 // The elaborator: what elaborate.cpp and elaborate_pins.cpp share. Not for others; see elaborate.hpp.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct Instance {
   std::string path{};  ///< "" at the top, else ending in a dot
   std::uint32_t first_slot = 0;
   Rate rate{};
+  std::uint32_t level = 0;  ///< in how many blocks it lies
   bool top = false;
 };
 
@@ -51,7 +54,7 @@ class Elaborator {
         builder_(graph_) {
     graph_.source = definitions.source;
   }
-  Graph run(std::uint32_t top);
+  Graph run(std::uint32_t top, OuterPlaces& places);
 
  private:
   void error(int number, Span span, std::string cause, std::string mend, std::vector<Note> notes = {});
@@ -65,6 +68,8 @@ class Elaborator {
   void note_unit(const Instance& instance, std::size_t variable);
   void note_name(const Instance& instance, std::size_t variable);
   Rate rate_within(Rate outer, const Declared& declared);
+  /// An inner @ts has to be what the instance gets.
+  void check_sample_time(const Declared& declared, Rate rate);
   void instantiate(const Instance& instance, std::size_t variable, Part& part);
   // `INV : HY_M_INVERSE := (C1 := 0.05)`: constants, given once.
   void apply_settings(const Instance& instance, const Declared& declared, Part& part);
@@ -72,12 +77,14 @@ class Elaborator {
   Pin find_pin(const Declared& declared, const language::Name& name);
   std::vector<std::string> pin_names(const Declared& declared, bool inputs);
   Wire& pin_wire(const Declared& declared, const Part& part, const Pin& pin);
-  void set_span(const Declared& declared, const Part& part, const Pin& pin, Span span);
+  void set_span(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin, Span span);
   /// Refuses a second value for a pin.
   bool claim(const Declared& declared, const Part& part, const Pin& pin, const language::Argument& argument);
   void set_constant(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin,
                     const std::vector<double>& values, const language::Argument& argument);
   void check_range(const Field& field, double value, Span span);
+  /// What the parameters that the text fixes have to keep among themselves; of a finished graph.
+  void check_relations();
   void elaborate_call(const Instance& instance, std::vector<Part>& parts, const language::Call& call);
   void wrong_type(Span span, const std::string& target, Type wanted, Type given);
   void elaborate_assignment(const Instance& instance, std::vector<Part>& parts, const language::Assignment& assignment);
@@ -97,6 +104,8 @@ class Elaborator {
   GraphBuilder builder_;
   std::vector<Slot> slots_;
   std::vector<Parameter> open_parameters_;
+  std::vector<std::uint32_t> levels_;                   ///< beside the nodes: in how many blocks each is written
+  std::unordered_map<std::string, std::size_t> given_;  ///< by path: how many numbers the text gives a parameter
 };
 
 }  // namespace hysteron

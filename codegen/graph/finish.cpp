@@ -47,10 +47,12 @@ std::vector<std::uint32_t> order_by_path(const Range& range, Path path) {
 
 class Finisher {
  public:
-  Finisher(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics)
-      : graph_(graph), slots_(slots), parameters_(parameters), diagnostics_(diagnostics) {}
+  Finisher(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, OuterPlaces& places,
+           Diagnostics& diagnostics)
+      : graph_(graph), slots_(slots), parameters_(parameters), places_(places), diagnostics_(diagnostics) {}
 
-  void run() {
+  void run(const std::vector<std::uint32_t>& levels) {
+    find_places(levels);
     for (Port& inner : graph_.inner) {
       if (inner.wire.from == Wire::From::Alias && slots_[inner.wire.index].span.length > 0) {
         inner.span = slots_[inner.wire.index].span;
@@ -97,15 +99,49 @@ class Finisher {
     return source;
   }
 
+  /// The outermost place of each wire: its own, or that of a variable on its way. While variables still name each
+  /// other.
+  void find_places(const std::vector<std::uint32_t>& levels) {
+    outermost_.resize(slots_.size());
+    places_.resize(graph_.wires.size());
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
+      const Node& node = graph_.nodes[i];
+      for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
+        const std::uint32_t wire = node.first_wire + pin;
+        places_[wire] = outermost_of(graph_.wires[wire], {levels[i], graph_.wire_spans[wire]});
+      }
+    }
+  }
+
+  OuterPlace outermost_of(const Wire& wire, OuterPlace own) {
+    way_.clear();
+    OuterPlace rest{none, {}};
+    for (Wire at = wire; at.from == Wire::From::Alias; at = slots_[at.index].wire) {
+      if (outermost_[at.index] || way_.size() > slots_.size()) {
+        rest = outermost_[at.index].value_or(rest);
+        break;
+      }
+      way_.push_back(at.index);
+    }
+    for (; !way_.empty(); way_.pop_back()) {
+      const Slot& slot = slots_[way_.back()];
+      rest = slot.span.length > 0 && slot.level <= rest.level ? OuterPlace{slot.level, slot.span} : rest;
+      outermost_[way_.back()] = rest;
+    }
+    return own.level <= rest.level ? own : rest;
+  }
+
   void sort_nodes() {
     const auto order = order_by_path(graph_.nodes, [](const Node& node) -> const std::string& { return node.path; });
     std::vector<std::uint32_t> moved_to(order.size());
     std::vector<Node> nodes;
     std::vector<Wire> wires;
     std::vector<language::Span> spans;
+    OuterPlaces places;
     nodes.reserve(order.size());
     wires.reserve(graph_.wires.size());
     spans.reserve(graph_.wires.size());
+    places.reserve(graph_.wires.size());
     for (const std::uint32_t old : order) {
       moved_to[old] = static_cast<std::uint32_t>(nodes.size());
       Node& node = graph_.nodes[old];
@@ -113,6 +149,7 @@ class Finisher {
       for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
         wires.push_back(graph_.wires[node.first_wire + pin]);
         spans.push_back(graph_.wire_spans[node.first_wire + pin]);
+        places.push_back(places_[node.first_wire + pin]);
       }
       node.first_wire = first;
       nodes.push_back(std::move(node));
@@ -125,6 +162,7 @@ class Finisher {
       }
     });
     graph_.wire_spans = std::move(spans);
+    places_ = std::move(places);
     canonical_literals();
   }
 
@@ -237,8 +275,8 @@ class Finisher {
         one = graph_.nodes[wire.index].rate;
       }
       if (one && rate && *one != *rate) {
-        report(node.span, fmt::format("an expression mixes signals of two rates ({} and {})", steps_of(rate->every),
-                                      steps_of(one->every)));
+        report(node.span, fmt::format("an expression mixes signals of two rates ({} and {})", steps_of(*rate, *one),
+                                      steps_of(*one, *rate)));
       }
       rate = rate ? rate : one;
     }
@@ -246,9 +284,12 @@ class Finisher {
     node.rate = rate.value_or(Rate{});
   }
 
-  /// `every step`, `every 4 steps`.
-  static std::string steps_of(std::uint32_t every) {
-    return every == 1 ? std::string("every step") : fmt::format("every {} steps", every);
+  /// `every step`, `every 4 steps`; beside a rate that differs by its phase alone, `every 4 steps from step 1`.
+  static std::string steps_of(const Rate& rate, const Rate& other) {
+    if (rate.every == other.every) {
+      return fmt::format("every {} steps from step {}", rate.every, rate.phase);
+    }
+    return rate.every == 1 ? std::string("every step") : fmt::format("every {} steps", rate.every);
   }
 
   /// All rates repeat together after their least common multiple.
@@ -295,8 +336,8 @@ class Finisher {
         const auto rate = rate_of(graph_.wires[node.first_wire + pin]);
         if (rate && *rate != node.rate) {
           report(graph_.wire_spans[node.first_wire + pin],
-                 fmt::format("{} runs {}, its input {} changes {}", node.path, steps_of(node.rate.every),
-                             node.block->pin(pin).name, steps_of(rate->every)));
+                 fmt::format("{} runs {}, its input {} changes {}", node.path, steps_of(node.rate, *rate),
+                             node.block->pin(pin).name, steps_of(*rate, node.rate)));
         }
       }
     }
@@ -317,7 +358,11 @@ class Finisher {
   Graph& graph_;
   std::vector<Slot>& slots_;
   std::vector<Parameter>& parameters_;
+  OuterPlaces& places_;
   Diagnostics& diagnostics_;
+  static constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::optional<OuterPlace>> outermost_;  ///< by slot: of the way from it to what drives it
+  std::vector<std::uint32_t> way_;
   enum class Settled : std::uint8_t { No, Open, Yes };
   std::vector<Settled> settled_;
   std::vector<bool> constant_;
@@ -325,8 +370,9 @@ class Finisher {
 
 }  // namespace
 
-void finish(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters, Diagnostics& diagnostics) {
-  Finisher(graph, slots, parameters, diagnostics).run();
+void finish(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& parameters,
+            const std::vector<std::uint32_t>& levels, OuterPlaces& places, Diagnostics& diagnostics) {
+  Finisher(graph, slots, parameters, places, diagnostics).run(levels);
 }
 
 std::int64_t find_parameter(const Graph& graph, std::string_view path) {

@@ -163,12 +163,36 @@ Wire Lowering::expression(language::ExpressionId id) {
   return {};
 }
 
-Wire Lowering::mismatch(language::Span span, std::string_view what, Type left, Type right) {
-  const bool numbers = (left == Type::Real && right == Type::Int) || (left == Type::Int && right == Type::Real);
-  report_(
-      error::type_mismatch, span, fmt::format("{} does not take {} and {}", what, type_name(left), type_name(right)),
-      numbers ? "Nothing is converted silently: write literals as 1.0, or convert by DINT_TO_LREAL or LREAL_TO_DINT."
-              : "Make both sides of the same type; a comparison turns a number into a BOOL, SEL a BOOL into a number.");
+Wire Lowering::mismatch(language::Span span, std::string_view what, std::initializer_list<Type> given,
+                        const std::vector<Type>& taken) {
+  const auto is_taken = [&](Type type) { return std::ranges::find(taken, type) != taken.end(); };
+  const auto is_given = [&](Type type) { return std::ranges::find(given, type) != given.end(); };
+  const auto names = [](const auto& types, std::string_view between) {
+    std::string text;
+    for (const Type type : types) {
+      text += text.empty() ? "" : between;
+      text += type_name(type);
+    }
+    return text;
+  };
+  std::string mend =
+      fmt::format("It takes {}{}.", names(taken, " or "), taken.size() > 1 ? ", the same on both sides" : "");
+  if (is_given(Type::Word)) {
+    mend += " Nothing is computed of a WORD: it is wired as it is.";
+  } else if (is_given(Type::Real) && is_given(Type::Int)) {
+    mend += " Nothing is converted silently: write literals as 1.0, or convert by DINT_TO_LREAL or LREAL_TO_DINT.";
+  } else if (is_given(Type::Bool) && !is_taken(Type::Bool)) {
+    mend += " SEL turns a BOOL into a number.";
+  } else if (!is_given(Type::Bool) && !is_taken(Type::Real) && !is_taken(Type::Int)) {
+    mend += " A comparison turns a number into a BOOL.";
+  } else if (!is_taken(Type::Int)) {
+    mend += " DINT_TO_LREAL converts.";
+  } else if (!is_taken(Type::Real)) {
+    mend += " LREAL_TO_DINT and TRUNC convert.";
+  } else {
+    mend += " A comparison turns a number into a BOOL, SEL a BOOL into a number.";
+  }
+  report_(error::type_mismatch, span, fmt::format("{} does not take {}", what, names(given, " and ")), std::move(mend));
   return {};
 }
 
@@ -179,13 +203,13 @@ Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
   }
   if (unary.op == Operator::Not) {
     return operand.type == Type::Bool ? apply(Op::Not, {operand}, span)
-                                      : mismatch(span, "NOT", operand.type, operand.type);
+                                      : mismatch(span, "NOT", {operand.type}, {Type::Bool});
   }
   if (operand.type == Type::Real) {
     return apply(Op::Negate, {operand}, span);
   }
   return operand.type == Type::Int ? apply(Op::IntNegate, {operand}, span)
-                                   : mismatch(span, "unary −", operand.type, operand.type);
+                                   : mismatch(span, "unary −", {operand.type}, {Type::Real, Type::Int});
 }
 
 Wire Lowering::lower_binary(const language::Binary& binary, language::Span span) {
@@ -236,7 +260,14 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
                                      : std::nullopt;
     }
     if (!op) {
-      return mismatch(span, row.text, left.type, right.type);
+      std::vector<Type> taken;
+      for (const auto& [type, one] :
+           {std::pair{Type::Real, row.real}, {Type::Int, row.integer}, {Type::Bool, row.truth}}) {
+        if (one) {
+          taken.push_back(type);
+        }
+      }
+      return mismatch(span, row.text, {left.type, right.type}, taken);
     }
     const Wire result = row.swapped ? apply(*op, {right, left}, span) : apply(*op, {left, right}, span);
     return row.op == Operator::Equal && left.type == Type::Bool ? apply(Op::Not, {result}, span) : result;

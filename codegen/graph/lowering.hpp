@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "codegen/graph/graph.hpp"
 #include "codegen/language/syntax.hpp"
@@ -61,7 +63,9 @@ class Lowering {
   Wire apply(Op op, std::initializer_list<Wire> operands, language::Span span) {
     return builder_.operation(op, operands, path_, span);
   }
-  Wire mismatch(language::Span span, std::string_view what, Type left, Type right);
+  /// Refuses the types of an operator that takes those of `taken`, both sides the same.
+  Wire mismatch(language::Span span, std::string_view what, std::initializer_list<Type> given,
+                const std::vector<Type>& taken);
   [[nodiscard]] language::Span span_of(language::ExpressionId id) const { return source_.expressions[id].span; }
 
   GraphBuilder& builder_;

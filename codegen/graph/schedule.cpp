@@ -1,11 +1,10 @@
-#include "codegen/graph/schedule.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <span>
 
+#include "codegen/graph/outermost.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {
@@ -28,7 +27,9 @@ enum class Division : std::uint8_t { Whole, Feedthrough, Ports };
 
 class Scheduler {
  public:
-  Scheduler(const Graph& graph, Diagnostics& diagnostics) : graph_(graph), diagnostics_(diagnostics) {
+  /// `places` is empty, or stands beside the wires.
+  Scheduler(const Graph& graph, const OuterPlaces& places, Diagnostics& diagnostics)
+      : graph_(graph), places_(places), diagnostics_(diagnostics) {
     first_output_.reserve(graph.nodes.size() + 1);
     std::uint32_t count = 0;
     for (const Node& node : graph.nodes) {
@@ -257,34 +258,46 @@ class Scheduler {
 
   void report(const std::vector<std::uint32_t>& loop) {
     const auto circle = shortest_circle(loop);
-    std::vector<Note> notes;
     std::string path;
-    language::Span first{};
+    struct Cut {
+      OuterPlace place;
+      std::string wire;
+    };
+    std::vector<Cut> cuts;
     // Against the order of dependence, the way the signal flows.
     for (std::size_t i = circle.size(); i-- > 0;) {
       const Task& reader = tasks_[circle[i]];
       const std::uint32_t source = circle[(i + 1) % circle.size()];
       const Node& node = graph_.nodes[reader.node];
       for_each_dependence(circle[i], [&](std::uint32_t task, std::uint32_t pin) {
-        if (task != source || pin == none || (!notes.empty() && notes.size() == circle.size())) {
+        if (task != source || pin == none || cuts.size() == circle.size()) {
           return;
         }
         const Wire& wire = graph_.wire(node, pin);
         const Node& from = graph_.nodes[wire.index];
-        const auto span = graph_.wire_spans[node.first_wire + pin];
-        if (notes.empty()) {
-          first = span;
-        }
+        const std::uint32_t place = node.first_wire + pin;
         path += (path.empty() ? "" : " → ") + display(from);
-        notes.push_back({graph_.place(span), fmt::format("wire {} → {}: a HY_DELAY here would cut the loop",
-                                                         output_name(from, wire.port), input_name(node, pin))});
+        cuts.push_back({places_.empty() ? OuterPlace{0, graph_.wire_spans[place]} : places_[place],
+                        fmt::format("wire {} → {}: a HY_DELAY here would cut the loop", output_name(from, wire.port),
+                                    input_name(node, pin))});
       });
     }
-    if (!notes.empty()) {
+    if (!cuts.empty()) {
       path += " → " + path.substr(0, path.find(" → "));
     }
+    // A delay inside a block that is used twice would stand in both: only the outermost wires are shown.
+    std::uint32_t outermost = none;
+    for (const Cut& cut : cuts) {
+      outermost = std::min(outermost, cut.place.level);
+    }
+    std::erase_if(cuts, [&](const Cut& cut) { return cut.place.level > outermost; });
+    std::vector<Note> notes;
+    for (Cut& cut : cuts) {
+      notes.push_back({graph_.place(cut.place.span), std::move(cut.wire)});
+    }
     diagnostics_.error(
-        error::algebraic_loop, graph_.place(first), fmt::format("algebraic loop: {}", path),
+        error::algebraic_loop, graph_.place(cuts.empty() ? language::Span{} : cuts.front().place.span),
+        fmt::format("algebraic loop: {}", path),
         "Every value in this circle needs the others in the same step. Put a HY_DELAY into one of its wires.",
         std::move(notes));
   }
@@ -378,6 +391,7 @@ class Scheduler {
   }
 
   const Graph& graph_;
+  const OuterPlaces& places_;
   Diagnostics& diagnostics_;
   std::vector<std::uint32_t> first_output_;  ///< by node, into provider_
   std::vector<std::uint32_t> provider_;      ///< by output of any node: the task that computes it
@@ -391,8 +405,12 @@ class Scheduler {
 
 }  // namespace
 
+Schedule schedule(const Graph& graph, const OuterPlaces& places, Diagnostics& diagnostics) {
+  return Scheduler(graph, places, diagnostics).run();
+}
+
 Schedule schedule(const Graph& graph, Diagnostics& diagnostics) {
-  return Scheduler(graph, diagnostics).run();
+  return schedule(graph, {}, diagnostics);
 }
 
 bool has_feedthrough(const Graph& graph, const Node& node, std::size_t output) {

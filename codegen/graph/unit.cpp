@@ -7,10 +7,12 @@
 namespace hysteron::units {
 namespace {
 
+constexpr double radians_in_a_cycle = 2 * 3.14159265358979323846;
+
 struct Symbol {
   std::string_view name;
   double factor;
-  std::array<int, dimensions> powers;  // m kg s A K degC mol cd
+  std::array<int, std::tuple_size_v<Powers>> powers;  // m kg s A K degC mol cd, rad, cycles
   bool prefixes;
 };
 constexpr std::array symbols{
@@ -37,16 +39,16 @@ constexpr std::array symbols{
     Symbol{"Wb", 1, {2, 1, -2, -1}, true},
     Symbol{"T", 1, {0, 1, -2, -1}, true},
     Symbol{"H", 1, {2, 1, -2, -2}, true},
-    Symbol{"Hz", 1, {0, 0, -1}, true},
+    Symbol{"Hz", 1, {0, 0, -1, 0, 0, 0, 0, 0, 0, 1}, true},
     Symbol{"L", 1e-3, {3}, true},
     Symbol{"l", 1e-3, {3}, true},
     Symbol{"min", 60, {0, 0, 1}, false},
     Symbol{"h", 3600, {0, 0, 1}, false},
     Symbol{"d", 86400, {0, 0, 1}, false},
-    Symbol{"rpm", 2 * 3.14159265358979323846 / 60, {0, 0, -1}, false},
-    Symbol{"rad", 1, {}, true},
-    Symbol{"deg", 3.14159265358979323846 / 180, {}, false},
-    Symbol{"rev", 2 * 3.14159265358979323846, {}, false},
+    Symbol{"rpm", radians_in_a_cycle / 60, {0, 0, -1, 0, 0, 0, 0, 0, 1}, false},
+    Symbol{"rad", 1, {0, 0, 0, 0, 0, 0, 0, 0, 1}, true},
+    Symbol{"deg", radians_in_a_cycle / 360, {0, 0, 0, 0, 0, 0, 0, 0, 1}, false},
+    Symbol{"rev", radians_in_a_cycle, {0, 0, 0, 0, 0, 0, 0, 0, 1}, false},
     Symbol{"%", 1e-2, {}, false},
     Symbol{"ppm", 1e-6, {}, false},
     Symbol{"count", 1, {}, false},
@@ -66,7 +68,7 @@ Unit unit_of(const Symbol& symbol, double factor, std::string_view written) {
   Unit unit;
   unit.symbols.emplace_back(written, Fraction{1, 1});
   unit.factor = symbol.factor * factor;
-  for (std::size_t i = 0; i < dimensions; ++i) {
+  for (std::size_t i = 0; i < unit.powers.size(); ++i) {
     unit.powers[i] = {symbol.powers[i], 1};
   }
   return unit;
@@ -251,6 +253,17 @@ class Parser {
 
 std::optional<Unit> parse_unit(std::string_view text, std::string& reason, const UnitVariable& variable) {
   return Parser(text, variable).parse(reason);
+}
+
+std::optional<double> conversion(const Unit& from, const Unit& to) {
+  if (!from.same_dimension(to)) {
+    return std::nullopt;
+  }
+  const auto more = [&](std::size_t mark) { return from.powers[mark].number() - to.powers[mark].number(); };
+  const double surplus = more(cycles);
+  const double lack = -more(radians);
+  const double exchanged = surplus * lack <= 0.0 ? 0.0 : std::abs(surplus) < std::abs(lack) ? surplus : lack;
+  return from.factor / to.factor * std::pow(radians_in_a_cycle, exchanged);
 }
 
 std::string unit_text(const Unit& unit) {

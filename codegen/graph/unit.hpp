@@ -39,9 +39,12 @@ struct Fraction {
 };
 
 // The base dimensions: those of the SI without the mole and the candela's kin, and a temperature scale of its own for
-// °C, whose zero is elsewhere.
+// °C, whose zero is elsewhere. Behind them the marks of angles: the SI has both rad and a cycle as 1, so that either
+// may be left away, but a radian is no cycle, and rad/s no Hz.
 constexpr std::size_t dimensions = 8;  // m kg s A K degC mol cd
-using Powers = std::array<Fraction, dimensions>;
+constexpr std::size_t radians = dimensions;
+constexpr std::size_t cycles = dimensions + 1;
+using Powers = std::array<Fraction, dimensions + 2>;
 
 /// A unit: a factor to the SI, powers of the base dimensions and, in a block, of its unit variables.
 struct Unit {
@@ -54,7 +57,7 @@ struct Unit {
   void multiply(const Unit& other, Fraction exponent) {
     declared = declared || other.declared;
     factor *= other.factor == 1.0 ? 1.0 : std::pow(other.factor, exponent.number());
-    for (std::size_t i = 0; i < dimensions; ++i) {
+    for (std::size_t i = 0; i < powers.size(); ++i) {
       if (!other.powers[i].zero()) {
         powers[i] = powers[i] + other.powers[i] * exponent;
       }
@@ -97,6 +100,10 @@ struct Unit {
     return true;
   }
 };
+
+/// The number of the second unit in one of the first (mm in m: 1000); nothing where their dimensions differ. Radians
+/// where cycles are expected, and the reverse, count by 2π; where only one side has them, they are plain numbers.
+std::optional<double> conversion(const Unit& from, const Unit& to);
 
 /// Whether two factors to the SI are the same but for rounding.
 inline bool same_size(double a, double b) {

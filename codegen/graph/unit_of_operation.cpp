@@ -5,6 +5,14 @@
 #include <vector>
 
 namespace hysteron::units {
+namespace {
+
+MaybeUnit radian() {
+  std::string reason;
+  return parse_unit("rad", reason);
+}
+
+}  // namespace
 
 MaybeUnit unit_of_operation(Op op, std::span<const MaybeUnit> operands, std::optional<double> exponent,
                             const Agree& agree) {
@@ -50,14 +58,18 @@ MaybeUnit unit_of_operation(Op op, std::span<const MaybeUnit> operands, std::opt
     }
     case Op::Exp:
     case Op::Log:
+      agree(operands[0], Unit{});
+      return Unit{};
     case Op::Sin:
     case Op::Cos:
     case Op::Tan:
+      agree(operands[0], radian());
+      return Unit{};
     case Op::Asin:
     case Op::Acos:
     case Op::Atan:
       agree(operands[0], Unit{});
-      return Unit{};
+      return radian();
     default:
       return std::nullopt;
   }
@@ -76,8 +88,7 @@ std::optional<std::string> unit_of_constants(Op op, std::span<const std::string_
   bool agreed = true;
   const MaybeUnit result =
       unit_of_operation(op, units, exponent, [&](const MaybeUnit& given, const MaybeUnit& expected) {
-        agreed = agreed && (!given || !expected ||
-                            (given->same_dimension(*expected) && same_size(given->factor, expected->factor)));
+        agreed = agreed && (!given || !expected || same_size(conversion(*given, *expected).value_or(0.0), 1.0));
       });
   if (!agreed) {
     return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -22,6 +23,12 @@ namespace {
 
 /// Nothing is concluded from an equation with more unknowns than this.
 constexpr std::size_t most_unknowns = 32;
+
+/// A factor as it is to be written: all digits, but those of rounding alone (1000.0000000000001 is 1000).
+std::string factor_text(double factor) {
+  const double round = parse_number(fmt::format("{:.12g}", factor)).value;
+  return number_text(std::abs(round / factor - 1.0) < 1e-15 ? round : factor);
+}
 
 /// The units of all wires, found by unification: unit variables are solved as wires are met.
 class Checker {
@@ -313,7 +320,7 @@ class Checker {
     return wire.from == Wire::From::Literal && wire.type == Type::Real && literal_unit(wire).empty();
   }
 
-  static bool is_one(const Unit& unit) { return unit.same_dimension(Unit{}) && same_size(unit.factor, 1.0); }
+  static bool is_one(const Unit& unit) { return same_size(units::conversion(unit, Unit{}).value_or(0.0), 1.0); }
 
   bool can_agree(const Unit& given, const Unit& expected) {
     const Unit quotient = solver_.ratio(given, expected);
@@ -368,13 +375,13 @@ class Checker {
   std::string mend(const Sides& sides, const Unit& given, const Unit& expected) {
     Unit quotient = given;
     quotient.multiply(expected, {-1, 1});
-    if (given.same_dimension(expected)) {
-      return fmt::format(
-          "The two differ by the factor {:.6g}: put a HY_GAIN with K = {:.6g} between them, whose output carries the "
-          "other unit.",
-          quotient.factor, quotient.factor);
-    }
     std::string text = "Correct an @unit, or connect a signal of the expected unit.";
+    if (const auto factor = units::conversion(given, expected)) {
+      text = fmt::format(
+          "The two differ by the factor {0}: put a HY_GAIN with K = {0} between them, whose output carries the other "
+          "unit.",
+          factor_text(*factor));
+    }
     for (const bool is_given : {true, false}) {
       double number = 0.0;
       bool divides = false;
@@ -430,11 +437,9 @@ bool conversion(std::string_view from, std::string_view to, double& factor) {
   std::string reason;
   const auto left = parse_unit(from, reason);
   const auto right = parse_unit(to, reason);
-  if (!left || !right || !left->same_dimension(*right)) {
-    return false;
-  }
-  factor = left->factor / right->factor;
-  return true;
+  const auto found = left && right ? conversion(*left, *right) : std::nullopt;
+  factor = found.value_or(factor);
+  return found.has_value();
 }
 
 void check(const Graph& graph, const Schedule& schedule, Diagnostics& diagnostics) {

@@ -71,8 +71,8 @@ bool is_unary_sign(const Token& token) {
 
 }  // namespace
 
-ExpressionId Parser::make(Expression expression, std::uint32_t height) {
-  if (too_deep(height, expression.span)) {
+ExpressionId Parser::make(Expression expression, std::uint32_t height, std::uint32_t chain) {
+  if (too_deep(height, expression.span, chain)) {
     return no_expression;
   }
   file_.expressions.push_back(std::move(expression));
@@ -80,9 +80,16 @@ ExpressionId Parser::make(Expression expression, std::uint32_t height) {
   return static_cast<ExpressionId>(file_.expressions.size() - 1);
 }
 
-bool Parser::too_deep(std::uint32_t depth, Span span) {
+bool Parser::too_deep(std::uint32_t depth, Span span, std::uint32_t chain) {
   if (depth <= deepest_expression) {
     return false;
+  }
+  if (chain > deepest_expression / 2) {
+    error(error::nested_too_deeply, span,
+          fmt::format("Each operator of a chain such as A + B + C counts as a level, and these are more than {}.",
+                      deepest_expression),
+          "Give a part of it to a variable of its own, or add many signals by several HY_SUM blocks.");
+    return true;
   }
   error(error::nested_too_deeply, span,
         fmt::format("This expression is nested more than {} levels deep.", deepest_expression),
@@ -92,6 +99,7 @@ bool Parser::too_deep(std::uint32_t depth, Span span) {
 
 ExpressionId Parser::binary(int weakest) {
   ExpressionId left = operand();
+  std::uint32_t chain = 0;
   while (left != no_expression) {
     const auto sign = binary_sign(now());
     if (sign.strength < weakest) {
@@ -104,7 +112,7 @@ ExpressionId Parser::binary(int weakest) {
     }
     const auto begin = file_.expressions[left].span.offset;
     const auto height = 1U + std::max(heights_[left], heights_[right]);
-    left = make({.node = Binary{sign.op, left, right}, .span = since(begin)}, height);
+    left = make({.node = Binary{sign.op, left, right}, .span = since(begin)}, height, ++chain);
   }
   return left;
 }

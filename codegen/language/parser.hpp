@@ -58,8 +58,9 @@ class Parser {
   ExpressionId literal(bool behind_minus);
   ExpressionId array();
   bool function_argument(std::vector<FunctionArgument>& list);
-  ExpressionId make(Expression expression, std::uint32_t height);
-  bool too_deep(std::uint32_t depth, Span span);
+  ExpressionId make(Expression expression, std::uint32_t height, std::uint32_t chain = 0);
+  /// `chain`: of so many operators in a row that there need not be any brackets.
+  bool too_deep(std::uint32_t depth, Span span, std::uint32_t chain = 0);
 
   // Tokens.
   [[nodiscard]] const Token& now() const { return window_[0]; }

@@ -9,9 +9,11 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
+#include "codegen/graph/relations.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -112,32 +114,34 @@ bool is_input(const Graph& graph, std::string_view path) {
                      [&](const Port& input) { return equal_ignoring_case(input.name, path); });
 }
 
-void set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnostics) {
+/// False where the value was refused.
+bool set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnostics) {
   const Field& field = parameter.field;
   const auto numbers = numbers_of(given.value, field);
   if (!numbers) {
     diagnostics.error(error::wrong_value_type, given.value_place,
                       fmt::format("{} takes {}, not {}.", parameter.path, type_in_words(field), kind_of(given.value)),
                       fmt::format("write it as in {}.", example_of(field)));
-    return;
+    return false;
   }
   if (numbers->size() > field.length) {
     diagnostics.error(
         error::wrong_value_type, given.value_place,
         fmt::format("{} takes at most {} numbers, here are {}.", parameter.path, field.length, numbers->size()),
         "leave some out.");
-    return;
+    return false;
   }
   for (const double number : *numbers) {
     if (const auto fault = range_fault(field, number); !fault.empty()) {
       diagnostics.error(error::parameter_out_of_range, given.value_place,
                         fmt::format("{} = {} lies outside of its range.", parameter.path, number_text(number)),
                         fmt::format("{} {}.", field.name, fault));
-      return;
+      return false;
     }
   }
   std::fill(parameter.value.begin(), parameter.value.end(), 0.0);
   std::copy(numbers->begin(), numbers->end(), parameter.value.begin());
+  return true;
 }
 
 }  // namespace
@@ -274,9 +278,43 @@ void check_bounds(const FitSetting& fit, const Parameter& parameter, Diagnostics
   }
 }
 
+/// The values that the file sets among the parameters that they hang together with, which may stand in the diagram.
+void check_relations(const Graph& graph, const std::vector<const ParameterValue*>& set_by, Diagnostics& diagnostics) {
+  for (const Node& node : graph.nodes) {
+    if (node.block == nullptr || node.block->params.empty()) {
+      continue;
+    }
+    const ParameterValue* last = nullptr;
+    const auto given_to = [&](std::size_t param) {
+      const Wire& wire = graph.wire(node, node.block->inputs.size() + param);
+      return wire.from == Wire::From::Parameter ? set_by[wire.index] : nullptr;
+    };
+    for (std::size_t param = 0; param < node.block->params.size(); ++param) {
+      const ParameterValue* const given = given_to(param);
+      last = given != nullptr ? given : last;
+    }
+    if (last == nullptr) {
+      continue;
+    }
+    const auto values = numbers_of_params(graph, node, [&](std::size_t parameter) {
+      const auto* const given = set_by[parameter];
+      const auto* const list = given != nullptr ? std::get_if<std::vector<double>>(&given->value) : nullptr;
+      const std::span<const double> all(graph.parameters[parameter].value);
+      return list != nullptr ? all.first(list->size()) : all;
+    });
+    for (Contradiction& one : contradictions(*node.block, node.path, values, period_of(graph, node))) {
+      const ParameterValue* const given = given_to(one.param);
+      diagnostics.error(error::parameter_out_of_range, (given != nullptr ? given : last)->value_place,
+                        std::move(one.cause), std::move(one.mend));
+    }
+  }
+}
+
 }  // namespace
 
 void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
+  bool all_set = true;
+  std::vector<const ParameterValue*> set_by(graph.parameters.size(), nullptr);
   std::unordered_map<std::string, std::size_t> by_path;
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
     by_path.emplace(graph.parameters[i].path, i);
@@ -286,8 +324,13 @@ void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
     if (found == by_path.end()) {
       report_unknown_parameter(graph, given.path, given.place, diagnostics);
     } else {
-      set(given, graph.parameters[found->second], diagnostics);
+      const bool is_set = set(given, graph.parameters[found->second], diagnostics);
+      set_by[found->second] = &given;
+      all_set = all_set && is_set;
     }
+  }
+  if (all_set && !file.values.empty()) {
+    check_relations(graph, set_by, diagnostics);
   }
   for (const ParameterValue& given : file.initial) {
     set_state(given, graph, diagnostics);

@@ -13,7 +13,8 @@ namespace hysteron::parameters {
 /// Sets the values of a file in the parameters of a graph, and the values of its states after a reset. Names are
 /// compared without regard to case. A list may be shorter than the array it fills; the rest is 0, as in the text of a
 /// diagram. Reports, at their places in the file, HY603 for a name that the diagram does not have, HY604 for a value of
-/// another type or length, HY214 for one outside of its range.
+/// another type or length, HY214 for one outside of its range, or that cannot stand beside the
+/// other parameters of its block.
 void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics);
 
 /// The same; throws InputError with everything that was reported.

@@ -62,6 +62,59 @@ TEST(Compile, AnAlgebraicLoopIsAPathWithTheWiresWhereADelayWouldCutIt) {
   }
 }
 
+/// Of a loop through two instances of one block, that it is cut for one of them.
+TEST(Compile, AnAlgebraicLoopThroughBlocksOfBlocksIsShownWhereTheyAreWired) {
+  const std::string inner =
+      "FUNCTION_BLOCK INNER VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "VAR G : HY_GAIN; V : LREAL; END_VAR G(XIN := X); V := G.XOUT + 1.0; Y := V; END_FUNCTION_BLOCK\n";
+  const auto found = diagnose(inner + block(io + "VAR P : INNER; Q : INNER; A : LREAL; END_VAR",
+                                            "A := U + Q.Y;\nP(X := A);\nQ(X := P.Y);\nY := Q.Y;"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].number, error::algebraic_loop);
+  std::vector<std::uint32_t> lines;
+  for (const Note& note : found[0].notes) {
+    lines.push_back(note.place.line);
+  }
+  EXPECT_THAT(lines, ::testing::UnorderedElementsAre(5U, 6U, 7U));
+  EXPECT_THAT(lines, Contains(found[0].place.line));
+}
+
+TEST(Compile, AnAlgebraicLoopInsideABlockOfBlocksIsShownThere) {
+  const std::string inner =
+      "FUNCTION_BLOCK INNER VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "VAR G : HY_GAIN; S : HY_SUM; END_VAR\nG(XIN := S.XOUT);\nS(IN1 := X, IN2 := G.XOUT); Y := G.XOUT; "
+      "END_FUNCTION_BLOCK\n";
+  const auto found = diagnose(inner + block(io + "VAR P : INNER; END_VAR", "P(X := U);\nY := P.Y;"));
+  ASSERT_THAT(found, Contains(::testing::Field(&Diagnostic::number, error::algebraic_loop)));
+  const auto& loop = *std::ranges::find(found, error::algebraic_loop, &Diagnostic::number);
+  ASSERT_EQ(loop.notes.size(), 2U);
+  for (const Note& note : loop.notes) {
+    EXPECT_THAT(note.place.line, ::testing::AnyOf(3U, 4U));
+  }
+}
+
+TEST(Compile, TheMendOfATypeSaysWhatTheOperatorTakes) {
+  const auto mend = [](const std::string& type, const std::string& expression) {
+    const auto found =
+        diagnose(block("VAR_INPUT A : " + type + "; B : " + type + "; END_VAR VAR_OUTPUT Y : " + type + "; END_VAR",
+                       "Y := " + expression + ";"));
+    return found.size() == 1 && found[0].number == error::type_mismatch ? found[0].mend : "";
+  };
+  EXPECT_THAT(mend("WORD", "A AND B"), AllOf(HasSubstr("It takes BOOL"), HasSubstr("Nothing is computed of a WORD")));
+  EXPECT_THAT(mend("DINT", "A ** B"), AllOf(HasSubstr("It takes LREAL"), HasSubstr("DINT_TO_LREAL")));
+  EXPECT_THAT(mend("LREAL", "A MOD B"), AllOf(HasSubstr("It takes DINT"), HasSubstr("LREAL_TO_DINT")));
+  EXPECT_THAT(mend("BOOL", "A + B"), AllOf(HasSubstr("It takes LREAL or DINT"), HasSubstr("SEL turns a BOOL")));
+  EXPECT_THAT(mend("LREAL", "NOT A"), AllOf(HasSubstr("It takes BOOL"), HasSubstr("A comparison")));
+}
+
+TEST(Compile, RatesThatDifferByTheirPhasesAreTold) {
+  const auto found = diagnose(block(io + "VAR A : HY_SAMPLE; (* @every 3 @phase 1 *) B : HY_GAIN; (* @every 3 *) "
+                                         "H : HY_HOLD; END_VAR",
+                                    "A(XIN := U); B(XIN := A.XOUT); H(XIN := B.XOUT); Y := H.XOUT;"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].cause, "B runs every 3 steps from step 0, its input XIN changes every 3 steps from step 1");
+}
+
 TEST(Compile, ADelayClosesALoop) {
   EXPECT_THAT(diagnose(block(io + "VAR A : HY_GAIN; Z : HY_DELAY; S : HY_SUM; END_VAR",
                              "S(IN1 := U, IN2 := Z.XOUT);\nA(XIN := S.XOUT);\nZ(XIN := A.XOUT);\nY := A.XOUT;")),

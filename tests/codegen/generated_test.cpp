@@ -14,6 +14,7 @@
 
 #include "codegen/backends/c_library_names.hpp"
 #include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp_host.hpp"
 #include "codegen/backends/cpp_words.hpp"
 #include "codegen/backends/identifiers.hpp"
 #include "codegen/interpreter/machine.hpp"
@@ -169,6 +170,12 @@ TEST(Generated, NoNamespaceHasANameOfTheLanguageOrTheCLibrary) {
   std::vector<std::string> names{"MAIN", "FLOAT", "DOUBLE", "INLINE", "REGISTER", "AUTO",  "SIGNED", "EXTERN",
                                  "ASM",  "NAN",   "POW",    "SELECT", "REMOVE",   "RAND",  "STRTOD", "STD",
                                  "TM",   "LINUX", "SIGNAL", "INDEX",  "PAUSE",    "ERRNO", "DETAIL", "PLANT"};
+  for (const auto* type : {"INT8_T",    "UINT16_T",  "INT32_T", "UINT64_T", "INT_FAST32_T", "UINT_LEAST8_T", "INTMAX_T",
+                           "UINTPTR_T", "PTRDIFF_T", "VA_LIST", "WCTYPE_T", "MBSTATE_T",    "PTHREAD_T",     "SIGSET_T",
+                           "FD_SET",    "ID_T",      "WCSLEN",  "EXPL",     "STRTOK_R",     "TZNAME"}) {
+    EXPECT_NE(namespace_identifier(type), field_identifier(type)) << "is taken";
+    names.emplace_back(type);
+  }
   names.insert(names.end(), cpp_words.begin(), cpp_words.end());
   std::istringstream library{std::string(c_library_names)};
   for (std::string word; library >> word;) {
@@ -187,6 +194,19 @@ TEST(Generated, NoNamespaceHasANameOfTheLanguageOrTheCLibrary) {
   main_file.close();
   EXPECT_EQ(printed_by_main(folder, ""), "compiled\n");
   EXPECT_EQ(namespace_identifier("PLANT"), "plant") << "others keep theirs";
+}
+
+TEST(Generated, AMainWithoutOutputsCompilesWithoutAWarning) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK SINK (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR G : HY_GAIN; END_VAR G(XIN := U); "
+      "END_FUNCTION_BLOCK");
+  const test::ScratchFolder folder;
+  for (const GeneratedFile& file : {generate_cpp_header(program), cpp_host_main(program)}) {
+    std::ofstream(folder.path() / file.name) << file.text;
+  }
+  const std::string compile = fmt::format("c++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror {} {}", cpp_numeric_flags,
+                                          (folder.path() / "main.cpp").string());
+  EXPECT_EQ(std::system(compile.c_str()), 0);
 }
 
 /// Parameters of nested blocks are members of a structure; comments are the user's words.

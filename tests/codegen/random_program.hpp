@@ -104,8 +104,12 @@ class RandomDiagram {
   }
 
   std::string setting(const Field& field) {
-    const double low = std::isfinite(field.minimum) ? field.minimum + (field.above_minimum ? 0.01 : 0.0) : -2.0;
-    const double high = std::isfinite(field.maximum) ? field.maximum : low + 3.0;
+    const double low = std::isfinite(field.minimum) ? field.minimum + (field.above_minimum ? 0.01 : 0.0)
+                       : field.name == "MX"         ? 1.0  // not below MN
+                                                    : -2.0;
+    const double high = std::isfinite(field.maximum) ? field.maximum
+                        : field.name == "DEAD_TIME"  ? 1.0  // within 1024 samples
+                                                     : low + 3.0;
     if (field.type == Type::Int) {
       return fmt::format("{}", static_cast<int>(low + std::floor(unit() * (std::min(high, low + 5.0) - low + 1.0))));
     }

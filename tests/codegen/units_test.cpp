@@ -43,6 +43,23 @@ TEST(Units, Convert) {
   EXPECT_TRUE(std::isnan(factor("K", "degC"))) << "their zeros differ";
 }
 
+// A cycle is a whole turn: 2π rad, 360 deg, 1 rev. Where one side names neither, 1/s is what the other says.
+TEST(Units, OfAngularVelocityAndFrequencyDifferByATurn) {
+  constexpr double turn = 2.0 * 3.14159265358979323846;
+  EXPECT_DOUBLE_EQ(factor("Hz", "rad/s"), turn);
+  EXPECT_DOUBLE_EQ(factor("rad/s", "Hz"), 1.0 / turn);
+  EXPECT_DOUBLE_EQ(factor("rpm", "Hz"), 1.0 / 60.0);
+  EXPECT_DOUBLE_EQ(factor("rev/s", "Hz"), 1.0);
+  EXPECT_DOUBLE_EQ(factor("deg/s", "Hz"), 1.0 / 360.0);
+  EXPECT_DOUBLE_EQ(factor("kHz", "rpm"), 60'000.0);
+  EXPECT_DOUBLE_EQ(factor("Hz^2", "rad^2/s^2"), turn * turn);
+  EXPECT_DOUBLE_EQ(factor("Hz", "1/s"), 1.0);
+  EXPECT_DOUBLE_EQ(factor("1/ms", "kHz"), 1.0);
+  EXPECT_DOUBLE_EQ(factor("rad/s", "1/s"), 1.0);
+  EXPECT_DOUBLE_EQ(factor("N*m*rad/s", "W"), 1.0);
+  EXPECT_DOUBLE_EQ(factor("Hz*s", "rad"), turn);
+}
+
 TEST(Units, OfParametersComeFromTheWires) {
   const Program program = compile_text(
       "FUNCTION_BLOCK T (* @ts 1ms *) VAR_INPUT U : LREAL; (* @unit V *) END_VAR VAR_OUTPUT Y : LREAL; (* @unit um *) "
@@ -161,6 +178,37 @@ TEST(Units, TheMendSaysHowANumberGetsItsUnit) {
   EXPECT_THAT(mend(rate, "D(XIN := U); Y := 0.1 * D.XOUT + U;"), says("0.1", "s"));
   EXPECT_THAT(mend(rate, "D(XIN := U); Y := U + D.XOUT / 4.0;"), says("4.0", "1/s"));
   EXPECT_THAT(mend(integral, "Y := I.XOUT; I(XIN := 10.0 * (U - I.XOUT));"), says("10.0", "1/s"));
+}
+
+TEST(Units, TheMendNamesTheWholeFactor) {
+  const auto mend = [](const std::string& unit, const std::string& parts, const std::string& text) {
+    const auto faults =
+        unit_faults("VAR_INPUT U : LREAL; (* @unit " + unit + " *) END_VAR VAR_OUTPUT Y : LREAL; END_VAR",
+                    "VAR " + parts + " END_VAR", text);
+    return faults.size() == 1 ? faults.front().mend : std::to_string(faults.size()) + " faults";
+  };
+  const auto of_sine = [&](const std::string& unit) {
+    return mend(unit, "S : HY_SINE;", "Y := S.XOUT; S(FREQUENCY := U);");
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(of_sine("rpm"), HasSubstr("K = 0.016666666666666666 "));
+  EXPECT_THAT(of_sine("rad/s"), HasSubstr("K = 0.15915494309189535 "));
+  EXPECT_THAT(of_sine("kHz"), HasSubstr("K = 1000 "));
+  EXPECT_EQ(of_sine("rev/s"), "0 faults");
+  EXPECT_EQ(of_sine("1/s"), "0 faults");
+  EXPECT_THAT(mend("deg", "S : HY_SIN;", "S(XIN := U); Y := S.XOUT;"), HasSubstr("K = 0.017453292519943295 "));
+  EXPECT_THAT(mend("mV", "W : LREAL; (* @unit V *)", "W := U; Y := W;"), HasSubstr("K = 0.001 "));
+  EXPECT_THAT(mend("kHz", "T : LREAL := 1.0; (* @unit ms *)", "Y := SIN(U * T);"), HasSubstr("K = 6.283185307179586 "));
+}
+
+TEST(Units, ANumberThatConvertsIsWrittenAsAConstant) {
+  const std::string ports =
+      "VAR_INPUT F : LREAL; (* @unit Hz *) END_VAR VAR_OUTPUT W : LREAL; (* @unit rad/s *) END_VAR";
+  const auto faults = unit_faults(ports, "", "W := 6.283185307179586 * F;");
+  ASSERT_EQ(faults.size(), 1U);
+  const std::string constant = "VAR CONSTANT K : LREAL := 6.283185307179586; (* @unit rad/(Hz*s) *) END_VAR";
+  EXPECT_THAT(faults.front().mend, ::testing::HasSubstr(constant));
+  EXPECT_TRUE(unit_faults(ports, constant, "W := K * F;").empty()) << "the mend mends";
 }
 
 /// Solutions that hang on each other may be as many as the diagram has blocks.

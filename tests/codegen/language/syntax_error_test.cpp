@@ -202,6 +202,11 @@ TEST(SyntaxError, DepthIsBounded) {
   EXPECT_THAT(in_statements(nested(1000000)), ElementsAre("121 1:279+1"));
   EXPECT_EQ(number_of_errors(chain(256)), 0U);
   EXPECT_THAT(in_statements(chain(257)), ElementsAre("121 1:23+1025"));
+  const auto cause = [](const std::string& statement) {
+    return parse_wrong("FUNCTION_BLOCK F " + statement + " END_FUNCTION_BLOCK").diagnostics.all().front().cause;
+  };
+  EXPECT_THAT(cause(chain(257)), HasSubstr("Each operator of a chain such as A + B + C counts as a level"));
+  EXPECT_THAT(cause(nested(257)), HasSubstr("nested more than 256 levels deep"));
   std::string functions = "A := ";
   for (int i = 0; i < 100000; ++i) {
     functions += "F(";

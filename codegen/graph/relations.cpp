@@ -1,0 +1,122 @@
+#include "codegen/graph/relations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+#include "support/numbers.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Which parameters of a block hang together, by their places. Found once, by what the description calls them.
+struct Relations {
+  std::optional<std::size_t> low{};        ///< MN and MX
+  std::optional<std::size_t> high{};       ///< both or none
+  std::optional<std::size_t> count{};      ///< the points of a table that are used
+  std::vector<std::size_t> columns{};      ///< the arrays of a table; the first must rise
+  std::optional<std::size_t> dead_time{};  ///< in s, of a block that holds `samples` of the past
+  std::size_t samples = 0;
+};
+
+std::optional<std::size_t> place_of(std::span<const Field> fields, std::string_view name) {
+  const auto found = std::ranges::find(fields, name, &Field::name);
+  return found == fields.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - fields.begin()));
+}
+
+Relations relations_of(const BlockType& block) {
+  Relations result;
+  result.low = place_of(block.params, "MN");
+  result.high = place_of(block.params, "MX");
+  if (!result.low || !result.high) {
+    result.low = result.high = std::nullopt;
+  }
+  if (place_of(block.states, "RISING")) {
+    result.count = place_of(block.params, "COUNT");
+    for (std::size_t i = 0; i < block.params.size(); ++i) {
+      if (block.params[i].length > 1) {
+        result.columns.push_back(i);
+      }
+    }
+  }
+  if (const auto past = place_of(block.states, "PAST")) {
+    result.dead_time = place_of(block.params, "DEAD_TIME");
+    result.samples = block.states[*past].length;
+  }
+  return result;
+}
+
+const Relations& known_relations(const BlockType& block) {
+  static const std::unordered_map<const BlockType*, Relations> all = [] {
+    std::unordered_map<const BlockType*, Relations> map;
+    for (const BlockType& type : block_types()) {
+      map.emplace(&type, relations_of(type));
+    }
+    return map;
+  }();
+  return all.at(&block);
+}
+
+}  // namespace
+
+std::vector<Contradiction> contradictions(const BlockType& block, std::string_view instance,
+                                          std::span<const std::span<const double>> values, double period) {
+  const Relations& relations = known_relations(block);
+  std::vector<Contradiction> found;
+  const auto is_given = [&](std::optional<std::size_t> param) { return param && !values[*param].empty(); };
+  const auto name = [&](std::size_t param) { return fmt::format("{}.{}", instance, block.params[param].name); };
+
+  if (is_given(relations.low) && is_given(relations.high)) {
+    const double low = values[*relations.low].front();
+    const double high = values[*relations.high].front();
+    if (low > high) {
+      found.push_back({*relations.low,
+                       fmt::format("{} = {} is above {} = {}", name(*relations.low), number_text(low),
+                                   block.params[*relations.high].name, number_text(high)),
+                       "The lower bound must not be above the upper one."});
+    }
+  }
+
+  const auto count =
+      is_given(relations.count) ? static_cast<std::size_t>(std::max(values[*relations.count].front(), 0.0)) : 0;
+  for (const std::size_t column : relations.columns) {
+    if (const std::size_t size = values[column].size(); size > 0 && count > size) {
+      found.push_back(
+          {column,
+           fmt::format("{} has {} values, {} = {}", name(column), size, block.params[*relations.count].name, count),
+           "Give every point that counts its value, or count fewer."});
+    }
+  }
+  if (is_given(relations.count) && !relations.columns.empty()) {
+    const std::size_t column = relations.columns.front();
+    auto points = values[column];
+    points = count > 0 && count < points.size() ? points.first(count) : points;
+    const auto fall = std::ranges::adjacent_find(points, [](double a, double b) { return !(b > a); });
+    if (fall != points.end()) {
+      found.push_back(
+          {column,
+           fmt::format("{} does not rise: {} follows on {}, as number {} of {}", name(column), number_text(*(fall + 1)),
+                       number_text(*fall), fall - points.begin() + 2, points.size()),
+           "Sort the points of the table by this column, and leave out those that stand twice."});
+    }
+  }
+
+  if (is_given(relations.dead_time) && period > 0.0) {
+    const double wanted = values[*relations.dead_time].front();
+    const double longest = static_cast<double>(relations.samples) * period;
+    if (wanted > longest * (1.0 + 1e-12)) {
+      found.push_back(
+          {*relations.dead_time,
+           fmt::format("{} = {} s is longer than the {} samples of {} s that {} holds", name(*relations.dead_time),
+                       number_text(wanted), relations.samples, number_text(period), block.about.name),
+           fmt::format("At this sample time {} is at most {} s; let the part run less often by @every, or "
+                       "connect two in series.",
+                       block.params[*relations.dead_time].name, number_text(longest))});
+    }
+  }
+  return found;
+}
+
+}  // namespace hysteron

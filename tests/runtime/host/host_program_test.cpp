@@ -114,6 +114,18 @@ TEST_F(HostProgramTest, RefusesWhatItDoesNotUnderstand) {
   refused({run_file}, "HY807");
 }
 
+TEST_F(HostProgramTest, OverwritesNoneOfItsInputs) {
+  for (const std::string& keys :
+       {"[trace]\nfile = \"" + run_file + "\"\n", "[modbus]\nport = 0\nlock_file = \"" + run_file + "\"\n"}) {
+    const std::string text = "[outputs.Y]\nsafe = 0.0\n" + keys;
+    folder.write("run.toml", text);
+    const Outcome outcome = run({run_file, "--virtual", "--cycles", "5"});
+    EXPECT_EQ(outcome.code, 2) << keys;
+    EXPECT_THAT(outcome.err, StartsWith("HY709 error: " + run_file + ":")) << keys;
+    EXPECT_EQ(read_text_file(run_file), text) << keys;
+  }
+}
+
 TEST_F(HostProgramTest, HelpNamesItselfAndItsDiagram) {
   const Outcome help = run({"--help"});
   EXPECT_EQ(help.code, 0);

@@ -22,9 +22,8 @@ void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics)
     return std::tie(one.place.file, one.place.line, one.place.column, one.number, one.cause);
   };
   std::ranges::stable_sort(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
-  const auto again =
-      std::ranges::unique(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) == key(b); });
-  list.erase(again.begin(), again.end());
+  const auto same = [&](const Diagnostic& a, const Diagnostic& b) { return key(a) == key(b); };
+  list.erase(std::unique(list.begin(), list.end(), same), list.end());
   for (Diagnostic& one : list) {
     if (any_order && one.number == error::hidden_delay) {
       one.severity = Severity::Warning;

@@ -292,6 +292,7 @@ class Scheduler {
     }
     std::erase_if(cuts, [&](const Cut& cut) { return cut.place.level > outermost; });
     std::vector<Note> notes;
+    notes.reserve(cuts.size());
     for (Cut& cut : cuts) {
       notes.push_back({graph_.place(cut.place.span), std::move(cut.wire)});
     }

@@ -225,7 +225,7 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
   }
   if (config.retain) {
     const RetainFolder folder(config.retain->folder);
-    for (const std::size_t slot : {0, 1}) {
+    for (const std::size_t slot : {std::size_t{0}, std::size_t{1}}) {
       const std::string file = folder.path_of(slot).string();
       refuse_to_overwrite({.file = file, .mend = "name another folder in the run file.", .place = config.retain->place},
                           inputs);

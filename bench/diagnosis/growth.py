@@ -112,27 +112,27 @@ def main():
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        by_samples = [(count, *diagnose(options.tool, folder, record(options.tool, folder, count))) for count in SAMPLES]
-        log = record(options.tool, folder, AT)
-        by_effects = [(f"{count}", *diagnose(options.tool, folder, log, EFFECTS[:count])) for count in COUNTS]
+        logs = {count: record(options.tool, folder, count) for count in SAMPLES}
+        by_samples = [(count, *diagnose(options.tool, folder, log)) for count, log in logs.items()]
+        by_effects = [(f"{count}", *diagnose(options.tool, folder, logs[AT], EFFECTS[:count])) for count in COUNTS]
         by_effects.append(("all", *next(row[1:] for row in by_samples if row[0] == AT)))
 
         per_samples = exponent([row[0] for row in by_samples], [row[2] for row in by_samples])
         per_candidates = exponent([row[1] for row in by_effects], [row[2] for row in by_effects])
         head = ("candidates", "s", "s of the processors", "named")
 
-        def cells(row):
-            return (row[0] if isinstance(row[0], str) else f"{row[0]:,}", f"{row[1]:,}", f"{row[2]:.1f}", f"{row[3]:.1f}", row[4])
+        def cells(label, row):
+            return (label, f"{row[1]:,}", f"{row[2]:.1f}", f"{row[3]:.1f}", row[4])
 
         whole = next(row[2] for row in by_samples if row[0] == AT)
         text = "\n".join(
             (
-                markdown(("samples", *head), map(cells, by_samples)),
+                markdown(("samples", *head), [cells(f"{row[0]:,}", row) for row in by_samples]),
                 "",
                 f"All effects. The time grows with the samples to the power of {per_samples:.2f}; {AT:,} samples took "
                 f"{whole:.1f} s, the goal is at most {GOAL_SECONDS:.0f} s.",
                 "",
-                markdown(("effects", *head), map(cells, by_effects)),
+                markdown(("effects", *head), [cells(row[0], row) for row in by_effects]),
                 "",
                 f"{AT:,} samples. The time grows with the candidates to the power of {per_candidates:.2f}.",
                 "",

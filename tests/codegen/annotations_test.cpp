@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "codegen/compile.hpp"
 #include "support/errors.hpp"
+#include "tests/codegen/refusal.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -14,17 +14,12 @@ using ::testing::HasSubstr;
 
 /// What is said of a text, all of it under HY210: causes and mends.
 std::string refusal(const std::string& text) {
-  try {
-    (void)compile_text(text);
-    return "accepted";
-  } catch (const InputError& refused) {
-    std::string said;
-    for (const Diagnostic& one : refused.diagnostics().all()) {
-      EXPECT_EQ(one.number, error::bad_annotation) << one.cause;
-      said += one.cause + "\n" + one.mend + "\n";
-    }
-    return said;
+  std::string said;
+  for (const Diagnostic& one : refusals(text)) {
+    EXPECT_EQ(one.number, error::bad_annotation) << one.cause;
+    said += one.cause + "\n" + one.mend + "\n";
   }
+  return said.empty() ? "accepted" : said;
 }
 
 std::string with(const std::string& head, const std::string& input, const std::string& output = "",

@@ -14,6 +14,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "records/csv.hpp"
 #include "records/data_folder.hpp"
+#include "tests/support/measured_records.hpp"
 #include "tuning/output_error.hpp"
 
 namespace hysteron::diagnosis {
@@ -27,14 +28,8 @@ using testing::HasSubstr;
 /// Names that would call a memory what is none.
 const std::vector<std::string> hysteretic{"backlash", "coulomb_friction", "stribeck_friction", "creep"};
 
-class RealRecords : public testing::Test {
+class RealRecords : public test::OnMeasuredRecords<> {
  protected:
-  void SetUp() override {
-    if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
-      GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
-    }
-  }
-
   static records::Record record(const std::string& file, std::size_t first, std::size_t rows) {
     const auto path = records::find_record(file, HYSTERON_SOURCE_DIR);
     EXPECT_TRUE(path) << "the data folder lacks " << file;

@@ -4,16 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "records/data_folder.hpp"
+#include "tests/support/measured_records.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
 namespace {
 
-TEST(HeaterDiagnosis, WideLoopsAreNoHysteresis) {
-  if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
-    GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
-  }
+class HeaterDiagnosis : public test::OnMeasuredRecords<> {};
+
+TEST_F(HeaterDiagnosis, WideLoopsAreNoHysteresis) {
   const auto record = heater_record();
   ASSERT_TRUE(record) << "the data folder lacks tclab-thermal";
   EXPECT_GT(left_by_a_line(*record, "u1", "y1"), 0.1);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "examples/04_piezo_stack/piezo_stack.hpp"
-#include "records/data_folder.hpp"
+#include "tests/support/measured_records.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
@@ -15,10 +15,9 @@ namespace {
 using testing::AnyOf;
 using testing::Eq;
 
-TEST(PiezoDiagnosis, TwoNamedEffectsBeatPlayOperators) {
-  if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
-    GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
-  }
+class PiezoDiagnosis : public test::OnMeasuredRecords<> {};
+
+TEST_F(PiezoDiagnosis, TwoNamedEffectsBeatPlayOperators) {
   const auto identification = stack_record("identify_1hz.csv");
   ASSERT_TRUE(identification) << "the data folder lacks piezo-picma-dbo";
   const StackCycles cycles = cycles_of(*identification);

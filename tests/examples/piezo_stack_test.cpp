@@ -8,17 +8,18 @@
 #include <cmath>
 
 #include "examples/example.hpp"
-#include "records/data_folder.hpp"
+#include "tests/support/measured_records.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
 namespace {
 
-class PiezoStack : public testing::Test {
+class PiezoStack : public test::OnMeasuredRecords<> {
  protected:
   void SetUp() override {
-    if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
-      GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
+    OnMeasuredRecords::SetUp();
+    if (IsSkipped()) {
+      return;
     }
     identification = stack_record("identify_1hz.csv");
     test = stack_record("feedforward_test.csv");

@@ -8,10 +8,10 @@
 
 #include "codegen/compile.hpp"
 #include "examples/example.hpp"
-#include "records/data_folder.hpp"
 #include "support/text_file.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"
+#include "tests/support/measured_records.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::examples {
@@ -73,12 +73,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& example) { return std::string(example.param.program).substr(8); });
 
 /// Those that read measured records: where there is a folder of them, what their pages tell must be what they print.
-class MeasuredExample : public testing::TestWithParam<const char*> {};
+class MeasuredExample : public test::OnMeasuredRecords<testing::TestWithParam<const char*>> {};
 
 TEST_P(MeasuredExample, ReadmeShowsWhatItPrints) {
-  if (!records::data_folder(HYSTERON_SOURCE_DIR)) {
-    GTEST_SKIP() << "There is no folder of measured records: neither HYSTERON_DATA nor ../shared/data.";
-  }
   const ScratchFolder folder;
   ASSERT_EQ(run(programs + "/example_" + GetParam() + " " + folder / "out" + " > " + folder / "printed"), 0);
   const std::string printed = contents_of(folder / "printed");

@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from trials.generator.case import Specification, build, write
-from trials.generator.strata import plan, seed_of
+from trials.generator.strata import seed_of
 from trials.progress import Progress
 
 
@@ -33,9 +33,8 @@ def make_one(specification: Specification, folder: str, label_file: str) -> None
     os.replace(label_file + ".part", label_file)
 
 
-def make_set(seed: str, sizes: dict[str, int], cases: Path, key: Path, jobs: int, quiet: bool = False, **more: float) -> int:
+def make_set(seed: str, specifications: list[Specification], cases: Path, key: Path, jobs: int, quiet: bool = False) -> int:
     """Makes what is missing of a set, then joins the labels into the key. Returns the number of cases."""
-    specifications = plan(seed, sizes, **more)
     names = [case_name(seed, number) for number in range(len(specifications))]
     labels = key.with_suffix(".labels")
     labels.mkdir(parents=True, exist_ok=True, mode=0o700)

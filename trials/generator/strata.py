@@ -128,6 +128,18 @@ def plan(seed: str, sizes: dict[str, int], **more: float) -> list[Specification]
     return [cases[i] for i in rng.permutation(len(cases))]
 
 
+def each(seed: str, ratio: float, **more: float) -> list[Specification]:
+    """Every effect of the list alone, on every plant that has it, by one of its own formulas, in a rich record."""
+    rng = np.random.default_rng(seed_of(seed))
+    cases = []
+    for effect in HOMES:
+        for plant in HOMES[effect]:
+            names = [name for name, homes in forms(effect, False) if plant in homes]
+            chosen = ((effect, str(rng.choice(names))),)
+            cases.append(Specification("single", plant, chosen, ratio, int(rng.integers(2**62)), **more))
+    return cases
+
+
 def scaled(count: int) -> dict[str, int]:
     """The strata of the full set, scaled to about `count` cases, none left out."""
     whole = sum(FULL.values())

@@ -48,6 +48,7 @@ class Score:
 
     figures: list[Figure]
     by_effect: dict[str, dict[str, Any]]
+    by_plant: dict[str, dict[str, Any]]
     confusion: dict[str, dict[str, int]]
     reliability: list[dict[str, float]]
     strata: dict[str, dict[str, int]]
@@ -142,6 +143,17 @@ def by_effect(cases: list[Judgement]) -> dict[str, dict[str, Any]]:
     return dict(sorted(table.items()))
 
 
+def by_plant(cases: list[Judgement]) -> dict[str, dict[str, Any]]:
+    """Named first, for each effect and plant, by the plain formulas at R of 10 and more."""
+    table: dict[str, dict[str, Any]] = {}
+    for c in cases:
+        if c.stratum == "single" and c.truth and _bucket(c.ratio) == 10.0:
+            line = table.setdefault(c.truth[0], {})
+            hits, count = line.get(c.plant, (0, 0))
+            line[c.plant] = (hits + c.named_first, count + 1)
+    return dict(sorted(table.items()))
+
+
 def confusion(cases: list[Judgement]) -> dict[str, dict[str, int]]:
     """True cause by what was put first."""
     rows: dict[str, Counter[str]] = {}
@@ -182,5 +194,5 @@ def score(cases: list[Judgement]) -> Score:
     for c in cases:
         strata.setdefault(c.stratum, Counter())[c.verdict] += 1
     return Score(
-        figures(cases), by_effect(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())}, misses(cases)
+        figures(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())}, misses(cases)
     )

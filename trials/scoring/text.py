@@ -48,6 +48,15 @@ def effects(score: Score) -> str:
     return "\n".join(lines)
 
 
+def plants(score: Score) -> str:
+    """Named first, effect by effect and plant by plant."""
+    columns = sorted({plant for line in score.by_plant.values() for plant in line})
+    lines = [f"{'named first, R ≥ 10':24s}" + "".join(f"{c:>16s}" for c in columns)]
+    for name, line in score.by_plant.items():
+        lines.append(f"{name:24s}" + "".join(f"{'{}/{}'.format(*line[c]) if c in line else '':>16s}" for c in columns).rstrip())
+    return "\n".join(lines)
+
+
 def confusions(score: Score, most: int = 25) -> str:
     """What is taken for what, most often first."""
     wrong = [(n, row, column) for row, line in score.confusion.items() for column, n in line.items() if row != column and row not in ("none", "outside")]
@@ -62,4 +71,4 @@ def strata(score: Score) -> str:
 
 def whole(score: Score, head: str) -> str:
     """All tables."""
-    return "\n\n".join([head, table(score), effects(score), confusions(score), "verdicts by stratum\n" + strata(score)]) + "\n"
+    return "\n\n".join([head, table(score), effects(score), plants(score), confusions(score), "verdicts by stratum\n" + strata(score)]) + "\n"

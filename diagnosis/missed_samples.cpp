@@ -1,0 +1,198 @@
+#include "diagnosis/missed_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr std::size_t longest_run = 40;  // samples
+constexpr double still = 5.0;            // deviations of the noise, between two samples of a run
+constexpr double alike = 0.3;            // of the step at the end, by which it may differ from what the slope says
+constexpr double clear_evidence = 15.0;  // nats by which standing still explains a run better than moving on
+constexpr double fair_evidence = 6.0;    // the same, once it is known that samples were missed
+constexpr double least_slope = 3.0;      // deviations of the noise a sample
+constexpr std::size_t fewest_runs = 12;
+constexpr double least_share = 0.002;  // runs of all samples
+
+/// The deviation of the noise, from how far samples lie off the cubic through their four neighbours; by the lower
+/// quartile, since runs spoil their surroundings.
+double noise_of(const std::vector<double>& values) {
+  std::vector<double> off;
+  for (std::size_t k = 2; k + 2 < values.size(); ++k) {
+    const double cubic = (4.0 * (values[k - 1] + values[k + 1]) - values[k - 2] - values[k + 2]) / 6.0;
+    if (values[k] != cubic) {
+      off.push_back(std::abs(values[k] - cubic));
+    }
+  }
+  if (off.size() < 20) {
+    return 0.0;
+  }
+  constexpr double quartile_of_normal = 0.3186;  // of |z|
+  constexpr double of_the_difference = 1.394;    // √(1 + (4² + 4² + 1 + 1)/6²)
+  const auto at = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 4);
+  std::ranges::nth_element(off, at);
+  return *at / (quartile_of_normal * of_the_difference);
+}
+
+/// One record's runs.
+class Runs {
+ public:
+  explicit Runs(const std::vector<double>& values) : values_(values), noise_(noise_of(values)), held_(values.size()) {}
+
+  /// Those that the measurement alone shows; their number.
+  std::size_t clear() {
+    std::size_t count = 0;
+    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
+      const std::size_t length = standing_after(k);
+      if (length >= 1 && length < longest_run && k + length + 2 < values_.size() && ends_like_missed(k, length)) {
+        hold(k, length);
+        ++count;
+        k += length;
+      }
+    }
+    return count;
+  }
+
+  void held_already(std::span<const std::uint8_t> held) { std::ranges::copy(held, held_.begin()); }
+
+  /// Those that show beside the model.
+  void beside(std::span<const double> modelled) {
+    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
+      if (held_[k] != 0) {
+        continue;
+      }
+      for (std::size_t length = std::min(standing_after(k), values_.size() - k - 2); length >= 1; --length) {
+        if (differs_from_model(k, length, modelled)) {
+          hold(k, length);
+          k += length;
+          break;
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::uint8_t>& held() const { return held_; }
+
+ private:
+  /// The samples behind k that have its value but for the noise.
+  [[nodiscard]] std::size_t standing_after(std::size_t k) const {
+    std::size_t length = 0;
+    while (length < longest_run && k + length + 1 < values_.size() &&
+           std::abs(values_[k + length + 1] - values_[k]) <= still * noise_) {
+      ++length;
+    }
+    return length;
+  }
+
+  void hold(std::size_t k, std::size_t length) {
+    std::fill_n(held_.begin() + static_cast<std::ptrdiff_t>(k + 1), length, std::uint8_t{1});
+  }
+
+  /// In nats: the run against `moved(i)`, the way from its first value to sample i of it. Each is the difference of two
+  /// noisy values.
+  template <class Moved>
+  [[nodiscard]] double evidence(std::size_t k, std::size_t length, const Moved& moved) const {
+    double sum = 0.0;
+    for (std::size_t i = 1; i <= length; ++i) {
+      const double stood = values_[k + i] - values_[k];
+      sum += std::pow(stood - moved(i), 2) - stood * stood;
+    }
+    return sum / (4.0 * noise_ * noise_);
+  }
+
+  [[nodiscard]] bool ends_like_missed(std::size_t k, std::size_t length) const {
+    const auto samples = static_cast<double>(length + 1);
+    const double step = values_[k + length + 1] - values_[k];
+    const double slope = step / samples;
+    if (std::abs(slope) < least_slope * noise_ ||
+        evidence(k, length, [&](std::size_t i) { return slope * static_cast<double>(i); }) < clear_evidence) {
+      return false;
+    }
+    const double before = values_[k] - values_[k - 1];
+    const double after = values_[k + length + 2] - values_[k + length + 1];
+    const auto matches = [&](double one) { return std::abs(step - samples * one) <= alike * std::abs(step); };
+    // Before may lie the step at the end of another run, and behind it the begin of one.
+    const bool steps_before = before * slope > 0.0 && std::abs(before) > 1.5 * std::abs(slope);
+    const bool stands_behind = std::abs(after) <= still * noise_;
+    return (matches(before) && (matches(after) || stands_behind)) || (matches(after) && steps_before);
+  }
+
+  [[nodiscard]] bool differs_from_model(std::size_t k, std::size_t length, std::span<const double> modelled) const {
+    const double step = values_[k + length + 1] - values_[k];
+    const double wanted = modelled[k + length + 1] - modelled[k];
+    return std::abs(step - wanted) <= alike * std::abs(step) + still * noise_ &&
+           evidence(k, length, [&](std::size_t i) { return modelled[k + i] - modelled[k]; }) > fair_evidence;
+  }
+
+  const std::vector<double>& values_;
+  double noise_;
+  std::vector<std::uint8_t> held_;
+};
+
+/// Adds a record's runs, whose first row is `offset`, and the squares of what they hide.
+void add(const std::vector<double>& values, const std::vector<std::uint8_t>& held, std::size_t offset,
+         MissedSamples& result, double& squares) {
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (held[k] == 0) {
+      continue;
+    }
+    const std::size_t first = k;
+    while (k + 1 < values.size() && held[k + 1] != 0) {
+      ++k;
+    }
+    const std::size_t length = k + 1 - first;
+    result.longest = std::max(result.longest, length);
+    const double step = k + 1 < values.size() ? values[k + 1] - values[first - 1] : 0.0;
+    for (std::size_t i = 0; i < length; ++i) {
+      result.rows.push_back(offset + first + i);
+      squares += std::pow(step * static_cast<double>(i + 1) / static_cast<double>(length + 1), 2);
+    }
+  }
+}
+
+template <class Find>
+MissedSamples collected(const std::vector<Experiment>& experiments, std::size_t output, const Find& find) {
+  MissedSamples result;
+  std::size_t offset = 0;
+  double squares = 0.0;
+  for (const Experiment& experiment : experiments) {
+    const std::vector<double>& values = experiment.measured[output];
+    add(values, find(values, offset), offset, result, squares);
+    offset += values.size();
+  }
+  result.rms = offset > 0 ? std::sqrt(squares / static_cast<double>(offset)) : 0.0;
+  return result;
+}
+
+}  // namespace
+
+MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output) {
+  std::size_t runs = 0;
+  std::size_t samples = 0;
+  MissedSamples result = collected(experiments, output, [&](const std::vector<double>& values, std::size_t /*offset*/) {
+    Runs one(values);
+    runs += one.clear();
+    samples += values.size();
+    return one.held();
+  });
+  const bool enough = runs >= fewest_runs && static_cast<double>(runs) >= least_share * static_cast<double>(samples);
+  return enough ? result : MissedSamples{};
+}
+
+MissedSamples with_model(const MissedSamples& found, const std::vector<Experiment>& experiments, std::size_t output,
+                         std::span<const double> modelled) {
+  std::vector<std::uint8_t> held(modelled.size(), 0);
+  for (const std::size_t row : found.rows) {
+    held[row] = 1;
+  }
+  return collected(experiments, output, [&](const std::vector<double>& values, std::size_t offset) {
+    Runs one(values);
+    one.held_already(std::span(held).subspan(offset, values.size()));
+    one.beside(modelled.subspan(offset, values.size()));
+    return one.held();
+  });
+}
+
+}  // namespace hysteron::diagnosis

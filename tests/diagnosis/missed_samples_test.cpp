@@ -1,0 +1,121 @@
+// Missed samples: runs that repeat the last value are found, and what only looks alike is not.
+#include "diagnosis/missed_samples.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+
+constexpr std::size_t count = 4000;
+
+std::vector<Experiment> with(std::vector<double> values) {
+  Experiment one;
+  one.drive.steps = values.size();
+  one.measured = {std::move(values)};
+  return {one};
+}
+
+/// Two sines: there is a slope nearly everywhere.
+std::vector<double> motion() {
+  std::vector<double> values(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto t = static_cast<double>(k);
+    values[k] = 20.0 * std::sin(0.02 * t) + 8.0 * std::sin(0.057 * t);
+  }
+  return values;
+}
+
+std::vector<double> noisy(std::vector<double> values, double size) {
+  const auto noise = test::Noise(7).white(values.size(), size);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] += noise[k];
+  }
+  return values;
+}
+
+/// Every 50th sample a run of 1 to 4; what was held.
+std::vector<std::size_t> hold_some(std::vector<double>& values) {
+  std::vector<std::size_t> held;
+  for (std::size_t k = 25; k + 10 < values.size(); k += 50) {
+    for (std::size_t i = 1; i <= 1 + k / 50 % 4; ++i) {
+      values[k + i] = values[k];
+      held.push_back(k + i);
+    }
+  }
+  return held;
+}
+
+TEST(MissedSamples, AreFoundWhereTheSignalMovesStraight) {
+  auto values = motion();
+  const auto held = hold_some(values);
+  const MissedSamples found = find_missed_samples(with(noisy(values, 0.01)), 0);
+  EXPECT_GT(found.rows.size(), 0.6 * static_cast<double>(held.size()));
+  EXPECT_THAT(held, IsSupersetOf(found.rows));
+  EXPECT_EQ(found.longest, 4U);
+}
+
+TEST(MissedSamples, ThoseInABendShowBesideTheModel) {
+  const auto moved = motion();
+  auto values = moved;
+  const auto held = hold_some(values);
+  const auto experiments = with(noisy(values, 0.01));
+  const MissedSamples clear = find_missed_samples(experiments, 0);
+  std::vector<double> modelled = moved;
+  for (double& value : modelled) {
+    value *= 1.02;  // a gain that is off
+  }
+  const MissedSamples found = with_model(clear, experiments, 0, modelled);
+  EXPECT_GT(found.rows.size(), clear.rows.size());
+  // What is left is less than the noise beside what was missed.
+  double left = 0.0;
+  double all = 0.0;
+  for (const std::size_t row : held) {
+    const double error = std::pow(values[row] - moved[row], 2);
+    all += error;
+    left += std::ranges::binary_search(found.rows, row) ? 0.0 : error;
+  }
+  EXPECT_LT(left, 0.001 * all);
+  EXPECT_NEAR(found.rms, std::sqrt(all / count), 0.05 * found.rms);
+}
+
+TEST(MissedSamples, OfAFewNothingIsSaid) {
+  auto values = motion();
+  for (const std::size_t k : {100U, 900U, 1700U}) {
+    values[k + 1] = values[k + 2] = values[k];
+  }
+  EXPECT_THAT(find_missed_samples(with(noisy(values, 0.01)), 0).rows, IsEmpty());
+}
+
+TEST(MissedSamples, AQuantizerMissesNone) {
+  for (const double quantum : {0.05, 0.3, 2.0}) {
+    auto values = motion();
+    for (double& value : values) {
+      value = quantum * std::round(value / quantum);
+    }
+    EXPECT_THAT(find_missed_samples(with(noisy(values, 0.01)), 0).rows, IsEmpty()) << quantum;
+  }
+}
+
+TEST(MissedSamples, NoiseStepsAndStandstillAreNone) {
+  EXPECT_THAT(find_missed_samples(with(test::Noise(3).white(count, 1.0)), 0).rows, IsEmpty());
+  std::vector<double> steps(count);
+  std::vector<double> stick_slip(count);  // stands until the spring has gathered, then jumps and goes on
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t tread = k / 40;
+    steps[k] = 10.0 * static_cast<double>(tread) * (1.0 - std::exp(-0.3 * static_cast<double>(k % 40)));
+    stick_slip[k] = 3.0 * static_cast<double>(tread);
+  }
+  EXPECT_THAT(find_missed_samples(with(noisy(steps, 0.01)), 0).rows, IsEmpty());
+  EXPECT_THAT(find_missed_samples(with(noisy(stick_slip, 0.01)), 0).rows, IsEmpty());
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

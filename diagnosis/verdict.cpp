@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "codegen/trace/block_type.hpp"
 #include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
@@ -23,6 +24,19 @@ constexpr double fewest_samples = 60.0;
 
 /// And at most: the same physics in another discretisation leaves some thousandths of the noise, and so no evidence.
 constexpr double most_samples = 2000.0;
+
+/// Nats between two ways to write one and the same effect.
+constexpr double same_to_the_last = 0.02;
+
+/// The values that the blocks of a set keep from one step to the next; those of a user's own block are not counted.
+std::size_t remembered(const Explanation& one) {
+  std::size_t count = 0;
+  for (const Applied& applied : one.variant.effects) {
+    const BlockType* const type = find_block_type(applied.block);
+    count += type == nullptr ? 0 : type->states.size();
+  }
+  return count;
+}
 
 class Judge {
  public:
@@ -144,12 +158,19 @@ class Judge {
   }
 
   /// Of the sets of one size that the record does not rule out against the best, the one with the fewest parameters: a
-  /// friction with a falling part that is 0 is a friction without.
+  /// friction with a falling part that is 0 is a friction without. Of two that are the same to the last digits, the one
+  /// that remembers less: before an integrator a constant, behind it a ramp of the clock.
   [[nodiscard]] const Explanation* simplest_near(const Explanation& best) const {
     const Explanation* simplest = &best;
     for (const Explanation& one : search_.explanations) {
-      if (one.variant.effects.size() == best.variant.effects.size() && one.parameters() < simplest->parameters() &&
-          support(one) > support(best) - 0.75 * rival_within) {
+      if (one.variant.effects.size() != best.variant.effects.size()) {
+        continue;
+      }
+      const bool fewer =
+          one.parameters() < simplest->parameters() && support(one) > support(best) - 0.75 * rival_within;
+      const bool same =
+          one.parameters() == simplest->parameters() && std::abs(support(one) - support(*simplest)) < same_to_the_last;
+      if (fewer || (same && remembered(one) < remembered(*simplest))) {
         simplest = &one;
       }
     }

@@ -100,7 +100,7 @@ Explanation begun_from(const Task& task, const Screened& one, const Explanation&
   };
   const double worth = one.candidate.own().has(Role::Period) ? 0.25 : 0.5;  // of the best start's gain
   for (const Start& start : one.starts) {
-    if (start.gain >= worth * one.gain()) {
+    if (start.measured || start.gain >= worth * one.gain()) {
       begin_at(start.about_calibration ? known_starts.calibrated : from.fit.x, start);
     }
   }

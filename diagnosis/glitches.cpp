@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/spectrum.hpp"
 #include "support/median.hpp"
 
 namespace hysteron::diagnosis {
@@ -56,7 +57,8 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
       for (std::size_t k = reach; k + reach < values.size(); ++k) {
         differences[k] = values[k] - median_about(values, k);
       }
-      const double bound = far * spread(differences);
+      // A sensor that rounds flickers by a step, which is no glitch, however rarely.
+      const double bound = std::max(far * spread(differences), 1.5 * common_step(values));
       const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
       for (std::size_t k = reach; k + reach < values.size(); ++k) {
         if (!is_far(k)) {

@@ -1,8 +1,8 @@
 // Glitches: single samples, or up to three in a row, far off their neighbours, found in the measurement alone.
 //
 // A sample is one if it differs from the median of the seven about it by more than six standard deviations of such
-// differences, by their median, and the samples on either side lie level: a sharp peak of the signal has flanks. What is
-// found is left out of every fit: a few of them would outweigh all else.
+// differences, by their median, and the samples on either side lie level: a sharp peak of the signal has flanks. What
+// is found is left out of every fit: a few of them would outweigh all else.
 #pragma once
 
 #include <cstddef>

@@ -58,6 +58,9 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
     lower_[at] = free.lower;
     upper_[at] = free.upper;
     typical_[at] = free.typical;
+    if (unknown.rounds) {
+      quanta_.push_back(at);
+    }
     prior_[at] = unknown.deviation > 0.0 && std::isfinite(unknown.deviation) ? 1.0 / unknown.deviation : 0.0;
   }
   const std::vector<double> states = rollout_->states_after_reset(start_.head(std::ssize(problem_->parameters)));
@@ -78,7 +81,9 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
   if (jacobian != nullptr) {
     jacobian->resize(rows(), unknowns());
   }
-  if (!rollout_->residuals(x, residuals, jacobian) || !residuals.allFinite() ||
+  const bool rounded = std::ranges::any_of(quanta_, [&](Index j) { return x[j] > 0.0; });
+  if (!rollout_->residuals(x, residuals, rounded ? nullptr : jacobian) || !residuals.allFinite() ||
+      (jacobian != nullptr && rounded && !smooth_jacobian(x, *jacobian)) ||
       (jacobian != nullptr && !jacobian->allFinite())) {
     return false;
   }
@@ -87,6 +92,21 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
     if (jacobian != nullptr) {
       jacobian->row(row).setZero();
     }
+  }
+  return true;
+}
+
+bool Model::smooth_jacobian(const VectorXd& x, MatrixXd& jacobian) {
+  VectorXd smooth = x;
+  for (const Index j : quanta_) {
+    smooth[j] = 0.0;
+  }
+  VectorXd without(rows());
+  if (!rollout_->residuals(smooth, without, &jacobian)) {
+    return false;
+  }
+  for (const Index j : quanta_) {
+    jacobian.col(j).setZero();
   }
   return true;
 }

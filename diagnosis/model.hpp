@@ -33,6 +33,7 @@ struct Unknown {
   double upper = 0.0;
   double typical = 1.0;    ///< size of a notable change
   double deviation = 0.0;  ///< of the prior about `start`; ∞: none
+  bool rounds = false;     ///< a quantum, 0 where it is off
 };
 
 /// What stays the same while candidates come and go.
@@ -69,10 +70,14 @@ class Model {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const OutputErrorProblem& problem() const { return *problem_; }
 
-  /// (model − measured)/scale, and its derivatives; false where one is not finite.
+  /// (model − measured)/scale, and its derivatives; false where one is not finite. Rounding hides from derivatives what
+  /// lies before it; on average the rounded signal follows the signal. Derivatives are those of the diagram with its
+  /// quanta off, and 0 for a quantum itself: what its error gains by shrinking says nothing of where it lies.
   bool residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian = nullptr);
 
  private:
+  bool smooth_jacobian(const VectorXd& x, MatrixXd& jacobian);
+
   std::unique_ptr<OutputErrorProblem> problem_;  ///< the rollout keeps a reference to it
   std::unique_ptr<hysteron::detail::Rollout> rollout_;
   VectorXd start_{};
@@ -82,6 +87,7 @@ class Model {
   VectorXd prior_{};
   std::vector<std::string> names_{};
   std::vector<Index> left_out_{};
+  std::vector<Index> quanta_{};  ///< the unknowns that round
   Index first_further_ = 0;
 };
 

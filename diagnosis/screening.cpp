@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace hysteron::diagnosis {
@@ -11,6 +12,9 @@ namespace {
 
 /// Outputs within this share of twice the change at half the strength: linear in it.
 constexpr double linear_within = 0.05;
+
+/// Of the gap, what a start has to explain for its durations to be narrowed down.
+constexpr double worth_narrowing = 0.3;
 
 /// More settings of shapes than this are tried one shape at a time about the middle of each.
 constexpr std::size_t most_shapes = 16;
@@ -111,6 +115,7 @@ class Screening {
     for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
       try_shape(shape, starts);
     }
+    narrow_durations(starts);
     return finished(std::move(starts), keep);
   }
 
@@ -136,10 +141,14 @@ class Screening {
  private:
   /// The best starts, with the free parameters alone.
   Screened finished(std::vector<Start> starts, std::size_t keep) {
-    std::ranges::stable_sort(starts, [](const Start& a, const Start& b) { return a.gain > b.gain; });
+    for (Start& start : starts) {
+      start.measured = is_measured(start.values);
+    }
+    std::ranges::stable_sort(
+        starts, [](const Start& a, const Start& b) { return a.measured != b.measured ? a.measured : a.gain > b.gain; });
     std::vector<Start> kept;
     for (Start& start : starts) {
-      if (kept.size() < keep &&
+      if ((kept.size() < keep || start.measured) &&
           std::ranges::none_of(kept, [&](const Start& other) { return is_near(start.values, other.values); })) {
         kept.push_back(std::move(start));
       }
@@ -151,8 +160,52 @@ class Screening {
       }
       start.values = std::move(values);
     }
+    std::ranges::stable_sort(kept, [](const Start& a, const Start& b) { return a.gain > b.gain; });
     screened_.starts = std::move(kept);
     return std::move(screened_);
+  }
+
+  /// The duration of a shape between the points of its grid, by halves of their distance: an exponential that is off by
+  /// half its time constant leaves more of a gap than another effect at its best.
+  void narrow_durations(std::vector<Start>& starts) {
+    if (starts.empty()) {
+      return;
+    }
+    for (Index j = 0; j < parameters_; ++j) {
+      const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+      if (parameter(j).role != Role::Duration || parameter(j).strength || grid.values.size() < 3 ||
+          grid.values.front() <= 0.0) {
+        continue;
+      }
+      Start best = *std::ranges::max_element(starts, {}, &Start::gain);
+      if (best.gain < worth_narrowing * background_.unexplained()) {
+        continue;
+      }
+      double ratio = grid.values.back() / grid.values[grid.values.size() - 2];
+      for (int halving = 0; halving < 3; ++halving) {
+        ratio = std::sqrt(ratio);
+        for (const double factor : {ratio, 1.0 / ratio}) {
+          VectorXd shape = best.values;
+          shape[j] *= factor;
+          for (const Index strength : strengths()) {
+            shape[strength] = neutral_[strength];
+          }
+          try_shape(shape, starts);
+        }
+        best = *std::ranges::max_element(starts, {}, &Start::gain);
+      }
+    }
+  }
+
+  /// Whether a quantum is the step on which the measured values lie.
+  [[nodiscard]] bool is_measured(const VectorXd& values) const {
+    for (Index j = 0; j < parameters_; ++j) {
+      const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+      if (std::ranges::count(std::span(grid.values).first(grid.measured), values[j]) > 0) {
+        return true;
+      }
+    }
+    return false;
   }
 
   /// One parameter moved along its grid, the others where they are; a new shape takes its strengths anew where the

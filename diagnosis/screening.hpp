@@ -41,6 +41,7 @@ struct Start {
   VectorXd values{};  ///< of the effect's parameters
   double gain = 0.0;
   bool about_calibration = false;  ///< found with the known parameters as calibrated, not as tuned
+  bool measured = false;           ///< read from the measurement: it is fitted, whatever a straight line promises
 };
 
 struct Screened {

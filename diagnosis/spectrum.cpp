@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <unsupported/Eigen/FFT>
 
 namespace hysteron::diagnosis {
@@ -74,31 +75,53 @@ double common_step(const std::vector<double>& values) {
   }
   const auto [low, high] = std::ranges::minmax(values);
   const double range = high - low;
-  const double largest = std::max(std::abs(low), std::abs(high));
-  if (!(range > 0.0)) {
+  if (!(range > 0.0) || !std::isfinite(range)) {
     return 0.0;
   }
-  const std::size_t stride = std::max<std::size_t>(1, values.size() / 1200);
-  const auto strength = [&](double turns) {
-    std::complex<double> sum = 0.0;
-    double count = 0.0;
-    for (std::size_t k = 0; k < values.size(); k += stride) {
-      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * values[k]);
-      count += 1.0;
-    }
-    return std::abs(sum) / count;
-  };
-  // Steps from a third to 1/300 of the range, close enough that the phase of the largest value moves by 1/10 turn.
-  double best = 0.5;
-  double step = 0.0;
-  for (double turns = 3.0 / range; turns < 300.0 / range; turns += 0.1 / largest) {
-    const double here = strength(turns);
-    if (here > best * 1.02) {  // of a step and its parts, the step
-      best = here;
-      step = 1.0 / turns;
+  // Which of many narrow bins are taken, each once: where the machine rests its values are many, and lie on any step.
+  constexpr std::size_t bins = 1U << 15U;
+  constexpr std::size_t padding = 4;
+  constexpr std::size_t most_steps = bins / 8;
+  std::vector<double> taken(padding * bins, 0.0);
+  for (const double value : values) {
+    const double place = std::floor((value - low) / range * static_cast<double>(bins));
+    taken[std::min(static_cast<std::size_t>(place), bins - 1)] = 1.0;
+  }
+  const double count = std::accumulate(taken.begin(), taken.end(), 0.0);
+  std::vector<std::complex<double>> transform;
+  Eigen::FFT<double> fft;
+  fft.fwd(transform, taken);
+  double best = 0.5 * count;
+  double found = 0.0;
+  for (std::size_t k = 3 * padding; k <= most_steps * padding; ++k) {
+    if (std::abs(transform[k]) > 1.02 * best) {  // of a step and its parts, the step
+      best = std::abs(transform[k]);
+      found = static_cast<double>(k) / (static_cast<double>(padding) * range);
     }
   }
-  return step;
+  if (found == 0.0) {
+    return 0.0;
+  }
+  // To the place itself by all values: many steps from 0 a small error has become a whole step.
+  const auto strength = [&](double turns) {
+    std::complex<double> sum = 0.0;
+    for (const double value : values) {
+      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * value);
+    }
+    return std::abs(sum);
+  };
+  best = strength(found);
+  for (double half = 0.25 / (static_cast<double>(padding) * range); half > 1e-7 * found;) {
+    const double before = best;
+    for (const double turns : {found - half, found + half}) {
+      if (const double here = strength(turns); here > best) {
+        best = here;
+        found = turns;
+      }
+    }
+    half *= best > before ? 1.0 : 0.5;
+  }
+  return 1.0 / found;
 }
 
 std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,

@@ -215,6 +215,9 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
       setting = reference(parameter, input, auxiliary, candidate.about_zero);
     } else {
       grid.highest = parameter.field.effect_maximum;
+      if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
+        grid.lowest = hints.sample_time;  // what is over within a sample is a gain
+      }
       if (parameter.role == Role::Period) {
         const double range = (auxiliary == nullptr ? input : *auxiliary).range();
         grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
@@ -229,8 +232,9 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
         // The steps that measured values lie on, and the periods at which the residual repeats over the signal: with
         // sixty steps over the range, a quantum that is off by a percent fits no better than any other.
         std::vector<double> guesses = hints.quanta;
-        guesses.insert(guesses.end(), periods.begin(), periods.end());
         drop_unfit(guesses);
+        grid.measured = guesses.size();
+        guesses.insert(guesses.end(), periods.begin(), periods.end());
         grid.guessed = guesses.size();
         grid.values.insert(grid.values.begin(), guesses.begin(), guesses.end());
       }
@@ -249,7 +253,7 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
     const std::vector<double>& values = grids.parameters[j].values;
     const Role role = effect.parameters[j].role;
     if (values.size() <= short_enough || role == Role::Frequency || role == Role::Period ||
-        (role == Role::Duration && is_oscillation(effect))) {
+        (role == Role::Duration && (is_oscillation(effect) || !effect.parameters[j].strength))) {
       continue;
     }
     const std::size_t guessed = grids.parameters[j].guessed;
@@ -268,13 +272,15 @@ Unknown unknown_of(const EffectParameter& parameter, const std::string& path, co
                   .unit = parameter.unit,
                   .start = parameter.strength && std::isfinite(field.neutral) ? field.neutral : field.preset,
                   .lower = field.minimum,
-                  .upper = field.maximum};
+                  .upper = field.maximum,
+                  .rounds = parameter.role == Role::Quantum};
   if (!std::isfinite(unknown.start)) {
     unknown.start = grid.values.empty() ? 0.0 : grid.values.front();
   }
   if (!grid.values.empty()) {
     unknown.typical = std::abs(grid.values[grid.values.size() / 2]);
   }
+  unknown.lower = std::max(unknown.lower, grid.lowest);
   unknown.upper = std::min(unknown.upper, grid.highest);
   unknown.start = std::clamp(unknown.start, std::min(unknown.lower, unknown.upper), unknown.upper);
   if (!(unknown.typical > 0.0)) {

@@ -21,7 +21,9 @@ struct Hints {
 /// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.
 struct Grid {
   std::vector<double> values{};
-  std::size_t guessed = 0;  ///< so many at the front are guesses from the record, each of its own
+  std::size_t guessed = 0;   ///< so many at the front are guesses from the record, each of its own
+  std::size_t measured = 0;  ///< and of these so many show in the measured values themselves
+  double lowest = -std::numeric_limits<double>::infinity();  ///< and below which
   double highest = std::numeric_limits<double>::infinity();  ///< beyond which the record does not show what it is
 };
 

@@ -139,6 +139,48 @@ TEST(Diagnosis, AQuantumOfAHundredStepsInsideIsFound) {
   EXPECT_NEAR(found.effects.front().parameters.front().value, quantum, 0.002 * quantum);
 }
 
+TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
+  // Rounded to some twenty steps, the output has no derivative by what lies before; the tuned values are two percent
+  // off.
+  const auto heater = [](std::string_view sensor) {
+    return fmt::format(
+        "FUNCTION_BLOCK HEATER (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR GAIN : "
+        "HY_GAIN := (K := 3.0); BODY : HY_LAG := (T1 := 0.4); {} END_VAR GAIN(XIN := FORCE); BODY(XIN := GAIN.XOUT); "
+        "{} "
+        "END_FUNCTION_BLOCK",
+        sensor, sensor.empty() ? "Y := BODY.XOUT;" : "ADC(XIN := BODY.XOUT); Y := ADC.XOUT;");
+  };
+  constexpr double quantum = 0.2137;
+  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
+  const Diagnosis found = diagnose(
+      test::input_of(
+          heater(""),
+          "[parameters.GAIN]\nK = 2.95\n[parameters.BODY]\nT1 = 0.407\n[fit.GAIN]\nK = {}\n[fit.BODY]\nT1 = {}\n",
+          {test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.01 * quantum)}),
+      {.effects = {"quantization", "cogging", "backlash", "odd_nonlinearity"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "quantization");
+  EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 1e-3 * quantum);
+  EXPECT_LT(found.gap.improved, 2.0 * 0.01 * quantum);
+}
+
+TEST(Diagnosis, AWarmUpIsNotTakenForWhatFitsAGridBetter) {
+  const Diagnosis found =
+      diagnosed(on_axis("thermal_drift", {"HY_THERMAL_DRIFT := (SIZE := 0.05, T1 := 2.9)", "SPEED.XOUT"},
+                        {"cogging", "drift", "offset", "load", "relaxation"}, {}));
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "thermal_drift");
+  EXPECT_NEAR(found.effects.front().parameters.at(1).value, 2.9, 0.15);
+}
+
+TEST(Diagnosis, AConstantBeforeAnIntegratorIsNoDriftBehindIt) {
+  // Both are the same to the last digits.
+  const Diagnosis found = diagnosed(
+      on_axis("offset", {"HY_OFFSET := (BIAS := 0.05)", "FORCE"}, {"drift", "thermal_drift", "even_nonlinearity"}, {}));
+  ASSERT_FALSE(found.effects.empty()) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "offset") << found.summary;
+}
+
 TEST(Diagnosis, ALimitOnOneSideIsFound) {
   // The other bound is infinite, and has to stay so through fit, parameter file, verdict and next experiment.
   const Diagnosis found =

@@ -147,6 +147,16 @@ class Enumeration {
     }
   }
 
+  /// Whether an edge is an input or an output of the whole diagram.
+  [[nodiscard]] bool is_port(const Edge& edge) const {
+    const auto names_edge = [&](const Declared& declared) {
+      const std::string name = language::upper(declared.field.name);
+      return (declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Output) &&
+             (edge.name == name || std::ranges::find(edge.aliases, name) != edge.aliases.end());
+    };
+    return std::ranges::any_of(definitions_.list[index_].variables, names_edge);
+  }
+
   void insert(const EffectKind& kind, const Edge& edge, const std::vector<std::pair<std::string, std::string>>& wires) {
     std::string base_name = edge.local;
     std::ranges::replace(base_name, '.', '_');
@@ -156,8 +166,12 @@ class Enumeration {
     const std::string instance =
         free_name(source_->blocks[edge.definition], fmt::format("{}_{}", base_name, language::upper(kind.id)));
     Candidate candidate{.kind = kind, .variant = base_};
-    Applied applied{
-        .effect = kind.id, .block = kind.block, .edge = edge.name, .instance = edge.prefix + instance, .wires = wires};
+    Applied applied{.effect = kind.id,
+                    .block = kind.block,
+                    .edge = edge.name,
+                    .at_port = is_port(edge),
+                    .instance = edge.prefix + instance,
+                    .wires = wires};
     Insertion insertion{
         .block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires};
     if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {

@@ -18,6 +18,7 @@ struct Applied {
   std::string effect{};              ///< creep
   std::string block{};               ///< HY_CREEP
   std::string edge{};                ///< HYST.XOUT; of a richer block, its output
+  bool at_port = false;              ///< that edge is an input or an output of the diagram
   std::vector<std::string> twins{};  ///< edges on which it gained as much: not told apart, and not fitted
   std::string instance{};            ///< path of the block that carries it
   std::vector<EffectParameter> parameters{};

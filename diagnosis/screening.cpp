@@ -13,8 +13,8 @@ namespace {
 /// Outputs within this share of twice the change at half the strength: linear in it.
 constexpr double linear_within = 0.05;
 
-/// Of the gap, what a start has to explain for its durations to be narrowed down.
-constexpr double worth_narrowing = 0.3;
+/// Of the gap, what a start has to explain for its parameters to be narrowed down.
+constexpr double worth_narrowing = 0.2;
 
 /// More settings of shapes than this are tried one shape at a time about the middle of each.
 constexpr std::size_t most_shapes = 16;
@@ -115,7 +115,7 @@ class Screening {
     for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
       try_shape(shape, starts);
     }
-    narrow_durations(starts);
+    narrow(starts);
     return finished(std::move(starts), keep);
   }
 
@@ -165,36 +165,45 @@ class Screening {
     return std::move(screened_);
   }
 
-  /// The duration of a shape between the points of its grid, by halves of their distance: an exponential that is off by
-  /// half its time constant leaves more of a gap than another effect at its best.
-  void narrow_durations(std::vector<Start>& starts) {
-    if (starts.empty()) {
-      return;
-    }
-    for (Index j = 0; j < parameters_; ++j) {
-      const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
-      if (parameter(j).role != Role::Duration || parameter(j).strength || grid.values.size() < 3 ||
-          grid.values.front() <= 0.0) {
-        continue;
-      }
+  /// What varies smoothly, between the points of its grid and by halves of their distance: an exponential that is off
+  /// by half its time constant, or a limit that cuts twice as much, leaves more of a gap than another effect at its
+  /// best.
+  void narrow(std::vector<Start>& starts) {
+    for (Index j = 0; j < parameters_ && !starts.empty(); ++j) {
+      const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
       Start best = *std::ranges::max_element(starts, {}, &Start::gain);
-      if (best.gain < worth_narrowing * background_.unexplained()) {
+      if (!is_narrowed(j) || grid.size() < 3 || best.gain < worth_narrowing * background_.unexplained()) {
         continue;
       }
-      double ratio = grid.values.back() / grid.values[grid.values.size() - 2];
+      const std::size_t at = nearest(grid, best.values[j]);
+      double low = grid[at == 0 ? 0 : at - 1];
+      double high = grid[std::min(at + 1, grid.size() - 1)];
       for (int halving = 0; halving < 3; ++halving) {
-        ratio = std::sqrt(ratio);
-        for (const double factor : {ratio, 1.0 / ratio}) {
-          VectorXd shape = best.values;
-          shape[j] *= factor;
-          for (const Index strength : strengths()) {
-            shape[strength] = neutral_[strength];
+        const double middle = best.values[j];
+        const double below = between(low, middle);
+        const double above = between(middle, high);
+        for (const double value : {below, above}) {
+          if (value != middle) {
+            try_moved(best.values, j, value, starts);
           }
-          try_shape(shape, starts);
         }
         best = *std::ranges::max_element(starts, {}, &Start::gain);
+        low = best.values[j] == middle ? below : best.values[j] < middle ? low : middle;
+        high = best.values[j] == middle ? above : best.values[j] < middle ? middle : high;
       }
     }
+  }
+
+  [[nodiscard]] bool is_narrowed(Index j) const {
+    const Role role = parameter(j).role;
+    return (role == Role::Duration && !parameter(j).strength) || role == Role::Instant ||
+           (parameter(j).strength && (role == Role::Level || role == Role::Rate) &&
+            std::isinf(parameter(j).field.neutral));
+  }
+
+  /// The middle, by ratio where both are positive: time constants and limits of a rate come by ratios.
+  [[nodiscard]] static double between(double low, double high) {
+    return low > 0.0 && high > 4.0 * low ? std::sqrt(low * high) : 0.5 * (low + high);
   }
 
   /// Whether a quantum is the step on which the measured values lie.
@@ -208,8 +217,7 @@ class Screening {
     return false;
   }
 
-  /// One parameter moved along its grid, the others where they are; a new shape takes its strengths anew where the
-  /// output is linear in them.
+  /// One parameter moved along its grid, the others where they are.
   void try_neighbours(const VectorXd& values, Index j, std::size_t stride, std::vector<Start>& starts) {
     const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
     const auto last = std::ssize(grid.values) - 1;
@@ -223,23 +231,28 @@ class Screening {
       if (k == middle) {
         continue;
       }
-      VectorXd moved = values;
-      moved[j] = grid.values[static_cast<std::size_t>(k)];
-      if (parameter(j).strength) {
-        try_point(moved, starts);
-        continue;
-      }
-      VectorXd shape = moved;
-      for (const Index strength : strengths()) {
-        shape[strength] = neutral_[strength];
-      }
-      const std::size_t before = starts.size();
-      if (is_linear_there(shape)) {
-        try_shape(shape, starts);
-      }
-      if (starts.size() == before) {
-        try_point(moved, starts);
-      }
+      try_moved(values, j, grid.values[static_cast<std::size_t>(k)], starts);
+    }
+  }
+
+  /// One parameter at another value; a new shape takes its strengths anew where the output is linear in them.
+  void try_moved(const VectorXd& values, Index j, double value, std::vector<Start>& starts) {
+    VectorXd moved = values;
+    moved[j] = value;
+    if (parameter(j).strength) {
+      try_point(moved, starts);
+      return;
+    }
+    VectorXd shape = moved;
+    for (const Index strength : strengths()) {
+      shape[strength] = neutral_[strength];
+    }
+    const std::size_t before = starts.size();
+    if (is_linear_there(shape)) {
+      try_shape(shape, starts);
+    }
+    if (starts.size() == before) {
+      try_point(moved, starts);
     }
   }
 

@@ -111,15 +111,14 @@ double common_step(const std::vector<double>& values) {
     return std::abs(sum);
   };
   best = strength(found);
-  for (double half = 0.25 / (static_cast<double>(padding) * range); half > 1e-7 * found;) {
-    const double before = best;
+  const double bin = 1.0 / (static_cast<double>(padding) * range);
+  for (double half = 0.5 * bin; half > 1e-7 * found; half *= 0.5) {
     for (const double turns : {found - half, found + half}) {
       if (const double here = strength(turns); here > best) {
         best = here;
         found = turns;
       }
     }
-    half *= best > before ? 1.0 : 0.5;
   }
   return 1.0 / found;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "codegen/trace/block_type.hpp"
 #include "tuning/covariance.hpp"
@@ -28,14 +29,17 @@ constexpr double most_samples = 2000.0;
 /// Nats between two ways to write one and the same effect.
 constexpr double same_to_the_last = 0.02;
 
-/// The values that the blocks of a set keep from one step to the next; those of a user's own block are not counted.
-std::size_t remembered(const Explanation& one) {
-  std::size_t count = 0;
-  for (const Applied& applied : one.variant.effects) {
+/// What makes one of two equal sets the less likely one: effects inside the diagram, where sensors and drives have
+/// theirs at its ports; then values that their blocks keep from one step to the next. A user's own block counts for
+/// none.
+std::pair<std::ptrdiff_t, std::size_t> unlikely(const Explanation& one) {
+  const std::vector<Applied>& effects = one.variant.effects;
+  std::size_t remembered = 0;
+  for (const Applied& applied : effects) {
     const BlockType* const type = find_block_type(applied.block);
-    count += type == nullptr ? 0 : type->states.size();
+    remembered += type == nullptr ? 0 : type->states.size();
   }
-  return count;
+  return {std::ranges::count(effects, false, &Applied::at_port), remembered};
 }
 
 class Judge {
@@ -158,8 +162,8 @@ class Judge {
   }
 
   /// Of the sets of one size that the record does not rule out against the best, the one with the fewest parameters: a
-  /// friction with a falling part that is 0 is a friction without. Of two that are the same to the last digits, the one
-  /// that remembers less: before an integrator a constant, behind it a ramp of the clock.
+  /// friction with a falling part that is 0 is a friction without. Of two that are the same to the last digits, a
+  /// constant before an integrator and a ramp of the clock behind it, the likelier one.
   [[nodiscard]] const Explanation* simplest_near(const Explanation& best) const {
     const Explanation* simplest = &best;
     for (const Explanation& one : search_.explanations) {
@@ -170,7 +174,7 @@ class Judge {
           one.parameters() < simplest->parameters() && support(one) > support(best) - 0.75 * rival_within;
       const bool same =
           one.parameters() == simplest->parameters() && std::abs(support(one) - support(*simplest)) < same_to_the_last;
-      if (fewer || (same && remembered(one) < remembered(*simplest))) {
+      if (fewer || (same && unlikely(one) < unlikely(*simplest))) {
         simplest = &one;
       }
     }

@@ -75,6 +75,46 @@ TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page(odd, fixture::rich_program())));
 }
 
+/// Texts that overlap cannot be read.
+TEST(ReportInBrowser, TheTitlesOfTheMapsDoNotOverlap) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.maps[0].over = "time since the branch of a long name";
+  const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const pairs = [...document.querySelectorAll(".map svg")].filter(svg => {
+      const boxes = [...svg.querySelectorAll("text.title, text.explained")].map(text => text.getBoundingClientRect());
+      return boxes.length === 2 && !overlap(boxes[0], boxes[1]);
+    });
+    document.body.dataset.apart = pairs.length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-apart=\"8\""));
+}
+
+/// Nothing is drawn over the name of an effect: at its middle it is what a click meets, or the box that it stands in.
+TEST(ReportInBrowser, EffectsAreNotCovered) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.push_back({.id = "glitches", .edge = "SENSOR.XOUT", .share = 0.1});
+  const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
+    const diagram = document.querySelector("svg.diagram");
+    const covered = [...diagram.querySelectorAll("text.effect, .on-wire text.name")].filter(text => {
+      text.scrollIntoView({ block: "center", inline: "center" });
+      const box = text.getBoundingClientRect();
+      const hit = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+      return hit === null || hit.closest("g") !== text.closest("g");
+    });
+    document.body.dataset.covered = covered.length;
+    document.body.dataset.effects = diagram.querySelectorAll("text.effect, .on-wire text.name").length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-covered=\"0\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-effects=\"4\""));
+}
+
 /// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
 /// stands out is among them.
 TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {

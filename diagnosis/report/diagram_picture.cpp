@@ -261,16 +261,30 @@ class Picture {
                        [&](std::size_t box) { return drawn_.boxes[box].effect == effect; });
   }
 
-  /// The share beside the first wire of an edge.
-  [[nodiscard]] std::string label_text(std::size_t index, const std::vector<Point>& curve) const {
-    const WireState& state = wires_[index];
-    const Point at = curve[0];
-    std::string svg;
-    if (state.share >= 0.05 && !said_before(index, &WireState::edge)) {
-      svg += fmt::format("<text class=\"share\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", at.x + 6.0, at.y - 6.0,
-                         percent(state.share));
+  /// Whether a wire before this one has its share written where both leave their box.
+  [[nodiscard]] bool label_is_taken(std::size_t index) const {
+    for (std::size_t i = 0; i < index; ++i) {
+      if (drawn_.wires[i].from == drawn_.wires[index].from && drawn_.wires[i].output == drawn_.wires[index].output &&
+          has_label(i)) {
+        return true;
+      }
     }
-    return svg;
+    return false;
+  }
+  [[nodiscard]] bool has_label(std::size_t index) const {
+    return wires_[index].share >= 0.05 && !said_before(index, &WireState::edge);
+  }
+
+  /// The share beside the first wire of an edge: where it begins, or of a branch where it ends.
+  [[nodiscard]] std::string label_text(std::size_t index, const std::vector<Point>& curve) const {
+    if (!has_label(index)) {
+      return {};
+    }
+    const bool at_end = label_is_taken(index);
+    const Point at = at_end ? curve.back() : curve[0];
+    return fmt::format("<text class=\"share\" x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", at.x + (at_end ? -10.0 : 6.0),
+                       at.y + (at_end ? 16.0 : -6.0), at_end ? " text-anchor=\"end\"" : "",
+                       percent(wires_[index].share));
   }
 
   [[nodiscard]] std::string box_text(std::size_t index, Point corner, const LayoutBox& size) const {

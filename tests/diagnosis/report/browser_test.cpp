@@ -115,6 +115,26 @@ TEST(ReportInBrowser, EffectsAreNotCovered) {
   EXPECT_THAT(tried.page, HasSubstr("data-effects=\"4\""));
 }
 
+TEST(ReportInBrowser, SharesOfBranchesDoNotOverlap) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.clear();
+  found.edges = {{.edge = "A.XIN", .share = 0.6}, {.edge = "U", .share = 0.5}, {.edge = "A.XOUT", .share = 0.4}};
+  const Program branched = compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR A : HY_LAG; B : "
+      "HY_LAG; END_VAR A(XIN := U); B(XIN := U); Y := A.XOUT + B.XOUT; END_FUNCTION_BLOCK");
+  const Shown tried = shown(report_page(found, branched), R"(
+    const boxes = [...document.querySelectorAll("svg.diagram text.share")].map(text => text.getBoundingClientRect());
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    document.body.dataset.shares = boxes.length;
+    document.body.dataset.overlaps = boxes.filter((a, i) => boxes.some((b, k) => k < i && overlap(a, b))).length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-shares=\"3\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-overlaps=\"0\""));
+}
+
 /// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
 /// stands out is among them.
 TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {

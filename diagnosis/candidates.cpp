@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "codegen/compile.hpp"
+#include "codegen/graph/unit.hpp"
+#include "codegen/graph/units.hpp"
 #include "diagnosis/insertion.hpp"
 
 namespace hysteron::diagnosis {
@@ -52,6 +54,46 @@ bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, cons
                              [&](const Wire& wire) { return wire.from == source.from && wire.index == source.index; });
 }
 
+/// +1 for a block that integrates its input, −1 for one that gives its rate of change: by the units of its description.
+int integrals_of(const Node& node) {
+  if (node.block == nullptr || node.block->inputs.empty() || node.block->inputs.front().unit != "'x") {
+    return 0;
+  }
+  const std::string_view unit = node.block->outputs.front().unit;
+  return unit == "'x*s" ? 1 : unit == "'x/s" ? -1 : 0;
+}
+
+/// The fewest integrals on a way from a node's output to a signal that depends on it, rates taken off.
+int integrals_between(const Graph& graph, std::uint32_t node, const Wire& signal) {
+  constexpr int far = 1000;
+  std::vector<int> count(graph.nodes.size(), far);
+  count[node] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+      for (std::size_t pin = 0; i != node && pin < graph.nodes[i].wire_count; ++pin) {
+        const Wire& wire = graph.wire(graph.nodes[i], pin);
+        const int before = wire.from == Wire::From::Node ? count[wire.index] : far;
+        const int here = std::max(0, before + integrals_of(graph.nodes[i]));
+        if (before < far && here < count[i]) {
+          count[i] = here;
+          changed = true;
+        }
+      }
+    }
+  }
+  return count[signal.index];
+}
+
+/// Whether a unit is known and is none of a velocity: a length, an angle with its mark, a force.
+bool is_no_rate(std::string_view text) {
+  constexpr std::size_t seconds = 2;
+  std::string reason;
+  const auto unit = text.empty() ? std::nullopt : units::parse_unit(text, reason);
+  return unit && unit->powers[seconds].over >= 0 &&
+         std::ranges::any_of(unit->powers, [](const units::Fraction& power) { return !power.zero(); });
+}
+
 class Enumeration {
  public:
   Enumeration(const Variant& base, const std::string& top, const CandidateOptions& options)
@@ -62,7 +104,8 @@ class Enumeration {
         definitions_(defined(source_)),
         index_(top_definition(definitions_, base.program->graph.name)),
         edges_(edges_of(definitions_, index_)),
-        places_(instances_of(definitions_, index_)) {}
+        places_(instances_of(definitions_, index_)),
+        units_(units::Solution(base.program->graph, base.program->schedule).outputs()) {}
 
   std::vector<Candidate> list() {
     for (const EffectKind& kind : effect_kinds(definitions_)) {
@@ -125,13 +168,23 @@ class Enumeration {
           declared.block->about.effect == "delay" || added_before(edge.prefix + language::upper(declared.field.name))) {
         continue;
       }
-      for (const Field& output : declared.block->outputs) {
-        if (output.type == Type::Real) {
-          result.push_back(language::upper(declared.field.name) + "." + std::string(output.name));
+      const std::string instance = language::upper(declared.field.name);
+      for (std::size_t i = 0; i < declared.block->outputs.size(); ++i) {
+        const Field& output = declared.block->outputs[i];
+        const bool fits = !kind.by_velocity || !is_no_rate(unit_of(edge.prefix + instance, i));
+        if (output.type == Type::Real && fits) {
+          result.push_back(instance + "." + std::string(output.name));
         }
       }
     }
     return result;
+  }
+
+  /// Of an output of a block, where the diagram says enough; else empty.
+  [[nodiscard]] std::string_view unit_of(const std::string& path, std::size_t output) const {
+    const Graph& graph = base_.program->graph;
+    const Node* const node = find_node(graph, path);
+    return node == nullptr ? std::string_view() : units_[static_cast<std::size_t>(node - graph.nodes.data())][output];
   }
 
   void insert(const EffectKind& kind, const Edge& edge) {
@@ -250,10 +303,25 @@ class Enumeration {
     candidates_.push_back(std::move(candidate));
   }
 
-  /// A friction opposes the motion that it slows, so its velocity comes from what it changes; a coupling is of another
-  /// signal than the one that is there already.
+  /// A friction opposes the motion that it slows: its velocity comes from what it changes, as the integral of that
+  /// force and not as a position, the integral of the integral; and what it changes is neither that velocity nor a
+  /// position.
+  [[nodiscard]] static bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed,
+                                        const Wire& input) {
+    if (integrals_between(graph, changed.index, driver) > 1 || input == driver) {
+      return false;
+    }
+    return input.from != Wire::From::Node || integrals_of(graph.nodes[input.index]) != 1 ||
+           graph.wire(graph.nodes[input.index], 0) != driver;
+  }
+
+  /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
+  /// already.
   [[nodiscard]] static bool makes_sense(const Graph& graph, const Candidate& candidate, const Wire& changed) {
     return std::ranges::all_of(candidate.auxiliary, [&](const Wire& driver) {
+      if (candidate.kind.by_velocity && !is_velocity(graph, driver, changed, candidate.input)) {
+        return false;
+      }
       return candidate.kind.fed_back
                  ? depends_on(graph, driver, changed, changed)
                  : driver.from != Wire::From::Input || !depends_on(graph, candidate.input, driver, changed);
@@ -268,6 +336,7 @@ class Enumeration {
   std::uint32_t index_;
   std::vector<Edge> edges_;
   std::vector<BlockInstance> places_;
+  std::vector<std::vector<std::string>> units_;  ///< of the base, by node and output
   std::vector<Candidate> candidates_{};
 };
 

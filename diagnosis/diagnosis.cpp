@@ -37,8 +37,14 @@ constexpr double above_fast_floor = 2.0;
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
+/// What stands out of the floor by less of it is no gap.
+constexpr double least_excess = 0.35;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
+
+double excess(double high, double low) {
+  return std::sqrt(std::max(0.0, high * high - low * low));
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -120,25 +126,38 @@ class Run {
     const Search found = search(task_, base_, top, floor_cost_, searching);
     result_.tried = found.tried;
     const Judgement judgement = judge(task_, found, floor_cost_);
-    const Explanation& chosen = *judgement.chosen;
-    describe_gap(found.calibrated, judgement);
-    describe_cuts();
+    find_gap();
     decide(found, judgement);
-    result_.edges = where(task_, found.calibrated, top, options_.threads);
-    result_.maps = maps_of(task_, found.calibrated, chosen);
-    describe(found, judgement);
+    // What the user gets as improved.st: effects that the verdict does not name are not in it.
+    const Explanation& kept = named() ? *judgement.chosen : found.calibrated;
+    describe_gap(found.calibrated, kept, judgement);
+    describe_cuts();
+    describe(found, judgement, kept);
+    result_.edges = where(task_, found, top, unused_, result_.effects, options_.threads);
+    result_.maps = maps_of(task_, found.calibrated, kept, gap_output_);
+  }
+
+  [[nodiscard]] bool named() const {
+    return result_.verdict == Verdict::Named || result_.verdict == Verdict::Group ||
+           result_.verdict == Verdict::Partial;
   }
 
   [[nodiscard]] double rms(const VectorXd& residuals, std::size_t output) const {
-    const Index rows = residuals.size() / std::ssize(task_.outputs);
-    const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
-    return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task_.scales[output];
+    return rms_of(task_, residuals, output);
   }
 
-  void describe_gap(const Explanation& calibrated, const Judgement& judgement) {
+  /// The output whose nominal gap is the largest, in floors.
+  void find_gap() {
+    for (std::size_t output = 1; output < task_.outputs.size(); ++output) {
+      if (rms(nominal_, output) / floors_[output].value > rms(nominal_, gap_output_) / floors_[gap_output_].value) {
+        gap_output_ = output;
+      }
+    }
+  }
+
+  void describe_gap(const Explanation& calibrated, const Explanation& kept, const Judgement& judgement) {
     const auto before = by_blocks(task_, nominal_);
-    const auto after = by_blocks(task_, judgement.held_out);
-    double largest = -1.0;
+    const auto after = by_blocks(task_, &kept == judgement.chosen ? judgement.held_out : held_out(task_, kept));
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
       const Port& port = *std::ranges::find_if(input_.program.graph.outputs, [&](const Port& one) {
         return language::same_name(one.name, task_.outputs[output]);
@@ -147,27 +166,31 @@ class Run {
                      .unit = port.unit,
                      .nominal = rms(nominal_, output),
                      .calibrated = rms(calibrated.fit.residuals, output),
-                     .improved = rms(judgement.chosen->fit.residuals, output),
+                     .improved = rms(kept.fit.residuals, output),
                      .floor = floors_[output]};
       const double left = gap.improved / task_.scales[output];
       const Closure share = closure(before[output], after[output], left * left, noise_range(left), options_.seed);
       gap.closed = share.closed;
       gap.closed_low = share.low;
       gap.closed_high = share.high;
-      if (const double size = gap.nominal / gap.floor.value; size > largest) {
-        largest = size;
-        result_.gap = gap;
+      const bool refit_is_worse = matters(gap.calibrated, gap.nominal, gap.floor.value);
+      const bool effects_are_worse = named() && matters(gap.improved, gap.nominal, gap.floor.value);
+      if (refit_is_worse || effects_are_worse) {
+        result_.warnings.push_back(warning_of_worse(gap, refit_is_worse, effects_are_worse));
       }
       result_.gaps.push_back(gap);
     }
+    result_.gap = result_.gaps[gap_output_];
+  }
+
+  /// Whether one RMS is so far above another one that the difference is no noise and matters to the user.
+  [[nodiscard]] bool matters(double high, double low, double floor) const {
+    return excess(high, low) > std::max(least_excess * floor, options_.material);
   }
 
   /// Whether something remains of an output's residuals, beyond the floor, that matters to the user.
   [[nodiscard]] bool material(const VectorXd& residuals, std::size_t output) const {
-    const double floor = floors_[output].value;
-    const double here = rms(residuals, output);
-    const double excess = std::sqrt(std::max(0.0, here * here - floor * floor));
-    return excess > std::max(0.35 * floor, options_.material);
+    return matters(rms(residuals, output), floors_[output].value, floors_[output].value);
   }
   [[nodiscard]] bool material(const VectorXd& residuals) const {
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
@@ -232,11 +255,11 @@ class Run {
     return 1.0 - std::pow(hidden / std::max(size, hidden), 2);
   }
   [[nodiscard]] double least_above() const {
-    const std::string& evidence = result_.gap.floor.evidence;
+    const std::string& evidence = floors_[gap_output_].evidence;
     return evidence == "repeats" ? above_floor : evidence == "differences" ? above_fast_floor : hidden_noise;
   }
   [[nodiscard]] double far_above() const {
-    return result_.gap.floor.evidence == "differences" ? far_above_fast_floor : far_above_floor;
+    return floors_[gap_output_].evidence == "differences" ? far_above_fast_floor : far_above_floor;
   }
 
   /// Of the gap that calibration leaves, what the verdict leaves open.
@@ -271,34 +294,50 @@ class Run {
     return false;
   }
 
-  void describe(const Search& found, const Judgement& judgement) {
-    const Findings findings{
-        .task = task_, .search = found, .judgement = judgement, .floor_cost = floor_cost_, .predictable = predictable_};
+  void describe(const Search& found, const Judgement& judgement, const Explanation& kept) {
+    const Findings findings{.task = task_,
+                            .search = found,
+                            .judgement = judgement,
+                            .kept = kept,
+                            .floor_cost = floor_cost_,
+                            .gap_output = gap_output_,
+                            .predictable = predictable_};
     result_.calibration = calibration_findings(findings);
     result_.nominal = nominal_findings(task_);
-    const bool named =
-        result_.verdict == Verdict::Named || result_.verdict == Verdict::Group || result_.verdict == Verdict::Partial;
-    if (named) {
+    if (named()) {
       result_.effects = effect_findings(findings);
       result_.rivals = rival_findings(findings);
     }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     const std::vector<Edge> edges = chosen_edges();
-    add_glitches(edges);
+    add_glitches(findings, edges);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
     }
-    for (std::string& reason : structural_reasons(result_)) {
+    double duration = 0.0;
+    for (const records::Record& record : task_.records) {
+      duration = std::max(duration, record.time().back() - record.time().front());
+    }
+    for (std::string& reason : structural_reasons(result_, is_tried("periodic_disturbance") ? duration : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
-    result_.traces = traces_of(task_, nominal_, found.calibrated.fit.residuals, judgement.chosen->fit.residuals);
-    const Explanation& kept = named ? *judgement.chosen : found.calibrated;
+    result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);
     result_.improved_text = improved_text(kept, input_.program.graph.source->path);
     result_.improved_file = improved_file(task_, input_.file, kept);
     plan(found, judgement, kept);
-    result_.summary = summary_of(result_);
+    result_.summary = summary_of(result_, below_material(kept));
+  }
+
+  /// Whether what is left stands out of the noise, and is only too small to matter to the user.
+  [[nodiscard]] bool below_material(const Explanation& kept) const {
+    bool above = false;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const double floor = floors_[output].value;
+      above = above || excess(rms(kept.fit.residuals, output), floor) > least_excess * floor;
+    }
+    return above && !material(kept.fit.residuals);
   }
 
   /// Edges of the diagram as given, to name the one that a measured output hangs on.
@@ -317,8 +356,13 @@ class Run {
     return names;
   }
 
+  [[nodiscard]] bool is_tried(std::string_view effect) const {
+    return options_.effects.empty() || std::ranges::find(options_.effects, effect) != options_.effects.end();
+  }
+
   /// Glitches are counted, not fitted: an effect of their own where they outweigh the noise, else a remark.
-  void add_glitches(const std::vector<Edge>& edges) {
+  void add_glitches(const Findings& findings, const std::vector<Edge>& edges) {
+    double gap = gap_energy(findings);
     for (std::size_t output = 0; output < glitches_.size(); ++output) {
       const Glitches& found = glitches_[output];
       if (found.rows.empty()) {
@@ -329,8 +373,7 @@ class Run {
           fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they "
                       "are left out of the fits.",
                       found.rows.size(), task_.outputs[output], found.largest));
-      if (ratio < 1.0 ||
-          (!options_.effects.empty() && std::ranges::find(options_.effects, "glitches") == options_.effects.end())) {
+      if (ratio < 1.0 || !is_tried("glitches")) {
         continue;
       }
       const Edge* const edge = find_edge(edges, task_.outputs[output]);
@@ -342,19 +385,20 @@ class Run {
                                     .low = found.largest,
                                     .high = found.largest,
                                     .unit = result_.gaps[output].unit});
-      finding.share = result_.effects.empty() ? 1.0 : 0.5;
       const bool alone = result_.effects.empty();
-      result_.effects.push_back(std::move(finding));
+      const double rows = static_cast<double>(nominal_.size()) / static_cast<double>(task_.outputs.size());
+      gap = add_share(result_.effects, gap, std::move(finding), 0.5 * rows * ratio * ratio);
       for (Rival& rival : result_.rivals) {
         rival.effects.emplace_back("glitches");
         rival.edges.push_back(result_.effects.back().edge);
       }
       if (alone) {
-        result_.verdict = Verdict::Named;
-        result_.rivals = {{.effects = {"glitches"}, .edges = {result_.effects.back().edge}, .probability = 1.0}};
-        const GapFinding& gap = result_.gaps[output];
-        const double beside = std::sqrt(std::max(0.0, gap.improved * gap.improved - found.rms * found.rms));
-        result_.unknown_score = excess_of(beside / floors_[output].value);
+        result_.verdict = result_.verdict == Verdict::Unknown ? Verdict::Partial : Verdict::Named;
+        result_.rivals = {{.effects = {"glitches"},
+                           .edges = {result_.effects.back().edge},
+                           .improved_rms = result_.gap.improved,
+                           .probability = 1.0}};
+        result_.unknown_score = excess_of(result_.gaps[output].improved / floors_[output].value);
         result_.confidence = 0.9 * (1.0 - result_.unknown_score);
       }
     }
@@ -421,8 +465,9 @@ class Run {
   std::vector<Glitches> glitches_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
-  double predictable_ = 0.0;  ///< see Findings
-  bool one_motion_ = false;   ///< see RecordCheck
+  std::size_t gap_output_ = 0;  ///< see Findings
+  double predictable_ = 0.0;    ///< see Findings
+  bool one_motion_ = false;     ///< see RecordCheck
   Diagnosis result_{};
 };
 

@@ -62,7 +62,7 @@ struct EffectFinding {
   std::string id{};
   std::string edge{};
   std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
-  double share = 0.0;                     ///< of the gap that the effects close
+  double share = 0.0;                     ///< of the gap that calibration leaves, with the glitches in it
   Inverse inverse = Inverse::None;
   std::vector<ParameterFinding> parameters{};
 };
@@ -70,9 +70,9 @@ struct EffectFinding {
 /// A set of effects that the data do not rule out.
 struct Rival {
   std::vector<std::string> effects{};
-  std::vector<std::string> edges{};
-  double improved_rms = 0.0;
-  double support = 0.0;  ///< log likelihood less that of the best, 0 or below
+  std::vector<std::string> edges{};  ///< of each effect, beside it
+  double improved_rms = 0.0;         ///< of the output whose gap counts, in its unit
+  double support = 0.0;              ///< log likelihood less that of the best, 0 or below
   double probability = 0.0;
 };
 
@@ -91,7 +91,7 @@ struct GapFinding {
 
 struct EdgeFinding {
   std::string edge{};
-  double share = 0.0;                ///< of the gap that a change on this edge could explain at most
+  double share = 0.0;                ///< of the gap, that test signals on this edge span or an effect there closes
   std::vector<std::string> group{};  ///< edges that the record cannot tell from it
 };
 

@@ -96,7 +96,8 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       // X0 is where a block starts, no signal that drives the effect.
       if (input.type == Type::Real && input.name != kind.input && input.name != "X0" && input.unit != "'x") {
         kind.auxiliaries.emplace_back(input.name);
-        kind.fed_back = kind.fed_back || input.unit == "'v" || input.unit == "'p";
+        kind.by_velocity = kind.by_velocity || input.unit == "'v";
+        kind.fed_back = kind.fed_back || kind.by_velocity || input.unit == "'p";
       }
     }
     kind.parameters = searched(block.params);

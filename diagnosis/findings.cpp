@@ -112,28 +112,42 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
     }
     orders += 1.0;
   } while (std::ranges::next_permutation(order).found);
-  const double gap = std::max(1e-300, search.calibrated.fit.cost - std::min(findings.floor_cost, chosen.fit.cost));
+  const double gap = std::max(1e-300, gap_energy(findings));
+  double total = 0.0;
   for (double& share : shares) {
     share = std::clamp(share / orders / gap, 0.0, 1.0);
+    total += share;
+  }
+  for (double& share : shares) {
+    share /= std::max(1.0, total);  // a smaller set whose fit went further
   }
   return shares;
 }
 
-Rival rival_of(const Task& task, const Weighed& weighed) {
+}  // namespace
+
+double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
+  const Index rows = residuals.size() / std::ssize(task.outputs);
+  const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
+  return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task.scales[output];
+}
+
+Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed) {
   const Explanation& one = *weighed.explanation;
-  Rival rival{
-      .effects = one.names(),
-      .improved_rms = std::sqrt(one.fit.residuals.squaredNorm() / static_cast<double>(one.fit.residuals.size())) *
-                      task.scales.front(),
-      .support = weighed.support,
-      .probability = std::exp(std::min(0.0, weighed.support))};
+  Rival rival{.improved_rms = rms_of(task, one.fit.residuals, gap_output),
+              .support = weighed.support,
+              .probability = std::exp(std::min(0.0, weighed.support))};
+  std::vector<std::pair<std::string, std::string>> places;
   for (const Applied& applied : one.variant.effects) {
-    rival.edges.push_back(applied.edge);
+    places.emplace_back(applied.effect, applied.edge);
+  }
+  std::ranges::sort(places);  // the same set reads the same, whichever effect was found first
+  for (auto& [effect, edge] : places) {
+    rival.effects.push_back(std::move(effect));
+    rival.edges.push_back(std::move(edge));
   }
   return rival;
 }
-
-}  // namespace
 
 std::vector<ParameterFinding> nominal_findings(const Task& task) {
   std::vector<ParameterFinding> result;
@@ -145,7 +159,7 @@ std::vector<ParameterFinding> nominal_findings(const Task& task) {
 }
 
 std::vector<ParameterFinding> calibration_findings(const Findings& findings) {
-  const Explanation& kept = *findings.judgement.chosen;
+  const Explanation& kept = findings.kept;
   const Model model(findings.task, *kept.variant.program, kept.variant.further);
   const VectorXd errors = standard_errors(model, kept.fit, findings.judgement.effective_samples);
   std::vector<ParameterFinding> result;
@@ -199,7 +213,7 @@ std::vector<Rival> rival_findings(const Findings& findings) {
   std::vector<Rival> result;
   double total = 0.0;
   for (const Weighed& weighed : findings.judgement.rivals) {
-    result.push_back(rival_of(findings.task, weighed));
+    result.push_back(rival_of(findings.task, findings.gap_output, weighed));
     total += result.back().probability;
   }
   for (Rival& rival : result) {
@@ -213,7 +227,7 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
   std::vector<Rival> result;
   for (const Weighed& weighed : findings.judgement.fitted) {
     if (result.size() < most) {
-      result.push_back(rival_of(findings.task, weighed));
+      result.push_back(rival_of(findings.task, findings.gap_output, weighed));
     }
   }
   return result;
@@ -254,7 +268,19 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
   return 0.0;
 }
 
-std::vector<std::string> structural_reasons(const Diagnosis& so_far) {
+std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
+  const std::string unit = gap.unit.empty() ? "" : " " + gap.unit;
+  const std::string by_refit = fmt::format("The refit of the known parameters makes {} worse, {:.3g} → {:.3g}{} RMS",
+                                           gap.signal, gap.nominal, gap.calibrated, unit);
+  if (!refit) {
+    return fmt::format("The improved diagram makes {} worse, {:.3g} → {:.3g}{} RMS, for the sake of the other outputs.",
+                       gap.signal, gap.nominal, gap.improved, unit);
+  }
+  return fmt::format("{}, for the sake of the other outputs{}.", by_refit,
+                     effects ? fmt::format("; with the effects {:.3g}{} stay", gap.improved, unit) : std::string());
+}
+
+std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration) {
   std::vector<std::string> reasons;
   for (const EffectFinding& effect : so_far.effects) {
     if (!effect.same_edges.empty()) {
@@ -273,10 +299,31 @@ std::vector<std::string> structural_reasons(const Diagnosis& so_far) {
                     "record's noise can show.",
                     fmt::join(names, " or ")));
   }
+  if (duration > 0.0 && (so_far.verdict == Verdict::Unknown || so_far.verdict == Verdict::Partial)) {
+    reasons.push_back(
+        fmt::format("A periodic disturbance slower than some {:.3g} s: its period is tried where it fits about twice "
+                    "into the record. Record longer.",
+                    0.5 * duration));
+  }
   for (const std::string& warning : so_far.warnings) {
     reasons.push_back(warning);
   }
   return reasons;
+}
+
+double gap_energy(const Findings& findings) {
+  const double calibrated = findings.search.calibrated.fit.cost;
+  return std::max(0.0, calibrated - std::min(findings.floor_cost, findings.kept.fit.cost));
+}
+
+double add_share(std::vector<EffectFinding>& effects, double gap, EffectFinding more, double energy) {
+  const double whole = gap + energy;
+  for (EffectFinding& effect : effects) {
+    effect.share *= gap / whole;
+  }
+  more.share = energy / whole;
+  effects.push_back(std::move(more));
+  return whole;
 }
 
 GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
@@ -300,15 +347,17 @@ GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<E
   return split;
 }
 
-std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
-                             const VectorXd& improved) {
+std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& gaps, const VectorXd& nominal,
+                             const VectorXd& calibrated, const VectorXd& improved) {
   std::vector<Trace> traces;
   Index row = 0;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
     const double scale = task.scales[output];
     for (const records::Record& record : task.records) {
       const records::Column& column = record.column(task.outputs[output]);
-      Trace trace{.record = record.file(), .signal = task.outputs[output], .unit = column.unit};
+      Trace trace{.record = record.file(),
+                  .signal = task.outputs[output],
+                  .unit = gaps[output].unit.empty() ? column.unit : gaps[output].unit};
       trace.time.assign(record.time().begin(), record.time().end());
       trace.measured = column.values;
       for (const double y : column.values) {
@@ -375,7 +424,7 @@ parameters::ParameterFile improved_file(const Task& task, parameters::ParameterF
   return file;
 }
 
-std::string summary_of(const Diagnosis& found) {
+std::string summary_of(const Diagnosis& found, bool below_material) {
   std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
                                 found.gap.nominal, found.gap.calibrated, found.gap.improved,
                                 found.gap.unit.empty() ? "" : " ", found.gap.unit, found.gap.floor.value);
@@ -385,8 +434,14 @@ std::string summary_of(const Diagnosis& found) {
   }
   switch (found.verdict) {
     case Verdict::None:
-      return fmt::format("No material gap: the model explains the record down to its noise ({}).", gap);
+      return fmt::format("No material gap: {} ({}).",
+                         below_material ? "what is left lies below the size that matters"
+                                        : "the model explains the record down to its noise",
+                         gap);
     case Verdict::Calibration:
+      if (below_material) {
+        return fmt::format("Calibration: what refitted parameters leave lies below the size that matters ({}).", gap);
+      }
       return fmt::format("Calibration: refitted parameters close the gap, no effect is missing ({}).", gap);
     case Verdict::Named:
       return fmt::format("{} ({}).", fmt::join(effects, " and "), gap);

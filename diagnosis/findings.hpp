@@ -13,13 +13,20 @@ struct Findings {
   const Task& task;
   const Search& search;
   const Judgement& judgement;
+  const Explanation& kept;  ///< what improved.st holds: the chosen set where the verdict names it, else calibration
   double floor_cost = 0.0;
-  double predictable = 0.0;  ///< share of what is left that depends on what the machine did; 0 where nothing is left
+  std::size_t gap_output = 0;  ///< the output whose gap counts, by its place among the measured ones
+  double predictable = 0.0;    ///< share of what is left that depends on what the machine did; 0 where nothing is left
 };
+
+/// RMS of one output's residuals, in its unit.
+[[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
 
 [[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);
 [[nodiscard]] std::vector<ParameterFinding> calibration_findings(const Findings& findings);
 [[nodiscard]] std::vector<EffectFinding> effect_findings(const Findings& findings);
+/// A set of effects, each beside its edge, with what it leaves of the output whose gap counts.
+[[nodiscard]] Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed);
 [[nodiscard]] std::vector<Rival> rival_findings(const Findings& findings);
 /// The best of all that was fitted.
 [[nodiscard]] std::vector<Rival> fitted_findings(const Findings& findings);
@@ -27,14 +34,27 @@ struct Findings {
 /// The probability of the verdict: of the named set among the rivals, lowered by what is left unexplained.
 [[nodiscard]] double confidence(const Findings& findings, const Diagnosis& so_far);
 
-/// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict.
-[[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far);
+/// That the refit of the known parameters gives up an output for the others, or the effects do, with both numbers.
+[[nodiscard]] std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects);
+
+/// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict. `duration`: of the
+/// longest record, where a periodic disturbance was tried; else 0.
+[[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration);
+
+/// What the effects could close of what calibration leaves, ½Σr² in deviations of the noise.
+[[nodiscard]] double gap_energy(const Findings& findings);
+
+/// An effect more, of so much energy that is not in the gap yet, to others whose shares are of it: all shares become
+/// those of the gap with it, which is returned.
+[[nodiscard]] double add_share(std::vector<EffectFinding>& effects, double gap, EffectFinding more, double energy);
 
 /// `edges` are those of the diagram as given, `ports` its inputs and outputs.
 [[nodiscard]] GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
                                 const std::vector<std::string>& ports);
 
-[[nodiscard]] std::vector<Trace> traces_of(const Task& task, const VectorXd& nominal, const VectorXd& calibrated,
+/// `gaps` are those of the outputs, and name their units: a column of a record may have none.
+[[nodiscard]] std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& gaps,
+                                           const VectorXd& nominal, const VectorXd& calibrated,
                                            const VectorXd& improved);
 
 /// The diagram with its effects, in the house's layout.
@@ -44,7 +64,8 @@ struct Findings {
 [[nodiscard]] parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
                                                       const Explanation& explanation);
 
-/// The verdict in one or two sentences.
-[[nodiscard]] std::string summary_of(const Diagnosis& found);
+/// The verdict in one or two sentences. `below_material`: what is left is no noise, but too small to matter to the
+/// user.
+[[nodiscard]] std::string summary_of(const Diagnosis& found, bool below_material);
 
 }  // namespace hysteron::diagnosis

@@ -29,17 +29,9 @@ struct Chosen {
   std::size_t input = 0;
 };
 
-Chosen choose(const Task& task, const OutputErrorProblem& problem, const VectorXd& residuals) {
-  Chosen chosen;
-  const Index rows = residuals.size() / std::ssize(task.outputs);
-  double largest = -1.0;
-  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-    const double size = residuals.segment(static_cast<Index>(output) * rows, rows).norm();
-    if (size > largest) {
-      largest = size;
-      chosen.output = output;
-    }
-  }
+/// Of the inputs the one that travels most.
+Chosen choose(const OutputErrorProblem& problem, std::size_t output) {
+  Chosen chosen{.output = output};
   double travel = -1.0;
   for (std::size_t input = 0; input < problem.program.graph.inputs.size(); ++input) {
     const Signal& values = problem.experiments.front().drive.inputs[input];
@@ -189,10 +181,11 @@ MapFinding over_frequency(const std::vector<Sample>& samples, double sample_time
 
 }  // namespace
 
-std::vector<MapFinding> maps_of(const Task& task, const Explanation& calibrated, const Explanation& improved) {
+std::vector<MapFinding> maps_of(const Task& task, const Explanation& calibrated, const Explanation& improved,
+                                std::size_t output) {
   const Model model(task, *calibrated.variant.program);
   const OutputErrorProblem& problem = model.problem();
-  const Chosen chosen = choose(task, problem, calibrated.fit.residuals);
+  const Chosen chosen = choose(problem, output);
   const Port& input = problem.program.graph.inputs[chosen.input];
   const auto samples = samples_of(task, problem, chosen, calibrated.fit.residuals, improved.fit.residuals);
   std::vector<MapFinding> maps;

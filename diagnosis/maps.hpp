@@ -9,8 +9,8 @@
 
 namespace hysteron::diagnosis {
 
-/// Of the output with the largest residual, over the input that moves most.
+/// Of one measured output, over the input that moves most.
 [[nodiscard]] std::vector<MapFinding> maps_of(const Task& task, const Explanation& calibrated,
-                                              const Explanation& improved);
+                                              const Explanation& improved, std::size_t output);
 
 }  // namespace hysteron::diagnosis

@@ -11,7 +11,7 @@
 namespace hysteron::diagnosis::report {
 
 struct DrawnBox {
-  enum class Kind : std::uint8_t { Input, Block, Expression, Output };
+  enum class Kind : std::uint8_t { Input, Block, Expression, Output, Effect };  ///< Effect: on a wire, without a block
   Kind kind = Kind::Block;
   std::string name{};                  ///< of the instance or port; the text of an expression
   std::string type{};                  ///< of a block, without HY_; the unit of a port

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "diagnosis/report/diagram_picture.hpp"
 #include "diagnosis/report/html.hpp"
@@ -21,7 +22,7 @@ std::string joined(const std::vector<std::string>& texts) {
 
 std::string edge_rows(const Diagnosis& diagnosis, std::size_t first, std::size_t last) {
   std::string html =
-      "<table><thead><tr><th>wire</th><th>share of the gap that a change there could explain at most</th>"
+      "<table><thead><tr><th>wire</th><th>share of the gap: spanned by test signals there, or closed by an effect</th>"
       "<th>this record cannot tell it from</th></tr></thead><tbody>\n";
   for (std::size_t i = first; i < last; ++i) {
     const EdgeFinding& edge = diagnosis.edges[i];
@@ -45,7 +46,9 @@ std::string edge_table(const Diagnosis& diagnosis) {
 }
 
 std::string legend() {
-  std::string html = "<p class=\"legend\">Share of the gap that a change on the wire could explain at most:";
+  std::string html =
+      "<p class=\"legend\">Share of the gap that test signals on the wire span, or an effect there closes; another "
+      "change may explain more:";
   static constexpr const char* steps[] = {"not looked at", "0–20 %", "20–40 %", "40–60 %", "60–80 %", "80–100 %"};
   for (int step = 0; step < 6; ++step) {
     html += fmt::format(
@@ -94,7 +97,14 @@ std::string where_section(const Diagnosis& diagnosis, const Graph& graph) {
 }
 
 std::string rivals_section(const Diagnosis& diagnosis) {
-  if (diagnosis.rivals.empty() && diagnosis.cannot_tell.empty()) {
+  // Warnings stand beside the verdict; a refusal has nothing but its reasons, which stand there too.
+  std::vector<std::string> reasons;
+  std::copy_if(diagnosis.cannot_tell.begin(), diagnosis.cannot_tell.end(), std::back_inserter(reasons),
+               [&](const std::string& reason) {
+                 return std::find(diagnosis.warnings.begin(), diagnosis.warnings.end(), reason) ==
+                        diagnosis.warnings.end();
+               });
+  if (!diagnosis.refusals.empty() || (diagnosis.rivals.empty() && reasons.empty())) {
     return {};
   }
   std::string html = "<section class=\"rivals\"><h2>What else the data allow</h2>\n";
@@ -117,8 +127,8 @@ std::string rivals_section(const Diagnosis& diagnosis) {
     }
     html += "</tbody></table>\n";
   }
-  if (!diagnosis.cannot_tell.empty()) {
-    html += "<h3>What this record cannot tell apart, and why</h3>\n" + list_of(diagnosis.cannot_tell, "plain");
+  if (!reasons.empty()) {
+    html += "<h3>What this record cannot tell apart, and why</h3>\n" + list_of(reasons, "plain");
   }
   return html + "</section>\n";
 }

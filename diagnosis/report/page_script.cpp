@@ -146,19 +146,19 @@ function mapFigures(host, maps, unit) {
   const grid = add(host, "div", { className: "mosaic" });
   for (const map of [...maps].sort((a, b) => b.share - a.share)) {
     const cell = add(grid, "div", { className: "map" });
-    const svg = draw(cell, "svg", { viewBox: "0 0 300 218", role: "img", "aria-label": "Residual over " + map.over });
+    const svg = draw(cell, "svg", { viewBox: "0 0 300 234", role: "img", "aria-label": "Residual over " + map.over });
     const places = numbers(map.places);
     const curves = [["mean", map.mean], ["before", map.before], ["after", map.after]]
       .map(([kind, values]) => ({ kind, values: numbers(values) }));
     const finite = [...places].filter(Number.isFinite);
     const log = finite.length > 2 && Math.min(...finite) > 0 && Math.max(...finite) > 100 * Math.min(...finite);
     const x = log ? [Math.min(...finite), Math.max(...finite)] : reach([places], 0, places.length, []);
-    const scale = axes(svg, { left: 62, right: 292, top: 26, bottom: 174 },
+    const scale = axes(svg, { left: 62, right: 292, top: 42, bottom: 190 },
                        { x, y: reach(curves.map(curve => curve.values), 0, places.length, [0]), log,
                          xLabel: named(map.over, map.unit), yLabel: named("residual", unit) });
     const explained = 100 * map.share;
     draw(svg, "text", { class: "title", x: 4, y: 15 }, "over " + map.over);
-    draw(svg, "text", { x: 292, y: 15, "text-anchor": "end" },
+    draw(svg, "text", { class: "explained", x: 4, y: 31 },
          `mean explains ${explained < 9.95 ? explained.toFixed(1) : explained.toFixed(0)} %`);
     for (const curve of curves) {
       let path = "", penDown = false;

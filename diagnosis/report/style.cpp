@@ -107,8 +107,9 @@ svg.diagram { display: block; width: 100%; height: auto; margin: 0 auto; }
 .diagram .type { text-anchor: middle; font-size: 11px; font-weight: 400; fill: var(--soft); }
 .diagram .pin { font-size: 10px; fill: var(--soft); } .diagram .pin.out { text-anchor: end; }
 .diagram text.effect { text-anchor: middle; font-weight: 700; fill: var(--after); }
-.diagram text.effect.here { text-anchor: start; }
-.diagram text.share, .diagram text.effect { paint-order: stroke; stroke: var(--paper); stroke-width: 4; }
+.diagram .on-wire rect { stroke-dasharray: 5 3; }
+.diagram .on-wire .name { fill: var(--after); }
+.diagram text.share { paint-order: stroke; stroke: var(--paper); stroke-width: 4; }
 .diagram text.share { font-size: 12px; font-weight: 600; }
 .legend span { white-space: nowrap; margin-left: .8rem; }
 .legend { font-size: .87rem; color: var(--soft); }

@@ -64,8 +64,8 @@ std::string parameter_table(const std::vector<ParameterFinding>& parameters) {
 
 std::string effect_card(const EffectFinding& effect) {
   std::string html = fmt::format(
-      "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of what the "
-      "effects close; {}.</p>\n",
+      "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of the gap "
+      "that calibration leaves; {}.</p>\n",
       escaped(words_of(effect.id)), escaped(effect.edge), percent(effect.share), inverse_of(effect.inverse));
   if (!effect.same_edges.empty()) {
     std::string edges;
@@ -177,7 +177,7 @@ std::string verdict_section(const Diagnosis& diagnosis) {
   std::string html = "<section class=\"verdict\">\n";
   html += fmt::format("<p class=\"label {}\">{}</p>\n", refused ? "refused" : "found",
                       refused ? "Record refused" : label_of(diagnosis.verdict));
-  if (!diagnosis.summary.empty()) {
+  if (!refused && !diagnosis.summary.empty()) {  // of a refusal it is the first of the reasons
     html += fmt::format("<p class=\"summary\">{}</p>\n", escaped(diagnosis.summary));
   }
   if (!refused) {

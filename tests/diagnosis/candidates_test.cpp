@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -109,6 +110,73 @@ TEST(Candidates, FrictionTakesAVelocityFromABlockWithMemory) {
     EXPECT_EQ(one.own().wires[0], std::pair(std::string("V"), std::string("SPEED.XOUT")));
   }
   EXPECT_THAT(edges_in(list), testing::Contains("FORCE"));
+}
+
+/// A mass in a loop of position and speed.
+const std::string servo = R"(FUNCTION_BLOCK SERVO  (* @ts 1ms *)
+  VAR_INPUT
+    REF : LREAL;  (* @unit mm *)
+    KP : LREAL := 900.0; (* @param @unit N/mm *)
+    KD : LREAL := 40.0; (* @param @unit N*s/mm *)
+    M : LREAL := 0.5; (* @param @unit N*s^2/mm *)
+  END_VAR
+  VAR_OUTPUT X : LREAL;  (* @unit mm *) END_VAR
+  VAR VEL : HY_INTEGRAL_FORWARD; POS : HY_INTEGRAL_FORWARD; SUM : HY_INTEGRAL_FORWARD; FORCE : LREAL; END_VAR
+  FORCE := KP * (REF - POS.XOUT) - KD * VEL.XOUT;
+  POS(XIN := VEL.XOUT);
+  VEL(XIN := FORCE / M);
+  SUM(XIN := FORCE);
+  X := POS.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+std::string without_units(const std::string& text) {
+  return std::regex_replace(text, std::regex("@unit [^ ]+ "), "");
+}
+
+std::set<std::string> velocities_at(const std::vector<Candidate>& list, std::string_view edge) {
+  std::set<std::string> result;
+  for (const Candidate& one : list) {
+    if (one.own().edge == edge) {
+      result.insert(one.own().wires.at(0).second);
+    }
+  }
+  return result;
+}
+
+TEST(Candidates, APositionIsNoVelocityAndIsNotSlowed) {
+  const CandidateOptions frictions{.effects = {"coulomb_friction", "viscous_friction"}};
+  std::string text = servo;
+  text.erase(text.find("  SUM(XIN"), 21);
+  text.erase(text.find("SUM : HY"), 27);
+  const auto with_units = candidates(text, "SERVO", frictions);
+  const auto without = candidates(without_units(text), "SERVO", frictions);
+  for (const auto* const list : {&with_units, &without}) {
+    EXPECT_THAT(velocities_at(*list, "FORCE"), ElementsAre("VEL.XOUT"));
+    EXPECT_THAT(velocities_at(*list, "POS.XOUT"), ElementsAre());
+  }
+  for (const Candidate& one : with_units) {
+    EXPECT_EQ(one.own().wires.at(0).second, "VEL.XOUT") << one.own().effect << " at " << one.own().edge;
+    EXPECT_THAT(one.own().edge, testing::Not(testing::AnyOf("POS.XIN", "VEL.XOUT")));
+  }
+}
+
+TEST(Candidates, TheIntegralPartOfALoopIsNoVelocity) {
+  std::string text = without_units(servo);
+  text.replace(text.find("SUM(XIN := FORCE)"), 17, "SUM(XIN := REF - VEL.XOUT)");
+  text.replace(text.find("KD * VEL.XOUT"), 13, "KD * VEL.XOUT + SUM.XOUT");
+  EXPECT_THAT(velocities_at(candidates(text, "SERVO", {.effects = {"viscous_friction"}}), "FORCE"),
+              ElementsAre("VEL.XOUT"));
+}
+
+TEST(Candidates, ALengthIsNoVelocityWhateverItComesFrom) {
+  // Of a slide whose speed is commanded, the model has no velocity.
+  const std::string slide =
+      "FUNCTION_BLOCK SLIDE (* @ts 1ms *) VAR_INPUT V : LREAL; END_VAR VAR_OUTPUT X : LREAL; {} END_VAR VAR POS : "
+      "HY_INTEGRAL_FORWARD; END_VAR POS(XIN := V); X := POS.XOUT; END_FUNCTION_BLOCK";
+  const CandidateOptions friction{.effects = {"viscous_friction"}};
+  EXPECT_TRUE(candidates(fmt::format(fmt::runtime(slide), "(* @unit mm *)"), "SLIDE", friction).empty());
+  EXPECT_FALSE(candidates(fmt::format(fmt::runtime(slide), "(* @unit mm/s *)"), "SLIDE", friction).empty());
 }
 
 TEST(Candidates, AnotherInputOrColumnMayCouple) {

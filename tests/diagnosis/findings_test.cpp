@@ -1,4 +1,4 @@
-// Which part of the gap belongs to the wires that a record is made of, and which to the plant.
+// What is said of a verdict: shares, the parts of the gap, sets with their edges, reasons.
 #include "diagnosis/findings.hpp"
 
 #include <gtest/gtest.h>
@@ -41,6 +41,45 @@ TEST(GapSplit, AnEdgeThatCannotBeToldFromAPortCountsAsOne) {
 
 TEST(GapSplit, WithoutEffectsAllIsOpen) {
   EXPECT_DOUBLE_EQ(split({}).open, 1.0);
+}
+
+TEST(Rivals, EachEffectStandsBesideItsEdge) {
+  // Found in the order lag, creep: the set is read in the order of the alphabet.
+  const Task task{.outputs = {"A", "B"}, .scales = {1.0, 10.0}};
+  Explanation set;
+  set.variant.effects = {{.effect = "lag", .edge = "U"}, {.effect = "creep", .edge = "HYST.XOUT"}};
+  set.fit.residuals = VectorXd::Constant(4, 1.0);
+  const Rival rival = rival_of(task, 0, {.explanation = &set});
+  EXPECT_EQ(rival.effects, (std::vector<std::string>{"creep", "lag"}));
+  EXPECT_EQ(rival.edges, (std::vector<std::string>{"HYST.XOUT", "U"}));
+}
+
+TEST(Rivals, LeaveWhatTheyLeaveOfTheOutputWithTheGap) {
+  const Task task{.outputs = {"A", "B"}, .scales = {1.0, 10.0}};
+  Explanation set;
+  set.fit.residuals = VectorXd::Constant(4, 1.0);
+  set.fit.residuals.tail(2).setConstant(2.0);
+  EXPECT_DOUBLE_EQ(rival_of(task, 0, {.explanation = &set}).improved_rms, 1.0);
+  EXPECT_DOUBLE_EQ(rival_of(task, 1, {.explanation = &set}).improved_rms, 20.0);
+}
+
+TEST(Shares, WithAnEffectOutsideOfTheGapTheyAreOfBoth) {
+  std::vector<EffectFinding> effects{{.id = "lag", .share = 0.8}, {.id = "drift", .share = 0.1}};
+  EXPECT_DOUBLE_EQ(add_share(effects, 30.0, {.id = "glitches"}, 10.0), 40.0);
+  EXPECT_DOUBLE_EQ(effects[0].share, 0.6);
+  EXPECT_DOUBLE_EQ(effects[1].share, 0.075);
+  EXPECT_DOUBLE_EQ(effects[2].share, 0.25);
+  EXPECT_NEAR(split(effects).open, 0.075, 1e-12) << "what was open of the 30 stays open";
+}
+
+TEST(Reasons, ASlowPeriodIsNamedWhereSomethingStaysOpen) {
+  const auto reasons = [](Verdict verdict, double duration) {
+    return structural_reasons({.verdict = verdict}, duration);
+  };
+  ASSERT_EQ(reasons(Verdict::Unknown, 60.0).size(), 1U);
+  EXPECT_NE(reasons(Verdict::Partial, 60.0).front().find("slower than some 30 s"), std::string::npos);
+  EXPECT_TRUE(reasons(Verdict::Named, 60.0).empty());
+  EXPECT_TRUE(reasons(Verdict::Unknown, 0.0).empty()) << "it was not tried";
 }
 
 }  // namespace

@@ -75,6 +75,66 @@ TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page(odd, fixture::rich_program())));
 }
 
+/// Texts that overlap cannot be read.
+TEST(ReportInBrowser, TheTitlesOfTheMapsDoNotOverlap) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.maps[0].over = "time since the branch of a long name";
+  const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const pairs = [...document.querySelectorAll(".map svg")].filter(svg => {
+      const boxes = [...svg.querySelectorAll("text.title, text.explained")].map(text => text.getBoundingClientRect());
+      return boxes.length === 2 && !overlap(boxes[0], boxes[1]);
+    });
+    document.body.dataset.apart = pairs.length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-apart=\"8\""));
+}
+
+/// Nothing is drawn over the name of an effect: at its middle it is what a click meets, or the box that it stands in.
+TEST(ReportInBrowser, EffectsAreNotCovered) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.push_back({.id = "glitches", .edge = "SENSOR.XOUT", .share = 0.1});
+  const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
+    const diagram = document.querySelector("svg.diagram");
+    const covered = [...diagram.querySelectorAll("text.effect, .on-wire text.name")].filter(text => {
+      text.scrollIntoView({ block: "center", inline: "center" });
+      const box = text.getBoundingClientRect();
+      const hit = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+      return hit === null || hit.closest("g") !== text.closest("g");
+    });
+    document.body.dataset.covered = covered.length;
+    document.body.dataset.effects = diagram.querySelectorAll("text.effect, .on-wire text.name").length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-covered=\"0\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-effects=\"4\""));
+}
+
+TEST(ReportInBrowser, SharesOfBranchesDoNotOverlap) {
+  if (!has_browser()) {
+    GTEST_SKIP() << no_browser;
+  }
+  Diagnosis found = fixture::rich_diagnosis();
+  found.effects.clear();
+  found.edges = {{.edge = "A.XIN", .share = 0.6}, {.edge = "U", .share = 0.5}, {.edge = "A.XOUT", .share = 0.4}};
+  const Program branched = compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR A : HY_LAG; B : "
+      "HY_LAG; END_VAR A(XIN := U); B(XIN := U); Y := A.XOUT + B.XOUT; END_FUNCTION_BLOCK");
+  const Shown tried = shown(report_page(found, branched), R"(
+    const boxes = [...document.querySelectorAll("svg.diagram text.share")].map(text => text.getBoundingClientRect());
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    document.body.dataset.shares = boxes.length;
+    document.body.dataset.overlaps = boxes.filter((a, i) => boxes.some((b, k) => k < i && overlap(a, b))).length;)");
+  expect_no_fault(tried);
+  EXPECT_THAT(tried.page, HasSubstr("data-shares=\"3\""));
+  EXPECT_THAT(tried.page, HasSubstr("data-overlaps=\"0\""));
+}
+
 /// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
 /// stands out is among them.
 TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {

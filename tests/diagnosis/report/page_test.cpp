@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -99,6 +100,55 @@ TEST(ReportPage, ARefusedRecordHasItsReasonsAndNoConfidence) {
   EXPECT_THAT(page, HasSubstr("nothing was excited"));
   EXPECT_THAT(page, Not(HasSubstr("</strong> confidence")));
   EXPECT_THAT(page, Not(HasSubstr("How far")));
+}
+
+/// The text of a page without its tags, so far as it stands before the data of the plots.
+std::string words_on(const std::string& page) {
+  const std::string shown = page.substr(0, page.find("id=\"data\""));
+  return std::regex_replace(shown, std::regex("<[^>]*>"), "");
+}
+
+std::size_t count_of(const std::string& text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(ReportPage, ARefusalSaysEachReasonOnceAndHasNoEmptySections) {
+  Diagnosis found = fixture::refused_diagnosis();
+  found.summary = "No diagnosis: " + found.refusals[0];
+  found.cannot_tell = found.refusals;
+  const std::string page = report_page(found, fixture::rich_program());
+  EXPECT_EQ(count_of(words_on(page), found.refusals[0]), 1U);
+  EXPECT_THAT(page, Not(HasSubstr("What else the data allow")));
+}
+
+TEST(ReportPage, AWarningIsSaidOnce) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  found.cannot_tell.push_back(found.warnings[0]);
+  const std::string words = words_on(report_page(found, fixture::rich_program()));
+  EXPECT_EQ(count_of(words, found.warnings[0]), 1U);
+  EXPECT_EQ(count_of(words, found.cannot_tell[0]), 1U);
+}
+
+TEST(ReportPage, AnEffectWithoutABlockStandsOnItsWire) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  found.effects.push_back({.id = "glitches", .edge = "SENSOR.XOUT", .share = 0.1});
+  const std::string page = report_page(found, fixture::rich_program());
+  EXPECT_THAT(page, HasSubstr("<title>glitches: on SENSOR.XOUT</title>"));
+  EXPECT_EQ(count_of(page, "on-wire added"), 1U);
+}
+
+TEST(ReportPage, ALongNameOfABlockIsReadWhole) {
+  const std::string text =
+      "FUNCTION_BLOCK LONG (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR "
+      "POSITION_VISCOUS_FRICTION : HY_LAG; END_VAR POSITION_VISCOUS_FRICTION(XIN := U); Y := "
+      "POSITION_VISCOUS_FRICTION.XOUT; END_FUNCTION_BLOCK";
+  const std::string page = report_page(fixture::rich_diagnosis(50), compile_text(text));
+  EXPECT_THAT(page, HasSubstr(">POSITION_VISCOUS_</text>"));
+  EXPECT_THAT(page, HasSubstr(">FRICTION</text>"));
 }
 
 TEST(ReportPage, NamesOfAnyKindAreEscaped) {

@@ -14,6 +14,7 @@
 #include "diagnosis/findings.hpp"
 #include "diagnosis/glitches.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
 #include "diagnosis/inverse.hpp"
 #include "diagnosis/maps.hpp"
@@ -295,7 +296,12 @@ class Run {
     }
     result_.traces = traces_of(task_, nominal_, found.calibrated.fit.residuals, judgement.chosen->fit.residuals);
     const Explanation& kept = named ? *judgement.chosen : found.calibrated;
-    result_.improved_text = improved_text(kept, input_.program.graph.source->path);
+    result_.improved_text = improved_text(kept.variant, input_.program.graph.source->path);
+    if (hidden_delays(result_.improved_text) > hidden_delays(input_.text)) {
+      result_.warnings.push_back(
+          "The effect closes a loop, and its block cannot be called before what it reads: improved.st is taken with "
+          "--any-order only.");
+    }
     result_.improved_file = improved_file(task_, input_.file, kept);
     plan(found, judgement, kept);
     result_.summary = summary_of(result_);

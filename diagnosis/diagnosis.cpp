@@ -71,6 +71,10 @@ class Run {
     auto program = std::make_shared<Program>(input_.program);
     parameters::apply(task_.file, program->graph);
     base_ = {.text = input_.text, .program = std::move(program)};
+    result_.refusals = absurd_samples(task_, base_.program->graph);
+    if (!result_.refusals.empty()) {
+      return;
+    }
     Model model(task_, *base_.program);
     floors_.clear();
     unused_ = unused_columns(task_, *base_.program);

@@ -379,16 +379,16 @@ class Run {
     for (const Weighed& weighed : judgement.rivals) {
       rivals.push_back(*weighed.explanation);
     }
-    for (const Weighed& weighed : judgement.fitted) {
-      if (rivals.size() < 2 && !rivals.empty() && weighed.explanation->names() != rivals.front().names()) {
-        rivals.push_back(*weighed.explanation);
-      }
-    }
-    if (rivals.empty() && !found.explanations.empty()) {
+    const bool unknown = result_.verdict == Verdict::Unknown;
+    if (unknown && rivals.empty() && !found.explanations.empty()) {
       rivals.push_back(found.explanations.front());
     }
     if (result_.verdict != Verdict::None && result_.verdict != Verdict::Calibration && !rivals.empty()) {
       result_.next = next_experiment(task_, rivals, options_.limits, floors_.front().value);
+    }
+    if (unknown && !result_.next.reason.empty()) {
+      result_.next.reason = fmt::format("of what was tried, {} comes nearest, and does not explain the record; {}",
+                                        fmt::join(rivals.front().names(), " + "), result_.next.reason);
     }
     invert(kept);
   }

@@ -44,6 +44,9 @@ records::Record command_record(const diagnosis::NextExperiment& next) {
   const double step = rows > 1 ? (next.time.back() - next.time.front()) / static_cast<double>(rows - 1) : 1.0;
   records::Record record = records::Record::even(next.time.front(), step, rows);
   record.add({.name = next.input, .unit = next.unit, .values = next.values});
+  for (const diagnosis::NextExperiment::Resting& rest : next.resting) {
+    record.add({.name = rest.input, .unit = rest.unit, .values = std::vector<double>(rows, rest.value)});
+  }
   return record;
 }
 

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "codegen/parameters/apply.hpp"
@@ -46,7 +48,7 @@ using Clock = std::chrono::steady_clock;
 class Run {
  public:
   Run(const DiagnosisInput& input, const DiagnosisOptions& options)
-      : input_(with_inner_signals(input, inner_)), options_(options) {}
+      : unmatched_(unmatched_columns(input)), input_(with_inner_signals(input, inner_)), options_(options) {}
 
   Diagnosis run() {
     const auto begun = Clock::now();
@@ -101,6 +103,7 @@ class Run {
     RecordCheck checked = check_records(task_, scaled, nominal_);
     result_.refusals = std::move(checked.refusals);
     result_.warnings = std::move(checked.warnings);
+    std::ranges::move(unmatched_, std::back_inserter(result_.warnings));
     one_motion_ = checked.one_motion;
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
@@ -118,12 +121,21 @@ class Run {
     searching.candidates.effects = options_.effects;
     searching.candidates.columns = unused_;
     searching.progress = options_.progress;
+    std::atomic<bool> cut = false;  // the search asks from its threads, and only where it would go on
     searching.out_of_time = [&] {
-      return std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
+      const bool over = std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
+      cut = cut || over;
+      return over;
     };
     const std::string top = base_.program->graph.name;
     const Search found = search(task_, base_, top, floor_cost_, searching);
     result_.tried = found.tried;
+    if (cut) {
+      result_.warnings.push_back(fmt::format(
+          "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every "
+          "set of several. The verdict may change with more time, --budget.",
+          options_.budget, found.tried));
+    }
     const Judgement judgement = judge(task_, found, floor_cost_);
     const Explanation& chosen = *judgement.chosen;
     describe_gap(found.calibrated, judgement);
@@ -421,7 +433,8 @@ class Run {
     }
   }
 
-  std::vector<std::string> inner_{};  ///< outputs that are inner signals of the user's diagram
+  std::vector<std::string> unmatched_{};  ///< remarks on columns that look like inner signals
+  std::vector<std::string> inner_{};      ///< outputs that are inner signals of the user's diagram
   DiagnosisInput input_;
   const DiagnosisOptions& options_;
   Task task_{};

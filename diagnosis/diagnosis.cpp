@@ -4,18 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/feedforward.hpp"
 #include "diagnosis/findings.hpp"
-#include "diagnosis/glitches.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
 #include "diagnosis/inverse.hpp"
+#include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/next_experiment.hpp"
 #include "diagnosis/record_check.hpp"
@@ -51,7 +54,7 @@ using Clock = std::chrono::steady_clock;
 class Run {
  public:
   Run(const DiagnosisInput& input, const DiagnosisOptions& options)
-      : input_(with_inner_signals(input, inner_)), options_(options) {}
+      : unmatched_(unmatched_columns(input)), input_(with_inner_signals(input, inner_)), options_(options) {}
 
   Diagnosis run() {
     const auto begun = Clock::now();
@@ -76,6 +79,10 @@ class Run {
     auto program = std::make_shared<Program>(input_.program);
     parameters::apply(task_.file, program->graph);
     base_ = {.text = input_.text, .program = std::move(program)};
+    result_.refusals = absurd_samples(task_, base_.program->graph);
+    if (!result_.refusals.empty()) {
+      return;
+    }
     Model model(task_, *base_.program);
     floors_.clear();
     unused_ = unused_columns(task_, *base_.program);
@@ -89,12 +96,8 @@ class Run {
     for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
       floors_.push_back(noise_floor(model.problem().experiments, output, others));
       task_.scales.push_back(floors_.back().value);
-      glitches_.push_back(find_glitches(model.problem().experiments, output));
-      const Index rows = model.rows() / std::ssize(model.problem().outputs);
-      for (const std::size_t row : glitches_.back().rows) {
-        task_.left_out.push_back(static_cast<Index>(output) * rows + static_cast<Index>(row));
-      }
     }
+    left_out_ = leave_out(task_, *base_.program);
     Model scaled(task_, *base_.program);
     if (!scaled.residuals(scaled.start(), nominal_)) {
       throw InputError(error_of_start(input_));
@@ -102,6 +105,7 @@ class Run {
     RecordCheck checked = check_records(task_, scaled, nominal_);
     result_.refusals = std::move(checked.refusals);
     result_.warnings = std::move(checked.warnings);
+    std::ranges::move(unmatched_, std::back_inserter(result_.warnings));
     one_motion_ = checked.one_motion;
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
@@ -119,12 +123,21 @@ class Run {
     searching.candidates.effects = options_.effects;
     searching.candidates.columns = unused_;
     searching.progress = options_.progress;
+    std::atomic<bool> cut = false;  // the search asks from its threads, and only where it would go on
     searching.out_of_time = [&] {
-      return std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
+      const bool over = std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
+      cut = cut || over;
+      return over;
     };
     const std::string top = base_.program->graph.name;
     const Search found = search(task_, base_, top, floor_cost_, searching);
     result_.tried = found.tried;
+    if (cut) {
+      result_.warnings.push_back(fmt::format(
+          "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every "
+          "set of several. The verdict may change with more time, --budget.",
+          options_.budget, found.tried));
+    }
     const Judgement judgement = judge(task_, found, floor_cost_);
     find_gap();
     decide(found, judgement);
@@ -311,7 +324,7 @@ class Run {
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     const std::vector<Edge> edges = chosen_edges();
-    add_glitches(findings, edges);
+    add_left_out(findings, edges);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
@@ -324,7 +337,12 @@ class Run {
       result_.cannot_tell.push_back(std::move(reason));
     }
     result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);
-    result_.improved_text = improved_text(kept, input_.program.graph.source->path);
+    result_.improved_text = improved_text(kept.variant, input_.program.graph.source->path);
+    if (hidden_delays(result_.improved_text) > hidden_delays(input_.text)) {
+      result_.warnings.push_back(
+          "The effect closes a loop, and its block cannot be called before what it reads: improved.st is taken with "
+          "--any-order only.");
+    }
     result_.improved_file = improved_file(task_, input_.file, kept);
     plan(found, judgement, kept);
     result_.summary = summary_of(result_, below_material(kept));
@@ -360,47 +378,39 @@ class Run {
     return options_.effects.empty() || std::ranges::find(options_.effects, effect) != options_.effects.end();
   }
 
-  /// Glitches are counted, not fitted: an effect of their own where they outweigh the noise, else a remark.
-  void add_glitches(const Findings& findings, const std::vector<Edge>& edges) {
+  /// What was left out of the fits: an effect of its own where it outweighs the noise, else a remark.
+  void add_left_out(const Findings& findings, const std::vector<Edge>& edges) {
     double gap = gap_energy(findings);
-    for (std::size_t output = 0; output < glitches_.size(); ++output) {
-      const Glitches& found = glitches_[output];
-      if (found.rows.empty()) {
+    for (const LeftOut& one : left_out_) {
+      const double ratio = one.rms / floors_[one.output].value;
+      result_.warnings.push_back(one.remark);
+      if (ratio < 1.0 || !is_tried(one.effect)) {
         continue;
       }
-      const double ratio = found.rms / floors_[output].value;
-      result_.warnings.push_back(
-          fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they "
-                      "are left out of the fits.",
-                      found.rows.size(), task_.outputs[output], found.largest));
-      if (ratio < 1.0 || !is_tried("glitches")) {
-        continue;
-      }
-      const Edge* const edge = find_edge(edges, task_.outputs[output]);
-      EffectFinding finding{.id = "glitches", .edge = edge == nullptr ? task_.outputs[output] : edge->name};
-      const auto count = static_cast<double>(found.rows.size());
-      finding.parameters.push_back({.name = "COUNT", .value = count, .low = count, .high = count, .unit = "1"});
-      finding.parameters.push_back({.name = "LARGEST",
-                                    .value = found.largest,
-                                    .low = found.largest,
-                                    .high = found.largest,
-                                    .unit = result_.gaps[output].unit});
+      const Edge* const edge = find_edge(edges, task_.outputs[one.output]);
+      EffectFinding finding{.id = one.effect,
+                            .edge = edge == nullptr ? task_.outputs[one.output] : edge->name,
+                            .parameters = one.parameters};
       const bool alone = result_.effects.empty();
       const double rows = static_cast<double>(nominal_.size()) / static_cast<double>(task_.outputs.size());
       gap = add_share(result_.effects, gap, std::move(finding), 0.5 * rows * ratio * ratio);
       for (Rival& rival : result_.rivals) {
-        rival.effects.emplace_back("glitches");
+        rival.effects.push_back(one.effect);
         rival.edges.push_back(result_.effects.back().edge);
       }
       if (alone) {
         result_.verdict = result_.verdict == Verdict::Unknown ? Verdict::Partial : Verdict::Named;
-        result_.rivals = {{.effects = {"glitches"},
+        result_.rivals = {{.effects = {one.effect},
                            .edges = {result_.effects.back().edge},
                            .improved_rms = result_.gap.improved,
                            .probability = 1.0}};
-        result_.unknown_score = excess_of(result_.gaps[output].improved / floors_[output].value);
+        result_.unknown_score = excess_of(result_.gaps[one.output].improved / floors_[one.output].value);
         result_.confidence = 0.9 * (1.0 - result_.unknown_score);
       }
+    }
+    if (!left_out_.empty()) {
+      std::ranges::stable_sort(result_.effects,
+                               [](const EffectFinding& x, const EffectFinding& y) { return x.share > y.share; });
     }
   }
 
@@ -413,16 +423,16 @@ class Run {
     for (const Weighed& weighed : judgement.rivals) {
       rivals.push_back(*weighed.explanation);
     }
-    for (const Weighed& weighed : judgement.fitted) {
-      if (rivals.size() < 2 && !rivals.empty() && weighed.explanation->names() != rivals.front().names()) {
-        rivals.push_back(*weighed.explanation);
-      }
-    }
-    if (rivals.empty() && !found.explanations.empty()) {
+    const bool unknown = result_.verdict == Verdict::Unknown;
+    if (unknown && rivals.empty() && !found.explanations.empty()) {
       rivals.push_back(found.explanations.front());
     }
     if (result_.verdict != Verdict::None && result_.verdict != Verdict::Calibration && !rivals.empty()) {
       result_.next = next_experiment(task_, rivals, options_.limits, floors_.front().value);
+    }
+    if (unknown && !result_.next.reason.empty()) {
+      result_.next.reason = fmt::format("of what was tried, {} comes nearest, and does not explain the record; {}",
+                                        fmt::join(rivals.front().names(), " + "), result_.next.reason);
     }
     invert(kept);
   }
@@ -455,14 +465,15 @@ class Run {
     }
   }
 
-  std::vector<std::string> inner_{};  ///< outputs that are inner signals of the user's diagram
+  std::vector<std::string> unmatched_{};  ///< remarks on columns that look like inner signals
+  std::vector<std::string> inner_{};      ///< outputs that are inner signals of the user's diagram
   DiagnosisInput input_;
   const DiagnosisOptions& options_;
   Task task_{};
   Variant base_{};
   std::vector<std::string> unused_{};  ///< columns that the diagram does not name
   std::vector<NoiseFloor> floors_{};
-  std::vector<Glitches> glitches_{};
+  std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;  ///< see Findings
@@ -472,24 +483,6 @@ class Run {
 };
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::None:
-      return "none";
-    case Verdict::Calibration:
-      return "calibration";
-    case Verdict::Named:
-      return "named";
-    case Verdict::Group:
-      return "group";
-    case Verdict::Partial:
-      return "partial";
-    case Verdict::Unknown:
-      return "unknown";
-  }
-  return "unknown";
-}
 
 Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options) {
   return Run(input, options).run();

@@ -146,15 +146,22 @@ struct Trace {
   std::vector<double> improved{};
 };
 
-/// What would tell the rivals apart best.
+/// What would tell the rivals apart best, or show a single cause best.
 struct NextExperiment {
-  std::string title{};
-  std::string reason{};
+  /// An input of the diagram that rests meanwhile.
+  struct Resting {
+    std::string input{};
+    std::string unit{};
+    double value = 0.0;
+  };
+  std::string title{};   ///< empty where no experiment would tell
+  std::string reason{};  ///< why it is recommended, or why none is
   std::string input{};
   std::string unit{};
-  double separation = 0.0;  ///< RMS between the rivals' outputs over the noise
+  double separation = 0.0;  ///< RMS between the rivals' outputs over the noise; of one cause alone, its own part
   std::vector<double> time{};
   std::vector<double> values{};
+  std::vector<Resting> resting{};
   std::vector<std::pair<std::string, std::string>> steps{};  ///< the command table: what, how long
 };
 

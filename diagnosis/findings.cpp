@@ -6,8 +6,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
+#include "diagnosis/improved.hpp"
 #include "diagnosis/noise_floor.hpp"
 #include "support/diagnostic.hpp"
 
@@ -51,13 +53,18 @@ void widen_by_trial(Model& model, const Fit& fit, Index at, double effective_sam
   constexpr double ratio = 1.1;
   constexpr int most_steps = 60;
   const double most = fit.cost * (1.0 + normal_95 * normal_95 / effective_samples);
+  bool by_record = false;
   const auto end = [&](double factor) {
     double last = finding.value;
     VectorXd x = fit.x;
     VectorXd residuals;
     for (int step = 0; step < most_steps; ++step) {
       x[at] = std::clamp(last * factor, model.lower()[at], model.upper()[at]);
-      if (x[at] == last || !model.residuals(x, residuals) || cost_of(model, x, residuals, nullptr) > most) {
+      if (x[at] == last) {
+        break;
+      }
+      if (!model.residuals(x, residuals) || cost_of(model, x, residuals, nullptr) > most) {
+        by_record = true;
         break;
       }
       last = x[at];
@@ -66,6 +73,10 @@ void widen_by_trial(Model& model, const Fit& fit, Index at, double effective_sam
   };
   finding.low = end(finding.value > 0.0 ? 1.0 / ratio : ratio);
   finding.high = end(finding.value > 0.0 ? ratio : 1.0 / ratio);
+  if (!by_record) {  // the ends are those of the trial: the record says nothing
+    finding.low = -std::numeric_limits<double>::infinity();
+    finding.high = std::numeric_limits<double>::infinity();
+  }
 }
 
 std::string leaf(const std::string& path) {
@@ -190,7 +201,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       }
       finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
-      if (errors[at] > undetermined * std::abs(chosen.fit.x[at])) {
+      if (errors[at] > undetermined * std::abs(chosen.fit.x[at]) || !has_influence(chosen.fit, at, unknown.typical)) {
         widen_by_trial(model, chosen.fit, at, samples, finding.parameters.back());
       }
     }
@@ -372,58 +383,6 @@ std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& ga
   return traces;
 }
 
-std::string improved_text(const Explanation& explanation, const std::string& path) {
-  Diagnostics diagnostics;
-  return format_text(path, explanation.variant.text, diagnostics);
-}
-
-parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
-                                        const Explanation& explanation) {
-  const auto set = [&](const std::string& path, parameters::Value value) {
-    for (parameters::ParameterValue& one : file.values) {
-      if (language::same_name(one.path, path)) {
-        one.value = std::move(value);
-        return;
-      }
-    }
-    file.values.push_back({.path = path, .value = std::move(value)});
-  };
-  const auto fitted = [&](const std::string& path) {
-    return std::ranges::any_of(file.fits,
-                               [&](const parameters::FitSetting& one) { return language::same_name(one.path, path); });
-  };
-  const VectorXd& x = explanation.fit.x;
-  for (std::size_t j = 0; j < task.known.size(); ++j) {
-    set(task.known[j].path, x[static_cast<Index>(j)]);
-    for (parameters::FitSetting& one : file.fits) {
-      if (language::same_name(one.path, task.known[j].path)) {
-        one.start.reset();
-      }
-    }
-  }
-  for (std::size_t j = 0; j < explanation.variant.further.size(); ++j) {
-    const std::string& path = explanation.variant.further[j].path;
-    const double value = x[std::ssize(task.known) + static_cast<Index>(j)];
-    if (!std::isfinite(value)) {
-      continue;  // a bound that is not there: so the block has it by itself
-    }
-    set(path, value);
-    if (!file.fits.empty() && !fitted(path)) {
-      file.fits.push_back({.path = path});
-    }
-  }
-  for (const Applied& applied : explanation.variant.effects) {
-    for (const auto& [path, value] : applied.settings) {
-      const std::int64_t found = find_parameter(explanation.variant.program->graph, path);
-      const bool choice =
-          found >= 0 &&
-          explanation.variant.program->graph.parameters[static_cast<std::size_t>(found)].field.type == Type::Bool;
-      set(path, choice ? parameters::Value(value != 0.0) : parameters::Value(value));
-    }
-  }
-  return file;
-}
-
 std::string summary_of(const Diagnosis& found, bool below_material) {
   std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
                                 found.gap.nominal, found.gap.calibrated, found.gap.improved,
@@ -454,6 +413,24 @@ std::string summary_of(const Diagnosis& found, bool below_material) {
       return fmt::format("The record follows something that none of the effects explains ({}).", gap);
   }
   return gap;
+}
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::None:
+      return "none";
+    case Verdict::Calibration:
+      return "calibration";
+    case Verdict::Named:
+      return "named";
+    case Verdict::Group:
+      return "group";
+    case Verdict::Partial:
+      return "partial";
+    case Verdict::Unknown:
+      return "unknown";
+  }
+  return "unknown";
 }
 
 }  // namespace hysteron::diagnosis

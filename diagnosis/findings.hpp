@@ -57,13 +57,6 @@ struct Findings {
                                            const VectorXd& nominal, const VectorXd& calibrated,
                                            const VectorXd& improved);
 
-/// The diagram with its effects, in the house's layout.
-[[nodiscard]] std::string improved_text(const Explanation& explanation, const std::string& path);
-
-/// The user's parameter file with the fitted values, and those of the effects, which may be fitted further.
-[[nodiscard]] parameters::ParameterFile improved_file(const Task& task, parameters::ParameterFile file,
-                                                      const Explanation& explanation);
-
 /// The verdict in one or two sentences. `below_material`: what is left is no noise, but too small to matter to the
 /// user.
 [[nodiscard]] std::string summary_of(const Diagnosis& found, bool below_material);

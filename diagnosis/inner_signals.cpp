@@ -1,12 +1,17 @@
 #include "diagnosis/inner_signals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/edges.hpp"
 #include "diagnosis/insertion.hpp"
+#include "support/names.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -70,6 +75,48 @@ DiagnosisInput with_inner_signals(const DiagnosisInput& input, std::vector<std::
     result.program = compile_text(result.text, {.top = graph.name, .any_order = true});
   }
   return result;
+}
+
+std::vector<std::string> unmatched_columns(const DiagnosisInput& input) {
+  Diagnostics ignored;  // the text compiles
+  const auto source = std::make_shared<const language::SourceFile>(language::parse("text", input.text, ignored));
+  const Definitions definitions = define(source, ignored);
+  const std::uint32_t top = top_definition(definitions, input.program.graph.name);
+  const std::vector<Edge> edges = edges_of(definitions, top);
+  std::vector<std::string> known;
+  for (const Edge& edge : edges) {
+    if (edge.definition == top) {
+      known.push_back(edge.name);
+      known.insert(known.end(), edge.aliases.begin(), edge.aliases.end());
+    }
+  }
+  std::vector<std::string> names;
+  for (const records::Record& record : input.records) {
+    for (const records::Column& column : record.columns()) {
+      const auto same = [&](const std::string& name) { return language::same_name(name, column.name); };
+      if (column.name.find('.') != std::string::npos && std::ranges::none_of(names, same)) {
+        names.push_back(column.name);
+      }
+    }
+  }
+  std::vector<std::string> remarks;
+  for (const std::string& name : names) {
+    const Edge* const edge = find_edge(edges, name);
+    if (edge == nullptr) {
+      const std::string_view near = nearest_name(name, known);
+      remarks.push_back(fmt::format("The column {} is no signal of {} and is left aside{}", name,
+                                    input.program.graph.name,
+                                    near.empty() ? "." : fmt::format(": did you mean {}?", near)));
+    } else if (edge->definition != top) {
+      remarks.push_back(fmt::format(
+          "The column {} is a signal inside an inner block and is left aside: only signals of {} itself cut it.", name,
+          input.program.graph.name));
+    } else if (!std::ranges::all_of(input.records,
+                                    [&](const records::Record& record) { return record.find(name) != nullptr; })) {
+      remarks.push_back(fmt::format("The column {} is left aside: not every record has it.", name));
+    }
+  }
+  return remarks;
 }
 
 }  // namespace hysteron::diagnosis

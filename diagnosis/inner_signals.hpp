@@ -13,4 +13,7 @@ namespace hysteron::diagnosis {
 /// As it was where there is none. Adds the names of these outputs to `signals`.
 [[nodiscard]] DiagnosisInput with_inner_signals(const DiagnosisInput& input, std::vector<std::string>& signals);
 
+/// A sentence for each column that is named as a signal inside the diagram, with a dot, and cuts it nowhere.
+[[nodiscard]] std::vector<std::string> unmatched_columns(const DiagnosisInput& input);
+
 }  // namespace hysteron::diagnosis

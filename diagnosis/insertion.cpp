@@ -68,6 +68,55 @@ Edit declaration(const language::FunctionBlock& block, const Ends& ends, std::st
                : Edit{.span = {ends.behind, 0}, .text = fmt::format("\n  VAR\n    {}\n  END_VAR", text)};
 }
 
+/// The places where an expression reads a pin of an instance, each with whether it is all that stands there.
+struct Reading {
+  Span span{};
+  bool whole = false;
+};
+
+class Readings {
+ public:
+  Readings(const language::SourceFile& source, std::string_view instance, std::string_view pin)
+      : source_(source), instance_(instance), pin_(pin) {}
+
+  std::vector<Reading> of(const language::FunctionBlock& block) {
+    for (const language::Statement& statement : block.statements) {
+      if (const auto* call = std::get_if<language::Call>(&statement)) {
+        for (const language::Argument& argument : call->arguments) {
+          collect(argument.value, true);
+        }
+      } else {
+        collect(std::get<language::Assignment>(statement).value, true);
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void collect(language::ExpressionId id, bool whole) {
+    const language::Expression& expression = source_.expressions[id];
+    if (const auto* reference = std::get_if<language::Reference>(&expression.node)) {
+      if (language::same_name(reference->name.text, instance_) && language::same_name(reference->pin.text, pin_)) {
+        found_.push_back({.span = expression.span, .whole = whole});
+      }
+    } else if (const auto* unary = std::get_if<language::Unary>(&expression.node)) {
+      collect(unary->operand, false);
+    } else if (const auto* binary = std::get_if<language::Binary>(&expression.node)) {
+      collect(binary->left, false);
+      collect(binary->right, false);
+    } else if (const auto* function = std::get_if<language::FunctionCall>(&expression.node)) {
+      for (const language::FunctionArgument& argument : function->arguments) {
+        collect(argument.value, true);
+      }
+    }
+  }
+
+  const language::SourceFile& source_;
+  std::string_view instance_;
+  std::string_view pin_;
+  std::vector<Reading> found_{};
+};
+
 }  // namespace
 
 std::string with_effect(const language::SourceFile& source, const Edge& edge, const Insertion& insertion) {
@@ -94,6 +143,33 @@ std::string with_output(const language::SourceFile& source, const Edge& edge, st
   return edited(*source.text,
                 {{.span = {ends.behind, 0}, .text = fmt::format("\n  VAR_OUTPUT\n    {} : LREAL;\n  END_VAR", name)},
                  {.span = {ends.block, 0}, .text = fmt::format("  {} := {};\n", name, edge.source)}});
+}
+
+std::string with_sum_outside(const language::SourceFile& source, std::uint32_t definition, std::string_view instance) {
+  const language::FunctionBlock& block = source.blocks[definition];
+  std::vector<Edit> edits;
+  std::string input;
+  for (const language::Statement& statement : block.statements) {
+    const auto* const call = std::get_if<language::Call>(&statement);
+    if (call == nullptr || !language::same_name(call->instance.text, instance)) {
+      continue;
+    }
+    for (const language::Argument& argument : call->arguments) {
+      if (language::same_name(argument.pin.text, "XIN")) {
+        const Span span = source.expressions[argument.value].span;
+        input = source.text->substr(span.offset, span.length);
+        edits.push_back({.span = span, .text = "0.0"});
+      }
+    }
+  }
+  if (input.empty()) {
+    return *source.text;
+  }
+  for (const Reading& reading : Readings(source, instance, "XOUT").of(block)) {
+    const std::string sum = fmt::format("{} + {}.XOUT", input, instance);
+    edits.push_back({.span = reading.span, .text = reading.whole ? sum : "(" + sum + ")"});
+  }
+  return edited(*source.text, std::move(edits));
 }
 
 std::string with_block(const language::SourceFile& source, const language::Variable& instance, std::string_view block) {

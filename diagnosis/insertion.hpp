@@ -5,6 +5,7 @@
 // right.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,6 +30,11 @@ struct Insertion {
 
 /// With an output that gives the signal of an edge. The name is one that the block does not declare yet.
 [[nodiscard]] std::string with_output(const language::SourceFile& source, const Edge& edge, std::string_view name);
+
+/// With the sum of a block that adds to its XIN written out: its XIN is 0, and what read its XOUT reads both. The text
+/// as it is where the block of that definition has no such instance with an XIN.
+[[nodiscard]] std::string with_sum_outside(const language::SourceFile& source, std::uint32_t definition,
+                                           std::string_view instance);
 
 /// With the type of an instance replaced. All instances declared in the same breath, X, Y : TYPE, change.
 [[nodiscard]] std::string with_block(const language::SourceFile& source, const language::Variable& instance,

@@ -385,6 +385,11 @@ constexpr std::array rules{
 
 }  // namespace
 
+bool adds_to_input(std::string_view block) {
+  const auto* const rule = std::ranges::find(rules, block, &Rule::block);
+  return rule != rules.end() && rule->inverse == take_off;
+}
+
 std::string inverse_of_block(InverseText& text, const BlockStage& stage) {
   const auto* const rule = std::ranges::find(rules, stage.node.block->about.name, &Rule::block);
   if (rule == rules.end()) {

@@ -79,6 +79,9 @@ struct BlockStage {
   [[nodiscard]] std::string arguments(const std::string& input) const;
 };
 
+/// Whether XOUT of a library's block is XIN and something that does not depend on XIN.
+[[nodiscard]] bool adds_to_input(std::string_view block);
+
 /// The expression of the input. Throws NoInverse.
 [[nodiscard]] std::string inverse_of_block(InverseText& text, const BlockStage& stage);
 

@@ -11,11 +11,14 @@
 #include "diagnosis/excitations.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/projection.hpp"
-#include "support/median.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
+
+/// What has to be left between two rivals, or of an effect, RMS over the noise. A rival is ruled out by 4 nats, N s²/2,
+/// and a record counts as sixty independent samples at least (verdict.cpp): s = √(8/60).
+constexpr double least_separation = 0.37;
 
 /// A user's limit of an input; nothing where there is none.
 std::optional<double> limit_of(const std::vector<std::pair<std::string, double>>& limits, const std::string& name) {
@@ -69,7 +72,7 @@ class Planner {
   }
 
  private:
-  /// The record of an experiment: one input moves, the others stay at the middle of what they did.
+  /// The record of an experiment: one input moves, the others stay where they stood when the record began.
   [[nodiscard]] records::Record record_of(const std::string& input, const Excitation& excitation) const {
     const records::Record& old = task_.records.front();
     records::Record record = records::Record::even(0.0, old.sample_time(), excitation.values.size());
@@ -80,7 +83,7 @@ class Planner {
       }
       std::vector<double> values = excitation.values;
       if (!language::same_name(column.name, input)) {
-        values.assign(excitation.values.size(), median(column.values));
+        values.assign(excitation.values.size(), column.values.front());
       }
       record.add({.name = column.name, .unit = column.unit, .values = std::move(values)});
     }
@@ -118,7 +121,9 @@ class Planner {
     for (Index i = 0; i < outputs; ++i) {
       largest = std::max(largest, left.segment(i * rows, rows).norm() / std::sqrt(static_cast<double>(rows)));
     }
-    return largest * task_.scales.front() / noise_;
+    // Derivatives of a loop that sticks and slips can grow beyond all bounds, and then say nothing.
+    const double ratio = largest * task_.scales.front() / noise_;
+    return std::isfinite(ratio) ? ratio : 0.0;
   }
 
   [[nodiscard]] double left_between(const records::Record& command, const Contender& a, const Contender& b) const {
@@ -127,40 +132,46 @@ class Planner {
     return compare(command, a, b, residuals, jacobian) ? over_noise(Projection(jacobian).rest(residuals)) : 0.0;
   }
 
-  /// What the first strength of the last effect does to the output beyond what all other parameters can do.
+  /// What the strengths of the last effect together, as they are fitted, do to the output beyond what all other
+  /// parameters can do.
   [[nodiscard]] double own_signature(const records::Record& command, const Contender& one) const {
     VectorXd residuals;
     MatrixXd jacobian;
     if (!compare(command, one, one, residuals, jacobian)) {
       return 0.0;
     }
-    Index column = one.first_effect;
-    double size = 0.0;
-    if (!one.explanation->variant.effects.empty()) {
-      column = strength_of(one);
-      size = std::abs(one.unknowns[static_cast<std::size_t>(column)].start);
-    }
-    if (column >= jacobian.cols()) {  // no effect at all: what the known parameters do together
+    const VectorXd sizes = strengths_of(one, jacobian.cols());
+    if (sizes.isZero(0.0)) {  // no effect at all: what the known parameters do together
       return over_noise(jacobian.rowwise().norm());
     }
-    const VectorXd own = jacobian.col(column);
-    MatrixXd others(jacobian.rows(), jacobian.cols() - 1);
-    others << jacobian.leftCols(column), jacobian.rightCols(jacobian.cols() - column - 1);
-    return over_noise(Projection(others).rest(own)) * (size > 0.0 ? size : 1.0);
+    MatrixXd others(jacobian.rows(), jacobian.cols());
+    Index kept = 0;
+    for (Index j = 0; j < jacobian.cols(); ++j) {
+      if (sizes[j] == 0.0) {
+        others.col(kept++) = jacobian.col(j);
+      }
+    }
+    return over_noise(Projection(others.leftCols(kept)).rest(jacobian * sizes));
   }
 
-  /// The first strength of the last effect, among the unknowns; none is a bound that is not there.
-  [[nodiscard]] static Index strength_of(const Contender& one) {
+  /// How far the strengths of the last effect lie off neutral, by unknown; 0 for all else, and for a bound that is not
+  /// there.
+  [[nodiscard]] static VectorXd strengths_of(const Contender& one, Index count) {
+    VectorXd sizes = VectorXd::Zero(count);
+    if (one.explanation->variant.effects.empty()) {
+      return sizes;
+    }
     const Applied& effect = one.explanation->variant.effects.back();
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+      const double neutral = effect.parameters[k].field.neutral;
       for (Index j = one.first_effect; effect.parameters[k].strength && j < std::ssize(one.unknowns); ++j) {
         const Unknown& unknown = one.unknowns[static_cast<std::size_t>(j)];
         if (unknown.path == effect.paths[k] && std::isfinite(unknown.start)) {
-          return j;
+          sizes[j] = unknown.start - (std::isfinite(neutral) ? neutral : 0.0);
         }
       }
     }
-    return one.first_effect;
+    return sizes;
   }
 
   Task task_;
@@ -198,6 +209,21 @@ InputLimits limits_of(const Task& task, const Port& input, const std::vector<std
   result.high = limit_of(limits, input.name + ".high").value_or(result.high);
   result.rate = limit_of(limits, input.name + ".rate").value_or(result.rate);
   result.start = std::clamp(result.start, std::min(result.low, result.high), std::max(result.low, result.high));
+  return result;
+}
+
+/// All inputs but one, each where it stood when the first record began, or at its default.
+std::vector<NextExperiment::Resting> resting_of(const Task& task, const Graph& graph, const std::string& moving) {
+  std::vector<NextExperiment::Resting> result;
+  for (const Port& input : graph.inputs) {
+    if (!language::same_name(input.name, moving)) {
+      const records::Column* const column = task.records.front().find(input.name);
+      const bool recorded = column != nullptr && !column->values.empty();
+      result.push_back({.input = input.name,
+                        .unit = input.unit.empty() && recorded ? column->unit : input.unit,
+                        .value = recorded ? column->values.front() : input.preset});
+    }
+  }
   return result;
 }
 
@@ -262,22 +288,33 @@ NextExperiment next_experiment(const Task& task, std::span<const Explanation> ri
     trials[i].separation = planner.separation(trials[i].limits.name, trials[i].excitation);
   });
   const auto best = std::ranges::max_element(trials, {}, &Trial::separation);
+  const bool alone = second == rivals.end();
+  const std::string wanted =
+      alone ? fmt::format("show {}", words(first)) : fmt::format("tell {} from {}", words(first), words(*second));
   if (best == trials.end()) {
+    result.reason = fmt::format("no excitation has room within the limits to {}", wanted);
+    return result;
+  }
+  if (!(best->separation >= least_separation)) {
+    result.reason = fmt::format(
+        "no excitation of the catalogue within the limits would {}: the best leaves {:.2g} times "
+        "the noise, and {} is the least that tells",
+        wanted, best->separation, least_separation);
     return result;
   }
   result.title = best->excitation.title;
   result.input = best->limits.name;
   result.unit = best->limits.unit;
   result.separation = best->separation;
-  result.reason = second == rivals.end()
-                      ? fmt::format("shows {} best: {:.2g} times the noise beyond what other parameters can do; {}",
-                                    words(first), best->separation, best->excitation.shows)
-                      : fmt::format("{} and {} would differ by {:.2g} times the noise, refitted; it shows {}",
-                                    words(first), words(*second), best->separation, best->excitation.shows);
+  result.reason = alone ? fmt::format("shows {} best: {:.2g} times the noise beyond what other parameters can do; {}",
+                                      words(first), best->separation, best->excitation.shows)
+                        : fmt::format("{} and {} would differ by {:.2g} times the noise, refitted; it shows {}",
+                                      words(first), words(*second), best->separation, best->excitation.shows);
   for (std::size_t k = 0; k < best->excitation.values.size(); ++k) {
     result.time.push_back(static_cast<double>(k) * best->limits.sample_time);
   }
   result.values = best->excitation.values;
+  result.resting = resting_of(task, first.variant.program->graph, result.input);
   result.steps = best->excitation.steps;
   return result;
 }

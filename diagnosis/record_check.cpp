@@ -8,6 +8,9 @@
 #include <numeric>
 #include <vector>
 
+#include "support/median.hpp"
+#include "tuning/simulation.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -135,6 +138,42 @@ bool is_one_motion(const std::vector<Experiment>& experiments) {
   return true;
 }
 
+/// Larger than anything that is measured: squares and sums of them are finite up to here.
+constexpr double largest_measured = 1e100;
+/// So many times as far from the middle as all other samples: beside it a double keeps too few digits of them.
+constexpr double absurdly_far = 1e9;
+
+std::string sample_text(const records::Record& record, const records::Column& column, std::size_t row) {
+  const Place place = record.place(column.name, row);
+  return fmt::format(
+      "{} is {:.3g} at t = {:.6g} s{}", column.name, column.values[row], record.time()[row],
+      place.line > 0 ? fmt::format(" ({}, line {})", place.file, place.line) : fmt::format(" (sample {})", row + 1));
+}
+
+/// The one sample that lies absurdly far off the others, or the first that no sensor gives; empty where there is none.
+std::string absurd_sample(const records::Record& record, const records::Column& column) {
+  const std::vector<double>& values = column.values;
+  const auto huge = std::ranges::find_if(values, [](double v) { return std::abs(v) > largest_measured; });
+  const double middle = median(values);
+  std::size_t farthest = 0;
+  double second = 0.0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double here = std::abs(values[k] - middle);
+    const double there = std::abs(values[farthest] - middle);
+    second = std::max(second, std::min(here, there));
+    farthest = here > there ? k : farthest;
+  }
+  if (second > 0.0 && std::abs(values[farthest] - middle) > absurdly_far * second) {
+    return fmt::format("{}, a billion times as far off as any other sample: a slip of the logger. Take it out.",
+                       sample_text(record, column, farthest));
+  }
+  if (huge != values.end()) {
+    return fmt::format("{}: no sensor gives such a value. Export the column anew.",
+                       sample_text(record, column, static_cast<std::size_t>(huge - values.begin())));
+  }
+  return {};
+}
+
 class Check {
  public:
   Check(const Task& task, const Model& model, const VectorXd& nominal)
@@ -162,8 +201,11 @@ class Check {
       std::vector<double> model;
       for (const Experiment& experiment : problem_.experiments) {
         for (const double y : experiment.measured[output]) {
-          measured.push_back(y);
-          model.push_back(y + nominal_[row++] * task_.scales[output]);
+          const Index here = row++;
+          if (std::ranges::find(task_.left_out, here) == task_.left_out.end()) {  // a glitch says nothing of the rest
+            measured.push_back(y);
+            model.push_back(y + nominal_[here] * task_.scales[output]);
+          }
         }
       }
       check_output(problem_.program.graph.outputs[problem_.outputs[output]], measured, model);
@@ -195,6 +237,13 @@ class Check {
                        100.0 * share, port.name));
     }
     if (!(simulated.deviation > 1e-9 * seen.deviation)) {  // residuals in units of the floor round
+      if (moves_by_itself(port)) {
+        refuse(
+            fmt::format("{} is more than a billion times as large as the model's: the units of record and diagram "
+                        "differ ({}).",
+                        port.name, port.unit.empty() ? "the diagram states none" : "diagram: " + port.unit));
+        return;
+      }
       refuse(fmt::format("The model's {} does not move under the record's inputs: are its inputs the right columns?",
                          port.name));
       return;
@@ -219,6 +268,14 @@ class Check {
       warn(fmt::format("{} has little in common with the model (correlation {:.2f}).", port.name, together));
     }
     check_start(port, measured, model, seen);
+  }
+
+  /// Whether the model moves where no record stands beside it.
+  [[nodiscard]] bool moves_by_itself(const Port& port) const {
+    const auto output = static_cast<std::size_t>(&port - problem_.program.graph.outputs.data());
+    return std::ranges::any_of(task_.records, [&](const records::Record& record) {
+      return moves(simulate(problem_.program, record)[output]);
+    });
   }
 
   /// A model that starts from another state than the machine did.
@@ -285,6 +342,24 @@ class Check {
 };
 
 }  // namespace
+
+std::vector<std::string> absurd_samples(const Task& task, const Graph& graph) {
+  std::vector<std::string> found;
+  for (const records::Record& record : task.records) {
+    for (const records::Column& column : record.columns()) {
+      const auto named = [&](const auto& port) { return language::same_name(port.name, column.name); };
+      const bool measured = std::ranges::any_of(
+          task.outputs, [&](const std::string& output) { return language::same_name(output, column.name); });
+      if (!measured && std::ranges::none_of(graph.inputs, named)) {
+        continue;
+      }
+      if (std::string one = absurd_sample(record, column); !one.empty()) {
+        found.push_back(std::move(one));
+      }
+    }
+  }
+  return found;
+}
 
 RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal) {
   return Check(task, model, nominal).run();

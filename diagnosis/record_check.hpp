@@ -14,6 +14,10 @@ struct RecordCheck {
   bool one_motion = false;              ///< the inputs make one motion only, and repeat it
 };
 
+/// Inputs and measured outputs whose values no sensor gives, each with its first such sample. To be asked before the
+/// model is run: such a sample leaves no digit to all that is summed with it.
+[[nodiscard]] std::vector<std::string> absurd_samples(const Task& task, const Graph& graph);
+
 /// `nominal`: residuals of the diagram with its parameters as given, in standard deviations of the floor.
 [[nodiscard]] RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal);
 

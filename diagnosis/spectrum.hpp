@@ -11,8 +11,8 @@ namespace hysteron::diagnosis {
 [[nodiscard]] std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count);
 
 /// The step on which values lie, 0 where on none: the largest |Σ exp(2πi y/q)|/N over q from a third to 1/4096 of their
-/// range, if above 0.5, with N the narrow bins that hold a value. Values that are rounded by a sensor and then get noise
-/// of less than a tenth of the step show it.
+/// range, if above 0.5, with N the narrow bins that hold a value. Values that are rounded by a sensor and then get
+/// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
 /// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least

@@ -161,6 +161,13 @@ bool is_of_other(const EffectParameter& parameter) {
   return parameter.role == Role::Reference && parameter.unit == "'z";
 }
 
+/// Whether a signal's middle is elsewhere than at 0. Where it is there but for what a record happens to reach, 0 it is:
+/// a cube about a place a percent off is a cube and a square.
+bool is_off_centre(const Extent& input) {
+  constexpr double off_centre = 0.1;
+  return std::abs(input.low + input.high) > off_centre * input.range();
+}
+
 /// What a reference is set to: about the middle, or half the width of what it refers to, seen from the centre. Another
 /// signal begins where the machine stood when its working point was taken.
 double reference(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary, bool about_zero) {
@@ -168,7 +175,7 @@ double reference(const EffectParameter& parameter, const Extent& input, const Ex
     return about_zero || auxiliary == nullptr ? 0.0 : auxiliary->begin;
   }
   if (is_centre(parameter)) {
-    return about_zero ? 0.0 : 0.5 * (input.low + input.high);
+    return about_zero || !is_off_centre(input) ? 0.0 : 0.5 * (input.low + input.high);
   }
   if (parameter.unit == "'x/s") {
     return size_or(input.rates.empty() ? 0.0 : input.rates[50], 1.0);
@@ -183,14 +190,13 @@ bool in_range(const Field& field, double value) {
 }  // namespace
 
 std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input, const Extent* auxiliary) {
-  constexpr double off_centre = 0.1;
+  constexpr double off_start = 0.1;
   constexpr double at_rest = 0.01;
   std::vector<Candidate> others;
   const std::vector<EffectParameter>& parameters = candidate.own().parameters;
-  const bool elsewhere =
-      (std::ranges::any_of(parameters, is_centre) && std::abs(input.low + input.high) > off_centre * input.range()) ||
-      (auxiliary != nullptr && std::ranges::any_of(parameters, is_of_other) &&
-       std::abs(auxiliary->begin) > off_centre * auxiliary->range());
+  const bool elsewhere = (std::ranges::any_of(parameters, is_centre) && is_off_centre(input)) ||
+                         (auxiliary != nullptr && std::ranges::any_of(parameters, is_of_other) &&
+                          std::abs(auxiliary->begin) > off_start * auxiliary->range());
   if (elsewhere) {
     others.push_back(candidate);
     others.back().about_zero = true;

@@ -118,6 +118,8 @@ std::string verdict_json(const Diagnosis& found) {
             {"unit", found.next.unit},
             {"separation", number(found.next.separation)},
             {"steps", std::move(steps)}};
+  } else if (!found.next.reason.empty()) {
+    next = {{"reason", found.next.reason}};
   }
   Json gaps = Json::array();
   for (const GapFinding& gap : found.gaps) {

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <system_error>
 
 #include "codegen/compile.hpp"
 #include "diagnosis/report/page.hpp"
 #include "diagnosis/verdict_json.hpp"
 #include "records/csv.hpp"
+#include "support/errors.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -17,11 +20,20 @@ namespace {
 using diagnosis::Diagnosis;
 using diagnosis::ParameterFinding;
 
-std::string with_unit(double value, const std::string& unit) {
-  return unit.empty() || unit == "1" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+std::string with_unit(double value, const std::string& unit, int digits = 4) {
+  return unit.empty() || unit == "1" ? fmt::format("{:.{}g}", value, digits)
+                                     : fmt::format("{:.{}g} {}", value, digits, unit);
+}
+
+/// A share of the gap; the interval of one may end above 1, where it reads as a slip.
+double closed_percent(double share) {
+  return 100.0 * std::min(share, 1.0);
 }
 
 std::string line_of(const ParameterFinding& one) {
+  if (!std::isfinite(one.low) && !std::isfinite(one.high)) {
+    return fmt::format("    {:<24} not determined: without influence in these records\n", one.name);
+  }
   return fmt::format("    {:<24} {}   ({:.4g} to {:.4g})\n", one.name, with_unit(one.value, one.unit), one.low,
                      one.high);
 }
@@ -44,6 +56,9 @@ records::Record command_record(const diagnosis::NextExperiment& next) {
   const double step = rows > 1 ? (next.time.back() - next.time.front()) / static_cast<double>(rows - 1) : 1.0;
   records::Record record = records::Record::even(next.time.front(), step, rows);
   record.add({.name = next.input, .unit = next.unit, .values = next.values});
+  for (const diagnosis::NextExperiment::Resting& rest : next.resting) {
+    record.add({.name = rest.input, .unit = rest.unit, .values = std::vector<double>(rows, rest.value)});
+  }
   return record;
 }
 
@@ -85,6 +100,22 @@ std::string controller_text(const diagnosis::ControllerFinding& controller) {
   return text;
 }
 
+/// How well the feedforward is predicted to do, or why there is none; what it leaves as it is.
+std::string feedforward_text(const Diagnosis& found) {
+  std::string text;
+  if (found.tracking_improved > 0.0) {
+    const auto rms = [&](double value) { return with_unit(value, found.gap.unit, 3); };
+    text += fmt::format(
+        "  feedforward: predicted tracking error {} with the model as it was, {} improved (RMS){}\n",
+        rms(found.tracking_nominal), rms(found.tracking_improved),
+        found.tracking_improved > found.tracking_nominal ? ": the improved one is worse, keep the other" : "");
+  }
+  for (const std::string& note : found.feedforward_notes) {
+    text += fmt::format("  {}: {}\n", found.feedforward_text.empty() ? "no feedforward.st" : "feedforward", note);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& found) {
@@ -101,8 +132,8 @@ std::string diagnosis_text(const Diagnosis& found) {
     text += fmt::format("  {:<10} nominal {}  calibrated {}  improved {}  floor {} ({})\n", gap.signal,
                         with_unit(gap.nominal, gap.unit), with_unit(gap.calibrated, gap.unit),
                         with_unit(gap.improved, gap.unit), with_unit(gap.floor.value, gap.unit), gap.floor.evidence);
-    text += fmt::format("  {:<10} closed {:.1f} % ({:.1f} to {:.1f}) on blocks held out\n", "", 100.0 * gap.closed,
-                        100.0 * gap.closed_low, 100.0 * gap.closed_high);
+    text += fmt::format("  {:<10} closed {:.1f} % ({:.1f} to {:.1f}) on blocks held out\n", "",
+                        closed_percent(gap.closed), closed_percent(gap.closed_low), closed_percent(gap.closed_high));
   }
   for (const diagnosis::EffectFinding& effect : found.effects) {
     text += fmt::format("  {} at {}{}: {:.0f} % of the gap\n", effect.id, effect.edge,
@@ -137,13 +168,14 @@ std::string diagnosis_text(const Diagnosis& found) {
                         cut.agrees ? "agrees with its column: the gap lies behind it"
                                    : "does not agree with its column: a gap lies before it");
   }
-  if (found.tracking_improved > 0.0) {
-    text +=
-        fmt::format("  feedforward: predicted tracking error {:.3g} with the model as it was, {:.3g} improved (RMS)\n",
-                    found.tracking_nominal, found.tracking_improved);
+  text += feedforward_text(found);
+  if (!found.next.reason.empty()) {
+    text += fmt::format("  next experiment: {} ({})\n", found.next.title.empty() ? "none" : found.next.title,
+                        found.next.reason);
   }
-  if (!found.next.title.empty()) {
-    text += fmt::format("  next experiment: {} ({})\n", found.next.title, found.next.reason);
+  for (std::size_t i = 0; found.traces.size() > 1 && i < found.traces.size(); ++i) {
+    text += fmt::format("  {}: {} of {}\n", traces_file(i + 1, found.traces.size()), found.traces[i].signal,
+                        found.traces[i].record);
   }
   for (const std::string& warning : found.warnings) {
     text += "  note: " + warning + "\n";
@@ -154,8 +186,40 @@ std::string diagnosis_text(const Diagnosis& found) {
 bool is_diagnosis_file(std::string_view name) {
   constexpr std::array fixed{verdict_file,     report_file,         improved_diagram_file, improved_parameters_file,
                              feedforward_file, next_experiment_file};
+  if (std::ranges::find(fixed, name) != fixed.end()) {
+    return true;
+  }
   // How many traces there will be is not known before the diagnosis.
-  return std::ranges::find(fixed, name) != fixed.end() || (name.starts_with("traces") && name.ends_with(".csv"));
+  constexpr std::string_view before = "traces";
+  constexpr std::string_view behind = ".csv";
+  if (!name.starts_with(before) || !name.ends_with(behind) || name.size() < before.size() + behind.size()) {
+    return false;
+  }
+  const std::string_view number = name.substr(before.size(), name.size() - before.size() - behind.size());
+  return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+void write_diagnosis(const std::filesystem::path& folder, const Diagnosis& found) {
+  const std::vector<OutputFile> files = diagnosis_files(folder, found);
+  write_files_atomically(files);
+  std::vector<std::filesystem::path> stale;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const bool written = std::ranges::any_of(
+        files, [&](const OutputFile& file) { return file.path.filename() == entry.path().filename(); });
+    if (!written && is_diagnosis_file(entry.path().filename().string()) &&
+        (entry.is_regular_file() || entry.is_symlink())) {
+      stale.push_back(entry.path());
+    }
+  }
+  for (const std::filesystem::path& file : stale) {
+    std::error_code failure;
+    if (!std::filesystem::remove(file, failure) && failure) {
+      throw InputError(error::unwritable_file, {.file = file.string()},
+                       fmt::format("{} is left of an earlier diagnosis and cannot be removed: {}.", file.string(),
+                                   failure.message()),
+                       "remove it: it does not belong to this verdict.");
+    }
+  }
 }
 
 std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, const Diagnosis& found) {

@@ -21,4 +21,8 @@ namespace hysteron::tool {
 [[nodiscard]] std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder,
                                                       const diagnosis::Diagnosis& found);
 
+/// Writes them, all or none, and removes what an earlier diagnosis left there under names of ours: the folder then
+/// holds one verdict. The caller has made sure that none of these is an input. Throws InputError HY700.
+void write_diagnosis(const std::filesystem::path& folder, const diagnosis::Diagnosis& found);
+
 }  // namespace hysteron::tool

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -23,10 +26,13 @@ void refuse_locked(const std::string& output, const fs::path& folder) {
   if (!fs::is_directory(folder, unknown)) {
     refuse(output, fmt::format("{} is no folder.", folder.string()), "choose another place.");
   }
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    refuse(output, fmt::format("Nothing can be written into {}.", folder.string()),
+  // Permissions do not say it all: /proc lets root write and takes no file, a disk may be mounted to be read only.
+  std::string trial = (folder / ".hysteron-XXXXXX").string();
+  if (::mkdtemp(trial.data()) == nullptr) {
+    refuse(output, fmt::format("Nothing can be written into {}: {}.", folder.string(), std::strerror(errno)),
            "choose a folder that can be written.");
   }
+  ::rmdir(trial.c_str());
 }
 
 fs::path folder_of(const std::string& path) {

@@ -180,8 +180,10 @@ class Builder {
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},
           fmt::format("No column bears the name of an output of {}: {}.", graph().name, fmt::join(names, ", ")),
           records_.empty() ? "give a record."
-                           : fmt::format("name the output in the diagram as the record does; its columns are {}.",
-                                         fmt::join(records_.front().names(), ", ")));
+          : records_.front().names().empty()
+              ? "record an output beside the time: its only column is t."
+              : fmt::format("name the output in the diagram as the record does; its columns are {}.",
+                            fmt::join(records_.front().names(), ", ")));
     }
   }
 

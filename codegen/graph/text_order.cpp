@@ -79,31 +79,47 @@ class Order {
 
   [[nodiscard]] std::vector<std::uint32_t> sorted() const {
     const std::size_t count = definition_.block->statements.size();
-    std::vector<std::vector<std::uint32_t>> after(count);
-    std::vector<std::uint32_t> waits(count, 0);
+    // What a late output asks for must be; what an early one asks for is worth a warning, and yields where both cannot
+    // be.
+    std::vector<std::vector<std::pair<std::uint32_t, bool>>> after(count);
+    std::vector<std::uint32_t> must(count, 0);
+    std::vector<std::uint32_t> should(count, 0);
     for (const Read& read : reads_) {
       const std::uint32_t writer = *writer_[read.variable];
       if (writer == read.statement || (!read.late && !read.strict)) {
         continue;
       }
       const auto [first, second] = read.late ? std::pair{writer, read.statement} : std::pair{read.statement, writer};
-      after[first].push_back(second);
-      ++waits[second];
+      after[first].emplace_back(second, read.late);
+      ++(read.late ? must : should)[second];
     }
-    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready;
+    using FirstInText = std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>>;
+    FirstInText ready;
+    FirstInText possible;  // all that must stand before them is placed
     std::vector<bool> placed(count, false);
-    for (std::uint32_t s = 0; s < count; ++s) {
-      if (waits[s] == 0) {
-        ready.push(s);
+    const auto release = [&](std::uint32_t s) {
+      if (must[s] == 0) {
+        (should[s] == 0 ? ready : possible).push(s);
       }
+    };
+    for (std::uint32_t s = 0; s < count; ++s) {
+      release(s);
     }
     std::vector<std::uint32_t> order;
     std::uint32_t next = 0;
     while (order.size() < count) {
-      // A ring of delays cannot be put in order: it is cut at its first statement in the text.
+      // A ring of delays cannot be put in order: it is cut at the first statement in the text that may stand here, and
+      // at the first of all where none may.
       while (ready.empty()) {
-        if (!placed[next] && waits[next] > 0) {
-          waits[next] = 0;
+        if (!possible.empty()) {
+          const std::uint32_t first = possible.top();
+          possible.pop();
+          if (!placed[first]) {
+            ready.push(first);
+          }
+          continue;
+        }
+        if (!placed[next]) {
           ready.push(next);
         }
         ++next;
@@ -115,10 +131,9 @@ class Order {
       }
       placed[statement] = true;
       order.push_back(statement);
-      for (const std::uint32_t other : after[statement]) {
-        if (waits[other] > 0 && --waits[other] == 0) {
-          ready.push(other);
-        }
+      for (const auto& [other, late] : after[statement]) {
+        --(late ? must : should)[other];
+        release(other);
       }
     }
     return order;

@@ -135,15 +135,16 @@ std::string rivals_section(const Diagnosis& diagnosis) {
 
 std::string next_section(const Diagnosis& diagnosis) {
   const NextExperiment& next = diagnosis.next;
-  if (next.title.empty() && next.steps.empty() && next.values.empty()) {
+  if (next.title.empty() && next.reason.empty() && next.steps.empty() && next.values.empty()) {
     return {};
   }
+  const bool none = next.title.empty() && next.values.empty();
   std::string html = fmt::format("<section class=\"next\"><h2>Next experiment{}{}</h2>\n",
-                                 next.title.empty() ? "" : ": ", escaped(next.title));
+                                 next.title.empty() && !none ? "" : ": ", none ? "none" : escaped(next.title));
   if (!next.reason.empty()) {
     html += fmt::format("<p>{}</p>\n", escaped(next.reason));
   }
-  if (next.separation > 0.0) {
+  if (next.separation > 0.0 && diagnosis.rivals.size() > 1) {
     html += fmt::format("<p>The rivals' outputs will then differ by <strong>{} times</strong> the noise, RMS.</p>\n",
                         figure(next.separation, 2));
   }

@@ -90,7 +90,7 @@ std::string map_of(const MapFinding& map) {
 }
 
 template <class Item, class Print>
-std::string list_of(const std::vector<Item>& items, const Print& print) {
+std::string json_list(const std::vector<Item>& items, const Print& print) {
   std::string json = "[";
   for (const Item& item : items) {
     json += (json.size() == 1 ? "" : ",\n") + print(item);
@@ -105,8 +105,8 @@ std::string page_data(const Diagnosis& diagnosis) {
   return fmt::format(
       "{{\"unit\":{},\n\"traces\":{},\n\"maps\":{},\n\"next\":{{\"input\":{},\"unit\":{},\"time\":{},\"values\":{}}}}}",
       text_of(diagnosis.gap.unit),
-      list_of(diagnosis.traces, [&](const Trace& trace) { return trace_of(diagnosis, trace); }),
-      list_of(diagnosis.maps, map_of), text_of(next.input), text_of(next.unit), time_of(next.time),
+      json_list(diagnosis.traces, [&](const Trace& trace) { return trace_of(diagnosis, trace); }),
+      json_list(diagnosis.maps, map_of), text_of(next.input), text_of(next.unit), time_of(next.time),
       array_of(next.values));
 }
 

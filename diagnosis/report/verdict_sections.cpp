@@ -40,8 +40,12 @@ std::string inverse_of(Inverse inverse) {
   return {};
 }
 
+bool is_determined(const ParameterFinding& parameter) {
+  return std::isfinite(parameter.low) || std::isfinite(parameter.high);
+}
+
 std::string interval_of(const ParameterFinding& parameter) {
-  if (!std::isfinite(parameter.low) && !std::isfinite(parameter.high)) {
+  if (!is_determined(parameter)) {
     return "not determined";
   }
   return fmt::format("{} … {}", figure(parameter.low, 4), figure(parameter.high, 4));
@@ -56,13 +60,13 @@ std::string parameter_table(const std::vector<ParameterFinding>& parameters) {
       "<th>unit</th></tr></thead><tbody>\n";
   for (const ParameterFinding& parameter : parameters) {
     html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
-                        escaped(parameter.name), figure(parameter.value, 4), interval_of(parameter),
-                        escaped(parameter.unit));
+                        escaped(parameter.name), is_determined(parameter) ? figure(parameter.value, 4) : "–",
+                        interval_of(parameter), escaped(parameter.unit));
   }
   return html + "</tbody></table>\n";
 }
 
-std::string effect_card(const EffectFinding& effect) {
+std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis) {
   std::string html = fmt::format(
       "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of the gap "
       "that calibration leaves; {}.</p>\n",
@@ -73,6 +77,11 @@ std::string effect_card(const EffectFinding& effect) {
       edges += (edges.empty() ? "" : ", ") + escaped(edge);
     }
     html += fmt::format("<p class=\"note\">This record cannot tell it from the same effect on {}.</p>\n", edges);
+  }
+  if (effect.inverse == Inverse::Exact && diagnosis.feedforward_text.empty()) {
+    for (const std::string& reason : diagnosis.feedforward_notes) {
+      html += fmt::format("<p class=\"note\">No feedforward was written all the same: {}.</p>\n", escaped(reason));
+    }
   }
   return html + parameter_table(effect.parameters) + "</article>\n";
 }
@@ -123,8 +132,9 @@ std::string gap_picture(const GapFinding& gap) {
 
 std::string closed_text(const GapFinding& gap) {
   const bool interval = std::isfinite(gap.closed_low) && std::isfinite(gap.closed_high);
-  return percent(gap.closed) +
-         (interval ? fmt::format(" ({} … {})", percent(gap.closed_low), percent(gap.closed_high)) : std::string());
+  const auto part = [](double share) { return percent(std::min(share, 1.0)); };  // an interval may end above 1
+  return part(gap.closed) +
+         (interval ? fmt::format(" ({} … {})", part(gap.closed_low), part(gap.closed_high)) : std::string());
 }
 
 std::string gap_table(const std::vector<GapFinding>& gaps) {
@@ -201,7 +211,7 @@ std::string effects_section(const Diagnosis& diagnosis) {
   }
   std::string html = "<section class=\"effects\"><h2>Which</h2>\n<div class=\"cards\">\n";
   for (const EffectFinding& effect : diagnosis.effects) {
-    html += effect_card(effect);
+    html += effect_card(effect, diagnosis);
   }
   return html + "</div></section>\n";
 }

@@ -149,6 +149,16 @@ TEST(Compile, FormattingMendsHiddenDelaysAndChangesNothingTwice) {
   EXPECT_EQ(format_text("t", once, diagnostics), once);
 }
 
+TEST(Compile, FormattingPutsWhatMustBeBeforeWhatShouldBe) {
+  // Of HY_CLOCK, XOUT depends on the step and ERROR on the memory alone. What reads both must stand behind the call for
+  // the one and should stand before it for the other, which is worth a warning only.
+  const std::string text = block(io + "VAR C : HY_CLOCK; END_VAR", "Y := SEL(C.ERROR, C.XOUT, 0.0);\nC(XIN := U);");
+  Diagnostics diagnostics;
+  for (const Diagnostic& one : diagnose(format_text("t", text, diagnostics))) {
+    EXPECT_EQ(one.number, error::read_after_call) << one.cause;
+  }
+}
+
 TEST(Compile, ABlockWithADelayInsideClosesALoop) {
   const std::string inner =
       "FUNCTION_BLOCK PLANT VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR I : HY_INTEGRAL_FORWARD; "

@@ -173,6 +173,22 @@ TEST(Diagnosis, AWarmUpIsNotTakenForWhatFitsAGridBetter) {
   EXPECT_NEAR(found.effects.front().parameters.at(1).value, 2.9, 0.15);
 }
 
+TEST(Diagnosis, ACubeIsAboutZeroWhereTheRecordReachesALittleFarther) {
+  // Up to a hundredth farther to one side: about the middle of that, the cube would be a square too.
+  auto force = test::rich_force();
+  for (double& value : force) {
+    value *= value > 0.0 ? 1.02 : 1.0;
+  }
+  const std::string machine = test::axis({"HY_ODD_NONLINEARITY := (SIZE := 0.4, REFERENCE := 1.0)", "FORCE"});
+  const Diagnosis found =
+      diagnose(test::input_of(test::axis(), test::axis_parameters,
+                              {test::measured(test::program_of(machine), test::record_of("FORCE", force), 0.001)}),
+               {.effects = {"odd_nonlinearity", "saturation"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "odd_nonlinearity");
+  EXPECT_LT(found.gap.improved, 1.05 * 0.001);
+}
+
 TEST(Diagnosis, AConstantBeforeAnIntegratorIsNoDriftBehindIt) {
   // Both are the same to the last digits.
   const Diagnosis found = diagnosed(

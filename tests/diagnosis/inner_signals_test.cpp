@@ -62,6 +62,17 @@ TEST(InnerSignals, OtherColumnsStayAsTheyAre) {
   EXPECT_THAT(signals, IsEmpty());
 }
 
+TEST(InnerSignals, AColumnThatCutsNowhereIsRemarked) {
+  const auto remarks = [](const std::string& column) {
+    return unmatched_columns(test::input_of(test::stack(), test::stack_parameters, {log_of({}, column)}));
+  };
+  EXPECT_THAT(remarks("AMP.OUT"), ElementsAre(testing::AllOf(HasSubstr("AMP.OUT is no signal of STACK"),
+                                                             HasSubstr("did you mean AMP.XOUT?"))));
+  EXPECT_THAT(remarks("PUMP.FLOW"), ElementsAre(HasSubstr("PUMP.FLOW is no signal of STACK and is left aside.")));
+  EXPECT_THAT(remarks("amp.xout"), IsEmpty());
+  EXPECT_THAT(remarks("TEMPERATURE"), IsEmpty()) << "it may be a disturbance";
+}
+
 TEST(InnerSignals, JoinTheOutputsThatTheParameterFileLists) {
   DiagnosisInput input = test::input_of(
       test::stack(), std::string(test::stack_parameters) + "[tune]\noutputs = [\"Y\"]\n", {log_of({}, "AMP.XOUT")});

@@ -208,6 +208,21 @@ TEST(NextExperiment, SharpensASingleExplanation) {
   EXPECT_NE(next.reason.find("shows creep best"), std::string::npos) << next.reason;
 }
 
+TEST(NextExperiment, NoneWhereNothingWouldTell) {
+  Plant nothing = lag;
+  nothing.values = {1e-9};
+  Plant neither = delay;
+  neither.values = {1e-9};
+  const NextExperiment pair = between(nothing, neither);
+  EXPECT_EQ(pair.title, "");
+  EXPECT_TRUE(pair.values.empty());
+  EXPECT_NE(pair.reason.find("would tell lag from delay"), std::string::npos) << pair.reason;
+  const std::vector<Explanation> one{explanation_of(nothing)};
+  const NextExperiment alone = next_experiment(task(), one, {}, 0.02);
+  EXPECT_EQ(alone.title, "");
+  EXPECT_NE(alone.reason.find("would show lag"), std::string::npos) << alone.reason;
+}
+
 TEST(NextExperiment, NothingWhereNoInputMoves) {
   Task still = task();
   records::Record record = records::Record::even(0.0, sample_time, 4000);

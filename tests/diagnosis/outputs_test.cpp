@@ -43,10 +43,10 @@ TEST(GlitchShare, IsThatOfTheirEnergyInTheGap) {
   const Diagnosis found = diagnose(test::input_of(test::stack(), test::stack_parameters, {record}),
                                    {.effects = {"drift", "offset", "glitches"}});
   ASSERT_EQ(found.effects.size(), 2U) << found.summary;
-  EXPECT_EQ(found.effects[1].id, "glitches");
+  EXPECT_EQ(found.effects[0].id, "glitches");  // the larger share first
   const double glitches = 6.0 * 16.0;
   const double rest = 2000.0 * (std::pow(found.gap.calibrated, 2) - std::pow(found.gap.improved, 2));
-  EXPECT_NEAR(found.effects[1].share, glitches / (glitches + rest), 0.01);
+  EXPECT_NEAR(found.effects[0].share, glitches / (glitches + rest), 0.01);
   EXPECT_NEAR(sum_of(found) + found.split.open, 1.0, 1e-9);
   EXPECT_NEAR(found.split.input_output + found.split.plant + found.split.open, 1.0, 1e-9);
 }

@@ -144,6 +144,34 @@ TEST(RecordCheck, ColumnsSwapped) {
   expect_refused(of_stack(swapped), "exchanged");
 }
 
+TEST(RecordCheck, AnAbsurdSampleIsNamed) {
+  for (const char* column : {"U", "Y"}) {
+    for (const double value : {1e300, -1e15}) {
+      const Diagnosis found = of_stack(test::changed(stack_record(), column, [&](auto& v) { v[500] = value; }));
+      expect_refused(found, "slip of the logger");
+      ASSERT_EQ(found.refusals.size(), 1U);
+      EXPECT_THAT(found.refusals.front(), AllOf(HasSubstr(std::string(column) + " is "), HasSubstr("at t = 2.5 s"),
+                                                HasSubstr("sample 501"), HasSubstr("Take it out")));
+    }
+  }
+  const auto scaled = [](double factor) {
+    return of_stack(test::changed(stack_record(), "Y", [&](auto& y) {
+      for (double& v : y) {
+        v *= factor;
+      }
+    }));
+  };
+  expect_refused(scaled(1e200), "no sensor gives such a value");
+  expect_refused(scaled(1e20), "the units of record and diagram differ");
+}
+
+TEST(RecordCheck, AGlitchSaysNothingOfTheRest) {
+  const Diagnosis found = of_stack(test::changed(stack_record(), "Y", [](auto& y) { y[500] = 1e6; }));
+  EXPECT_THAT(found.refusals, IsEmpty());
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("single samples of Y")));
+  EXPECT_THAT(found.warnings, Not(Contains(HasSubstr("little in common"))));
+}
+
 TEST(RecordCheck, AModelThatDoesNotMove) {
   // The reset stands: all inputs of the record move, and the model does not.
   const std::string held =

@@ -197,6 +197,113 @@ TEST_F(Diagnose, TouchesNothingOutsideItsFolder) {
   }
 }
 
+/// A heater with two inputs, of which one rests, and a drag of its flow that closes a loop.
+constexpr const char* cooled = R"(FUNCTION_BLOCK COOLED  (* @ts 5ms *)
+  VAR_INPUT
+    FORCE : LREAL;  (* @unit N *)
+    WIND  : LREAL;  (* @unit m/s *)
+  END_VAR
+  VAR_OUTPUT
+    V : LREAL;  (* @unit m/s *)
+  END_VAR
+  VAR
+    MASS  : HY_GAIN := (K := 0.5);
+    SPEED : HY_LAG  := (T1 := 0.5);
+  END_VAR
+
+  MASS(XIN := FORCE);
+  SPEED(XIN := MASS.XOUT);
+  V := SPEED.XOUT + WIND;
+END_FUNCTION_BLOCK
+)";
+
+TEST_F(Diagnose, WhatClosesALoopIsTakenByEveryCommandAndItsExperimentIsReadyToBePlayed) {
+  std::string machine = cooled;
+  machine.replace(machine.find("XIN := FORCE"), 12, "XIN := DRAG.XOUT");
+  machine.replace(machine.find("  END_VAR\n\n"), 0, "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n");
+  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0, "  DRAG(XIN := FORCE, V := SPEED.XOUT);\n");
+  records::Record drive = test::record_of("FORCE", test::rich_force(1200));
+  drive.add({.name = "WIND", .values = std::vector<double>(1200, 0.25)});
+  bench.write("plant.st", cooled);
+  bench.write("p.toml", "[parameters.MASS]\nK = 0.5\n[fit.MASS]\nK = {}\n");
+  bench.write("log.csv", records::csv_text(test::measured(test::program_of(machine), std::move(drive), noise)));
+  const auto outcome = bench.shell(
+      "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects viscous_friction,drift");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  ASSERT_THAT(outcome.out, HasSubstr("viscous_friction at "));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("would differ"))) << "nothing is compared where there is no rival";
+  for (const char* line :
+       {"hysteron check found/improved.st",
+        "hysteron run found/improved.st --in log.csv --out out.csv --params found/improved.toml",
+        "hysteron tune found/improved.st --log log.csv --params found/improved.toml --out tuned.toml",
+        "hysteron run found/improved.st --in found/next_experiment.csv --out played.csv --params "
+        "found/improved.toml"}) {
+    const auto again = bench.shell(line);
+    EXPECT_LT(again.code, 2) << line << "\n" << again.err;  // 1: tuned, and not to the last digit
+  }
+  const auto next = records::parse_csv("next.csv", bench.read("found/next_experiment.csv"));
+  EXPECT_EQ(next.column("WIND").values, std::vector<double>(next.size(), 0.25)) << "where it stood";
+}
+
+TEST_F(Diagnose, LeavesNoFileOfAnEarlierVerdict) {
+  ASSERT_EQ(bench.shell(command).code, 0);
+  bench.write("found/traces_of_mine.csv", "mine");
+  bench.write("found/traces7.csv", "of three records");
+  bench.write("short.csv", records::csv_text(record().slice({0, 60})));
+  ASSERT_EQ(bench.shell("hysteron diagnose plant.st --log short.csv --params p.toml --out found").code, 1);
+  std::vector<std::string> left;
+  for (const std::string& name : bench.names()) {
+    if (name.starts_with("found/")) {
+      left.push_back(name);
+    }
+  }
+  EXPECT_THAT(left,
+              testing::UnorderedElementsAre("found/report.html", "found/traces_of_mine.csv", "found/verdict.json"));
+}
+
+TEST_F(Diagnose, ALimitIsHeldAgainstTheDiagram) {
+  const struct {
+    const char* limits;
+    const char* cause;
+    const char* mend;
+  } cases[] = {{"--limit FORSE=1", "the diagram has no real input FORSE", "did you mean FORCE?"},
+               {"--limit V=1", "the diagram has no real input V", "its inputs are FORCE"},
+               {"--limit FORCE=-1", "leaves the input no room", "a size above 0"},
+               {"--limit FORCE.rate=0", "leaves the input no room", "a size above 0"},
+               {"--limit FORCE.most=1", "limits no part of an input", "U.low, U.high or U.rate"},
+               {"--limit FORCE=1 --limit force=2", "names force twice", "give each limit once"},
+               {"--limit FORCE.low=2 --limit FORCE.high=1", "its upper end 1", "low below high"}};
+  for (const auto& one : cases) {
+    const auto outcome =
+        bench.shell(std::string("hysteron diagnose plant.st --log log.csv --params p.toml --out bad ") + one.limits);
+    EXPECT_EQ(outcome.code, 2) << one.limits;
+    EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("HY730 error: "), HasSubstr(one.cause), HasSubstr(one.mend)));
+    EXPECT_FALSE(bench.has("bad"));
+  }
+}
+
+TEST_F(Diagnose, ABudgetThatCutTheSearchIsTold) {
+  // Without the load among the effects there is always something left that a second one might close.
+  const std::string without =
+      "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects drift,lag,gain_drift,offset";
+  const auto cut = bench.shell(without + " --budget 0.000001");
+  ASSERT_EQ(cut.code, 0) << cut.err;
+  EXPECT_THAT(cut.out, AllOf(HasSubstr("note: The budget of 1e-06 s cut the search after "), HasSubstr("may change")));
+  EXPECT_THAT(bench.shell(without).out, Not(HasSubstr("cut the search")));
+}
+
+TEST_F(Diagnose, AFolderThatTakesNoFilesIsRefusedFirst) {
+  // Root may write into /proc by its permissions, and cannot. A log that is not there shows that nothing was read.
+  const auto outcome = bench.shell("hysteron diagnose plant.st --log none.csv --params p.toml --out /proc/foo");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("HY700 error: /proc/foo: Nothing can be written into /proc"),
+                                 HasSubstr("choose a folder")));
+  ASSERT_EQ(bench.shell("mkdir kept").code, 0);
+  const auto before = bench.names();
+  EXPECT_EQ(bench.shell("hysteron diagnose plant.st --log none.csv --params p.toml --out kept").code, 2);
+  EXPECT_EQ(bench.names(), before) << "the trial leaves nothing";
+}
+
 TEST_F(Diagnose, RefusesARecordThatCannotBeDiagnosed) {
   const auto flip = [](std::vector<double>& v) {
     for (double& one : v) {

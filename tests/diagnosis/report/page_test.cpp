@@ -16,6 +16,7 @@
 namespace hysteron::diagnosis {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -149,6 +150,34 @@ TEST(ReportPage, ALongNameOfABlockIsReadWhole) {
   const std::string page = report_page(fixture::rich_diagnosis(50), compile_text(text));
   EXPECT_THAT(page, HasSubstr(">POSITION_VISCOUS_</text>"));
   EXPECT_THAT(page, HasSubstr(">FRICTION</text>"));
+}
+
+TEST(ReportPage, SaysWhyAnInvertibleEffectHasNoFeedforward) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  ASSERT_EQ(found.effects[0].inverse, Inverse::Exact);
+  found.feedforward_text = "FUNCTION_BLOCK FEEDFORWARD";
+  found.feedforward_notes = {"AMP is left as it is"};
+  EXPECT_THAT(report_page(found, fixture::rich_program()), Not(HasSubstr("No feedforward was written")));
+  found.feedforward_text.clear();
+  found.feedforward_notes = {"SUM takes 2 signals that depend on REF: no series chain"};
+  EXPECT_THAT(report_page(found, fixture::rich_program()),
+              HasSubstr("No feedforward was written all the same: SUM takes 2 signals that depend on REF"));
+}
+
+TEST(ReportPage, SpeaksOfRivalsWhereThereAreSome) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  EXPECT_THAT(report_page(found, fixture::rich_program()), HasSubstr("The rivals' outputs will then differ"));
+  found.rivals.resize(1);
+  EXPECT_THAT(report_page(found, fixture::rich_program()), Not(HasSubstr("rivals' outputs")));
+  found.next = {.reason = "no excitation would show creep"};
+  EXPECT_THAT(report_page(found, fixture::rich_program()),
+              AllOf(HasSubstr("Next experiment: none"), HasSubstr("no excitation would show creep")));
+}
+
+TEST(ReportPage, AnIntervalOfTheClosedShareEndsAtTheWhole) {
+  Diagnosis found = fixture::rich_diagnosis(50);
+  found.gap.closed_high = 1.03;
+  EXPECT_THAT(report_page(found, fixture::rich_program()), HasSubstr("97 % (95 % … 100 %)"));
 }
 
 TEST(ReportPage, NamesOfAnyKindAreEscaped) {

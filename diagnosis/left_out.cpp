@@ -1,0 +1,136 @@
+#include "diagnosis/left_out.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ranges>
+#include <utility>
+
+#include "diagnosis/glitches.hpp"
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/missed_samples.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// The model shows missed samples that the measurement alone does not, and without them is calibrated better.
+constexpr int rounds_with_model = 2;
+
+ParameterFinding counted(std::string name, double value, std::string unit = "1") {
+  return {.name = std::move(name), .value = value, .low = value, .high = value, .unit = std::move(unit)};
+}
+
+class Finder {
+ public:
+  Finder(Task& task, const Program& program) : task_(task), program_(program), model_(task, program) {
+    rows_ = model_.rows() / std::ssize(task.outputs);
+  }
+
+  std::vector<LeftOut> run() {
+    std::vector<LeftOut> found;
+    std::vector<MissedSamples> missed;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const Glitches glitches = find_glitches(model_.problem().experiments, output);
+      if (!glitches.rows.empty()) {
+        found.push_back(described(glitches, output));
+      }
+      add_rows(glitches.rows, output);
+      missed.push_back(find_missed_samples(model_.problem().experiments, output));
+    }
+    const std::vector<Index> without_missed = task_.left_out;
+    const auto take_out = [&] {
+      task_.left_out = without_missed;
+      for (std::size_t output = 0; output < missed.size(); ++output) {
+        add_rows(missed[output].rows, output);
+      }
+    };
+    take_out();
+    const bool any = std::ranges::any_of(missed, [](const MissedSamples& one) { return !one.rows.empty(); });
+    for (int round = 0; any && round < rounds_with_model; ++round) {
+      look_beside_model(missed);
+      take_out();
+    }
+    for (std::size_t output = 0; output < missed.size(); ++output) {
+      if (!missed[output].rows.empty()) {
+        found.push_back(described(missed[output], output));
+      }
+    }
+    std::ranges::stable_sort(found, [&](const LeftOut& a, const LeftOut& b) {
+      return a.rms / task_.scales[a.output] > b.rms / task_.scales[b.output];
+    });
+    return found;
+  }
+
+ private:
+  void add_rows(const std::vector<std::size_t>& rows, std::size_t output) {
+    for (const std::size_t row : rows) {
+      task_.left_out.push_back(static_cast<Index>(output) * rows_ + static_cast<Index>(row));
+    }
+  }
+
+  void look_beside_model(std::vector<MissedSamples>& missed) {
+    Model without(task_, program_);
+    const Fit calibrated = fit(without, without.start());
+    VectorXd residuals;
+    if (!model_.residuals(calibrated.x, residuals)) {
+      return;
+    }
+    for (std::size_t output = 0; output < missed.size(); ++output) {
+      if (missed[output].rows.empty()) {
+        continue;
+      }
+      std::vector<double> modelled;
+      for (const Experiment& experiment : model_.problem().experiments) {
+        std::ranges::copy(experiment.measured[output], std::back_inserter(modelled));
+      }
+      const VectorXd own = residuals.segment(static_cast<Index>(output) * rows_, rows_);
+      for (std::size_t k = 0; k < modelled.size(); ++k) {
+        modelled[k] += own[static_cast<Index>(k)] * task_.scales[output];
+      }
+      missed[output] = with_model(missed[output], model_.problem().experiments, output, modelled);
+    }
+  }
+
+  [[nodiscard]] LeftOut described(const Glitches& glitches, std::size_t output) const {
+    return {
+        .effect = "glitches",
+        .output = output,
+        .rms = glitches.rms,
+        .remark = fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they are left "
+                              "out of the fits.",
+                              glitches.rows.size(), task_.outputs[output], glitches.largest),
+        .parameters = {counted("COUNT", static_cast<double>(glitches.rows.size())),
+                       counted("LARGEST", glitches.largest, unit_of(output))}};
+  }
+
+  [[nodiscard]] LeftOut described(const MissedSamples& missed, std::size_t output) const {
+    const double share = static_cast<double>(missed.rows.size()) / static_cast<double>(rows_);
+    return {
+        .effect = "clock",
+        .output = output,
+        .rms = missed.rms,
+        .remark = fmt::format("{:.2g} % of the samples of {} repeat the last value while the signal moves on, up to "
+                              "{} in a row: they were missed, and are left out of the fits.",
+                              100.0 * share, task_.outputs[output], missed.longest),
+        .parameters = {counted("MISSED", share), counted("LONGEST", static_cast<double>(missed.longest))}};
+  }
+
+  [[nodiscard]] std::string unit_of(std::size_t output) const {
+    const auto port = std::ranges::find_if(
+        program_.graph.outputs, [&](const Port& one) { return language::same_name(one.name, task_.outputs[output]); });
+    return port == program_.graph.outputs.end() ? std::string() : port->unit;
+  }
+
+  Task& task_;
+  const Program& program_;
+  Model model_;  ///< with all samples
+  Index rows_ = 0;
+};
+
+}  // namespace
+
+std::vector<LeftOut> leave_out(Task& task, const Program& program) {
+  return Finder(task, program).run();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,26 @@
+// Samples that no fit shall see, since a few of them would outweigh all else: glitches, and values that were repeated
+// because a sample was missed. They are counted, not fitted.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/model.hpp"
+
+namespace hysteron::diagnosis {
+
+/// Those of one kind in one output.
+struct LeftOut {
+  std::string effect{};                        ///< glitches, clock
+  std::size_t output = 0;                      ///< by its place among the task's
+  double rms = 0.0;                            ///< √(Σe²/N) over all N samples, in the unit of the output
+  std::string remark{};                        ///< for the user
+  std::vector<ParameterFinding> parameters{};  ///< how many, and how large
+};
+
+/// Finds them, the largest ones of an output first, and takes their rows out of the task. `task.scales` are set.
+[[nodiscard]] std::vector<LeftOut> leave_out(Task& task, const Program& program);
+
+}  // namespace hysteron::diagnosis

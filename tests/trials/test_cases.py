@@ -15,7 +15,7 @@ from scipy import stats
 
 from trials.generator.case import PLANTS, Builder, Specification, build, from_label, scales, write
 from trials.generator.grid import Grid
-from trials.generator.strata import AMBIGUOUS, FULL, plan
+from trials.generator.strata import AMBIGUOUS, FULL, HOMES, each, plan
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = os.environ.get("HYSTERON_TOOL", str(ROOT / "build" / "hysteron"))
@@ -115,6 +115,12 @@ class Cases(unittest.TestCase):
         self.assertEqual(named, set(listed))
         inside = [one for one in cases if one.stratum in ("single", "cousin", "pair")]
         self.assertGreaterEqual(sum(one.stratum == "cousin" for one in inside) / len(inside), 1 / 3)
+
+    def test_each_plan_has_every_effect_on_every_plant_that_has_it(self) -> None:
+        cases = each("any", 30.0)
+        self.assertEqual({one.effects[0][0] for one in cases}, set(re.findall(r"`(\w+)`", LIST_OF_EFFECTS)))
+        self.assertEqual({(one.effects[0][0], one.plant) for one in cases}, {(e, p) for e, homes in HOMES.items() for p in homes})
+        self.assertEqual({(one.stratum, one.ratio, one.plan, len(one.effects)) for one in cases}, {("single", 30.0, "rich", 1)})
 
 
 LIST_OF_EFFECTS = """`delay` `lag` `rate_limit` `saturation` `dead_zone` `quantization` `backlash` `asymmetry`

@@ -121,6 +121,13 @@ class Output(unittest.TestCase):
         self.assertNotIn("http://", shown.replace("http://www.w3.org", ""))
         self.assertNotIn("<script", shown)
 
+    def test_effects_by_plants_holds_each_clear_single_case_once(self) -> None:
+        cases = judged(KEYS, {name: truth(label) for name, label in KEYS.items()})
+        clear = [c for c in cases if c.stratum == "single" and c.ratio >= 5.5]
+        cells = [cell for line in score(cases).by_plant.values() for cell in line.values()]
+        self.assertGreater(len(clear), 0)
+        self.assertEqual((sum(hits for hits, _ in cells), sum(count for _, count in cells)), (len(clear), len(clear)))
+
     def test_floors(self) -> None:
         self.assertEqual(broken(self.score.figures, proposal(self.score.figures)), [])
         self.assertEqual(len(broken(self.score.figures, {"floors": {"pair": 0.5, "false_alarm": 0.1, "no_such": 0.0}})), 3)

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <numeric>
+#include <optional>
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/discrepancy.hpp"
@@ -18,8 +21,10 @@
 #include "diagnosis/inverse.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/next_experiment.hpp"
+#include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
 #include "diagnosis/search.hpp"
+#include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
 #include "diagnosis/verdict.hpp"
 #include "diagnosis/where.hpp"
@@ -39,6 +44,8 @@ constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
+/// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
+constexpr double sure_of_missed_start = 0.5;
 
 using Clock = std::chrono::steady_clock;
 
@@ -97,6 +104,11 @@ class Run {
     result_.refusals = std::move(checked.refusals);
     result_.warnings = std::move(checked.warnings);
     one_motion_ = checked.one_motion;
+    if (!checked.left_out.empty()) {
+      task_.left_out.insert(task_.left_out.end(), checked.left_out.begin(), checked.left_out.end());
+      Model spared(task_, *base_.program);
+      (void)spared.residuals(spared.start(), nominal_);
+    }
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
         result_.warnings.push_back(fmt::format(
@@ -105,7 +117,7 @@ class Run {
             task_.outputs[output]));
       }
     }
-    floor_cost_ = 0.5 * static_cast<double>(nominal_.size());
+    floor_cost_ = 0.5 * static_cast<double>(nominal_.size() - std::ssize(task_.left_out));
   }
 
   void investigate(Clock::time_point begun) {
@@ -117,9 +129,21 @@ class Run {
       return std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
     };
     const std::string top = base_.program->graph.name;
-    const Search found = search(task_, base_, top, floor_cost_, searching);
-    result_.tried = found.tried;
-    const Judgement judgement = judge(task_, found, floor_cost_);
+    auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
+    result_.tried = searched->search.tried;
+    search_from_another_start(searched, [&] {
+      begun = Clock::now();  // the start is found out: its search has the time that the first one had
+      return search(task_, base_, top, floor_cost_, searching);
+    });
+    const Search& found = searched->search;
+    if (std::string reason = unrelated(task_, found.calibrated); !reason.empty()) {
+      result_.warnings.push_back(std::move(reason));
+      searched->judgement = {.chosen = &found.calibrated,
+                             .effective_samples = searched->judgement.effective_samples,
+                             .held_out = held_out(task_, found.calibrated)};
+      related_ = false;
+    }
+    const Judgement& judgement = searched->judgement;
     const Explanation& chosen = *judgement.chosen;
     describe_gap(found.calibrated, judgement);
     describe_cuts();
@@ -129,10 +153,35 @@ class Run {
     describe(found, judgement);
   }
 
+  /// Where another state at the start explains the record better, with fewer effects or closer, the search is done
+  /// again with it, and stands if it is the better one in the end.
+  template <class Again>
+  void search_from_another_start(std::unique_ptr<Searched>& searched, const Again& again) {
+    const Judgement& first = searched->judgement;
+    std::optional<Task> free = material(nominal_)
+                                   ? with_free_start(task_, searched->search, first, floor_cost_, options_.threads)
+                                   : std::nullopt;
+    if (!free) {
+      return;
+    }
+    const auto more = std::ssize(free->initial_states) - std::ssize(task_.initial_states);
+    const auto support = [&](const Explanation& one, Index states) {
+      return support_of(one.fit.cost, one.parameters() + states * std::ssize(task_.records), one.variant.effects.size(),
+                        first.weighing_samples, searched->search.tried);
+    };
+    std::swap(task_, *free);
+    auto second = std::make_unique<Searched>(task_, again(), floor_cost_);
+    result_.tried += second->search.tried;
+    if (support(*second->judgement.chosen, more) > support(*first.chosen, 0)) {
+      result_.warnings.push_back(words_of_start(task_, *second->judgement.chosen));
+      searched = std::move(second);
+    } else {
+      std::swap(task_, *free);
+    }
+  }
+
   [[nodiscard]] double rms(const VectorXd& residuals, std::size_t output) const {
-    const Index rows = residuals.size() / std::ssize(task_.outputs);
-    const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
-    return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task_.scales[output];
+    return rms_of(task_, residuals, output);
   }
 
   void describe_gap(const Explanation& calibrated, const Judgement& judgement) {
@@ -209,7 +258,10 @@ class Run {
     const double open = open_share(found, chosen);
     result_.unknown_score = std::pow(open, 0.25) * excess_of(size);
 
-    if (has_effect && gap_calibrated) {
+    if (!related_) {
+      result_.verdict = Verdict::Unknown;
+      result_.unknown_score = 1.0;
+    } else if (has_effect && gap_calibrated) {
       const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > far_above();
       if (gap_left && much_left) {
         result_.verdict = Verdict::Partial;
@@ -282,6 +334,10 @@ class Run {
       result_.effects = effect_findings(findings);
       result_.rivals = rival_findings(findings);
     }
+    const Explanation& kept = named ? *judgement.chosen : found.calibrated;
+    if (result_.verdict != Verdict::Partial && result_.verdict != Verdict::Unknown) {  // they say it already
+      std::ranges::move(far_parameters(task_, kept), std::back_inserter(result_.warnings));
+    }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     const std::vector<Edge> edges = chosen_edges();
@@ -290,11 +346,14 @@ class Run {
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
     }
+    if (std::string reason = unexplained_start(task_, *judgement.chosen); !reason.empty() && related_) {
+      result_.warnings.push_back(std::move(reason));
+      result_.confidence = std::min(result_.confidence, sure_of_missed_start);
+    }
     for (std::string& reason : structural_reasons(result_)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
     result_.traces = traces_of(task_, nominal_, found.calibrated.fit.residuals, judgement.chosen->fit.residuals);
-    const Explanation& kept = named ? *judgement.chosen : found.calibrated;
     result_.improved_text = improved_text(kept, input_.program.graph.source->path);
     result_.improved_file = improved_file(task_, input_.file, kept);
     plan(found, judgement, kept);
@@ -423,28 +482,11 @@ class Run {
   double floor_cost_ = 0.0;
   double predictable_ = 0.0;  ///< see Findings
   bool one_motion_ = false;   ///< see RecordCheck
+  bool related_ = true;       ///< the calibrated diagram follows the record at least a little
   Diagnosis result_{};
 };
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::None:
-      return "none";
-    case Verdict::Calibration:
-      return "calibration";
-    case Verdict::Named:
-      return "named";
-    case Verdict::Group:
-      return "group";
-    case Verdict::Partial:
-      return "partial";
-    case Verdict::Unknown:
-      return "unknown";
-  }
-  return "unknown";
-}
 
 Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options) {
   return Run(input, options).run();

@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <numeric>
+#include <optional>
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/discrepancy.hpp"
@@ -21,8 +23,10 @@
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/next_experiment.hpp"
+#include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
 #include "diagnosis/search.hpp"
+#include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
 #include "diagnosis/verdict.hpp"
 #include "diagnosis/where.hpp"
@@ -44,6 +48,8 @@ constexpr double far_above_fast_floor = 4.0;
 constexpr double least_excess = 0.35;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
+/// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
+constexpr double sure_of_missed_start = 0.5;
 
 double excess(double high, double low) {
   return std::sqrt(std::max(0.0, high * high - low * low));
@@ -107,6 +113,11 @@ class Run {
     result_.warnings = std::move(checked.warnings);
     std::ranges::move(unmatched_, std::back_inserter(result_.warnings));
     one_motion_ = checked.one_motion;
+    if (!checked.left_out.empty()) {
+      task_.left_out.insert(task_.left_out.end(), checked.left_out.begin(), checked.left_out.end());
+      Model spared(task_, *base_.program);
+      (void)spared.residuals(spared.start(), nominal_);
+    }
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
         result_.warnings.push_back(fmt::format(
@@ -115,7 +126,7 @@ class Run {
             task_.outputs[output]));
       }
     }
-    floor_cost_ = 0.5 * static_cast<double>(nominal_.size());
+    floor_cost_ = 0.5 * static_cast<double>(nominal_.size() - std::ssize(task_.left_out));
   }
 
   void investigate(Clock::time_point begun) {
@@ -130,15 +141,27 @@ class Run {
       return over;
     };
     const std::string top = base_.program->graph.name;
-    const Search found = search(task_, base_, top, floor_cost_, searching);
-    result_.tried = found.tried;
+    auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
+    result_.tried = searched->search.tried;
+    search_from_another_start(searched, [&] {
+      begun = Clock::now();  // the start is found out: its search has the time that the first one had
+      return search(task_, base_, top, floor_cost_, searching);
+    });
+    const Search& found = searched->search;
     if (cut) {
       result_.warnings.push_back(fmt::format(
           "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every "
           "set of several. The verdict may change with more time, --budget.",
           options_.budget, found.tried));
     }
-    const Judgement judgement = judge(task_, found, floor_cost_);
+    if (std::string reason = unrelated(task_, found.calibrated); !reason.empty()) {
+      result_.warnings.push_back(std::move(reason));
+      searched->judgement = {.chosen = &found.calibrated,
+                             .effective_samples = searched->judgement.effective_samples,
+                             .held_out = held_out(task_, found.calibrated)};
+      related_ = false;
+    }
+    const Judgement& judgement = searched->judgement;
     find_gap();
     decide(found, judgement);
     // What the user gets as improved.st: effects that the verdict does not name are not in it.
@@ -153,6 +176,33 @@ class Run {
   [[nodiscard]] bool named() const {
     return result_.verdict == Verdict::Named || result_.verdict == Verdict::Group ||
            result_.verdict == Verdict::Partial;
+  }
+
+  /// Where another state at the start explains the record better, with fewer effects or closer, the search is done
+  /// again with it, and stands if it is the better one in the end.
+  template <class Again>
+  void search_from_another_start(std::unique_ptr<Searched>& searched, const Again& again) {
+    const Judgement& first = searched->judgement;
+    std::optional<Task> free = material(nominal_)
+                                   ? with_free_start(task_, searched->search, first, floor_cost_, options_.threads)
+                                   : std::nullopt;
+    if (!free) {
+      return;
+    }
+    const auto more = std::ssize(free->initial_states) - std::ssize(task_.initial_states);
+    const auto support = [&](const Explanation& one, Index states) {
+      return support_of(one.fit.cost, one.parameters() + states * std::ssize(task_.records), one.variant.effects.size(),
+                        first.weighing_samples, searched->search.tried);
+    };
+    std::swap(task_, *free);
+    auto second = std::make_unique<Searched>(task_, again(), floor_cost_);
+    result_.tried += second->search.tried;
+    if (support(*second->judgement.chosen, more) > support(*first.chosen, 0)) {
+      result_.warnings.push_back(words_of_start(task_, *second->judgement.chosen));
+      searched = std::move(second);
+    } else {
+      std::swap(task_, *free);
+    }
   }
 
   [[nodiscard]] double rms(const VectorXd& residuals, std::size_t output) const {
@@ -245,7 +295,10 @@ class Run {
     const double open = open_share(found, chosen);
     result_.unknown_score = std::pow(open, 0.25) * excess_of(size);
 
-    if (has_effect && gap_calibrated) {
+    if (!related_) {
+      result_.verdict = Verdict::Unknown;
+      result_.unknown_score = 1.0;
+    } else if (has_effect && gap_calibrated) {
       const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > far_above();
       if (gap_left && much_left) {
         result_.verdict = Verdict::Partial;
@@ -321,6 +374,9 @@ class Run {
       result_.effects = effect_findings(findings);
       result_.rivals = rival_findings(findings);
     }
+    if (result_.verdict != Verdict::Partial && result_.verdict != Verdict::Unknown) {  // they say it already
+      std::ranges::move(far_parameters(task_, kept), std::back_inserter(result_.warnings));
+    }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
     const std::vector<Edge> edges = chosen_edges();
@@ -332,6 +388,10 @@ class Run {
     double duration = 0.0;
     for (const records::Record& record : task_.records) {
       duration = std::max(duration, record.time().back() - record.time().front());
+    }
+    if (std::string reason = unexplained_start(task_, *judgement.chosen); !reason.empty() && related_) {
+      result_.warnings.push_back(std::move(reason));
+      result_.confidence = std::min(result_.confidence, sure_of_missed_start);
     }
     for (std::string& reason : structural_reasons(result_, is_tried("periodic_disturbance") ? duration : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
@@ -479,6 +539,7 @@ class Run {
   std::size_t gap_output_ = 0;  ///< see Findings
   double predictable_ = 0.0;    ///< see Findings
   bool one_motion_ = false;     ///< see RecordCheck
+  bool related_ = true;         ///< the calibrated diagram follows the record at least a little
   Diagnosis result_{};
 };
 

@@ -102,6 +102,18 @@ parameters::ParameterFile improved_file(const Task& task, parameters::ParameterF
       file.fits.push_back({.path = path});
     }
   }
+  const Index first_state = std::ssize(task.known) + std::ssize(explanation.variant.further);
+  for (std::size_t state = 0; state < task.initial_states.size(); ++state) {
+    const std::string& path = task.initial_states[state];
+    if (task.records.size() == 1) {  // of several records each has its own, which no file says
+      file.set_initial(path, x[first_state + static_cast<Index>(state)]);
+    }
+    if (std::ranges::none_of(file.tune.initial_states, [&](const parameters::PlacedText& named) {
+          return language::same_name(named.text, path);
+        })) {
+      file.tune.initial_states.push_back({.text = path});
+    }
+  }
   for (const Applied& applied : explanation.variant.effects) {
     for (const auto& [path, value] : applied.settings) {
       const std::int64_t found = find_parameter(explanation.variant.program->graph, path);

@@ -43,6 +43,7 @@ class Finder {
       for (std::size_t output = 0; output < missed.size(); ++output) {
         add_rows(missed[output].rows, output);
       }
+      std::ranges::sort(task_.left_out);
     };
     take_out();
     const bool any = std::ranges::any_of(missed, [](const MissedSamples& one) { return !one.rows.empty(); });

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "diagnosis/spectrum.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -36,10 +38,16 @@ double noise_of(const std::vector<double>& values) {
   return *at / (quartile_of_normal * of_the_difference);
 }
 
+/// What a sensor that rounds adds to the noise: between its steps a slow signal stands still, too.
+double rounding(const std::vector<double>& values) {
+  return common_step(values) / std::sqrt(12.0);
+}
+
 /// One record's runs.
 class Runs {
  public:
-  explicit Runs(const std::vector<double>& values) : values_(values), noise_(noise_of(values)), held_(values.size()) {}
+  explicit Runs(const std::vector<double>& values)
+      : values_(values), noise_(std::hypot(noise_of(values), rounding(values))), held_(values.size()) {}
 
   /// Those that the measurement alone shows; their number.
   std::size_t clear() {

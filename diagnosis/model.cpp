@@ -24,7 +24,7 @@ parameters::FitSetting fit_of(const Unknown& unknown) {
 
 Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
     : left_out_(task.left_out), first_further_(std::ssize(task.known)) {
-  parameters::ParameterFile file{.file = task.file.file, .values = task.file.values};
+  parameters::ParameterFile file{.file = task.file.file, .values = task.file.values, .initial = task.file.initial};
   for (const Unknown& unknown : task.known) {
     file.fits.push_back(fit_of(unknown));
   }

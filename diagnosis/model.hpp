@@ -38,7 +38,7 @@ struct Unknown {
 
 /// What stays the same while candidates come and go.
 struct Task {
-  parameters::ParameterFile file{};  ///< values only
+  parameters::ParameterFile file{};  ///< values and initial states only
   std::vector<records::Record> records{};
   std::vector<std::string> outputs{};  ///< the measured ones, by name
   std::vector<Unknown> known{};        ///< calibration parameters

@@ -54,6 +54,7 @@ class Planner {
   Planner(Task task, std::vector<Contender> contenders, double noise)
       : task_(std::move(task)), contenders_(std::move(contenders)), noise_(noise) {
     task_.file.values.clear();  // the fitted programs have them
+    task_.file.initial.clear();
     task_.initial_states.clear();
     task_.known.clear();
     if (task_.scales.size() != task_.outputs.size()) {

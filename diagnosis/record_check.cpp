@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string_view>
 #include <vector>
 
+#include "diagnosis/sensor_faults.hpp"
 #include "support/median.hpp"
 #include "tuning/simulation.hpp"
 
@@ -177,7 +180,9 @@ std::string absurd_sample(const records::Record& record, const records::Column& 
 class Check {
  public:
   Check(const Task& task, const Model& model, const VectorXd& nominal)
-      : task_(task), problem_(model.problem()), nominal_(nominal) {}
+      : task_(task), problem_(model.problem()), nominal_(nominal), left_out_(task.left_out) {
+    std::ranges::sort(left_out_);
+  }
 
   RecordCheck run() {
     std::size_t total = 0;
@@ -208,7 +213,9 @@ class Check {
           }
         }
       }
-      check_output(problem_.program.graph.outputs[problem_.outputs[output]], measured, model);
+      const Port& port = problem_.program.graph.outputs[problem_.outputs[output]];
+      check_output(port, measured, model);
+      check_sensor(output, port);
     }
     check_swap();
     result_.one_motion = is_one_motion(problem_.experiments);
@@ -267,7 +274,7 @@ class Check {
     if (together < 0.3) {
       warn(fmt::format("{} has little in common with the model (correlation {:.2f}).", port.name, together));
     }
-    check_start(port, measured, model, seen);
+    check_temperature(port, measured, model, seen);
   }
 
   /// Whether the model moves where no record stands beside it.
@@ -278,24 +285,105 @@ class Check {
     });
   }
 
-  /// A model that starts from another state than the machine did.
-  void check_start(const Port& port, const std::vector<double>& measured, const std::vector<double>& model,
-                   const Moments& seen) {
-    const std::size_t head = std::max<std::size_t>(5, measured.size() / 50);
-    double early = 0.0;
-    double late = 0.0;
-    for (std::size_t k = 0; k < measured.size(); ++k) {
-      const double r = model[k] - measured[k];
-      (k < head ? early : late) += r * r;
+  /// Temperatures in another unit: what an offset among the parameters would take up without a word.
+  void check_temperature(const Port& port, const std::vector<double>& measured, const std::vector<double>& model,
+                         const Moments& seen) {
+    struct Conversion {
+      std::string_view from;
+      std::string_view to;
+      double gain;
+      double offset;
+    };
+    static constexpr std::array conversions{
+        Conversion{.from = "degC", .to = "K", .gain = 1.0, .offset = 273.15},
+        Conversion{.from = "K", .to = "degC", .gain = 1.0, .offset = -273.15},
+        Conversion{.from = "degC", .to = "degrees Fahrenheit", .gain = 1.8, .offset = 32.0},
+        Conversion{.from = "K", .to = "degrees Fahrenheit", .gain = 1.8, .offset = -459.67}};
+    const auto off = [&](double gain, double offset) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < measured.size(); ++k) {
+        sum += std::pow(measured[k] - gain * model[k] - offset, 2);
+      }
+      return std::sqrt(sum / static_cast<double>(measured.size()));
+    };
+    const double as_it_is = off(1.0, 0.0);
+    for (const Conversion& one : conversions) {
+      constexpr double explained = 0.2;
+      const double converted = port.unit == one.from ? off(one.gain, one.offset) : as_it_is;
+      if (converted < explained * as_it_is && converted < 0.5 * seen.deviation) {
+        refuse(fmt::format(
+            "{} is off the model by {:.3g} {}, and by {:.3g} where the record is taken to be in {}: convert "
+            "the column to {}.",
+            port.name, as_it_is, port.unit, converted, one.to, one.from));
+        return;
+      }
     }
-    early = std::sqrt(early / static_cast<double>(head));
-    late = std::sqrt(late / static_cast<double>(measured.size() - head));
-    if (early > 4.0 * late && early > 0.05 * seen.deviation) {
-      warn(
-          fmt::format("The model misses the begin of the record by {:.3g} {}, {:.1f} times as much as later on: it "
-                      "starts from another state than the machine. Name the states under initial_states in [tune].",
-                      early, port.unit, early / late));
+  }
+
+  /// Readings that no machine gives: they are named by time, and what is spoilt is left out or, where it is much,
+  /// refused.
+  void check_sensor(std::size_t output, const Port& port) {
+    constexpr double most = 0.2;
+    std::size_t spoilt = 0;
+    std::size_t total = 0;
+    std::vector<std::string> texts;
+    Index row = first_row(output);
+    for (const Experiment& experiment : problem_.experiments) {
+      const std::vector<double>& measured = experiment.measured[output];
+      std::vector<double> model;
+      std::vector<std::size_t> glitches;
+      for (std::size_t k = 0; k < measured.size(); ++k) {
+        const Index here = row + static_cast<Index>(k);
+        model.push_back(measured[k] + nominal_[here] * task_.scales[output]);
+        if (std::ranges::binary_search(left_out_, here)) {
+          glitches.push_back(k);
+        }
+      }
+      const std::string where = problem_.experiments.size() > 1 ? " of " + experiment.name : "";
+      for (const SensorFault& fault : find_sensor_faults(measured, model, glitches)) {
+        const double from = experiment.time[fault.rows.first];
+        const double to = experiment.time[fault.rows.last - 1];
+        switch (fault.kind) {
+          case SensorFault::Kind::Stuck:
+            texts.push_back(
+                fmt::format("{} stands at exactly {:.4g} {} from {:.6g} to {:.6g} s{}, and is noisy elsewhere: "
+                            "the sensor is stuck",
+                            port.name, fault.value, port.unit, from, to, where));
+            break;
+          case SensorFault::Kind::Dropout:
+            texts.push_back(
+                fmt::format("{} leaps to exactly {:.4g} {} from {:.6g} to {:.6g} s{} and back: its readings "
+                            "drop out",
+                            port.name, fault.value, port.unit, from, to, where));
+            break;
+          case SensorFault::Kind::Leap:
+            warn(fmt::format(
+                "{} leaps by {:.3g} {} at {:.6g} s{}, far more than it or the model ever does from one sample "
+                "to the next: a piece of the record may be missing there. Cut it there into two records.",
+                port.name, fault.value, port.unit, from, where));
+            continue;
+        }
+        spoilt += fault.rows.size();
+        for (std::size_t k = fault.rows.first; k < fault.rows.last; ++k) {
+          result_.left_out.push_back(row + static_cast<Index>(k));
+        }
+      }
+      total += measured.size();
+      row += std::ssize(measured);
     }
+    const bool much = static_cast<double>(spoilt) > most * static_cast<double>(total);
+    for (const std::string& text : texts) {
+      if (much) {
+        refuse(text + ". Cut the record there.");
+      } else {
+        warn(text + "; these samples are left out of the fits.");
+      }
+    }
+  }
+
+  /// Of an output, in the residuals of all.
+  [[nodiscard]] Index first_row(std::size_t output) const {
+    return static_cast<Index>(output) * nominal_.size() / std::ssize(problem_.outputs);
   }
 
   /// Whether the model explains the record much better with an input and an output column exchanged.
@@ -338,6 +426,7 @@ class Check {
   const Task& task_;
   const OutputErrorProblem& problem_;
   const VectorXd& nominal_;
+  std::vector<Index> left_out_;  ///< of the task, sorted
   RecordCheck result_{};
 };
 

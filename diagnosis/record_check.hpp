@@ -12,6 +12,7 @@ struct RecordCheck {
   std::vector<std::string> refusals{};  ///< why no diagnosis is given
   std::vector<std::string> warnings{};  ///< what weakens it
   bool one_motion = false;              ///< the inputs make one motion only, and repeat it
+  std::vector<Index> left_out{};        ///< rows that a sensor that is stuck or drops out has spoilt
 };
 
 /// Inputs and measured outputs whose values no sensor gives, each with its first such sample. To be asked before the

@@ -40,7 +40,8 @@ bool is_name(const std::string& text) {
 }  // namespace
 
 Task task_of(const DiagnosisInput& input) {
-  Task task{.file = {.file = input.file.file, .values = input.file.values}, .records = input.records};
+  Task task{.file = {.file = input.file.file, .values = input.file.values, .initial = input.file.initial},
+            .records = input.records};
   Graph graph = input.program.graph;
   parameters::apply(input.file, graph);
   for (const parameters::FitSetting& setting : input.file.fits) {

@@ -54,6 +54,7 @@ class Judge {
     result.effective_samples =
         std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
     samples_ = std::min(result.effective_samples, most_samples);
+    result.weighing_samples = samples_;
     result.chosen = choose();
     result.held_out = unseen(*result.chosen);
     for (const Explanation& one : search_.explanations) {
@@ -91,10 +92,7 @@ class Judge {
 
  private:
   [[nodiscard]] double support(const Explanation& one) const {
-    const double penalty = 0.5 * static_cast<double>(one.parameters()) * std::log(std::max(2.0, samples_)) +
-                           static_cast<double>(one.variant.effects.size()) *
-                               std::log(static_cast<double>(std::max<std::size_t>(2, search_.tried)));
-    return -0.5 * samples_ * std::log(std::max(one.fit.cost, 1e-300)) - penalty;
+    return support_of(one.fit.cost, one.parameters(), one.variant.effects.size(), samples_, search_.tried);
   }
 
   /// Whether each effect of a set closes enough beyond the best set with one effect fewer.
@@ -189,6 +187,30 @@ class Judge {
 };
 
 }  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::None:
+      return "none";
+    case Verdict::Calibration:
+      return "calibration";
+    case Verdict::Named:
+      return "named";
+    case Verdict::Group:
+      return "group";
+    case Verdict::Partial:
+      return "partial";
+    case Verdict::Unknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried) {
+  const double penalty = 0.5 * static_cast<double>(parameters) * std::log(std::max(2.0, samples)) +
+                         static_cast<double>(effects) * std::log(static_cast<double>(std::max<std::size_t>(2, tried)));
+  return -0.5 * samples * std::log(std::max(cost, 1e-300)) - penalty;
+}
 
 Judgement judge(const Task& task, const Search& search, double floor_cost) {
   return Judge(task, search, floor_cost).run();

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
@@ -30,11 +31,23 @@ struct Judgement {
   std::vector<Weighed> fitted{};        ///< all sets, best first
   std::vector<Weighed> same{};          ///< other edges for the chosen set
   double effective_samples = 0.0;
-  VectorXd held_out{};        ///< residuals of the chosen set on what its fits have not seen
-  double significance = 0.0;  ///< of the chosen set against the calibrated diagram, nats
+  double weighing_samples = 0.0;  ///< N' of L(S): of these no more than a likelihood is to count
+  VectorXd held_out{};            ///< residuals of the chosen set on what its fits have not seen
+  double significance = 0.0;      ///< of the chosen set against the calibrated diagram, nats
 };
+
+/// L(S) above, of a fit with so many parameters beside those of the calibrated diagram, after so many candidates.
+[[nodiscard]] double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried);
 
 /// `floor_cost` as in search().
 [[nodiscard]] Judgement judge(const Task& task, const Search& search, double floor_cost);
+
+/// A search with its judgement, which points into it.
+struct Searched {
+  Searched(const Task& task, Search found, double floor_cost)
+      : search(std::move(found)), judgement(judge(task, search, floor_cost)) {}
+  Search search;
+  Judgement judgement;
+};
 
 }  // namespace hysteron::diagnosis

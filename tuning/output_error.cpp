@@ -163,11 +163,50 @@ class Fitter {
       diagnostics.error(
           error::no_influence, place,
           fmt::format("{} has no influence on any measured sample in train.", fit_.names[static_cast<std::size_t>(j)]),
-          "take it out of the fit, or record what makes it act.");
+          j < parameters ? "take it out of the fit, or record what makes it act."
+                         : mend_of_state(problem_.initial_states[static_cast<std::size_t>((j - parameters) % states)]));
     }
     if (diagnostics.has_errors()) {
       throw InputError(std::move(diagnostics));
     }
+  }
+
+  /// A block may set one of its states anew in the first sample, as a lag takes over its input, and keep another.
+  [[nodiscard]] std::string mend_of_state(const FreeState& wanted) const {
+    const std::string block = wanted.path.substr(0, wanted.path.rfind('.') + 1);
+    OutputErrorProblem others = problem_;
+    others.initial_states.clear();
+    for (const Node& node : others.program.graph.nodes) {
+      for (std::size_t state = 0;
+           node.block != nullptr && node.path + "." == block && state < node.block->states.size(); ++state) {
+        const Field& field = node.block->states[state];
+        if (field.type == Type::Real && field.length == 1) {
+          others.initial_states.push_back(
+              {.path = block + std::string(field.name), .lower = field.minimum, .upper = field.maximum});
+        }
+      }
+    }
+    detail::Rollout rollout(others);
+    const Index parameters = std::ssize(others.parameters);
+    VectorXd x = VectorXd::Zero(rollout.unknowns());
+    x.head(parameters) = least_squares_.start.head(parameters);
+    const std::vector<double> reset = rollout.states_after_reset(x.head(parameters));
+    for (Index j = parameters; j < x.size(); ++j) {
+      x[j] = reset[static_cast<std::size_t>(j - parameters) % reset.size()];
+    }
+    VectorXd residuals(rollout.residual_count());
+    MatrixXd jacobian(rollout.residual_count(), rollout.unknowns());
+    std::vector<std::string> shown;
+    if (rollout.residuals(x, residuals, &jacobian)) {
+      for (std::size_t state = 0; state < others.initial_states.size(); ++state) {
+        if (jacobian.col(parameters + static_cast<Index>(state)).cwiseAbs().maxCoeff() > 0.0) {
+          shown.push_back(others.initial_states[state].path);
+        }
+      }
+    }
+    return shown.empty()
+               ? "take it out of initial_states: no state of its block shows in the measured outputs."
+               : fmt::format("its block sets it anew in the first sample: name {} instead.", fmt::join(shown, " or "));
   }
 
   [[nodiscard]] VectorXd start_point(int start) const {
@@ -332,15 +371,7 @@ parameters::ParameterFile tuned_file(parameters::ParameterFile file, const Outpu
     }
   }
   for (std::size_t i = 0; problem.experiments.size() == 1 && i < problem.initial_states.size(); ++i) {
-    const std::string& path = problem.initial_states[i].path;
-    const double value = fit.solution.x[static_cast<Index>(problem.parameters.size() + i)];
-    const auto found = std::ranges::find_if(
-        file.initial, [&](const parameters::ParameterValue& given) { return equal_ignoring_case(given.path, path); });
-    if (found == file.initial.end()) {
-      file.initial.push_back({.path = path, .value = value});
-    } else {
-      found->value = value;
-    }
+    file.set_initial(problem.initial_states[i].path, fit.solution.x[static_cast<Index>(problem.parameters.size() + i)]);
   }
   std::erase_if(file.comments, [](const parameters::Comment& comment) {
     return comment.where == parameters::Comment::Where::Head && comment.text.starts_with(fmt::format("# {}", tuned_by));

@@ -102,6 +102,8 @@ struct ParameterFile {
 
   /// The value of a path, without regard to case; null where the file has none.
   [[nodiscard]] const ParameterValue* find(std::string_view path) const;
+  /// Gives a state its initial value, in place of one that the file has.
+  void set_initial(const std::string& path, double value);
 };
 
 /// Throws InputError with every error found: HY100 where the file cannot be read, HY601 to HY606.

@@ -455,6 +455,16 @@ const ParameterValue* ParameterFile::find(std::string_view path) const {
   return found == values.end() ? nullptr : &*found;
 }
 
+void ParameterFile::set_initial(const std::string& path, double value) {
+  const auto found =
+      std::ranges::find_if(initial, [&](const ParameterValue& given) { return equal_ignoring_case(given.path, path); });
+  if (found == initial.end()) {
+    initial.push_back({.path = path, .value = value});
+  } else {
+    found->value = value;
+  }
+}
+
 ParameterFile parse_parameter_file(const std::string& file, std::string_view text) {
   return Reader(file, text).read();
 }

@@ -95,7 +95,7 @@ TEST(MissedSamples, OfAFewNothingIsSaid) {
 }
 
 TEST(MissedSamples, AQuantizerMissesNone) {
-  for (const double quantum : {0.05, 0.3, 2.0}) {
+  for (const double quantum : {0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0}) {
     auto values = motion();
     for (double& value : values) {
       value = quantum * std::round(value / quantum);

@@ -183,7 +183,7 @@ TEST(RecordCheck, AModelThatDoesNotMove) {
   expect_refused(found, "does not move");
 }
 
-TEST(RecordCheck, AnotherStartIsNamed) {
+TEST(RecordCheck, AnotherStartIsFoundOut) {
   const std::string body =
       "FUNCTION_BLOCK BODY (* @ts 5ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; (* @unit K *) END_VAR VAR "
       "L : HY_LAG := (T1 := 0.05{}); END_VAR L(XIN := U, X0 := 30.0); Y := L.XOUT; END_FUNCTION_BLOCK";
@@ -195,7 +195,7 @@ TEST(RecordCheck, AnotherStartIsNamed) {
                                                 test::record_of("U", test::rich_voltage(1000)), 0.01);
   const Diagnosis found =
       diagnose(test::input_of(text(""), "[parameters.L]\nT1 = 0.05\n", {record}), {.effects = {"offset"}});
-  EXPECT_THAT(found.warnings, Contains(AllOf(HasSubstr("begin of the record"), HasSubstr("initial_states"))));
+  EXPECT_THAT(found.warnings, Contains(AllOf(HasSubstr("another state"), HasSubstr("L.RATE1"))));
   EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
 }
 
@@ -208,6 +208,77 @@ TEST(RecordCheck, WithoutRepeatsAndDwellsTheFloorIsInDoubt) {
   const Diagnosis found = of_stack(test::measured(test::program_of(test::stack()), test::record_of("U", chirp), 0.05));
   EXPECT_THAT(found.warnings, Contains(HasSubstr("no input repeats or dwells")));
   EXPECT_EQ(found.gap.floor.evidence, "differences");
+}
+
+TEST(RecordCheck, ASensorThatSticksForAWhileIsLeftOut) {
+  const auto stuck = [](std::size_t first, std::size_t last) {
+    return of_stack(test::changed(stack_record(), "Y", [&](auto& y) {
+      std::fill(y.begin() + static_cast<std::ptrdiff_t>(first), y.begin() + static_cast<std::ptrdiff_t>(last),
+                y[first]);
+    }));
+  };
+  const Diagnosis a_while = stuck(750, 850);
+  EXPECT_THAT(a_while.warnings, Contains(AllOf(HasSubstr("stuck"), HasSubstr("from 3.75 to 4.245 s"))));
+  EXPECT_THAT(a_while.effects, IsEmpty());
+  EXPECT_EQ(a_while.verdict, Verdict::None) << a_while.summary;
+  expect_refused(stuck(600, 1000), "stuck");
+}
+
+TEST(RecordCheck, DropoutsAreLeftOut) {
+  const Diagnosis found =
+      of_stack(test::changed(stack_record(), "Y", [](auto& y) { std::fill(y.begin() + 400, y.begin() + 430, -40.0); }));
+  EXPECT_THAT(found.warnings, Contains(AllOf(HasSubstr("drop out"), HasSubstr("from 2 to 2.145 s"))));
+  EXPECT_EQ(found.verdict, Verdict::None) << found.summary;
+}
+
+TEST(RecordCheck, APieceThatIsMissingIsWarnedOf) {
+  const records::Record whole = stack_record(2000);
+  records::Record record = records::Record::even(0.0, whole.sample_time(), 1300);
+  for (records::Column column : whole.columns()) {
+    column.values.erase(column.values.begin() + 400, column.values.begin() + 1100);
+    record.add(std::move(column));
+  }
+  EXPECT_THAT(of_stack(record).warnings, Contains(AllOf(HasSubstr("leaps"), HasSubstr("at 2 s"))));
+}
+
+/// A body with a lag, 20 degC where nothing heats it.
+Diagnosis of_body(double gain, double offset) {
+  const std::string body =
+      "FUNCTION_BLOCK BODY (* @ts 5ms *) VAR_INPUT U : LREAL; AMB : LREAL := 20.0; (* @param @unit degC *) END_VAR "
+      "VAR_OUTPUT Y : LREAL; (* @unit degC *) END_VAR VAR G : HY_GAIN := (K := 15.0); L : HY_LAG := (T1 := 0.05); "
+      "END_VAR G(XIN := U); L(XIN := G.XOUT); Y := L.XOUT + AMB; END_FUNCTION_BLOCK";
+  const auto record = test::measured(test::program_of(body), test::record_of("U", test::rich_voltage(1000)), 0.05);
+  const auto converted = test::changed(record, "Y", [&](auto& y) {
+    for (double& v : y) {
+      v = gain * v + offset;
+    }
+  });
+  return diagnose(test::input_of(body, "[parameters.L]\nT1 = 0.05\n[fit]\nAMB = {}\n[fit.L]\nT1 = {}\n", {converted}),
+                  {.effects = {"offset"}});
+}
+
+TEST(RecordCheck, TemperaturesInAnotherUnit) {
+  expect_refused(of_body(1.0, 273.15), "taken to be in K");
+  expect_refused(of_body(1.8, 32.0), "Fahrenheit");
+  EXPECT_THAT(of_body(1.0, 0.0).refusals, IsEmpty());
+  EXPECT_THAT(of_body(1.0, 5.0).refusals, IsEmpty());
+}
+
+TEST(RecordCheck, AParameterThatRunsFarOffIsWarnedOf) {
+  EXPECT_THAT(of_body(1.0, 60.0).warnings, Contains(AllOf(HasSubstr("AMB goes from 20"), HasSubstr("in the refit"))));
+  EXPECT_THAT(of_body(1.0, 5.0).warnings, Not(Contains(HasSubstr("in the refit"))));
+}
+
+TEST(RecordCheck, RowsInDisorderAreUnknown) {
+  const Diagnosis found = of_stack(test::changed(stack_record(), "Y", [](auto& y) {
+    test::Noise random(5);
+    for (std::size_t k = y.size() - 1; k > 0; --k) {
+      std::swap(y[k], y[static_cast<std::size_t>(random.uniform() * static_cast<double>(k + 1))]);
+    }
+  }));
+  EXPECT_EQ(found.verdict, Verdict::Unknown) << found.summary;
+  EXPECT_EQ(found.unknown_score, 1.0);
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("rows in order")));
 }
 
 TEST(RecordCheck, ARecordOfAnotherMachineGetsNoName) {

@@ -456,6 +456,31 @@ constexpr std::string_view gain = R"(FUNCTION_BLOCK P (* @ts 1ms *)
 END_FUNCTION_BLOCK
 )";
 
+constexpr std::string_view body = R"(FUNCTION_BLOCK BODY (* @ts 1s *)
+  VAR_INPUT X : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR L : HY_LAG := (T1 := 20.0); END_VAR
+  L(XIN := X);
+  Y := L.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+TEST(OutputError, AStateThatIsSetAnewLeadsToOneThatIsNot) {
+  const Record drive = inputs("x", 1.0, 100, [](double t) { return t < 30.0 ? 0.0 : 5.0; });
+  const Record record = measured(program_of(body), drive);
+  try {
+    fit_output_error(problem_of(body, "[fit.L]\nT1 = {}\n[tune]\ninitial_states = [\"L.X1\"]\n", {record}));
+    FAIL() << "L.X1 has no influence";
+  } catch (const InputError& refused) {
+    const auto& first = refused.diagnostics().all().front();
+    EXPECT_EQ(first.number, error::no_influence);
+    EXPECT_THAT(first.mend, HasSubstr("name L.RATE1 instead"));
+  }
+  const auto fit =
+      fit_output_error(problem_of(body, "[fit.L]\nT1 = {}\n[tune]\ninitial_states = [\"L.RATE1\"]\n", {record}));
+  EXPECT_NEAR(fit.solution.x[1], 0.0, 1e-6);
+}
+
 TEST(OutputError, PagesKeepTheirWord) {
   constexpr std::string_view log = "t,x,y\n0.000,0.0,0.0\n0.001,1.0,2.1\n0.002,2.0,3.9\n";
   for (const int number :

@@ -1,0 +1,21 @@
+// Whether a fitted diagram can be believed to be the machine of the record at all: no effect is named where it is not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/fitting.hpp"
+
+namespace hysteron::diagnosis {
+
+/// The root of the mean square of an output's residuals over the samples that count, in its unit.
+[[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
+
+/// Where the calibrated diagram follows next to nothing of what any output does: what to say of it, else empty.
+[[nodiscard]] std::string unrelated(const Task& task, const Explanation& calibrated);
+
+/// Known parameters that a fit has driven far off their tuned values, several deviations of the prior: what to say of
+/// each.
+[[nodiscard]] std::vector<std::string> far_parameters(const Task& task, const Explanation& chosen);
+
+}  // namespace hysteron::diagnosis

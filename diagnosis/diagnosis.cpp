@@ -132,11 +132,13 @@ class Run {
     auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
     result_.tried = searched->search.tried;
     search_from_another_start(searched, [&] {
-      begun = Clock::now();  // the start is found out: its search has the time that the first one had
+      // Half of the time once more: the search has its best sets to find again.
+      begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
+                                                 std::chrono::duration<double>(0.5 * options_.budget)));
       return search(task_, base_, top, floor_cost_, searching);
     });
     const Search& found = searched->search;
-    if (std::string reason = unrelated(task_, found.calibrated); !reason.empty()) {
+    if (std::string reason = unrelated(task_, found.calibrated, *searched->judgement.chosen); !reason.empty()) {
       result_.warnings.push_back(std::move(reason));
       searched->judgement = {.chosen = &found.calibrated,
                              .effective_samples = searched->judgement.effective_samples,

@@ -1,7 +1,6 @@
 #include "diagnosis/diagnosis.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,15 +13,13 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/discrepancy.hpp"
-#include "diagnosis/feedforward.hpp"
 #include "diagnosis/findings.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
-#include "diagnosis/inverse.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
-#include "diagnosis/next_experiment.hpp"
+#include "diagnosis/outlook.hpp"
 #include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
 #include "diagnosis/search.hpp"
@@ -144,7 +141,9 @@ class Run {
     auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
     result_.tried = searched->search.tried;
     search_from_another_start(searched, [&] {
-      begun = Clock::now();  // the start is found out: its search has the time that the first one had
+      // Half of the time once more: the search has its best sets to find again.
+      begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
+                                                 std::chrono::duration<double>(0.5 * options_.budget)));
       return search(task_, base_, top, floor_cost_, searching);
     });
     const Search& found = searched->search;
@@ -154,7 +153,7 @@ class Run {
           "set of several. The verdict may change with more time, --budget.",
           options_.budget, found.tried));
     }
-    if (std::string reason = unrelated(task_, found.calibrated); !reason.empty()) {
+    if (std::string reason = unrelated(task_, found.calibrated, *searched->judgement.chosen); !reason.empty()) {
       result_.warnings.push_back(std::move(reason));
       searched->judgement = {.chosen = &found.calibrated,
                              .effective_samples = searched->judgement.effective_samples,
@@ -379,7 +378,7 @@ class Run {
     }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
-    const std::vector<Edge> edges = chosen_edges();
+    const std::vector<Edge> edges = edges_of_text(input_.text, base_.program->graph.name);
     add_left_out(findings, edges);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
@@ -404,7 +403,14 @@ class Run {
           "--any-order only.");
     }
     result_.improved_file = improved_file(task_, input_.file, kept);
-    plan(found, judgement, kept);
+    add_outlook({.task = task_,
+                 .nominal = *base_.program,
+                 .search = found,
+                 .judgement = judgement,
+                 .kept = kept,
+                 .options = options_,
+                 .floor = floors_[gap_output_].value},
+                result_);
     result_.summary = summary_of(result_, below_material(kept));
   }
 
@@ -416,14 +422,6 @@ class Run {
       above = above || excess(rms(kept.fit.residuals, output), floor) > least_excess * floor;
     }
     return above && !material(kept.fit.residuals);
-  }
-
-  /// Edges of the diagram as given, to name the one that a measured output hangs on.
-  [[nodiscard]] std::vector<Edge> chosen_edges() const {
-    Diagnostics diagnostics;
-    const auto source = std::make_shared<const language::SourceFile>(language::parse("text", input_.text, diagnostics));
-    const Definitions definitions = define(source, diagnostics);
-    return edges_of(definitions, top_definition(definitions, base_.program->graph.name));
   }
 
   [[nodiscard]] std::vector<std::string> ports() const {
@@ -471,57 +469,6 @@ class Run {
     if (!left_out_.empty()) {
       std::ranges::stable_sort(result_.effects,
                                [](const EffectFinding& x, const EffectFinding& y) { return x.share > y.share; });
-    }
-  }
-
-  /// What comes next: the experiment that would tell the rivals apart, and the feedforward with the effect in it.
-  void plan(const Search& found, const Judgement& judgement, const Explanation& kept) {
-    for (EffectFinding& effect : result_.effects) {
-      effect.inverse = inverse_of(effect.id).inverse;
-    }
-    std::vector<Explanation> rivals;
-    for (const Weighed& weighed : judgement.rivals) {
-      rivals.push_back(*weighed.explanation);
-    }
-    const bool unknown = result_.verdict == Verdict::Unknown;
-    if (unknown && rivals.empty() && !found.explanations.empty()) {
-      rivals.push_back(found.explanations.front());
-    }
-    if (result_.verdict != Verdict::None && result_.verdict != Verdict::Calibration && !rivals.empty()) {
-      result_.next = next_experiment(task_, rivals, options_.limits, floors_.front().value);
-    }
-    if (unknown && !result_.next.reason.empty()) {
-      result_.next.reason = fmt::format("of what was tried, {} comes nearest, and does not explain the record; {}",
-                                        fmt::join(rivals.front().names(), " + "), result_.next.reason);
-    }
-    invert(kept);
-  }
-
-  void invert(const Explanation& kept) {
-    std::vector<std::string> moving;
-    for (const Port& input : input_.program.graph.inputs) {
-      const records::Column* const column = task_.records.front().find(input.name);
-      if (input.type == Type::Real && column != nullptr &&
-          std::ranges::max(column->values) > std::ranges::min(column->values)) {
-        moving.push_back(input.name);
-      }
-    }
-    if (moving.empty()) {
-      return;
-    }
-    const double sample_time = task_.records.front().sample_time();
-    const Program improved = fitted_program(task_, kept);
-    const Feedforward feedforward = feedforward_of(improved, moving.front(), result_.gap.signal, sample_time);
-    result_.feedforward_text = feedforward.text;
-    result_.feedforward_notes = feedforward.notes;
-    if (feedforward.text.empty()) {
-      result_.feedforward_notes.push_back(feedforward.reason);
-      return;
-    }
-    if (const auto tracking =
-            predicted_tracking(*base_.program, improved, moving.front(), result_.gap.signal, task_.records.front())) {
-      result_.tracking_nominal = tracking->nominal;
-      result_.tracking_improved = tracking->improved;
     }
   }
 

@@ -285,4 +285,11 @@ const Edge* find_edge(const std::vector<Edge>& edges, std::string_view name) {
   return nullptr;
 }
 
+std::vector<Edge> edges_of_text(const std::string& text, std::string_view top) {
+  Diagnostics none;
+  const auto source = std::make_shared<const language::SourceFile>(language::parse("text", text, none));
+  const Definitions definitions = define(source, none);
+  return edges_of(definitions, top_definition(definitions, top));
+}
+
 }  // namespace hysteron::diagnosis

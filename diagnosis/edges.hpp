@@ -38,6 +38,9 @@ struct BlockInstance {
 /// those that something reads.
 [[nodiscard]] std::vector<Edge> edges_of(const Definitions& definitions, std::uint32_t top);
 
+/// The same of a text that compiled before.
+[[nodiscard]] std::vector<Edge> edges_of_text(const std::string& text, std::string_view top);
+
 /// The definition of the top block of a compiled program, by its place in the file.
 [[nodiscard]] std::uint32_t top_definition(const Definitions& definitions, std::string_view name);
 

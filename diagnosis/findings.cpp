@@ -11,6 +11,7 @@
 
 #include "diagnosis/improved.hpp"
 #include "diagnosis/noise_floor.hpp"
+#include "diagnosis/task.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::diagnosis {
@@ -136,12 +137,6 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
 }
 
 }  // namespace
-
-double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
-  const Index rows = residuals.size() / std::ssize(task.outputs);
-  const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
-  return std::sqrt(own.squaredNorm() / static_cast<double>(rows)) * task.scales[output];
-}
 
 Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed) {
   const Explanation& one = *weighed.explanation;
@@ -413,24 +408,6 @@ std::string summary_of(const Diagnosis& found, bool below_material) {
       return fmt::format("The record follows something that none of the effects explains ({}).", gap);
   }
   return gap;
-}
-
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::None:
-      return "none";
-    case Verdict::Calibration:
-      return "calibration";
-    case Verdict::Named:
-      return "named";
-    case Verdict::Group:
-      return "group";
-    case Verdict::Partial:
-      return "partial";
-    case Verdict::Unknown:
-      return "unknown";
-  }
-  return "unknown";
 }
 
 }  // namespace hysteron::diagnosis

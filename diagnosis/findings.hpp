@@ -19,9 +19,6 @@ struct Findings {
   double predictable = 0.0;    ///< share of what is left that depends on what the machine did; 0 where nothing is left
 };
 
-/// RMS of one output's residuals, in its unit.
-[[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
-
 [[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);
 [[nodiscard]] std::vector<ParameterFinding> calibration_findings(const Findings& findings);
 [[nodiscard]] std::vector<EffectFinding> effect_findings(const Findings& findings);

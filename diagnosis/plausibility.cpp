@@ -6,11 +6,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnosis/task.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
 /// The share of an output's variance that a calibrated diagram has to explain at least.
 constexpr double least_explained = 0.25;
+/// And the share of it that effects may leave open.
+constexpr double most_open = 0.1;
 /// Deviations of the prior that a refit may move a parameter without a word.
 constexpr double far = 4.0;
 
@@ -46,14 +50,7 @@ std::vector<double> measured(const Task& task, std::size_t output) {
 
 }  // namespace
 
-double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
-  const Index rows = residuals.size() / std::ssize(task.outputs);
-  const auto own = residuals.segment(static_cast<Index>(output) * rows, rows);
-  const auto count = std::ranges::count(counting(task, rows, output), true);
-  return std::sqrt(own.squaredNorm() / static_cast<double>(std::max<std::ptrdiff_t>(1, count))) * task.scales[output];
-}
-
-std::string unrelated(const Task& task, const Explanation& calibrated) {
+std::string unrelated(const Task& task, const Explanation& calibrated, const Explanation& chosen) {
   std::string text;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
     const std::vector<double> values = measured(task, output);
@@ -64,7 +61,8 @@ std::string unrelated(const Task& task, const Explanation& calibrated) {
       variance += (y - mean) * (y - mean) / count;
     }
     const double left = rms_of(task, calibrated.fit.residuals, output);
-    if (left * left <= (1.0 - least_explained) * variance) {
+    const double open = rms_of(task, chosen.fit.residuals, output);
+    if (left * left <= (1.0 - least_explained) * variance || open * open <= most_open * variance) {
       return {};  // an output that follows tells that the record is the machine's: a controller's may not
     }
     text += fmt::format("{}{:.3g} of {}, whose own standard deviation is {:.3g}", text.empty() ? "" : " and ", left,

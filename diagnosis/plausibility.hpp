@@ -8,11 +8,9 @@
 
 namespace hysteron::diagnosis {
 
-/// The root of the mean square of an output's residuals over the samples that count, in its unit.
-[[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
-
-/// Where the calibrated diagram follows next to nothing of what any output does: what to say of it, else empty.
-[[nodiscard]] std::string unrelated(const Task& task, const Explanation& calibrated);
+/// Where the calibrated diagram follows next to nothing of what any output does, and the chosen effects do not make up
+/// for it, as a load that is larger than all else would: what to say of it, else empty.
+[[nodiscard]] std::string unrelated(const Task& task, const Explanation& calibrated, const Explanation& chosen);
 
 /// Known parameters that a fit has driven far off their tuned values, several deviations of the prior: what to say of
 /// each.

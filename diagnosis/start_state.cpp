@@ -151,6 +151,11 @@ void finish_best(const Task& task, std::vector<Explanation>& fits) {
   }
 }
 
+double deviation_of(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::ArrayXd> all(values.data(), std::ssize(values));
+  return std::sqrt((all - all.mean()).square().mean());
+}
+
 }  // namespace
 
 std::vector<std::string> visible_states(const Task& task, const Explanation& calibrated) {
@@ -243,17 +248,19 @@ std::string words_of_start(const Task& task, const Explanation& chosen) {
   }
   return fmt::format(
       "The record begins in another state than the model does after a reset. The states at its start were fitted "
-      "beside all else: {}. improved.toml carries them.",
-      fmt::join(values, ", "));
+      "beside all else: {}. improved.toml {}.",
+      fmt::join(values, ", "), problem.experiments.size() > 1 ? "names them under initial_states" : "carries them");
 }
 
 std::string unexplained_start(const Task& task, const Explanation& chosen) {
   constexpr double far = 4.0;
   constexpr Index shortest = 5;
   constexpr Index part = 50;
+  constexpr double of_its_motion = 0.05;
   const VectorXd& residuals = chosen.fit.residuals;
   Index row = 0;
-  for (const std::string& output : task.outputs) {
+  for (std::size_t at = 0; at < task.outputs.size(); ++at) {
+    const std::string& output = task.outputs[at];
     for (const records::Record& record : task.records) {
       const auto size = static_cast<Index>(record.size());
       const Index head = std::max(shortest, size / part);
@@ -268,7 +275,8 @@ std::string unexplained_start(const Task& task, const Explanation& chosen) {
       const double early = size > head ? deviation(row, head) : 0.0;
       const double late = size > head ? deviation(row + head, size - head) : 0.0;
       row += size;
-      if (early > far * std::max(late, 1.0)) {
+      const double notable = of_its_motion * deviation_of(record.column(output).values) / task.scales[at];
+      if (early > far * std::max(late, 1.0) && early > notable) {
         return fmt::format(
             "The model misses {} by {:.1f} floors in the first {} samples, and by {:.1f} later on: the record begins "
             "in "

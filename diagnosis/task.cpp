@@ -117,4 +117,12 @@ InputError error_of_start(const DiagnosisInput& input) {
           "run it with hysteron run to see where it leaves its range, and correct the parameters."};
 }
 
+double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
+  const Index rows = residuals.size() / std::ssize(task.outputs);
+  const Index first = static_cast<Index>(output) * rows;
+  const auto own = residuals.segment(first, rows);
+  const auto out = std::ranges::count_if(task.left_out, [&](Index row) { return row >= first && row < first + rows; });
+  return std::sqrt(own.squaredNorm() / static_cast<double>(std::max<Index>(1, rows - out))) * task.scales[output];
+}
+
 }  // namespace hysteron::diagnosis

@@ -23,4 +23,7 @@ namespace hysteron::diagnosis {
 /// HY711: the diagram has no finite value with the parameters as given.
 [[nodiscard]] InputError error_of_start(const DiagnosisInput& input);
 
+/// The RMS of one output's residuals over the samples that count, in its unit.
+[[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
+
 }  // namespace hysteron::diagnosis

@@ -131,6 +131,21 @@ TEST(StartState, AnIntegralsStartIsAnOffset) {
   }
 }
 
+TEST(StartState, AStartThatNothingExplainsIsTold) {
+  // The effects that could stand for it are not tried, and no block has a state.
+  const std::string gain =
+      "FUNCTION_BLOCK BARE (* @ts 5ms *) VAR_INPUT P : LREAL; END_VAR VAR_OUTPUT TEMP : LREAL; END_VAR "
+      "VAR G : HY_GAIN := (K := 0.5); END_VAR G(XIN := P); TEMP := G.XOUT; END_FUNCTION_BLOCK";
+  const auto record = test::changed(record_of_heater(gain), "TEMP", [](auto& y) {
+    for (std::size_t k = 0; k < 200; ++k) {
+      y[k] += 20.0 * std::exp(-0.03 * static_cast<double>(k));
+    }
+  });
+  const Diagnosis found = diagnose(test::input_of(gain, "[parameters.G]\nK = 0.5\n", {record}), {.effects = {"delay"}});
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("no state of a block"))) << found.summary;
+  EXPECT_LE(found.confidence, 0.5);
+}
+
 TEST(StartState, OnlyStatesThatDecayAreVisible) {
   const auto visible = [](const std::string& text, std::string_view parameters, const records::Record& record) {
     const Task task = [&] {

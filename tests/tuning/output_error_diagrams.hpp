@@ -66,4 +66,14 @@ inline constexpr std::string_view servo_start =
     "[parameters]\nLOAD = 0.0\n[parameters.MOTOR]\nK = 20.0\nT = 0.015\nZETA = 1.0\n"
     "[fit]\nLOAD = {}\n[fit.MOTOR]\nK = {}\nT = {}\nZETA = {}\n";
 
+/// A lag alone: it takes over its input in the first sample.
+inline constexpr std::string_view body = R"(FUNCTION_BLOCK BODY (* @ts 1s *)
+  VAR_INPUT X : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR L : HY_LAG := (T1 := 20.0); END_VAR
+  L(XIN := X);
+  Y := L.XOUT;
+END_FUNCTION_BLOCK
+)";
+
 }  // namespace hysteron::output_error_diagrams

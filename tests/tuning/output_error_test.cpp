@@ -456,15 +456,6 @@ constexpr std::string_view gain = R"(FUNCTION_BLOCK P (* @ts 1ms *)
 END_FUNCTION_BLOCK
 )";
 
-constexpr std::string_view body = R"(FUNCTION_BLOCK BODY (* @ts 1s *)
-  VAR_INPUT X : LREAL; END_VAR
-  VAR_OUTPUT Y : LREAL; END_VAR
-  VAR L : HY_LAG := (T1 := 20.0); END_VAR
-  L(XIN := X);
-  Y := L.XOUT;
-END_FUNCTION_BLOCK
-)";
-
 TEST(OutputError, AStateThatIsSetAnewLeadsToOneThatIsNot) {
   const Record drive = inputs("x", 1.0, 100, [](double t) { return t < 30.0 ? 0.0 : 5.0; });
   const Record record = measured(program_of(body), drive);

@@ -11,12 +11,12 @@ struct CoulombFriction {
       .name = "HY_COULOMB_FRICTION",
       .title = "Coulomb friction",
       .group = Group::Dynamics,
-      .equation = "XOUT = XIN − LEVEL·z, z(k+1) = max(−1, min(1, z(k) + TS·V(k)/PRESLIDE))",
+      .equation = "XOUT(k) = XIN(k) − LEVEL·z(k), z(k) = max(−1, min(1, z(k−1) + TS·V(k)/PRESLIDE))",
       .meaning =
           "Dry friction, taken off a driving force: LEVEL against the motion once the travel after a reversal exceeds "
-          "2·PRESLIDE, and elastic before that, so that it holds at rest without chatter. V is that of the step "
-          "before, so that the block closes the loop of force and velocity; it begins with 0. A PRESLIDE of less than "
-          "some steps of travel lets the friction jump.",
+          "2·PRESLIDE, and elastic before that, so that it holds at rest without chatter. V is the velocity that "
+          "has come about up to this step, of a HY_INTEGRAL_FORWARD say; where it depends on XOUT in the same step, a "
+          "HY_DELAY before V closes the loop. A PRESLIDE of less than some steps of travel lets the friction jump.",
 
       .source = "L. Prandtl, ZAMM 8 (1928) 85: Ein Gedankenmodell zur kinetischen Theorie der festen Körper",
       .effect = "coulomb_friction"};
@@ -50,8 +50,8 @@ struct CoulombFriction {
     return {.STOP = S(0.0)};
   }
   template <class S>
-  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * state.STOP))};
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * stop_operator(state.STOP, in.V, params.PRESLIDE, ts)))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {

@@ -12,12 +12,12 @@ struct StribeckFriction {
       .title = "Stribeck friction",
       .group = Group::Dynamics,
       .equation =
-          "XOUT = XIN − LEVEL·(1 + STICTION·exp(−(V/V_STRIBECK)²))·z, z(k+1) = max(−1, min(1, z(k) + "
-          "TS·V(k)/PRESLIDE))",
+          "XOUT(k) = XIN(k) − LEVEL·(1 + STICTION·exp(−(V(k)/V_STRIBECK)²))·z(k), "
+          "z(k) = max(−1, min(1, z(k−1) + TS·V(k)/PRESLIDE))",
       .meaning =
           "Dry friction that is larger by the share STICTION at low velocity, as of a lubricated guide: it is the "
-          "cause of stick-slip. With STICTION = 0 it is HY_COULOMB_FRICTION. V is that of the step before, so that the "
-          "block closes the loop of force and velocity; it begins with 0.",
+          "cause of stick-slip. With STICTION = 0 it is HY_COULOMB_FRICTION. V is the velocity that has come about "
+          "up to this step; where it depends on XOUT in the same step, a HY_DELAY before V closes the loop.",
 
       .source = "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083",
       .effect = "stribeck_friction"};
@@ -44,11 +44,9 @@ struct StribeckFriction {
   template <class S>
   struct State {
     S STOP;
-    S V1;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1"),
-                        HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one step ago")};
+      return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1")};
     }
   };
   template <class S>
@@ -58,17 +56,18 @@ struct StribeckFriction {
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
-    return {.STOP = S(0.0), .V1 = S(0.0)};
+    return {.STOP = S(0.0)};
   }
   template <class S>
-  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    const S slip = state.V1 / params.V_STRIBECK;
+  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    const S slip = in.V / params.V_STRIBECK;
     const S sticking = S(1.0) + params.STICTION * exp(-(slip * slip));
-    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * sticking * state.STOP))};
+    const S acting = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
+    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * sticking * acting))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    state = {.STOP = stop_operator(state.STOP, in.V, params.PRESLIDE, ts), .V1 = in.V};
+    state.STOP = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
   }
 };
 

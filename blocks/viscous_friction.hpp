@@ -11,12 +11,12 @@ struct ViscousFriction {
       .name = "HY_VISCOUS_FRICTION",
       .title = "Viscous friction",
       .group = Group::Dynamics,
-      .equation = "XOUT(k) = XIN(k) − COEFFICIENT·V − QUADRATIC·V·|V|, V = V(k−1)",
+      .equation = "XOUT = XIN − COEFFICIENT·V − QUADRATIC·V·|V|",
       .meaning =
           "Friction in proportion to the velocity, and drag with its square, taken off a driving force; a QUADRATIC "
-          "below 0 is a friction that grows less and less, within the speeds it was fitted at. V is that of the step "
-          "before, so that "
-          "the block closes the loop of force and velocity; it begins with 0.",
+          "below 0 is a friction that grows less and less, within the speeds it was fitted at. V is the velocity that "
+          "has come about up to this step; where it depends on XOUT in the same step, a HY_DELAY before V closes the "
+          "loop.",
 
       .effect = "viscous_friction"};
 
@@ -32,31 +32,15 @@ struct ViscousFriction {
     }
   };
   template <class S>
-  struct State {
-    S V1;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one step ago")};
-    }
-  };
+  using State = NoFields<S>;
   template <class S>
   using In = FrictionIn<S>;
   template <class S>
   using Out = FrictionOut<S>;
 
   template <class S>
-  static State<S> initial(const Params<S>& /*params*/) {
-    return {.V1 = S(0.0)};
-  }
-  template <class S>
-  static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& /*ts*/) {
-    return {.XOUT =
-                with_term<S>(in.XIN, -(params.COEFFICIENT * state.V1 + params.QUADRATIC * (state.V1 * abs(state.V1))))};
-  }
-  template <class S>
-  static void update(const Params<S>& /*params*/, State<S>& state, const In<S>& in, const Out<S>& /*out*/,
-                     const S& /*ts*/) {
-    state.V1 = in.V;
+  static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {
+    return {.XOUT = with_term<S>(in.XIN, -(params.COEFFICIENT * in.V + params.QUADRATIC * (in.V * abs(in.V))))};
   }
 };
 

@@ -196,7 +196,10 @@ class Enumeration {
       return;
     }
     for (const std::string& driver : drivers(kind, edge)) {
-      insert(kind, edge, {{kind.auxiliaries.front(), driver}});
+      const std::vector<std::pair<std::string, std::string>> wires{{kind.auxiliaries.front(), driver}};
+      if (!insert(kind, edge, wires) && kind.fed_back) {
+        insert(kind, edge, wires, true);
+      }
     }
   }
 
@@ -210,7 +213,9 @@ class Enumeration {
     return std::ranges::any_of(definitions_.list[index_].variables, names_edge);
   }
 
-  void insert(const EffectKind& kind, const Edge& edge, const std::vector<std::pair<std::string, std::string>>& wires) {
+  /// False where the diagram refuses it. What is fed back may need a delay, or it is a loop without one.
+  bool insert(const EffectKind& kind, const Edge& edge, const std::vector<std::pair<std::string, std::string>>& wires,
+              bool delayed = false) {
     std::string base_name = edge.local;
     std::ranges::replace(base_name, '.', '_');
     if (base_name.ends_with("_XOUT")) {
@@ -227,6 +232,10 @@ class Enumeration {
                     .wires = wires};
     Insertion insertion{
         .block = kind.block, .instance = instance, .input = kind.input, .output = kind.output, .wires = wires};
+    if (delayed) {
+      insertion.delay =
+          free_name(source_->blocks[edge.definition], fmt::format("{}_{}1", instance, wires.front().first));
+    }
     if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
       insertion.new_input = wires.front().second;
     }
@@ -235,7 +244,7 @@ class Enumeration {
     for (const auto& [pin, driver] : wires) {
       candidate.family += "|" + driver;
     }
-    add(std::move(candidate), std::move(applied));
+    return add(std::move(candidate), std::move(applied));
   }
 
   void change_instances(const EffectKind& kind) {
@@ -272,7 +281,8 @@ class Enumeration {
     });
   }
 
-  void add(Candidate candidate, Applied applied) {
+  /// False where it does not fit: a loop without delay, units that do not agree.
+  bool add(Candidate candidate, Applied applied) {
     for (const EffectParameter& parameter : candidate.kind.parameters) {
       applied.parameters.push_back(parameter);
       applied.paths.push_back(applied.instance + "." + parameter.name);
@@ -282,7 +292,7 @@ class Enumeration {
     try {
       candidate.variant.program = compiled(candidate.variant.text, top_, candidate.variant.effects);
     } catch (const InputError&) {
-      return;  // the effect does not fit there: a loop without delay, units that do not agree
+      return false;
     }
     const Graph& graph = candidate.variant.program->graph;
     const Node* const node = find_node(graph, instance);
@@ -297,10 +307,11 @@ class Enumeration {
         candidate.input = changed;
       }
       if (!makes_sense(graph, candidate, changed)) {
-        return;
+        return true;
       }
     }
     candidates_.push_back(std::move(candidate));
+    return true;
   }
 
   /// A friction opposes the motion that it slows: its velocity comes from what it changes, as the integral of that

@@ -123,6 +123,11 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   const language::FunctionBlock& block = source.blocks[edge.definition];
   const Ends ends = ends_of(source, block);
   std::vector<Edit> edits{declaration(block, ends, fmt::format("{} : {};", insertion.instance, insertion.block))};
+  if (!insertion.delay.empty()) {
+    edits.push_back(declaration(block, ends, fmt::format("{} : HY_DELAY;", insertion.delay)));
+    edits.push_back({.span = {ends.block, 0},
+                     .text = fmt::format("  {}(XIN := {});\n", insertion.delay, insertion.wires.front().second)});
+  }
   if (!insertion.new_input.empty()) {
     edits.push_back({.span = {ends.behind, 0},
                      .text = fmt::format("\n  VAR_INPUT\n    {} : LREAL := 0.0;\n  END_VAR", insertion.new_input)});
@@ -132,7 +137,8 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   }
   std::string call = fmt::format("  {}({} := {}", insertion.instance, insertion.input, edge.source);
   for (const auto& [pin, driver] : insertion.wires) {
-    call += fmt::format(", {} := {}", pin, driver);
+    const bool delayed = !insertion.delay.empty() && pin == insertion.wires.front().first;
+    call += fmt::format(", {} := {}", pin, delayed ? insertion.delay + ".XOUT" : driver);
   }
   edits.push_back({.span = {ends.block, 0}, .text = call + ");\n"});
   return edited(*source.text, std::move(edits));

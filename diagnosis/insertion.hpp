@@ -23,6 +23,7 @@ struct Insertion {
   std::string input = "XIN";
   std::string output = "XOUT";
   std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
+  std::string delay{};      ///< name of a HY_DELAY before the first of these pins, which closes a loop; empty: none
   std::string new_input{};  ///< an LREAL input that the block gets, with the default 0; empty: none
 };
 

@@ -15,6 +15,8 @@ namespace hysteron::diagnosis {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 std::vector<Candidate> candidates(const std::string& text, const std::string& top, CandidateOptions options = {}) {
@@ -100,6 +102,25 @@ TEST(Candidates, ADeadBandThatTheDiagramHasIsSwitchedOn) {
   ASSERT_NE(freed, list.end());
   EXPECT_THAT(freed->own().paths, ElementsAre("HYST.EPS"));
   EXPECT_EQ(freed->variant.text, test::stack());
+}
+
+TEST(Candidates, AFrictionTakesTheVelocityAsItIsOrWhereThatIsALoopOneStepLate) {
+  std::string forward = test::axis();
+  forward.replace(forward.find("HY_INTEGRAL;"), 12, "HY_INTEGRAL_FORWARD;");
+  const CandidateOptions frictions{.effects = {"coulomb_friction", "stribeck_friction", "viscous_friction"}};
+  std::set<std::string> found;
+  for (const Candidate& one : candidates(forward, "AXIS", frictions)) {
+    found.insert(one.own().effect);
+    EXPECT_THAT(one.variant.text, HasSubstr("V := SPEED.XOUT"));
+    EXPECT_THAT(one.variant.text, Not(HasSubstr("HY_DELAY")));
+  }
+  for (const Candidate& one : candidates(test::axis(), "AXIS", frictions)) {
+    found.erase(one.own().effect);
+    const std::string delay = one.own().instance + "_V1";
+    EXPECT_THAT(one.variant.text, HasSubstr(", V := " + delay + ".XOUT"));
+    EXPECT_THAT(one.variant.text, HasSubstr(delay + "(XIN := SPEED.XOUT)"));
+  }
+  EXPECT_TRUE(found.empty()) << "the same frictions on either";
 }
 
 TEST(Candidates, FrictionTakesAVelocityFromABlockWithMemory) {

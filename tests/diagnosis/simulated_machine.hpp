@@ -74,7 +74,7 @@ inline Program program_of(const std::string& text, std::string_view parameters =
 struct Effect {
   std::string block{};  ///< HY_CREEP := (GAIN := 0.1), empty for none
   std::string edge{};   ///< the signal that it changes
-  std::string wires{};  ///< ", V := SPEED.XOUT"
+  std::string wires{};  ///< ", V := LATE.XOUT": of an axis, the speed one step ago
 };
 
 /// A piezo stack: an amplifier with a lag, then hysteresis. Edges U, AMP.XOUT, HYST.XOUT.
@@ -108,8 +108,12 @@ inline std::string axis(const Effect& effect = {}) {
       "  VAR_OUTPUT V : LREAL;  (* @unit m/s *) END_VAR\n"
       "  VAR\n    MASS : HY_GAIN := (K := 0.5);\n    SPEED : HY_INTEGRAL;\n{}  END_VAR\n"
       "  MASS(XIN := {});\n  SPEED(XIN := {});\n{}  V := {};\nEND_FUNCTION_BLOCK\n",
-      has_effect ? fmt::format("    E : {};\n", effect.block) : "", read("FORCE"), read("MASS.XOUT"),
-      has_effect ? fmt::format("  E(XIN := {}{});\n", effect.edge, effect.wires) : "", read("SPEED.XOUT"));
+      (has_effect ? fmt::format("    E : {};\n", effect.block) : "") +
+          (effect.wires.empty() ? "" : "    LATE : HY_DELAY;\n"),
+      read("FORCE"), read("MASS.XOUT"),
+      (has_effect ? fmt::format("  E(XIN := {}{});\n", effect.edge, effect.wires) : "") +
+          (effect.wires.empty() ? "" : "  LATE(XIN := SPEED.XOUT);\n"),
+      read("SPEED.XOUT"));
 }
 
 inline constexpr std::string_view axis_parameters = "[parameters.MASS]\nK = 0.5\n";

@@ -220,8 +220,8 @@ END_FUNCTION_BLOCK
 TEST_F(Diagnose, WhatClosesALoopIsTakenByEveryCommandAndItsExperimentIsReadyToBePlayed) {
   std::string machine = cooled;
   machine.replace(machine.find("XIN := FORCE"), 12, "XIN := DRAG.XOUT");
-  machine.replace(machine.find("  END_VAR\n\n"), 0, "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n");
-  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0, "  DRAG(XIN := FORCE, V := SPEED.XOUT);\n");
+  machine.replace(machine.find("  END_VAR\n\n"), 0, "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n    LATE : HY_DELAY;\n");
+  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0, "  DRAG(XIN := FORCE, V := LATE.XOUT);\n  LATE(XIN := SPEED.XOUT);\n");
   records::Record drive = test::record_of("FORCE", test::rich_force(1200));
   drive.add({.name = "WIND", .values = std::vector<double>(1200, 0.25)});
   bench.write("plant.st", cooled);

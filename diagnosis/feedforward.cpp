@@ -20,17 +20,11 @@ using Key = std::pair<std::uint32_t, std::uint16_t>;  ///< a node and its port
 class Inverter {
  public:
   Inverter(const Program& program, std::uint32_t input, double sample_time)
-      : graph_(program.graph), input_(input), text_(sample_time) {
-    text_.name("FEEDFORWARD");
-    text_.name("REF");
-    for (const Port& port : graph_.inputs) {
-      text_.name(port.name);
-    }
-  }
+      : graph_(program.graph), input_(input), text_(sample_time, program.graph) {}
 
   /// Walks from a wire to the input. Throws NoInverse.
   void walk(Wire wire) {
-    std::string wanted = "REF";
+    std::string wanted = text_.reference();
     while (!is_input(wire)) {
       if (wire.from != Wire::From::Node) {
         throw NoInverse(fmt::format("the output does not depend on {} alone", graph_.inputs[input_].name));
@@ -239,15 +233,15 @@ std::string duration_text(std::int64_t ns) {
 
 std::string written(const Program& program, const Port& input, const Port& output, const Inverter& inverter) {
   const InverseText& text = inverter.text();
-  std::string comment = fmt::format("The input {} of {} that makes its output {} follow REF.", input.name,
-                                    program.graph.name, output.name);
+  std::string comment = fmt::format("The input {} of {} that makes its output {} follow {}.", input.name,
+                                    program.graph.name, output.name, text.reference());
   for (const std::string& note : text.notes()) {
     comment += fmt::format("\n   - {}", note);
   }
   const std::int64_t ns = program.graph.sample_time_ns;
-  std::string result =
-      fmt::format("(* {} *)\nFUNCTION_BLOCK FEEDFORWARD{}\n  VAR_INPUT\n    REF : LREAL;{}\n", comment,
-                  ns > 0 ? fmt::format("  (* @ts {} *)", duration_text(ns)) : "", unit_comment(output));
+  std::string result = fmt::format("(* {} *)\nFUNCTION_BLOCK FEEDFORWARD{}\n  VAR_INPUT\n    {} : LREAL;{}\n", comment,
+                                   ns > 0 ? fmt::format("  (* @ts {} *)", duration_text(ns)) : "", text.reference(),
+                                   unit_comment(output));
   for (const std::string& one : text.inputs()) {
     result += "    " + one + "\n";
   }
@@ -291,9 +285,9 @@ std::optional<double> tracking_error(const Feedforward& feedforward, const Progr
   for (std::size_t k = 0; k < early.size(); ++k) {
     early[k] = reference[std::min(k + ahead, reference.size() - 1)];
   }
-  given.add({.name = "REF", .unit = {}, .values = std::move(early)});
+  given.add({.name = feedforward.reference, .unit = {}, .values = std::move(early)});
   for (const records::Column& column : record.columns()) {
-    if (!language::same_name(column.name, "REF")) {
+    if (!language::same_name(column.name, feedforward.reference)) {
       given.add(column);
     }
     if (!language::same_name(column.name, input)) {
@@ -333,6 +327,7 @@ Feedforward feedforward_of(const Program& program, std::string_view input, std::
     (void)compile_text(text);
     result.text = std::move(text);
     result.notes = inverter.text().notes();
+    result.reference = inverter.text().reference();
     result.preview = inverter.text().preview();
   } catch (const NoInverse& none) {
     result.reason = none.what();

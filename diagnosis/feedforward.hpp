@@ -17,8 +17,9 @@
 namespace hysteron::diagnosis {
 
 struct Feedforward {
-  std::string text{};    ///< the diagram FEEDFORWARD, from REF to the input's name; empty where there is none
-  std::string reason{};  ///< why there is none
+  std::string text{};  ///< the diagram FEEDFORWARD, from the reference to the input's name; empty where there is none
+  std::string reference{};           ///< REF, or with a number where the diagram has an input of that name
+  std::string reason{};              ///< why there is none
   std::vector<std::string> notes{};  ///< what it leaves as it is, and how exact it is
   double preview = 0.0;  ///< seconds by which the reference has to come early, for the dead times of the diagram
 };

@@ -66,7 +66,8 @@ std::string late(InverseText& text, const BlockStage& stage) {
   const double seconds = one ? text.sample_time() : stage.value("DEAD_TIME");
   text.look_ahead(seconds);
   if (seconds > 0.0) {
-    text.note(fmt::format("REF has to come {} s early, for {}", number_text(seconds), stage.node.path));
+    text.note(
+        fmt::format("{} has to come {} s early, for {}", text.reference(), number_text(seconds), stage.node.path));
   }
   return stage.wanted;
 }
@@ -155,8 +156,8 @@ std::string times(InverseText& text, const BlockStage& stage, std::string_view w
 }
 
 void note_smooth(InverseText& text, const BlockStage& stage) {
-  text.note(fmt::format("{} is inverted for a smooth REF, with an error that falls with the square of the sample time",
-                        stage.node.path));
+  text.note(fmt::format("{} is inverted for a smooth {}, with an error that falls with the square of the sample time",
+                        stage.node.path, text.reference()));
 }
 
 std::string lag(InverseText& text, const BlockStage& stage) {
@@ -199,12 +200,12 @@ std::string lead_lag(InverseText& text, const BlockStage& stage) {
 }
 
 std::string integral(InverseText& text, const BlockStage& stage) {
-  text.note(fmt::format("REF must begin where {} starts", stage.node.path));
+  text.note(fmt::format("{} must begin where {} starts", text.reference(), stage.node.path));
   return text.rate(stage.name, stage.wanted, 0.0);
 }
 
 std::string integral_forward(InverseText& text, const BlockStage& stage) {
-  text.note(fmt::format("REF must begin where {} starts, at rest", stage.node.path));
+  text.note(fmt::format("{} must begin where {} starts, at rest", text.reference(), stage.node.path));
   return text.rate(stage.name, stage.wanted, 1.0);
 }
 

@@ -26,7 +26,8 @@ struct NoInverse : std::runtime_error {
 /// The parts of the text that is being written.
 class InverseText {
  public:
-  explicit InverseText(double sample_time) : sample_time_(sample_time) {}
+  /// The names of the diagram's inputs are taken; the reference is REF, or with a number where REF is one of them.
+  InverseText(double sample_time, const Graph& graph);
 
   /// A name that nothing has yet: the wish, or the wish with a number behind it.
   std::string name(std::string_view wish);
@@ -43,6 +44,7 @@ class InverseText {
   void note(std::string text);
   void look_ahead(double seconds) { preview_ += seconds; }
 
+  [[nodiscard]] const std::string& reference() const { return reference_; }
   [[nodiscard]] double sample_time() const { return sample_time_; }
   [[nodiscard]] double preview() const { return preview_; }
   [[nodiscard]] const std::vector<std::string>& inputs() const { return inputs_; }
@@ -54,6 +56,7 @@ class InverseText {
   double sample_time_;
   double preview_ = 0.0;
   std::vector<std::string> taken_{};
+  std::string reference_{};
   std::vector<std::string> inputs_{};
   std::vector<std::string> locals_{};
   std::vector<std::string> statements_{};

@@ -16,6 +16,14 @@ bool is_name(std::string_view text) {
 
 }  // namespace
 
+InverseText::InverseText(double sample_time, const Graph& graph) : sample_time_(sample_time) {
+  name("FEEDFORWARD");
+  for (const Port& port : graph.inputs) {
+    name(port.name);
+  }
+  reference_ = name("REF");
+}
+
 std::string InverseText::name(std::string_view wish) {
   std::string base = language::upper(wish);
   std::ranges::replace_if(

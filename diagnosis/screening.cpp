@@ -336,8 +336,8 @@ class Screening {
       changes.col(k) = change;
     }
     const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, linear, starts);
-    // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of one
-    // that does: about parameters that are off it may even seem to make things worse.
+    // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of
+    // one that does: about parameters that are off it may even seem to make things worse.
     if ((!amplitudes || !kept) && !std::exchange(grid_tried_, true)) {
       try_grid(shape, list, starts);
     }

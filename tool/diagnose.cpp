@@ -252,7 +252,9 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--most", options->diagnosis.most_effects, "The most effects that are combined.")
       ->check(CLI::Range(1, 4))
       ->option_text("N");
-  app.add_option("--limit", options->limits, "The largest size of an input in the next experiment, as U=5.0.")
+  app.add_option("--limit", options->limits,
+                 "The largest size of an input in the next experiment, as U=5.0; its ends and fastest change: U.low, "
+                 "U.high, U.rate.")
       ->option_text("INPUT=SIZE")
       ->allow_extra_args(false);
   app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <system_error>
 
 #include "codegen/compile.hpp"
@@ -121,7 +122,8 @@ std::string feedforward_text(const Diagnosis& found) {
 std::string diagnosis_text(const Diagnosis& found) {
   std::string text = found.summary + "\n";
   if (!found.refusals.empty()) {
-    for (const std::string& refusal : found.refusals) {
+    // The summary says the first.
+    for (const std::string& refusal : std::span(found.refusals).subspan(1)) {
       text += "  - " + refusal + "\n";
     }
     return text;

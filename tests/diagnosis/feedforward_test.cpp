@@ -191,6 +191,26 @@ TEST(Feedforward, ParametersKeepTheirUnits) {
   EXPECT_NE(outcome.feedforward.text.find("@unit um/V"), std::string::npos) << outcome.feedforward.text;
 }
 
+TEST(Feedforward, AnInputMayBeCalledAsTheReferenceIs) {
+  const Program plant = compile_text(
+      "FUNCTION_BLOCK PLANT  (* @ts 1ms *)\n  VAR_INPUT\n    REF : LREAL;  (* @unit V *)\n  END_VAR\n  VAR_OUTPUT\n"
+      "    Y : LREAL;  (* @unit V *)\n  END_VAR\n  VAR\n    L : HY_LAG := (T1 := 0.01);\n  END_VAR\n"
+      "  L(XIN := REF);\n  Y := L.XOUT;\nEND_FUNCTION_BLOCK\n");
+  const Feedforward found = feedforward_of(plant, "REF", "Y", sample_time);
+  ASSERT_NE(found.text, "") << found.reason;
+  EXPECT_EQ(found.reference, "REF_2");
+  const Program inverse = compile_text(found.text);
+  ASSERT_EQ(inverse.graph.inputs.size(), 1U);
+  EXPECT_EQ(inverse.graph.inputs[0].name, "REF_2");
+  EXPECT_EQ(inverse.graph.outputs[0].name, "REF");
+  records::Record record = records::Record::even(0.0, sample_time, 6000);
+  record.add({.name = "REF", .values = smooth_reference(5.0)});
+  record.add({.name = "Y", .values = smooth_reference(5.0)});
+  const auto tracking = predicted_tracking(plant, plant, "REF", "Y", record);
+  ASSERT_TRUE(tracking);
+  EXPECT_LT(tracking->improved, 1e-3);
+}
+
 TEST(Feedforward, DeadTimeIsAskedForAsAPreview) {
   const Outcome outcome = outcome_of(with_block("HY_DEAD_TIME := (DEAD_TIME := 0.004)"), 20.0, 4);
   EXPECT_NEAR(outcome.feedforward.preview, 0.004, 1e-15);

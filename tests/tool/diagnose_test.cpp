@@ -329,6 +329,7 @@ TEST_F(Diagnose, RefusesARecordThatCannotBeDiagnosed) {
     const auto outcome = with_log(one.log);
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("No diagnosis"), HasSubstr(one.reason), Not(HasSubstr("confidence"))));
+    EXPECT_EQ(outcome.out.find(one.reason), outcome.out.rfind(one.reason)) << "said once";
     const json verdict = json::parse(bench.read("bad/verdict.json"));
     EXPECT_EQ(verdict["refused"], true);
     EXPECT_EQ(verdict["verdict"], "unknown");

@@ -27,7 +27,9 @@ std::vector<double> percentiles(std::vector<double> values) {
 Extent extent_of(const RecordSignals& values, double sample_time) {
   Extent extent{.low = std::numeric_limits<double>::infinity(), .high = -std::numeric_limits<double>::infinity()};
   std::vector<double> rates;
+  std::vector<double> all;
   for (const Signal& record : values) {
+    all.insert(all.end(), record.begin(), record.end());
     extent.first = record.empty() ? extent.first : std::max(extent.first, std::abs(record.front()));
     for (std::size_t k = 0; k < record.size(); ++k) {
       extent.low = std::min(extent.low, record[k]);
@@ -41,6 +43,8 @@ Extent extent_of(const RecordSignals& values, double sample_time) {
     return {};
   }
   extent.begin = values.front().empty() ? 0.0 : values.front().front();
+  const std::vector<double> levels = percentiles(std::move(all));
+  extent.usual = levels[99] - levels[1];
   extent.rates = percentiles(std::move(rates));
   return extent;
 }

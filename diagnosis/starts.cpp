@@ -225,8 +225,9 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
         grid.lowest = hints.sample_time;  // what is over within a sample is a gain
       }
       if (parameter.role == Role::Period) {
-        const double range = (auxiliary == nullptr ? input : *auxiliary).range();
-        grid.highest = range > 0.0 ? 0.5 * range : grid.highest;  // twice at least, or it is no period
+        // Twice at least, or it is no period; and not in peaks alone, or it is a limit with a bend.
+        const double usual = (auxiliary == nullptr ? input : *auxiliary).usual;
+        grid.highest = usual > 0.0 ? 0.5 * usual : grid.highest;
       }
       const auto drop_unfit = [&](std::vector<double>& values) {
         std::erase_if(values, [&](double value) { return !in_range(parameter.field, value) || value > grid.highest; });

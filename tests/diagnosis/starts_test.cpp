@@ -1,0 +1,52 @@
+// Starts: the grids on which an effect is tried, from what its signal does.
+#include "diagnosis/starts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/signals.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// The highest period of a cogging whose position makes these excursions.
+double highest_period(std::vector<double> position) {
+  std::string axis = test::axis();
+  const Variant base{.text = axis, .program = std::make_shared<const Program>(compile_text(axis, {.top = "AXIS"}))};
+  const std::vector<Candidate> list = candidates_of(base, "AXIS", {.effects = {"cogging"}});
+  EXPECT_FALSE(list.empty());
+  const Extent extent = extent_of({std::move(position)}, 0.001);
+  const Grids grids = grids_of(list.front(), extent, &extent, {.sample_time = 0.001, .duration = 1.0}, {});
+  const std::vector<EffectParameter>& parameters = list.front().own().parameters;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (parameters[j].role == Role::Period) {
+      for (const double value : grids.parameters[j].values) {
+        EXPECT_LE(value, grids.parameters[j].highest);
+      }
+      return grids.parameters[j].highest;
+    }
+  }
+  ADD_FAILURE() << "no period";
+  return 0.0;
+}
+
+TEST(Starts, APeriodRepeatsWhereThePositionUsuallyIs) {
+  // A sine bends at its ends as a limit does: with one turn over all but some peaks, either would fit.
+  std::vector<double> position(1000);
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    position[k] = std::sin(0.02 * static_cast<double>(k));
+  }
+  const double without_peaks = highest_period(position);
+  EXPECT_NEAR(without_peaks, 1.0, 0.01) << "half the range of 2";
+  position[300] = 5.0;
+  position[700] = -5.0;
+  EXPECT_NEAR(highest_period(position), without_peaks, 0.01);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

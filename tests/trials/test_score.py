@@ -29,6 +29,12 @@ class Statistics(unittest.TestCase):
         self.assertAlmostEqual(low, 0.4902, places=4)
         self.assertAlmostEqual(high, 0.9433, places=4)
 
+    def test_an_interval_holds_its_share(self) -> None:
+        for count in range(1, 200):
+            for hits in (0, count):
+                low, high = statistics.Share(hits, count).interval
+                self.assertTrue(0.0 <= low <= hits / count <= high <= 1.0, (hits, count))
+
     def test_area_under_the_curve(self) -> None:
         self.assertEqual(statistics.auroc([3.0, 4.0], [1.0, 2.0]), 1.0)
         self.assertEqual(statistics.auroc([1.0, 3.0], [2.0, 2.0]), 0.5)

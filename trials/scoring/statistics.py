@@ -29,7 +29,9 @@ class Share:
             return (0.0, 1.0)
         middle = p + z * z / (2 * n)
         half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-        return (max(0.0, (middle - half) / (1 + z * z / n)), min(1.0, (middle + half) / (1 + z * z / n)))
+        low, high = (middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
+        # At 0 and 1 the interval ends there, but for rounding.
+        return (min(p, max(0.0, low)), max(p, min(1.0, high)))
 
 
 def share(flags: list[bool]) -> Share:

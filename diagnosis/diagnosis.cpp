@@ -398,7 +398,7 @@ class Run {
     result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);
     result_.improved_text = improved_text(kept.variant, input_.program.graph.source->path);
     if (hidden_delays(result_.improved_text) > hidden_delays(input_.text)) {
-      result_.warnings.push_back(
+      result_.warnings.emplace_back(
           "The effect closes a loop, and its block cannot be called before what it reads: improved.st is taken with "
           "--any-order only.");
     }

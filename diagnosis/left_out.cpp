@@ -22,9 +22,8 @@ ParameterFinding counted(std::string name, double value, std::string unit = "1")
 
 class Finder {
  public:
-  Finder(Task& task, const Program& program) : task_(task), program_(program), model_(task, program) {
-    rows_ = model_.rows() / std::ssize(task.outputs);
-  }
+  Finder(Task& task, const Program& program)
+      : task_(task), program_(program), model_(task, program), rows_(model_.rows() / std::ssize(task.outputs)) {}
 
   std::vector<LeftOut> run() {
     std::vector<LeftOut> found;
@@ -125,7 +124,7 @@ class Finder {
   Task& task_;
   const Program& program_;
   Model model_;  ///< with all samples
-  Index rows_ = 0;
+  Index rows_;
 };
 
 }  // namespace

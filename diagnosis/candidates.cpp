@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "codegen/compile.hpp"
 #include "codegen/graph/unit.hpp"
@@ -206,9 +207,8 @@ class Enumeration {
   /// Whether an edge is an input or an output of the whole diagram.
   [[nodiscard]] bool is_port(const Edge& edge) const {
     const auto names_edge = [&](const Declared& declared) {
-      const std::string name = language::upper(declared.field.name);
       return (declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Output) &&
-             (edge.name == name || std::ranges::find(edge.aliases, name) != edge.aliases.end());
+             find_edge(edges_, declared.field.name) == &edge;
     };
     return std::ranges::any_of(definitions_.list[index_].variables, names_edge);
   }
@@ -235,6 +235,7 @@ class Enumeration {
     if (delayed) {
       insertion.delay =
           free_name(source_->blocks[edge.definition], fmt::format("{}_{}1", instance, wires.front().first));
+      insertion.delayed = std::exchange(insertion.wires.front().second, insertion.delay + ".XOUT");
     }
     if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
       insertion.new_input = wires.front().second;

@@ -221,9 +221,7 @@ class Run {
     const auto before = by_blocks(task_, nominal_);
     const auto after = by_blocks(task_, &kept == judgement.chosen ? judgement.held_out : held_out(task_, kept));
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const Port& port = *std::ranges::find_if(input_.program.graph.outputs, [&](const Port& one) {
-        return language::same_name(one.name, task_.outputs[output]);
-      });
+      const Port& port = *find_port(input_.program.graph.outputs, task_.outputs[output]);
       GapFinding gap{.signal = port.name,
                      .unit = port.unit,
                      .nominal = rms(nominal_, output),

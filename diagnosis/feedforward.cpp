@@ -213,12 +213,6 @@ class Inverter {
   std::string result_{};
 };
 
-const Port* port_of(const std::vector<Port>& ports, std::string_view name) {
-  const auto found =
-      std::ranges::find_if(ports, [&](const Port& port) { return language::same_name(port.name, name); });
-  return found == ports.end() ? nullptr : &*found;
-}
-
 std::string unit_comment(const Port& port) {
   return port.unit.empty() ? std::string() : fmt::format("  (* @unit {} *)", port.unit);
 }
@@ -297,7 +291,7 @@ std::optional<double> tracking_error(const Feedforward& feedforward, const Progr
   driven.add(
       {.name = std::string(input), .unit = {}, .values = simulate(compile_text(feedforward.text), given).front()});
   const std::vector<Signal> outputs = simulate(plant, driven);
-  const auto which = static_cast<std::size_t>(port_of(plant.graph.outputs, output) - plant.graph.outputs.data());
+  const auto which = static_cast<std::size_t>(find_port(plant.graph.outputs, output) - plant.graph.outputs.data());
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t k = reference.size() / 10; k + ahead < reference.size(); ++k, ++count) {
@@ -312,8 +306,8 @@ std::optional<double> tracking_error(const Feedforward& feedforward, const Progr
 Feedforward feedforward_of(const Program& program, std::string_view input, std::string_view output,
                            double sample_time) {
   Feedforward result;
-  const Port* const from = port_of(program.graph.inputs, input);
-  const Port* const to = port_of(program.graph.outputs, output);
+  const Port* const from = find_port(program.graph.inputs, input);
+  const Port* const to = find_port(program.graph.outputs, output);
   if (from == nullptr || to == nullptr || from->type != Type::Real || to->wire.type != Type::Real) {
     result.reason = fmt::format("the diagram has no real input {} and real output {}", input, output);
     return result;

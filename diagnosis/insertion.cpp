@@ -125,8 +125,8 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   std::vector<Edit> edits{declaration(block, ends, fmt::format("{} : {};", insertion.instance, insertion.block))};
   if (!insertion.delay.empty()) {
     edits.push_back(declaration(block, ends, fmt::format("{} : HY_DELAY;", insertion.delay)));
-    edits.push_back({.span = {ends.block, 0},
-                     .text = fmt::format("  {}(XIN := {});\n", insertion.delay, insertion.wires.front().second)});
+    edits.push_back(
+        {.span = {ends.block, 0}, .text = fmt::format("  {}(XIN := {});\n", insertion.delay, insertion.delayed)});
   }
   if (!insertion.new_input.empty()) {
     edits.push_back({.span = {ends.behind, 0},
@@ -137,8 +137,7 @@ std::string with_effect(const language::SourceFile& source, const Edge& edge, co
   }
   std::string call = fmt::format("  {}({} := {}", insertion.instance, insertion.input, edge.source);
   for (const auto& [pin, driver] : insertion.wires) {
-    const bool delayed = !insertion.delay.empty() && pin == insertion.wires.front().first;
-    call += fmt::format(", {} := {}", pin, delayed ? insertion.delay + ".XOUT" : driver);
+    call += fmt::format(", {} := {}", pin, driver);
   }
   edits.push_back({.span = {ends.block, 0}, .text = call + ");\n"});
   return edited(*source.text, std::move(edits));

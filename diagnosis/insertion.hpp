@@ -23,7 +23,8 @@ struct Insertion {
   std::string input = "XIN";
   std::string output = "XOUT";
   std::vector<std::pair<std::string, std::string>> wires{};  ///< further pins, and the text that drives each
-  std::string delay{};      ///< name of a HY_DELAY before the first of these pins, which closes a loop; empty: none
+  std::string delay{};      ///< name of a HY_DELAY that is put there too, for these to read; empty: none
+  std::string delayed{};    ///< the text that drives it
   std::string new_input{};  ///< an LREAL input that the block gets, with the default 0; empty: none
 };
 

@@ -116,9 +116,8 @@ class Finder {
   }
 
   [[nodiscard]] std::string unit_of(std::size_t output) const {
-    const auto port = std::ranges::find_if(
-        program_.graph.outputs, [&](const Port& one) { return language::same_name(one.name, task_.outputs[output]); });
-    return port == program_.graph.outputs.end() ? std::string() : port->unit;
+    const Port* const port = find_port(program_.graph.outputs, task_.outputs[output]);
+    return port == nullptr ? std::string() : port->unit;
   }
 
   Task& task_;

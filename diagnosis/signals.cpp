@@ -12,6 +12,7 @@ namespace {
 
 std::vector<double> percentiles(std::vector<double> values) {
   std::vector<double> result(101, 0.0);
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });  // not a number has no order
   if (values.empty()) {
     return result;
   }

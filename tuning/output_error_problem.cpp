@@ -152,9 +152,8 @@ class Builder {
   void find_outputs() {
     const auto& outputs = graph().outputs;
     for (const parameters::PlacedText& wanted : file_.tune.outputs) {
-      const auto found =
-          std::ranges::find_if(outputs, [&](const Port& port) { return equal_ignoring_case(port.name, wanted.text); });
-      if (found == outputs.end()) {
+      const Port* const found = find_port(outputs, wanted.text);
+      if (found == nullptr) {
         const std::vector<std::string> names = names_of(outputs);
         const auto near = nearest_name(wanted.text, names);
         diagnostics_.error(error::unknown_key, wanted.place,
@@ -162,7 +161,7 @@ class Builder {
                            near.empty() ? fmt::format("the outputs are {}.", fmt::join(names, ", "))
                                         : fmt::format("did you mean {}?", near));
       } else {
-        problem_.outputs.push_back(static_cast<std::size_t>(found - outputs.begin()));
+        problem_.outputs.push_back(static_cast<std::size_t>(found - outputs.data()));
       }
     }
     if (!file_.tune.outputs.empty()) {

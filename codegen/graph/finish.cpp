@@ -375,6 +375,12 @@ void finish(Graph& graph, std::vector<Slot>& slots, std::vector<Parameter>& para
   Finisher(graph, slots, parameters, places, diagnostics).run(levels);
 }
 
+const Port* find_port(const std::vector<Port>& ports, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(ports, [&](const Port& port) { return equal_ignoring_case(port.name, name); });
+  return found == ports.end() ? nullptr : &*found;
+}
+
 std::int64_t find_parameter(const Graph& graph, std::string_view path) {
   const std::string wanted = language::upper(path);
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {

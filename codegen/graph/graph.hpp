@@ -123,6 +123,9 @@ inline Type output_type(const Node& node, std::size_t port) {
   return node.block != nullptr ? node.block->outputs[port].type : info(node.op).result;
 }
 
+/// The port of a name, without regard to case; null where there is none.
+const Port* find_port(const std::vector<Port>& ports, std::string_view name);
+
 /// The parameter of a path, without regard to case; its index, or -1.
 std::int64_t find_parameter(const Graph& graph, std::string_view path);
 

@@ -309,16 +309,7 @@ TEST(Diagnosis, AnEffectOfTheUsersOwnIsNamed) {
 }
 
 TEST(Diagnosis, AnotherColumnThatCouplesIsNamed) {
-  std::string machine = test::axis({"HY_CROSS_COUPLING := (GAIN := 0.01)", "SPEED.XOUT", ", Z := TEMP"});
-  machine.replace(machine.find("FORCE : LREAL;"), 14, "TEMP : LREAL; FORCE : LREAL;");
-  records::Record record = test::record_of("FORCE", test::rich_force());
-  std::vector<double> temperature;
-  for (int k = 0; k < 2000; ++k) {
-    temperature.push_back(std::sin(0.005 * k * 1.9) + 0.5 * std::sin(0.005 * k * 4.3));
-  }
-  record.add({.name = "temp", .values = temperature});
-  record = test::measured(test::program_of(machine), record, 0.001);
-  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {record}),
+  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {test::warm_sensor()}),
                                    {.effects = {"cross_coupling", "drift", "load", "viscous_friction"}});
   ASSERT_FALSE(found.effects.empty()) << found.summary;
   EXPECT_EQ(found.effects[0].id, "cross_coupling") << found.summary;

@@ -102,17 +102,17 @@ inline std::string axis(const Effect& effect = {}) {
     return effect.edge == signal ? std::string("E.XOUT") : std::string(signal);
   };
   const bool has_effect = !effect.block.empty();
+  const bool is_late = effect.wires.find("LATE") != std::string::npos;
   return fmt::format(
       "FUNCTION_BLOCK AXIS  (* @ts 5ms *)\n"
       "  VAR_INPUT FORCE : LREAL;  (* @unit N *) END_VAR\n"
       "  VAR_OUTPUT V : LREAL;  (* @unit m/s *) END_VAR\n"
       "  VAR\n    MASS : HY_GAIN := (K := 0.5);\n    SPEED : HY_INTEGRAL;\n{}  END_VAR\n"
       "  MASS(XIN := {});\n  SPEED(XIN := {});\n{}  V := {};\nEND_FUNCTION_BLOCK\n",
-      (has_effect ? fmt::format("    E : {};\n", effect.block) : "") +
-          (effect.wires.empty() ? "" : "    LATE : HY_DELAY;\n"),
+      (has_effect ? fmt::format("    E : {};\n", effect.block) : "") + (is_late ? "    LATE : HY_DELAY;\n" : ""),
       read("FORCE"), read("MASS.XOUT"),
       (has_effect ? fmt::format("  E(XIN := {}{});\n", effect.edge, effect.wires) : "") +
-          (effect.wires.empty() ? "" : "  LATE(XIN := SPEED.XOUT);\n"),
+          (is_late ? "  LATE(XIN := SPEED.XOUT);\n" : ""),
       read("SPEED.XOUT"));
 }
 
@@ -189,6 +189,19 @@ inline diagnosis::DiagnosisInput input_of(const std::string& text, std::string_v
           .text = text,
           .file = parameters::parse_parameter_file("p.toml", parameters),
           .records = std::move(records)};
+}
+
+/// Of an axis whose sensor feels a temperature, a column that the diagram does not use.
+inline records::Record warm_sensor() {
+  std::string machine = axis({"HY_CROSS_COUPLING := (GAIN := 0.01)", "SPEED.XOUT", ", Z := TEMP"});
+  machine.replace(machine.find("FORCE : LREAL;"), 14, "TEMP : LREAL; FORCE : LREAL;");
+  records::Record record = record_of("FORCE", rich_force());
+  std::vector<double> temperature;
+  for (int k = 0; k < 2000; ++k) {
+    temperature.push_back(std::sin(0.005 * k * 1.9) + 0.5 * std::sin(0.005 * k * 4.3));
+  }
+  record.add({.name = "temp", .values = temperature});
+  return measured(program_of(machine), record, 0.001);
 }
 
 }  // namespace hysteron::test

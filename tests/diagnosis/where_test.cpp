@@ -21,18 +21,9 @@ double share_of(const Diagnosis& found, std::string_view edge) {
   return 0.0;
 }
 
-/// An axis whose sensor feels a temperature, which is a column that the diagram does not use.
 Diagnosis of_warm_sensor(std::vector<std::string> effects) {
-  std::string machine = test::axis({"HY_CROSS_COUPLING := (GAIN := 0.01)", "SPEED.XOUT", ", Z := TEMP"});
-  machine.replace(machine.find("FORCE : LREAL;"), 14, "TEMP : LREAL; FORCE : LREAL;");
-  records::Record record = test::record_of("FORCE", test::rich_force());
-  std::vector<double> temperature;
-  for (int k = 0; k < 2000; ++k) {
-    temperature.push_back(std::sin(0.005 * k * 1.9) + 0.5 * std::sin(0.005 * k * 4.3));
-  }
-  record.add({.name = "temp", .values = temperature});
-  record = test::measured(test::program_of(machine), record, 0.001);
-  return diagnose(test::input_of(test::axis(), test::axis_parameters, {record}), {.effects = std::move(effects)});
+  return diagnose(test::input_of(test::axis(), test::axis_parameters, {test::warm_sensor()}),
+                  {.effects = std::move(effects)});
 }
 
 TEST(Where, AColumnThatCouplesIsAmongTheTestSignals) {

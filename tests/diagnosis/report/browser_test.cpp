@@ -14,11 +14,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* no_browser = "chromium is not installed: scripts/install-dependencies test";
-
-bool has_browser() {
-  return std::system("command -v chromium > /dev/null 2>&1") == 0;
-}
+class ReportInBrowser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v chromium > /dev/null 2>&1") != 0) {
+      GTEST_SKIP() << "chromium is not installed: scripts/install-dependencies test";
+    }
+  }
+};
 
 struct Shown {
   std::string page{};  ///< after its script has run
@@ -46,10 +49,7 @@ void expect_no_fault(const Shown& shown) {
   EXPECT_THAT(shown.page, Not(HasSubstr("class=\"box fault\"")));
 }
 
-TEST(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
   const Shown rich = shown(report_page(fixture::rich_diagnosis(), fixture::rich_program()));
   expect_no_fault(rich);
   EXPECT_THAT(rich.page, HasSubstr("data-figures=\"10\""));  // the first trace, eight maps, the command
@@ -61,10 +61,7 @@ TEST(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
   }
 }
 
-TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
   expect_no_fault(shown(report_page({}, {})));
   expect_no_fault(shown(report_page(fixture::refused_diagnosis(), fixture::rich_program())));
   Diagnosis odd = fixture::rich_diagnosis(1);  // one sample, no models, maps without places
@@ -76,10 +73,7 @@ TEST(ReportInBrowser, EmptyAndRefusedPagesRunWithoutAFault) {
 }
 
 /// Texts that overlap cannot be read.
-TEST(ReportInBrowser, TheTitlesOfTheMapsDoNotOverlap) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, TheTitlesOfTheMapsDoNotOverlap) {
   Diagnosis found = fixture::rich_diagnosis();
   found.maps[0].over = "time since the branch of a long name";
   const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
@@ -94,10 +88,7 @@ TEST(ReportInBrowser, TheTitlesOfTheMapsDoNotOverlap) {
 }
 
 /// Nothing is drawn over the name of an effect: at its middle it is what a click meets, or the box that it stands in.
-TEST(ReportInBrowser, EffectsAreNotCovered) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, EffectsAreNotCovered) {
   Diagnosis found = fixture::rich_diagnosis();
   found.effects.push_back({.id = "glitches", .edge = "SENSOR.XOUT", .share = 0.1});
   const Shown tried = shown(report_page(found, fixture::rich_program()), R"(
@@ -115,10 +106,7 @@ TEST(ReportInBrowser, EffectsAreNotCovered) {
   EXPECT_THAT(tried.page, HasSubstr("data-effects=\"4\""));
 }
 
-TEST(ReportInBrowser, SharesOfBranchesDoNotOverlap) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, SharesOfBranchesDoNotOverlap) {
   Diagnosis found = fixture::rich_diagnosis();
   found.effects.clear();
   found.edges = {{.edge = "A.XIN", .share = 0.6}, {.edge = "U", .share = 0.5}, {.edge = "A.XOUT", .share = 0.4}};
@@ -137,10 +125,7 @@ TEST(ReportInBrowser, SharesOfBranchesDoNotOverlap) {
 
 /// Of very many samples the extremes in each pixel are drawn: two points a pixel at most, and the one sample that
 /// stands out is among them.
-TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {
   const Shown tried = shown(report_page({}, {}), R"(
     const times = Float64Array.from({ length: 100000 }, (_, k) => k);
     const values = times.map(k => k === 54321 ? 9 : Math.sin(k));
@@ -153,10 +138,7 @@ TEST(ReportInBrowser, ManySamplesAreThinnedByTheirExtremes) {
   EXPECT_THAT(tried.page, HasSubstr("data-peak=\"kept\""));
 }
 
-TEST(ReportInBrowser, ADragZoomsAndADoubleClickResets) {
-  if (!has_browser()) {
-    GTEST_SKIP() << no_browser;
-  }
+TEST_F(ReportInBrowser, ADragZoomsAndADoubleClickResets) {
   const Shown zoomed = shown(report_page(fixture::rich_diagnosis(), fixture::rich_program()), R"(
     const host = document.getElementById("trace-0");
     const times = () => [...host.querySelectorAll("svg text")].map(text => text.textContent);

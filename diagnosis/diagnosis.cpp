@@ -153,7 +153,9 @@ class Run {
           "set of several. The verdict may change with more time, --budget.",
           options_.budget, found.tried));
     }
-    if (std::string reason = unrelated(task_, found.calibrated, *searched->judgement.chosen); !reason.empty()) {
+    if (std::string reason =
+            unrelated(task_, found.calibrated, *searched->judgement.chosen, searched->judgement.effective_samples);
+        !reason.empty()) {
       result_.warnings.push_back(std::move(reason));
       searched->judgement = {.chosen = &found.calibrated,
                              .effective_samples = searched->judgement.effective_samples,

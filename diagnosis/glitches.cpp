@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "diagnosis/spectrum.hpp"
@@ -15,6 +16,9 @@ constexpr std::size_t reach = 3;    // samples to either side
 constexpr std::size_t longest = 3;  // samples in a row: the median of seven sees past them
 constexpr double far = 6.0;         // standard deviations
 constexpr double rare = 0.03;       // of all samples: more of them are no glitches but a signal
+/// Beside a model: what a model late by a sample or three leaves at a leap of its signal is no larger than the leap.
+constexpr double beyond_travel = 1.2;
+constexpr std::size_t clear = 3;  // so many beyond it, and smaller ones are glitches as well
 
 double median_about(const std::vector<double>& values, std::size_t k) {
   std::array<double, 2 * reach + 1> window{};
@@ -43,49 +47,122 @@ double spread(const std::vector<double>& differences) {
   return deviation_of_median * median(std::move(sizes));
 }
 
+/// The median of seven taken off; 0 for the first and the last few, which have neighbours on one side only: a slope
+/// would make glitches of them.
+std::vector<double> off_neighbours(const std::vector<double>& values) {
+  std::vector<double> differences(values.size(), 0.0);
+  for (std::size_t k = reach; k + reach < values.size(); ++k) {
+    differences[k] = values[k] - median_about(values, k);
+  }
+  return differences;
+}
+
+/// A run of far samples of one record, which stands alone.
+struct Run {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double size = 0.0;
+};
+
+std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<double>& differences, double step) {
+  std::vector<Run> result;
+  // A sensor that rounds flickers by a step, which is no glitch, however rarely.
+  const double bound = std::max(far * spread(differences), 1.5 * step);
+  const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
+  for (std::size_t k = reach; k + reach < values.size(); ++k) {
+    if (!is_far(k)) {
+      continue;
+    }
+    Run run{.first = k, .last = k, .size = std::abs(differences[k])};
+    for (; is_far(k + 1); ++k) {
+      run.last = k + 1;
+      run.size = std::max(run.size, std::abs(differences[k + 1]));
+    }
+    if (run.last + 1 - run.first <= longest && stands_alone(values, run.first, run.last, run.size)) {
+      result.push_back(run);
+    }
+  }
+  return result;
+}
+
+/// Of several records, one after the other.
+class Sum {
+ public:
+  void add(const std::vector<Run>& runs, const std::vector<double>& differences) {
+    for (const Run& run : runs) {
+      for (std::size_t row = run.first; row <= run.last; ++row) {
+        result_.rows.push_back(offset_ + row);
+        squares_ += differences[row] * differences[row];
+      }
+      result_.largest = std::max(result_.largest, run.size);
+    }
+    offset_ += differences.size();
+  }
+
+  [[nodiscard]] Glitches result() && {
+    if (static_cast<double>(result_.rows.size()) > rare * static_cast<double>(offset_)) {
+      return {};
+    }
+    result_.rms = offset_ > 0 ? std::sqrt(squares_ / static_cast<double>(offset_)) : 0.0;
+    return std::move(result_);
+  }
+
+ private:
+  Glitches result_{};
+  std::size_t offset_ = 0;
+  double squares_ = 0.0;
+};
+
+/// How far a signal goes about a run.
+double travel(std::span<const double> values, const Run& run) {
+  const auto [low, high] = std::ranges::minmax(values.subspan(run.first - reach, run.last - run.first + 1 + 2 * reach));
+  return high - low;
+}
+
+bool repeats(const std::vector<double>& values, const Run& run) {
+  bool result = false;
+  for (std::size_t k = run.first; k <= run.last; ++k) {
+    result = result || values[k] == values[k - 1];
+  }
+  return result;
+}
+
 }  // namespace
 
 Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output) {
-  Glitches result;
-  std::size_t offset = 0;
-  double squares = 0.0;
+  Sum sum;
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
-    if (values.size() > 4 * reach) {
-      // The first and the last few have neighbours on one side only, and a slope would make glitches of them.
-      std::vector<double> differences(values.size(), 0.0);
-      for (std::size_t k = reach; k + reach < values.size(); ++k) {
-        differences[k] = values[k] - median_about(values, k);
-      }
-      // A sensor that rounds flickers by a step, which is no glitch, however rarely.
-      const double bound = std::max(far * spread(differences), 1.5 * common_step(values));
-      const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
-      for (std::size_t k = reach; k + reach < values.size(); ++k) {
-        if (!is_far(k)) {
-          continue;
-        }
-        const std::size_t first = k;
-        double size = std::abs(differences[k]);
-        for (; is_far(k + 1); ++k) {
-          size = std::max(size, std::abs(differences[k + 1]));
-        }
-        if (k + 1 - first > longest || !stands_alone(values, first, k, size)) {
-          continue;
-        }
-        for (std::size_t row = first; row <= k; ++row) {
-          result.rows.push_back(offset + row);
-          squares += differences[row] * differences[row];
-        }
-        result.largest = std::max(result.largest, size);
-      }
+    const std::vector<double> differences = off_neighbours(values);
+    sum.add(runs_of(values, differences, common_step(values)), differences);
+  }
+  return std::move(sum).result();
+}
+
+Glitches with_model(const Glitches& found, const std::vector<Experiment>& experiments, std::size_t output,
+                    std::span<const double> modelled) {
+  Sum sum;
+  std::size_t offset = 0;
+  for (const Experiment& experiment : experiments) {
+    const std::vector<double>& values = experiment.measured[output];
+    const std::span<const double> model = modelled.subspan(offset, values.size());
+    std::vector<double> left(values.size());
+    std::ranges::transform(values, model, left.begin(), std::minus<>());
+    const std::vector<double> differences = off_neighbours(left);
+    std::vector<Run> runs = runs_of(left, differences, common_step(values));
+    std::erase_if(runs, [&](const Run& run) { return repeats(values, run); });  // a sample was missed
+    const auto known = [&](const Run& run) {
+      return std::ranges::binary_search(found.rows, offset + run.first) ||
+             run.size > beyond_travel * travel(model, run);
+    };
+    if (static_cast<std::size_t>(std::ranges::count_if(runs, known)) < clear) {
+      std::erase_if(runs, std::not_fn(known));
     }
+    sum.add(runs, differences);
     offset += values.size();
   }
-  if (static_cast<double>(result.rows.size()) > rare * static_cast<double>(offset)) {
-    return {};
-  }
-  result.rms = offset > 0 ? std::sqrt(squares / static_cast<double>(offset)) : 0.0;
-  return result;
+  Glitches result = std::move(sum).result();
+  return result.rows.size() > found.rows.size() ? result : found;
 }
 
 }  // namespace hysteron::diagnosis

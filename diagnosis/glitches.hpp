@@ -1,4 +1,5 @@
-// Glitches: single samples, or up to three in a row, far off their neighbours, found in the measurement alone.
+// Glitches: single samples, or up to three in a row, far off their neighbours, found in the measurement and, where the
+// signal itself is fast, in what a model leaves of it.
 //
 // A sample is one if it differs from the median of the seven about it by more than six standard deviations of such
 // differences, by their median, and the samples on either side lie level: a sharp peak of the signal has flanks. What
@@ -6,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "tuning/output_error.hpp"
@@ -18,6 +20,13 @@ struct Glitches {
   double largest = 0.0;
 };
 
+/// In the measurement alone.
 [[nodiscard]] Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output);
+
+/// And in what a model leaves, `modelled` being its output for all experiments one after the other: those that are
+/// larger than the model moves nearby, and where there are three of them the smaller ones too. A repeated value is a
+/// missed sample. `found` again where that does not show more.
+[[nodiscard]] Glitches with_model(const Glitches& found, const std::vector<Experiment>& experiments, std::size_t output,
+                                  std::span<const double> modelled);
 
 }  // namespace hysteron::diagnosis

@@ -13,7 +13,7 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// The model shows missed samples that the measurement alone does not, and without them is calibrated better.
+/// The model shows samples that the measurement alone does not, and without them is calibrated better.
 constexpr int rounds_with_model = 2;
 
 ParameterFinding counted(std::string name, double value, std::string unit = "1") {
@@ -26,33 +26,27 @@ class Finder {
       : task_(task), program_(program), model_(task, program), rows_(model_.rows() / std::ssize(task.outputs)) {}
 
   std::vector<LeftOut> run() {
-    std::vector<LeftOut> found;
-    std::vector<MissedSamples> missed;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const Glitches glitches = find_glitches(model_.problem().experiments, output);
-      if (!glitches.rows.empty()) {
-        found.push_back(described(glitches, output));
-      }
-      add_rows(glitches.rows, output);
-      missed.push_back(find_missed_samples(model_.problem().experiments, output));
+      glitches_.push_back(find_glitches(experiments(), output));
+      missed_.push_back(find_missed_samples(experiments(), output));
     }
-    const std::vector<Index> without_missed = task_.left_out;
-    const auto take_out = [&] {
-      task_.left_out = without_missed;
-      for (std::size_t output = 0; output < missed.size(); ++output) {
-        add_rows(missed[output].rows, output);
-      }
-      std::ranges::sort(task_.left_out);
-    };
     take_out();
-    const bool any = std::ranges::any_of(missed, [](const MissedSamples& one) { return !one.rows.empty(); });
-    for (int round = 0; any && round < rounds_with_model; ++round) {
-      look_beside_model(missed);
+    bool more = std::ranges::any_of(missed_, [](const MissedSamples& one) { return !one.rows.empty(); });
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const Glitches seen = with_model(glitches_[output], experiments(), output, modelled(model_.start(), output));
+      more = more || seen.rows.size() > glitches_[output].rows.size();
+    }
+    for (int round = 0; more && round < rounds_with_model; ++round) {
+      look_beside_model();
       take_out();
     }
-    for (std::size_t output = 0; output < missed.size(); ++output) {
-      if (!missed[output].rows.empty()) {
-        found.push_back(described(missed[output], output));
+    std::vector<LeftOut> found;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      if (!glitches_[output].rows.empty()) {
+        found.push_back(described(glitches_[output], output));
+      }
+      if (!missed_[output].rows.empty()) {
+        found.push_back(described(missed_[output], output));
       }
     }
     std::ranges::stable_sort(found, [&](const LeftOut& a, const LeftOut& b) {
@@ -62,32 +56,50 @@ class Finder {
   }
 
  private:
+  [[nodiscard]] const std::vector<Experiment>& experiments() const { return model_.problem().experiments; }
+
   void add_rows(const std::vector<std::size_t>& rows, std::size_t output) {
     for (const std::size_t row : rows) {
       task_.left_out.push_back(static_cast<Index>(output) * rows_ + static_cast<Index>(row));
     }
   }
 
-  void look_beside_model(std::vector<MissedSamples>& missed) {
-    Model without(task_, program_);
-    const Fit calibrated = fit(without, without.start());
-    VectorXd residuals;
-    if (!model_.residuals(calibrated.x, residuals)) {
-      return;
+  void take_out() {
+    task_.left_out.clear();
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      add_rows(glitches_[output].rows, output);
+      add_rows(missed_[output].rows, output);
     }
-    for (std::size_t output = 0; output < missed.size(); ++output) {
-      if (missed[output].rows.empty()) {
-        continue;
-      }
-      std::vector<double> modelled;
-      for (const Experiment& experiment : model_.problem().experiments) {
-        std::ranges::copy(experiment.measured[output], std::back_inserter(modelled));
-      }
+    std::ranges::sort(task_.left_out);
+    const auto twice = std::ranges::unique(task_.left_out);
+    task_.left_out.erase(twice.begin(), twice.end());
+  }
+
+  /// An output as the model gives it, of all records one after the other; as measured where it gives none.
+  std::vector<double> modelled(const VectorXd& x, std::size_t output) {
+    std::vector<double> values;
+    for (const Experiment& experiment : experiments()) {
+      std::ranges::copy(experiment.measured[output], std::back_inserter(values));
+    }
+    VectorXd residuals;
+    if (model_.residuals(x, residuals)) {
       const VectorXd own = residuals.segment(static_cast<Index>(output) * rows_, rows_);
-      for (std::size_t k = 0; k < modelled.size(); ++k) {
-        modelled[k] += own[static_cast<Index>(k)] * task_.scales[output];
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        values[k] += own[static_cast<Index>(k)] * task_.scales[output];
       }
-      missed[output] = with_model(missed[output], model_.problem().experiments, output, modelled);
+    }
+    return values;
+  }
+
+  void look_beside_model() {
+    Model without(task_, program_);
+    const VectorXd calibrated = fit(without, without.start()).x;
+    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
+      const std::vector<double> model = modelled(calibrated, output);
+      glitches_[output] = with_model(glitches_[output], experiments(), output, model);
+      if (!missed_[output].rows.empty()) {
+        missed_[output] = with_model(missed_[output], experiments(), output, model);
+      }
     }
   }
 
@@ -124,6 +136,8 @@ class Finder {
   const Program& program_;
   Model model_;  ///< with all samples
   Index rows_;
+  std::vector<Glitches> glitches_{};     ///< by output
+  std::vector<MissedSamples> missed_{};  ///< by output
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnosis/inverse_blocks.hpp"
 #include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
@@ -13,8 +14,10 @@ namespace {
 
 /// The share of an output's variance that a calibrated diagram has to explain at least.
 constexpr double least_explained = 0.25;
-/// And the share of it that effects may leave open.
+/// And the share of it that effects may leave open, where chance or what they add by themselves could explain the rest.
 constexpr double most_open = 0.1;
+/// What n parameters explain of N independent samples is n/N by chance: so many times it is none.
+constexpr double beyond_chance = 40.0;
 /// Deviations of the prior that a refit may move a parameter without a word.
 constexpr double far = 4.0;
 
@@ -50,7 +53,13 @@ std::vector<double> measured(const Task& task, std::size_t output) {
 
 }  // namespace
 
-std::string unrelated(const Task& task, const Explanation& calibrated, const Explanation& chosen) {
+std::string unrelated(const Task& task, const Explanation& calibrated, const Explanation& chosen,
+                      double effective_samples) {
+  // What acts on a signal, as a resonance does, and adds none of its own explains only what follows from the inputs.
+  const bool adds =
+      std::ranges::any_of(chosen.variant.effects, [](const Applied& applied) { return adds_to_input(applied.block); });
+  const double by_chance = beyond_chance * static_cast<double>(chosen.fit.x.size()) / effective_samples;
+  const double open_at_most = adds ? most_open : std::max(most_open, 1.0 - std::max(least_explained, by_chance));
   std::string text;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
     const std::vector<double> values = measured(task, output);
@@ -62,7 +71,7 @@ std::string unrelated(const Task& task, const Explanation& calibrated, const Exp
     }
     const double left = rms_of(task, calibrated.fit.residuals, output);
     const double open = rms_of(task, chosen.fit.residuals, output);
-    if (left * left <= (1.0 - least_explained) * variance || open * open <= most_open * variance) {
+    if (left * left <= (1.0 - least_explained) * variance || open * open <= open_at_most * variance) {
       return {};  // an output that follows tells that the record is the machine's: a controller's may not
     }
     text += fmt::format("{}{:.3g} of {}, whose own standard deviation is {:.3g}", text.empty() ? "" : " and ", left,

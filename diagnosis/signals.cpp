@@ -44,8 +44,10 @@ Extent extent_of(const RecordSignals& values, double sample_time) {
     return {};
   }
   extent.begin = values.front().empty() ? 0.0 : values.front().front();
-  const std::vector<double> levels = percentiles(std::move(all));
+  std::vector<double> levels = percentiles(std::move(all));
   extent.usual = levels[99] - levels[1];
+  levels.erase(std::ranges::unique(levels).begin(), levels.end());
+  extent.levels = levels.size();
   extent.rates = percentiles(std::move(rates));
   return extent;
 }

@@ -18,6 +18,7 @@ struct Extent {
   double low = 0.0;
   double high = 0.0;
   double usual = 0.0;           ///< what lies between its first and its last percent: the range but for rare peaks
+  std::size_t levels = 0;       ///< how many of its 101 percentiles differ: few where it is switched between levels
   double first = 0.0;           ///< the largest |value| at a record's start
   double begin = 0.0;           ///< the value at the first record's start
   std::vector<double> rates{};  ///< its |rate| a second in steps of 1 % of the samples, 101 of them

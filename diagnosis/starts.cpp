@@ -101,7 +101,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
   const double across = auxiliary == nullptr ? range : size_or(auxiliary->range(), 1.0);
   switch (parameter.role) {
     case Role::Duration: {
-      std::vector<double> values = geometric(2.0 * hints.sample_time, hints.duration, 4.0);
+      std::vector<double> values = geometric(4.0 * hints.sample_time, hints.duration, 4.0);
       if (parameter.field.preset == 0.0) {
         values.insert(values.begin(), 0.0);
       }
@@ -222,12 +222,15 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     } else {
       grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
-        grid.lowest = hints.sample_time;  // what is over within a sample is a gain
+        grid.lowest = 4.0 * hints.sample_time;  // what is over sooner is a gain, an offset or a lag
       }
       if (parameter.role == Role::Period) {
         // Twice at least, or it is no period; and not in peaks alone, or it is a limit with a bend.
-        const double usual = (auxiliary == nullptr ? input : *auxiliary).usual;
-        grid.highest = usual > 0.0 ? 0.5 * usual : grid.highest;
+        const Extent& over = auxiliary == nullptr ? input : *auxiliary;
+        grid.highest = over.usual > 0.0 ? 0.5 * over.usual : grid.highest;
+        // Over a few levels some period meets each as it likes.
+        constexpr std::size_t fewest_levels = 20;
+        grid.highest = over.levels < fewest_levels ? 0.0 : grid.highest;
       }
       const auto drop_unfit = [&](std::vector<double>& values) {
         std::erase_if(values, [&](double value) { return !in_range(parameter.field, value) || value > grid.highest; });

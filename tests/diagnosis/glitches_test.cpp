@@ -68,5 +68,57 @@ TEST(Glitches, NoiseAndCornersAreNone) {
   EXPECT_THAT(find_glitches(with(teeth), 0).rows, IsEmpty());
 }
 
+/// Ten samples a turn: its neighbours hide what a sample does by itself.
+std::vector<double> fast() {
+  std::vector<double> values(2000);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double t = static_cast<double>(k);
+    values[k] = std::sin(0.63 * t) * (1.0 + std::sin(0.011 * t));
+  }
+  return values;
+}
+
+std::vector<double> noisy(std::vector<double> values) {
+  test::Noise noise(6);
+  for (double& value : values) {
+    value += 0.01 * noise();
+  }
+  return values;
+}
+
+TEST(Glitches, OfAFastSignalShowBesideItsModel) {
+  const std::vector<double> model = fast();
+  std::vector<double> values = noisy(model);
+  // Three where the signal is small: they count by themselves, and then so do those that its motion could be.
+  for (const std::size_t row : {428U, 999U, 1570U}) {
+    values[row] += 2.0;
+  }
+  values[700] += 1.5;
+  values[1300] -= 1.5;
+  const Glitches alone = find_glitches(with(values), 0);
+  EXPECT_LT(alone.rows.size(), 5U);
+  EXPECT_THAT(with_model(alone, with(values), 0, model).rows, ElementsAre(428U, 700U, 999U, 1300U, 1570U));
+}
+
+TEST(Glitches, AModelThatIsLateShowsNone) {
+  std::vector<double> steps(2000);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::size_t tread = k / 130;
+    steps[k] = static_cast<double>(tread * 7 % 5);
+  }
+  std::vector<double> late(steps.size(), 0.0);
+  std::copy(steps.begin(), steps.end() - 1, late.begin() + 1);
+  EXPECT_THAT(with_model({}, with(noisy(late)), 0, steps).rows, IsEmpty());
+}
+
+TEST(Glitches, AMissedSampleIsNone) {
+  const std::vector<double> model = fast();
+  std::vector<double> values = noisy(model);
+  for (const std::size_t row : {300U, 710U, 1111U, 1500U}) {
+    values[row] = values[row - 1];
+  }
+  EXPECT_THAT(with_model({}, with(values), 0, model).rows, IsEmpty());
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

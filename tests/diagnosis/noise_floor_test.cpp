@@ -187,6 +187,20 @@ TEST(NoiseFloor, OfAQuantisedSensorIsAtLeastItsRounding) {
   EXPECT_LT(repeating, 1.5 * rounding);
 }
 
+TEST(NoiseFloor, AQuantumOfATenthOfTheRangeIsNoNoise) {
+  // Samples of a fast signal hop from step to step: their differences are as large as the rounding.
+  auto y =
+      over_time(4000, [](double t) { return std::sin(test::two_pi * 31.0 * t) + std::sin(test::two_pi * 7.3 * t); });
+  const double range = 4.0;
+  const double quantum = 0.1 * range;
+  for (double& value : y) {
+    value = quantum * std::round(value / quantum);
+  }
+  const NoiseFloor floor = noise_floor(experiment(over_time(4000, chirp), y), 0);
+  EXPECT_GT(floor.differences, 0.021 * range);
+  EXPECT_LE(floor.value, 0.02 * range);
+}
+
 TEST(NoiseFloor, WithoutNoiseIsSmallButAboveZero) {
   const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
   for (const auto& input : {over_time(4000, sine), over_time(4000, chirp)}) {

@@ -134,8 +134,9 @@ FUNCTION_BLOCK TANKS  (* @ts 4s *)
 END_FUNCTION_BLOCK
 )";
 
-// Water that runs over is lost to the state: no effect on one edge can stand for it. So the stop is seen in the record,
-// and nothing is named with confidence.
+// Of all effects tried alone, an upper tank that runs over closes the most, and yet only a ninth of the gap: the laws
+// of the holes matter more, and none of the effects is one. So the stop is seen in the record, and nothing is named
+// with confidence.
 TEST_F(RealRecords, TanksOverflowIsSeenAsAStop) {
   const Diagnosis found = tuned_and_diagnosed(
       tanks, R"(
@@ -181,17 +182,25 @@ FUNCTION_BLOCK MIRROR  (* @ts 156.25us *)
 END_FUNCTION_BLOCK
 )";
 
-// The gains are those at rest, from the record behind a low-pass; all else is dynamics with many modes.
-TEST_F(RealRecords, MirrorResonatesOrHasNoConfidentName) {
-  const records::Record measured = record("piezo-fsm-cubespec/train_100mV_r1.csv", 0, 2048);
-  const Diagnosis found =
-      diagnose({.program = compile_text(mirror), .text = mirror, .records = {measured}},
-               {.effects = {"backlash", "creep", "delay", "lag", "odd_nonlinearity", "relaxation", "resonance"},
-                .most_effects = 1});
-  std::printf("%s\n", found.summary.c_str());  // docs/diagnosis.md shows it
-  EXPECT_TRUE(found.effects.empty() || found.effects.front().id == "resonance" || found.confidence < 0.5)
-      << found.summary;
-  expect_no_hysteresis(found);
+// The gains are those at rest, from the record behind a low-pass; all else is dynamics with many modes. The mode that
+// stands out is softer at three times the voltage: its authors' amplitude dependence.
+TEST_F(RealRecords, MirrorResonatesAndSoftens) {
+  const auto mode = [](const char* file) {
+    const records::Record measured = record(file, 0, 2048);
+    const Diagnosis found =
+        diagnose({.program = compile_text(mirror), .text = mirror, .records = {measured}}, {.most_effects = 1});
+    std::printf("%s\n", found.summary.c_str());  // docs/diagnosis.md shows it
+    EXPECT_LT(found.gap.improved, 0.9 * found.gap.calibrated);
+    expect_no_hysteresis(found);
+    if (found.effects.empty() || found.effects.front().id != "resonance") {
+      ADD_FAILURE() << found.summary;
+      return ParameterFinding{};
+    }
+    return *std::ranges::find(found.effects.front().parameters, "T", &ParameterFinding::name);
+  };
+  const ParameterFinding small = mode("piezo-fsm-cubespec/train_100mV_r1.csv");
+  const ParameterFinding large = mode("piezo-fsm-cubespec/train_300mV_r1.csv");
+  EXPECT_LT(small.high, large.low) << "1/ω in s";
 }
 
 }  // namespace

@@ -289,6 +289,38 @@ TEST(RecordCheck, ARecordOfAnotherMachineGetsNoName) {
   EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
 }
 
+/// A table on a stiff guide: its model is its gain at rest, and it rings at every step of a wide-band command.
+records::Record ringing_table(std::uint64_t commands) {
+  constexpr std::string_view machine =
+      "FUNCTION_BLOCK TABLE  (* @ts 1ms *)\n  VAR_INPUT U : LREAL; END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "  VAR\n    MODE : HY_SECOND_ORDER := (T := 0.0006, ZETA := 0.01);\n  END_VAR\n"
+      "  MODE(XIN := U);\n  Y := MODE.XOUT;\nEND_FUNCTION_BLOCK\n";
+  return test::measured(test::program_of(std::string(machine)),
+                        test::record_of("U", test::Noise(commands).white(2000, 1.0), 0.001), 1.0);
+}
+
+Diagnosis of_table(const records::Record& record) {
+  return diagnose(test::input_of("FUNCTION_BLOCK TABLE  (* @ts 1ms *)\n  VAR_INPUT U : LREAL; END_VAR\n"
+                                 "  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR\n    GUIDE : HY_GAIN := (K := 1.0);\n"
+                                 "  END_VAR\n  GUIDE(XIN := U);\n  Y := GUIDE.XOUT;\nEND_FUNCTION_BLOCK\n",
+                                 "[fit.GUIDE]\nK = {}\n", {record}),
+                  {});
+}
+
+TEST(RecordCheck, AnEffectMayBeAllThatTheRecordShows) {
+  const Diagnosis found = of_table(ringing_table(3));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("little in common")));
+  ASSERT_FALSE(found.effects.empty()) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "resonance") << found.summary;
+}
+
+TEST(RecordCheck, NoEffectIsNamedForTheCommandsOfAnotherRun) {
+  const Diagnosis found =
+      of_table(test::changed(ringing_table(3), "U", [](auto& u) { u = test::Noise(4).white(u.size(), 1.0); }));
+  EXPECT_THAT(found.effects, IsEmpty()) << found.summary;
+  EXPECT_EQ(found.unknown_score, 1.0);
+}
+
 std::vector<double> sine(double amplitude, std::size_t period, std::size_t count) {
   std::vector<double> values;
   for (std::size_t k = 0; k < count; ++k) {

@@ -48,5 +48,13 @@ TEST(Starts, APeriodRepeatsWhereThePositionUsuallyIs) {
   EXPECT_NEAR(highest_period(position), without_peaks, 0.01);
 }
 
+TEST(Starts, NoPeriodIsSoughtOverAFewLevels) {
+  std::vector<double> position(1000);
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    position[k] = static_cast<double>(k / 100 * 3 % 7);  // seven levels: some period meets each as it likes
+  }
+  EXPECT_EQ(highest_period(position), 0.0);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

@@ -115,7 +115,9 @@ class Enumeration {
       }
       if (kind.change == Change::Insert) {
         for (const Edge& edge : edges_) {
-          insert(kind, edge);
+          if (!serves_effect(edge)) {
+            insert(kind, edge);
+          }
         }
       } else {
         change_instances(kind);
@@ -144,6 +146,16 @@ class Enumeration {
   /// Whether an instance is an effect that was added: no motion of the machine.
   [[nodiscard]] bool added_before(const std::string& instance) const {
     return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.instance == instance; });
+  }
+
+  /// Whether an edge leads to nothing but a further pin of an effect that was added: no wire of the machine.
+  [[nodiscard]] bool serves_effect(const Edge& edge) const {
+    return std::ranges::any_of(base_.effects, [&](const Applied& applied) {
+      const bool is_pin = std::ranges::any_of(
+          applied.wires, [&](const auto& wire) { return edge.name == applied.instance + "." + wire.first; });
+      return is_pin ||
+             (!applied.delay.empty() && (edge.name == applied.delay + ".XIN" || edge.name == applied.delay + ".XOUT"));
+    });
   }
 
   /// What may drive a further input: signals of the same block that come from a block with memory, another input of
@@ -236,6 +248,7 @@ class Enumeration {
       insertion.delay =
           free_name(source_->blocks[edge.definition], fmt::format("{}_{}1", instance, wires.front().first));
       insertion.delayed = std::exchange(insertion.wires.front().second, insertion.delay + ".XOUT");
+      applied.delay = edge.prefix + insertion.delay;
     }
     if (!wires.empty() && std::ranges::find(options_.columns, wires.front().second) != options_.columns.end()) {
       insertion.new_input = wires.front().second;

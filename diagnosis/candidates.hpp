@@ -25,6 +25,7 @@ struct Applied {
   std::vector<std::string> paths{};                          ///< of the parameters, beside them
   std::vector<std::pair<std::string, double>> settings{};    ///< of parameters that are not fitted, by path
   std::vector<std::pair<std::string, std::string>> wires{};  ///< auxiliary pins and what drives them
+  std::string delay{};                                       ///< path of the HY_DELAY before them; empty: none
 
   [[nodiscard]] bool has(Role role) const;
   [[nodiscard]] bool has_gap() const;

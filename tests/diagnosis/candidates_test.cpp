@@ -14,6 +14,7 @@
 namespace hysteron::diagnosis {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -268,6 +269,19 @@ TEST(Candidates, AnEffectThatIsThereIsNotTriedTwice) {
   for (const Candidate& one : second) {
     EXPECT_EQ(one.variant.effects.size(), 2U);
   }
+}
+
+TEST(Candidates, WiresThatServeAnEffectAreNoEdgesOfTheMachine) {
+  const auto first = candidates(test::axis(), "AXIS", {.effects = {"coulomb_friction"}});
+  ASSERT_FALSE(first.empty());
+  const Applied& friction = first.front().own();
+  ASSERT_EQ(friction.delay, friction.instance + "_V1");
+  const auto second = candidates_of(first.front().variant, "AXIS", {.effects = {"offset"}});
+  EXPECT_THAT(edges_in(second), Contains(HasSubstr(friction.instance + ".XOUT")));
+  for (const char* end : {".V", "_V1.XIN", "_V1.XOUT"}) {
+    EXPECT_THAT(edges_in(second), Not(Contains(friction.instance + end)));
+  }
+  EXPECT_GE(edges_of_text(first.front().variant.text, "AXIS").size(), edges_in(second).size());
 }
 
 TEST(EffectKinds, AreSortedAndHaveAStrength) {

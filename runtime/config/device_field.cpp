@@ -110,7 +110,8 @@ Delivery DeviceField::delivery() noexcept {
   return Delivery::done;
 }
 
-DeviceOutputs::DeviceOutputs(const RunConfig& config) : options_(config.devices), outputs_(config.device_outputs) {
+DeviceOutputs::DeviceOutputs(const RunConfig& config, const OutputClaims* claims)
+    : options_(config.devices), outputs_(config.device_outputs), claims_(claims) {
   for (modbus::DeviceOptions& device : options_) {
     device.values.clear();
   }
@@ -118,6 +119,12 @@ DeviceOutputs::DeviceOutputs(const RunConfig& config) : options_(config.devices)
     auto& values = options_[output.link.device].values;
     values.push_back(config.devices[output.link.device].values[output.link.value]);
     output.link.value = values.size() - 1;
+  }
+}
+
+void DeviceOutputs::task_is_gone() noexcept {
+  if (claims_ != nullptr) {
+    claims_->listen();
   }
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/config/output_claims.hpp"
 #include "runtime/config/run_config.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/task/field_io.hpp"
@@ -49,8 +50,10 @@ class DeviceField final : public FieldIo {
 /// to write: a device may have room for one connection alone.
 class DeviceOutputs final : public OutputDevice {
  public:
-  explicit DeviceOutputs(const RunConfig& config);
+  /// The claims, if any, must outlive it.
+  explicit DeviceOutputs(const RunConfig& config, const OutputClaims* claims = nullptr);
   void open() override {}
+  void task_is_gone() noexcept override;
   /// True once every device has taken these values.
   bool write(std::span<const double> values) override;
 
@@ -58,6 +61,7 @@ class DeviceOutputs final : public OutputDevice {
   std::vector<modbus::DeviceOptions> options_;  ///< with what is written alone
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;
+  const OutputClaims* claims_;
 };
 
 }  // namespace hysteron::runtime

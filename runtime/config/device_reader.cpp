@@ -130,7 +130,7 @@ void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlR
   if (!link) {
     return;
   }
-  config_->device_outputs.push_back({.port = port, .link = *link});
+  config_->device_outputs.push_back({.port = port, .link = *link, .place = table.place("device")});
   const auto [low, high] = modbus::limits_of(config_->devices[link->device].values[link->value].type);
   OutputSafety& output = config_->task.outputs[port];
   output.low = std::max(output.low, low);

@@ -42,6 +42,7 @@ struct DeviceInput {
 struct DeviceOutput {
   std::size_t port = 0;
   DeviceLink link{};
+  Place place{};
 };
 
 struct RetainConfig {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "runtime/config/device_field.hpp"
+#include "runtime/host/output_turn.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
@@ -50,13 +51,17 @@ std::string status_line(const Task& task, const std::string& how) {
       static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), name_of(fault));
 }
 
+[[noreturn]] void refuse_retained(const RetainConfig& retain, const std::string& cause) {
+  throw InputError(error::retained_values_unfit, retain.place, cause,
+                   "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts "
+                   "the files aside.");
+}
+
 /// What the run file asks to keep: read before the program starts.
 Recovery recover_into(RetainFiles& files, const RetainConfig& retain, StepProgram& program) {
   Recovery recovery = recover(files, program.shape().layout, retain.mismatch);
   if (!recovery.refused.empty()) {
-    throw InputError(error::retained_values_unfit, retain.place, recovery.refused,
-                     "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts "
-                     "the files aside.");
+    refuse_retained(retain, recovery.refused);
   }
   if (recovery.values) {
     for (std::size_t i = 0; i < recovery.values->parameters.size(); ++i) {
@@ -76,7 +81,13 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
   }
 }
 
-modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
+/// A register map, and what its lock file has to say from now on.
+struct PlannedMap {
+  modbus::RegisterMap map{};
+  std::string lock_text{};  ///< empty where the file stays as it is
+};
+
+PlannedMap planned_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
   modbus::MapRequest request{.title = title,
                              .placing = config.placing,
                              .order = config.word_order,
@@ -84,13 +95,18 @@ modbus::RegisterMap register_map(const ModbusConfig& config, const std::string& 
                              .lock_file = config.lock_file};
   const bool has_lock = !config.lock_file.empty() && std::filesystem::exists(config.lock_file);
   request.lock_text = has_lock ? read_text_file(config.lock_file) : config.first_addresses;
-  modbus::RegisterMap map = modbus::make_register_map(door.points(), request);
+  PlannedMap planned{.map = modbus::make_register_map(door.points(), request)};
   if (!config.lock_file.empty()) {
-    if (const auto text = modbus::lock_text(map); !has_lock || text != request.lock_text) {
-      write_file_atomically(config.lock_file, text);
-    }
+    const auto text = modbus::lock_text(planned.map);
+    planned.lock_text = has_lock && text == request.lock_text ? "" : text;
   }
-  return map;
+  return planned;
+}
+
+void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
+  if (!planned.lock_text.empty()) {
+    write_file_atomically(config.lock_file, planned.lock_text);
+  }
 }
 
 /// A line to standard error, where it takes one at once: a server's thread waits for nobody who reads.
@@ -104,8 +120,9 @@ void tell(const std::string& line) {
 
 std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task,
                                              const std::shared_ptr<const modbus::TlsContext>& tls) {
-  return std::make_unique<modbus::Server>(
-      register_map(config, title, task.door()), task.door(),
+  const PlannedMap planned = planned_map(config, title, task.door());
+  auto server = std::make_unique<modbus::Server>(
+      planned.map, task.door(),
       modbus::ServerOptions{.listen = config.listen,
                             .port = config.port,
                             .allow = config.allow,
@@ -116,6 +133,8 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .tls = tls,
                             .client_refused = tell,
                             .place = config.place});
+  write_lock_file(config, planned);
+  return server;
 }
 
 /// The cyclic thread, and what it ends with.
@@ -206,7 +225,10 @@ void wait_for(const CyclicThread& cyclic, PointDoor& door, nanoseconds period) {
 
 modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
   TaskDoor door(program, device_inputs(config.task), config.task.outputs);
-  return register_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
+  const ModbusConfig modbus = config.modbus.value_or(ModbusConfig{});
+  PlannedMap planned = planned_map(modbus, program.shape().name, door);
+  write_lock_file(modbus, planned);
+  return std::move(planned.map);
 }
 
 void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs) {
@@ -244,6 +266,25 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (config.trace) {
     config.trace->waits = options.virtual_time;
   }
+  stop_asked.store(false);
+  (void)std::signal(SIGTERM, ask_to_stop);
+  (void)std::signal(SIGINT, ask_to_stop);
+
+  // What can refuse the start comes first: the outputs' claims, the guard, which writes nothing before the first cycle,
+  // what was retained, and the servers. Only then files are begun and devices reached.
+  OutputClaims claims(config);
+  if (!claim_outputs(claims, config, shape.name, stop_asked, print)) {
+    print(fmt::format("{}: stopped before it began\n", shape.name));
+    return true;
+  }
+  // The guard is forked before there is any thread. It has nothing to do where no output goes to a device.
+  DeviceOutputs device_outputs(config, &claims);
+  std::unique_ptr<Guard> guard;
+  if (config.guard && !config.device_outputs.empty() && !options.virtual_time) {
+    guard = std::make_unique<Guard>(
+        GuardSettings{.watchdog = config.task.watchdog, .period = shape.period, .silence = config.silence},
+        SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
+  }
   std::string how = fmt::format("{}: {}", shape.name, options.how);
   std::optional<RetainFolder> folder;
   Recovery recovery;
@@ -253,16 +294,19 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     how += recovery.values ? fmt::format(", from retained state {}", recovery.sequence) : "";
     how += recovery.note.empty() ? "" : ", " + recovery.note;
   }
-  stop_asked.store(false);
-  (void)std::signal(SIGTERM, ask_to_stop);
-  (void)std::signal(SIGINT, ask_to_stop);
-  // The guard is forked before there is any thread. It has nothing to do where no output goes to a device.
-  DeviceOutputs device_outputs(config);
-  std::unique_ptr<Guard> guard;
-  if (config.guard && !config.device_outputs.empty() && !options.virtual_time) {
-    guard = std::make_unique<Guard>(
-        GuardSettings{.watchdog = config.task.watchdog, .period = shape.period, .silence = config.silence},
-        SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
+  Task task(program, config.task);
+  // Read after the guard was forked: the guard needs no key.
+  const auto tls =
+      config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
+  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
+  how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+  how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
+  const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
+
+  if (folder) {
+    if (const auto problem = put_aside(*folder, recovery); !problem.empty()) {
+      refuse_retained(*config.retain, "The retained files cannot be put aside: " + problem + ".");
+    }
   }
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
   std::unique_ptr<Retainer> retainer;
@@ -274,15 +318,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     field = std::make_unique<DeviceField>(config, options.virtual_time,
                                           [&guard] { return guard == nullptr || guard->may_write(); });
   }
-  Task task(program, config.task,
-            {.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
-  // Read after the guard was forked: the guard needs no key.
-  const auto tls =
-      config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
-  const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
-  how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
-  how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
-  const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
+  task.attach({.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
 
   LoopEnd end = LoopEnd::stopped;
   {

@@ -34,8 +34,9 @@ struct HostOptions {
 void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs);
 
 /// Runs until SIGTERM, Ctrl-C, a fault that ends it or its number of cycles. Prints a line when it runs, and another at
-/// its end. True where it ended as asked, with its outputs safe. Throws InputError HY811, HY812 and those of the
-/// server. To be called while the process has one thread: it forks the guard.
+/// its end. True where it ended as asked, with its outputs safe. Throws InputError HY811, HY812, HY814 and those of the
+/// server, and then no device and no file was touched. To be called while the process has one thread: it forks the
+/// guard.
 [[nodiscard]] bool run_host(StepProgram& program, RunConfig config, const HostOptions& options,
                             const std::function<void(std::string_view)>& print);
 

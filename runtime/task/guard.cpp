@@ -44,8 +44,13 @@ void guard_life(const GuardSettings& settings, GuardPage& page, SafeOutputs outp
       const timespec until{.tv_sec = static_cast<time_t>(next / 1'000'000'000),
                            .tv_nsec = static_cast<long>(next % 1'000'000'000)};
       (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-    } else {
-      gone = gone_by(task, next);
+    } else if (gone = gone_by(task, next); gone) {
+      // A task that began no cycle has written nothing that would have to become safe.
+      GuardWord word = GuardWord::starting;
+      if (page.word.compare_exchange_strong(word, GuardWord::goodbye)) {
+        return;
+      }
+      device.task_is_gone();
     }
     if (page.word.load(std::memory_order_acquire) == GuardWord::goodbye) {
       return;
@@ -127,6 +132,8 @@ Guard::Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDe
 }
 
 Guard::~Guard() {
+  GuardWord word = GuardWord::starting;
+  (void)page_->word.compare_exchange_strong(word, GuardWord::goodbye);
   if (page_->word.load() == GuardWord::goodbye) {
     (void)waitpid(process_, nullptr, 0);
   }

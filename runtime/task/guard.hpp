@@ -5,6 +5,7 @@
 // task may not write to devices: it looks at that word before each write. A write that was under way is overwritten,
 // since the guard writes in every one of its own cycles. A process that died is seen at once, by its file descriptor;
 // one that hangs or is stopped, when its cycle is longer than the watchdog allows, or when no cycle began in time.
+// Before the first cycle there is nothing to make safe: the guard of a task whose start fails ends quietly.
 #pragma once
 
 #include <sys/types.h>
@@ -53,7 +54,7 @@ class Guard {
  public:
   /// Throws std::system_error where the system gives no process or memory, std::invalid_argument for too many outputs.
   Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDevice& device);
-  /// Without a goodbye, what happens to a dead task happens.
+  /// Without a goodbye, what happens to a dead task happens; before the first cycle, the guard ends and writes nothing.
   ~Guard();
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;

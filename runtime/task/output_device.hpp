@@ -16,6 +16,8 @@ class OutputDevice {
   virtual void open() = 0;
   /// All outputs, in the order of the diagram. False where the device did not take them; it is tried again.
   virtual bool write(std::span<const double> values) = 0;
+  /// From the guard, once: the task's process is gone, and nobody else writes.
+  virtual void task_is_gone() noexcept {}
 };
 
 }  // namespace hysteron::runtime

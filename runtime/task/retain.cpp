@@ -153,11 +153,17 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   recovery.note = "started cold; the retained files were put aside";
   recovery.next_slot = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].status != SlotStatus::missing) {
-      recovery.refused += files.put_aside(i);
-    }
+    recovery.aside.at(i) = slots[i].status != SlotStatus::missing;
   }
   return recovery;
+}
+
+std::string put_aside(RetainFiles& files, const Recovery& recovery) {
+  std::string problems;
+  for (std::size_t i = 0; i < recovery.aside.size(); ++i) {
+    problems += recovery.aside.at(i) ? files.put_aside(i) : "";
+  }
+  return problems;
 }
 
 Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start)

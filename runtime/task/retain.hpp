@@ -78,14 +78,17 @@ enum class MismatchPolicy : std::uint8_t {
 
 struct Recovery {
   std::optional<RetainedValues> values{};
-  std::string refused{};       ///< why the task must not start, a sentence; empty where it may
-  std::string note{};          ///< what a reader of the status line should know
-  std::uint64_t sequence = 0;  ///< of the newest slot
-  std::size_t next_slot = 0;   ///< where to write first
+  std::string refused{};        ///< why the task must not start, a sentence; empty where it may
+  std::string note{};           ///< what a reader of the status line should know
+  std::uint64_t sequence = 0;   ///< of the newest slot
+  std::size_t next_slot = 0;    ///< where to write first
+  std::array<bool, 2> aside{};  ///< the slots to be put aside before anything is written
 };
 
-/// Reads both slots and says how to start.
+/// Reads both slots and says how to start; changes nothing.
 [[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy);
+/// Puts aside what the recovery says. Empty, or why it failed.
+[[nodiscard]] std::string put_aside(RetainFiles& files, const Recovery& recovery);
 
 /// Copies in the cyclic thread, writes in its own.
 class Retainer {

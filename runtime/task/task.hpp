@@ -50,7 +50,7 @@ struct TaskAttachments {
 class Task final : private CycleBody {
  public:
   /// The loop's period is the program's. Throws std::invalid_argument where settings do not fit the program.
-  Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments, SetCheck check = {});
+  Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments = {}, SetCheck check = {});
 
   /// Runs until it is stopped or ends by itself, and then brings the outputs to their safe values. In the calling
   /// thread, whose scheduling is the caller's care.
@@ -65,8 +65,8 @@ class Task final : private CycleBody {
   [[nodiscard]] std::span<const double> outputs() const noexcept { return safe_.values(); }
   /// For a guard, before run(): where the outputs begin, and how they become safe.
   [[nodiscard]] const SafeOutputs& safe_outputs() const noexcept { return safe_; }
-  /// A guard needs these outputs before it starts, and is there only afterwards.
-  void attach(Guard* guard) noexcept { attachments_.guard = guard; }
+  /// Before run(): what is opened last, since a start that is refused must leave devices and files alone.
+  void attach(TaskAttachments attachments) noexcept { attachments_ = attachments; }
 
  private:
   bool cycle(const CycleMoment& moment) noexcept override;

@@ -7,7 +7,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,20 +15,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/listen.hpp"
-#include "runtime/modbus/server.hpp"
-#include "tests/runtime/modbus/free_port.hpp"
-#include "tests/runtime/modbus/memory_door.hpp"
-#include "tests/support/exit_code.hpp"
+#include "tests/runtime/host/host_process.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -37,128 +30,10 @@ namespace hysteron::runtime {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// Y := 2 · X; where X is 13, the step never ends.
-class Twice final : public StepProgram {
- public:
-  [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
-  void reset() noexcept override {}
-  void step(std::span<const double> inputs, std::span<double> outputs) noexcept override {
-    for (volatile bool hangs = inputs[0] == 13.0; hangs;) {
-    }
-    outputs[0] = 2.0 * inputs[0];
-  }
-  void set_parameter(std::size_t /*parameter*/, double /*value*/) noexcept override {}
-  [[nodiscard]] double parameter(std::size_t /*parameter*/) const noexcept override { return 0.0; }
-  [[nodiscard]] std::size_t state_size() const noexcept override { return 0; }
-  void save(std::span<std::byte> /*bytes*/) const noexcept override {}
-  void restore(std::span<const std::byte> /*bytes*/) noexcept override {}
-
- private:
-  ProgramShape shape_{
-      .name = "TWICE", .period = 1'000'000, .inputs = {{.name = "X"}}, .outputs = {{.name = "Y"}}, .layout = "twice"};
-};
-
-/// Our own server as the device: it gives X and takes Y.
-struct Stage {
-  test::MemoryDoor door{{{.name = "X"}, {.name = "Y", .kind = PointKind::parameter, .writable = true}}};
-  std::uint16_t port = test::free_port();
-  std::unique_ptr<modbus::Server> server;
-
-  void start() {
-    server = std::make_unique<modbus::Server>(modbus::make_register_map(door.points(), {}), door,
-                                              modbus::ServerOptions{.port = port});
-  }
-  void give(double x) { door.set(0, x); }
-  [[nodiscard]] double taken() { return door.value(1); }
-};
-
-/// run_host in a process of its own, begun while the test has one thread.
-class HostProcess {
- public:
-  explicit HostProcess(const std::string& run_file) {
-    std::array<int, 2> ends{};
-    if (::pipe(ends.data()) != 0) {
-      std::abort();
-    }
-    said_ = modbus::Descriptor(ends[0]);
-    process_ = ::fork();
-    if (process_ == 0) {
-      Twice program;
-      const bool well = run_host(program, parse_run_config("RUN.toml", run_file, program.shape()), {.how = "linked"},
-                                 [&](std::string_view text) {
-                                   [[maybe_unused]] const ssize_t written = ::write(ends[1], text.data(), text.size());
-                                 });
-      ::_exit(well ? 0 : 1);
-    }
-    ::close(ends[1]);
-    const std::string started = line();
-    const auto at = started.find("Modbus on 127.0.0.1:");
-    EXPECT_NE(at, std::string::npos) << started;
-    port_ = at == std::string::npos ? std::uint16_t{1} : static_cast<std::uint16_t>(std::stoi(started.substr(at + 20)));
-  }
-  HostProcess(const HostProcess&) = delete;
-  HostProcess& operator=(const HostProcess&) = delete;
-  HostProcess(HostProcess&&) = delete;
-  HostProcess& operator=(HostProcess&&) = delete;
-  ~HostProcess() {
-    if (process_ > 0) {
-      ::kill(process_, SIGKILL);
-      ::waitpid(process_, nullptr, 0);
-    }
-  }
-
-  /// A client that reads points by their names.
-  [[nodiscard]] std::unique_ptr<modbus::Device> client(const std::vector<std::string>& names) const {
-    const Twice program;
-    RunConfig config;
-    config.task.inputs = {{.from_device = true}};
-    config.task.outputs.resize(1);
-    const auto map = register_map_of(config, program);
-    modbus::DeviceOptions options{.link = modbus::TcpLink{.port = port_}, .response = milliseconds(2000)};
-    for (const std::string& name : names) {
-      for (const auto& entry : map.entries()) {
-        if (map.point_of(entry).name == name) {
-          options.values.push_back({.at = entry.at, .type = map.point_of(entry).type});
-        }
-      }
-    }
-    return std::make_unique<modbus::Device>(options);
-  }
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-  void send(int signal) const { ::kill(process_, signal); }
-  /// Ends it by SIGTERM; its exit code, and what it said at its end.
-  std::pair<int, std::string> end() {
-    send(SIGTERM);
-    const std::string last = line();
-    int status = 0;
-    ::waitpid(std::exchange(process_, 0), &status, 0);
-    return {test::exit_code(status), last};
-  }
-
- private:
-  std::string line() {
-    std::string text;
-    for (char letter = 0; ::read(said_.number(), &letter, 1) == 1 && letter != '\n';) {
-      text += letter;
-    }
-    return text;
-  }
-
-  modbus::Descriptor said_;
-  pid_t process_ = 0;
-  std::uint16_t port_ = 0;
-};
-
-/// The guard is patient: a machine that is busy with something else is no hang.
-std::string run_file(std::uint16_t stage, const std::string& rest) {
-  return fmt::format(
-      "[task]\nscheduling = \"other\"\nlock_memory = false\n[watchdog]\nsilence = \"5s\"\n[devices.stage]\nport = {}\n"
-      "cycle = \"2ms\"\ntimeout = \"1s\"\n[outputs.Y]\nsafe = -1.0\ndevice = \"stage\"\n[modbus]\nport = 0\n{}",
-      stage, rest);
-}
-
-constexpr const char* x_on_stage = "[inputs.X]\ndevice = \"stage\"\narea = \"input\"\nlongest_age = \"1s\"\n";
+using test::HostProcess;
+using test::run_file;
+using test::Stage;
+using test::x_on_stage;
 
 TEST(Host, ADeviceThatDiesAndAClientThatIsLostMakeTheOutputsSafeUntilTheyAreBack) {
   Stage stage;

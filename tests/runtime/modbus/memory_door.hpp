@@ -1,6 +1,7 @@
 // A door to values in memory, for tests of servers: counts what it is asked, refuses on request.
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <span>
 #include <string>
@@ -29,6 +30,7 @@ class MemoryDoor : public runtime::PointDoor {
     ++writes_;
     for (const auto& [point, value] : writes) {
       values_[point] = value;
+      history_[point].push_back(value);
     }
     return "";
   }
@@ -52,6 +54,11 @@ class MemoryDoor : public runtime::PointDoor {
     const std::scoped_lock lock(mutex_);
     return values_[point];
   }
+  /// Every value that was written there, in order.
+  [[nodiscard]] std::vector<double> history(std::size_t point) {
+    const std::scoped_lock lock(mutex_);
+    return history_[point];
+  }
   [[nodiscard]] std::uint64_t writes() {
     const std::scoped_lock lock(mutex_);
     return writes_;
@@ -61,6 +68,7 @@ class MemoryDoor : public runtime::PointDoor {
   std::mutex mutex_;
   std::vector<runtime::Point> points_;
   std::vector<double> values_;
+  std::map<std::size_t, std::vector<double>> history_;
   std::string refusal_;
   std::uint64_t reads_ = 0;
   std::uint64_t writes_ = 0;

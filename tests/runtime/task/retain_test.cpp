@@ -100,6 +100,8 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
   const auto cold = recover(files, "other", MismatchPolicy::cold);
   EXPECT_EQ(cold.refused, "");
   EXPECT_FALSE(cold.values);
+  EXPECT_EQ(files.slots[0], kept) << "a start that is refused for another reason changes nothing";
+  EXPECT_EQ(put_aside(files, cold), "");
   ASSERT_EQ(files.aside.size(), 1U);
   EXPECT_EQ(files.aside[0], kept);
   files.slots[0] = {std::byte{1}};

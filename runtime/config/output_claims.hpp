@@ -1,0 +1,40 @@
+// Who writes an output of a device: one task at a time, and the guard of a task that is gone comes before the next one.
+//
+// A claim is a socket bound to a name that follows from the device's address, unit, area and first register. Task and
+// guard share it, so the system frees it when the last of them is gone, however they end; no file is left over. A guard
+// whose task is gone listens on its claims: so a new task knows that it has to wait, and for which process. Names count
+// within one network namespace, where such tasks reach the same devices.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/config/run_config.hpp"
+#include "runtime/modbus/descriptor.hpp"
+
+namespace hysteron::runtime {
+
+class OutputClaims {
+ public:
+  explicit OutputClaims(const RunConfig& config);
+
+  struct Holder {
+    std::size_t output = 0;        ///< in RunConfig::device_outputs: the first that is claimed by another
+    std::optional<pid_t> guard{};  ///< the process of the guard that works there alone; none: a task
+  };
+  /// Claims all outputs on devices, or none, and then says who has one of them. Throws std::system_error where the
+  /// system gives no socket.
+  [[nodiscard]] std::optional<Holder> claim();
+  /// From the guard's process: its task is gone.
+  void listen() const noexcept;
+
+ private:
+  std::vector<std::string> names_{};
+  std::vector<modbus::Descriptor> sockets_{};  ///< as names_, where claimed
+};
+
+}  // namespace hysteron::runtime

@@ -190,12 +190,11 @@ class CyclicThread {
 };
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, PointDoor& door, nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, const Task& task, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
-  Snapshot snapshot;
-  std::uint64_t cycle = 0;
+  std::uint64_t beats = 0;
   auto moved = Clock::now();
   auto told = moved;
   bool is_stopping = false;
@@ -209,9 +208,8 @@ void wait_for(const CyclicThread& cyclic, PointDoor& door, nanoseconds period) {
     if (interval.count() == 0 || now - told < interval) {
       continue;
     }
-    door.read(snapshot);
-    if (snapshot.cycle != cycle) {
-      cycle = snapshot.cycle;
+    if (const std::uint64_t newest = task.beats(); newest != beats) {
+      beats = newest;
       moved = now;
     }
     if (now - moved <= std::max(longest, 2 * interval)) {
@@ -325,7 +323,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
-    wait_for(cyclic, task.door(), nanoseconds(shape.period));
+    wait_for(cyclic, task, nanoseconds(shape.period));
     end = cyclic.end();
   }
   print(status_line(task, shape.name + ": " + std::string(name_of(end))));

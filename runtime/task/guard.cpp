@@ -76,7 +76,7 @@ void guard_life(const GuardSettings& settings, GuardPage& page, SafeOutputs outp
     }
     outputs.step(last, page.fault.load());
     const bool written = device.write(outputs.values());
-    if (written && outputs.settled() && page.safe_at.load() == 0) {
+    if (written && (outputs.settled() || outputs.stuck()) && page.safe_at.load() == 0) {
       page.safe_at.store(monotonic_now());
     }
     // While the task's process lives it could come back and write: the guard stays.

@@ -18,11 +18,26 @@ double towards(double from, double target, double step) noexcept {
   return target > from ? std::min(target, from + step) : std::max(target, from - step);
 }
 
+/// On the way to the safe value, a second.
+double rate_of(const OutputSafety& output) noexcept {
+  return output.action == SafeAction::ramp ? std::min(output.slew, output.ramp) : output.slew;
+}
+
 }  // namespace
 
+double longest_way(const OutputSafety& output, double sample_time) noexcept {
+  if (output.action == SafeAction::hold) {
+    return 0.0;
+  }
+  const double safe = limited(output, output.value);
+  const double distance = std::max(output.high - safe, safe - output.low);
+  const double way = std::isinf(rate_of(output)) ? 0.0 : distance / rate_of(output);
+  return static_cast<double>(output.hold_cycles) * sample_time + way;
+}
+
 std::string_view name_of(Fault fault) {
-  constexpr std::array<std::string_view, 9> names{"none",      "hang",         "crash", "not finite", "stale input",
-                                                  "lost link", "missed cycle", "stop",  "lost client"};
+  constexpr std::array<std::string_view, 10> names{"none",      "hang",         "crash", "not finite",  "stale input",
+                                                   "lost link", "missed cycle", "stop",  "lost client", "not safe"};
   return names[static_cast<std::size_t>(fault)];
 }
 
@@ -51,14 +66,16 @@ void SafeOutputs::step(std::span<const double> wanted, Fault fault) noexcept {
     const Fault now = fault != Fault::none ? fault : std::isfinite(wanted[i]) ? Fault::none : Fault::not_finite;
     since_[i] = now == Fault::none ? 0 : since_[i] + 1;
     faults_[i] = now;
-    const double slew = output.slew * sample_time_;
     if (now == Fault::none) {
-      values_[i] = towards(values_[i], limited(output, wanted[i]), slew);
+      values_[i] = towards(values_[i], limited(output, wanted[i]), output.slew * sample_time_);
     } else if (since_[i] > output.hold_cycles && output.action != SafeAction::hold) {
-      const double ramp = output.action == SafeAction::ramp ? output.ramp * sample_time_ : slew;
-      values_[i] = towards(values_[i], target(i), std::min(slew, ramp));
+      values_[i] = next(i);
     }
   }
+}
+
+double SafeOutputs::next(std::size_t output) const noexcept {
+  return towards(values_[output], target(output), rate_of(outputs_[output]) * sample_time_);
 }
 
 double SafeOutputs::target(std::size_t output) const noexcept {
@@ -68,6 +85,16 @@ double SafeOutputs::target(std::size_t output) const noexcept {
 Fault SafeOutputs::worst() const noexcept {
   const auto found = std::ranges::find_if(faults_, [](Fault one) { return one != Fault::none; });
   return found == faults_.end() ? Fault::none : *found;
+}
+
+bool SafeOutputs::stuck() const noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const bool moves = outputs_[i].action != SafeAction::hold && since_[i] > outputs_[i].hold_cycles;
+    if (moves && values_[i] != target(i) && next(i) == values_[i]) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool SafeOutputs::settled() const noexcept {

@@ -24,6 +24,7 @@ enum class Fault : std::uint8_t {
   missed_cycle,  ///< and the policy is to stop
   stop,          ///< the task ends as asked
   lost_client,   ///< the Modbus client that has to be heard is silent
+  not_safe,      ///< at the end: an output cannot reach its safe value, since its ramp is lost in rounding
 };
 [[nodiscard]] std::string_view name_of(Fault fault);
 
@@ -38,6 +39,10 @@ struct OutputSafety {
   double value = 0.0;
   double ramp = std::numeric_limits<double>::infinity();  ///< a second
 };
+
+/// The longest time, in seconds, in which an output is safe from the first cycle of a fault on, from wherever it may
+/// be: its hold, then its way at its ramp and slew limit. Infinite where it has a rate and no limits.
+[[nodiscard]] double longest_way(const OutputSafety& output, double sample_time) noexcept;
 
 class SafeOutputs {
  public:
@@ -57,10 +62,14 @@ class SafeOutputs {
   [[nodiscard]] Fault worst() const noexcept;
   /// Whether no output will move any more while the fault lasts.
   [[nodiscard]] bool settled() const noexcept;
+  /// Whether an output is not safe and never will be: its next step towards the safe value is lost in rounding.
+  [[nodiscard]] bool stuck() const noexcept;
   [[nodiscard]] const std::vector<OutputSafety>& safety() const noexcept { return outputs_; }
 
  private:
   [[nodiscard]] double target(std::size_t output) const noexcept;
+  /// The value of an output in a fault, one cycle on.
+  [[nodiscard]] double next(std::size_t output) const noexcept;
 
   std::vector<OutputSafety> outputs_;
   double sample_time_;

@@ -60,6 +60,7 @@ LoopEnd Task::run(Clock& clock, const std::atomic<bool>& stop) {
 }
 
 bool Task::cycle(const CycleMoment& moment) noexcept {
+  beat();
   if (attachments_.guard != nullptr) {
     attachments_.guard->cycle_begins(moment.start);
   }
@@ -175,23 +176,28 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
 }
 
 void Task::settle(Clock& clock, Fault fault) {
-  const std::int64_t begin = clock.now();
+  // To end as asked is no fault; what was wrong just before still is.
+  const Fault held = status_.fault == Fault::none || fault != Fault::stop ? fault : status_.fault;
+  std::int64_t waited = 0;
   Delivery delivery = Delivery::pending;
-  for (std::int64_t due = begin + settings_.loop.period; due - begin <= settings_.longest_stop;
-       due += settings_.loop.period) {
+  for (std::int64_t due = clock.now() + settings_.loop.period;; due += settings_.loop.period) {
+    beat();
     if (attachments_.guard != nullptr) {
       attachments_.guard->cycle_begins(clock.now());
     }
     safe_.step(computed_, fault);
-    if (!write_outputs()) {
+    if (!write_outputs() || safe_.stuck()) {
       break;
     }
     if (safe_.settled()) {
       delivery = attachments_.field == nullptr ? Delivery::done : attachments_.field->delivery();
+      waited += settings_.loop.period;
     }
-    if (delivery != Delivery::pending) {
+    if (delivery != Delivery::pending || waited > settings_.longest_delivery) {
       break;
     }
+    status_.fault = held;
+    door_.publish(*program_, inputs_, safe_.values(), status_, statistics_);
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
@@ -199,7 +205,7 @@ void Task::settle(Clock& clock, Fault fault) {
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;
-    status_.fault = safe_.settled() && delivery != Delivery::done ? Fault::lost_link : fault;
+    status_.fault = !safe_.settled() ? Fault::not_safe : delivery != Delivery::done ? Fault::lost_link : held;
     if (attachments_.guard != nullptr && safe_.settled()) {
       (void)attachments_.guard->goodbye();
     }

@@ -30,8 +30,8 @@ struct TaskSettings {
   WatchdogSettings watchdog{};
   std::vector<InputSettings> inputs{};
   std::vector<OutputSafety> outputs{};
-  std::uint64_t retain_every = 1000;           ///< cycles
-  std::int64_t longest_stop = 10'000'000'000;  ///< for the way to the safe values at the end
+  std::uint64_t retain_every = 1000;               ///< cycles
+  std::int64_t longest_delivery = 10'000'000'000;  ///< at the end: for devices to take the safe values, once reached
   /// After a lost client the outputs stay safe until task.reset, not only until it is back.
   bool reset_after_lost_client = false;
 };
@@ -52,8 +52,8 @@ class Task final : private CycleBody {
   /// The loop's period is the program's. Throws std::invalid_argument where settings do not fit the program.
   Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments = {}, SetCheck check = {});
 
-  /// Runs until it is stopped or ends by itself, and then brings the outputs to their safe values. In the calling
-  /// thread, whose scheduling is the caller's care.
+  /// Runs until it is stopped or ends by itself, and then brings the outputs to their safe values, for as long as their
+  /// holds and ramps take. In the calling thread, whose scheduling is the caller's care.
   LoopEnd run(Clock& clock, const std::atomic<bool>& stop);
 
   [[nodiscard]] TaskDoor& door() noexcept { return door_; }
@@ -61,7 +61,10 @@ class Task final : private CycleBody {
   void client_lost(bool lost) noexcept;
   /// Not while it runs; then, points() of the door say the same.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
+  /// After run(): what ended it, or what was wrong at its end; stop where nothing was.
   [[nodiscard]] Fault fault() const noexcept { return status_.fault; }
+  /// From any thread: moves for as long as the cycles go on, those on the way to the safe values too.
+  [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::span<const double> outputs() const noexcept { return safe_.values(); }
   /// For a guard, before run(): where the outputs begin, and how they become safe.
   [[nodiscard]] const SafeOutputs& safe_outputs() const noexcept { return safe_; }
@@ -75,6 +78,7 @@ class Task final : private CycleBody {
   void take_orders() noexcept;
   [[nodiscard]] Fault read_inputs() noexcept;
   [[nodiscard]] bool write_outputs() noexcept;
+  void beat() noexcept { beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
   void settle(Clock& clock, Fault fault);
 
   StepProgram* program_;
@@ -92,6 +96,7 @@ class Task final : private CycleBody {
   std::vector<std::uint64_t> ages_;
   std::vector<double> parameters_;
   std::uint64_t resets_seen_ = 0;
+  std::atomic<std::uint64_t> beats_{0};
   std::atomic<bool> client_is_lost_{false};
   std::atomic<bool> client_was_lost_{false};  ///< and no reset came since; only where one is asked for
   bool tripped_ = false;

@@ -161,6 +161,11 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
                     HasSubstr("\nKillMode=control-group\n"), HasSubstr("\nRestart=on-failure\n"),
                     HasSubstr("\nLimitRTPRIO=80\nLimitMEMLOCK=infinity\nCapabilityBoundingSet=\n"),
                     HasSubstr("\nPrivateDevices=yes\n"), Not(HasSubstr("ReadWritePaths"))));
+  EXPECT_THAT(unit(""), HasSubstr("\nTimeoutStopSec=15\n"));
+  EXPECT_THAT(unit("on_fault = \"ramp\"\nramp = 0.5\nlow = -10.0\nhigh = 20.0\nhold_cycles = 3000\n"),
+              HasSubstr("\nTimeoutStopSec=58\n"))
+      << "3 s of hold, 40 s for the longer way, 10 s for devices, and 5";
+  EXPECT_THAT(unit("on_fault = \"ramp\"\nramp = 0.5\n"), HasSubstr("\nTimeoutStopSec=infinity\n"));
   EXPECT_THAT(unit("[task]\nscheduling = \"other\"\nlock_memory = false\n"),
               AllOf(Not(HasSubstr("LimitRTPRIO")), Not(HasSubstr("LimitMEMLOCK"))));
   EXPECT_THAT(unit("[task]\nscheduling = \"deadline\"\n[modbus]\nport = 502\n"),

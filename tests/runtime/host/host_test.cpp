@@ -75,7 +75,9 @@ TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {
   EXPECT_TRUE(test::soon([&] { return client->read(0).value > 100.0; }));
   EXPECT_EQ(client->read(1).value, static_cast<double>(Fault::lost_link));
   EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; })) << "the other device is served meanwhile";
-  EXPECT_EQ(host.end().first, 0);
+  const auto [code, said] = host.end();
+  EXPECT_EQ(code, 1);
+  EXPECT_TRUE(said.ends_with("fault: lost link")) << said;
 }
 
 TEST(Host, ADeviceThatDoesNotTakeTheSafeValuesIsSaidAtTheEnd) {

@@ -46,6 +46,24 @@ TEST(SafeOutputs, HoldThenTakeTheSafeValue) {
   }
 }
 
+TEST(SafeOutputs, NoWayIsLongerThanTheLongest) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const OutputSafety ramp{
+      .low = -4.0, .high = 10.0, .action = SafeAction::ramp, .hold_cycles = 2000, .value = 1.0, .ramp = 0.5};
+  EXPECT_EQ(longest_way(ramp, 0.001), 2.0 + 18.0);
+  EXPECT_EQ(longest_way({.low = -4.0, .high = 1.0, .slew = 5.0, .value = 1.0}, 0.001), 1.0);
+  EXPECT_EQ(longest_way({.slew = 5.0}, 0.001), infinite);
+  EXPECT_EQ(longest_way({.hold_cycles = 5}, 0.001), 0.005);
+  EXPECT_EQ(longest_way({.slew = 5.0, .action = SafeAction::hold, .hold_cycles = 5}, 0.001), 0.0);
+  auto outputs = one(ramp);
+  outputs.start_from(std::array{10.0});
+  after(outputs, 0.0, Fault::stop, 20'000 - 2);
+  EXPECT_FALSE(outputs.settled());
+  EXPECT_FALSE(outputs.stuck());
+  after(outputs, 0.0, Fault::stop, 3);
+  EXPECT_TRUE(outputs.settled());
+}
+
 TEST(SafeOutputs, RampAtTheRateThatWasGivenAndNeverPastTheValue) {
   auto outputs = one({.action = SafeAction::ramp, .hold_cycles = 1, .value = 0.0, .ramp = 1000.0});
   after(outputs, 2.5, Fault::none);

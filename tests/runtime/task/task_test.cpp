@@ -69,6 +69,48 @@ TEST(Task, WaitsAtItsEndUntilTheSafeValuesHaveArrivedAndSaysWhereTheyDidNot) {
   EXPECT_EQ(lost.fault(), Fault::lost_link);
 }
 
+TEST(Task, EndsOnceTheSlowestRampHasArrivedHoweverLongThatTakes) {
+  Accumulator program;
+  Field field;
+  auto slow = settings(100);
+  slow.outputs[0].action = SafeAction::ramp;
+  slow.outputs[0].ramp = 1.0;
+  slow.outputs[0].hold_cycles = 5000;
+  Task task(program, slow, {.field = &field});
+  run(task);
+  EXPECT_EQ(field.written.back(), -1.0);
+  EXPECT_NEAR(static_cast<double>(field.written.size()), 100 + 5000 + 51'000, 1.0) << "from 50 to -1 at 1 a second";
+  EXPECT_EQ(task.fault(), Fault::stop);
+  EXPECT_GE(task.beats(), field.written.size()) << "what watches it sees that it lives";
+}
+
+TEST(Task, SaysWhereASafeValueIsOutOfReach) {
+  Accumulator program;
+  Field field;
+  field.input = 1e17;
+  auto lost = settings(1);
+  lost.outputs[0] = {.action = SafeAction::ramp, .hold_cycles = 10, .value = -1.0, .ramp = 1.0};
+  Task task(program, lost, {.field = &field});
+  run(task);
+  EXPECT_EQ(task.fault(), Fault::not_safe);
+  EXPECT_EQ(test::value(task.door(), "task.fault"), static_cast<double>(Fault::not_safe));
+}
+
+TEST(Task, AFaultThatHoldsAtTheEndIsNotForgotten) {
+  for (const Fault fault : {Fault::stale_input, Fault::lost_link}) {
+    Accumulator program;
+    Field field;
+    field.fault = fault;
+    Task task(program, settings(10), {.field = &field});
+    run(task);
+    EXPECT_EQ(task.fault(), fault);
+    EXPECT_EQ(test::value(task.door(), "task.fault"), static_cast<double>(fault));
+    field.fault = Fault::none;
+    run(task);
+    EXPECT_EQ(task.fault(), Fault::stop) << "it was over before the end";
+  }
+}
+
 TEST(Task, RunsTheProgramAndEndsInSafeOutputs) {
   Accumulator program;
   Field field;

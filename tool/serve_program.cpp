@@ -3,12 +3,15 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
 #include "codegen/backends/cpp.hpp"
 #include "codegen/backends/cpp_step.hpp"
+#include "codegen/graph/relations.hpp"
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/interpreter/machine.hpp"
@@ -50,6 +53,30 @@ ProgramSignal signal_of(const Port& port) {
           .preset = port.preset,
           .low = port.minimum,
           .high = port.maximum};
+}
+
+/// With elements of arrays counted one by one, as the parameters of a shape are.
+std::vector<runtime::ProgramRelation> relations_of(const Graph& graph) {
+  std::vector<std::size_t> first;
+  std::size_t count = 0;
+  for (const Parameter& parameter : graph.parameters) {
+    first.push_back(count);
+    count += parameter.value.size();
+  }
+  const auto number_of = [&](const RisingNumbers::Number& one) {
+    return one.parameter ? runtime::RelatedNumber{.parameter = first[*one.parameter] + one.element}
+                         : runtime::RelatedNumber{.constant = one.constant};
+  };
+  std::vector<runtime::ProgramRelation> relations;
+  for (const RisingNumbers& rising : rising_numbers(graph)) {
+    runtime::ProgramRelation relation{.strictly = rising.strictly};
+    std::ranges::transform(rising.numbers, std::back_inserter(relation.numbers), number_of);
+    if (rising.count) {
+      relation.count = number_of(*rising.count);
+    }
+    relations.push_back(std::move(relation));
+  }
+  return relations;
 }
 
 template <class S>
@@ -195,6 +222,7 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
     ++index;
     std::ranges::fill(parameter.value, 0.0);  // the values do not belong to the layout
   }
+  shape.relations = relations_of(graph);
   shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",
                              float32 ? "-float32" : "");
   return shape;

@@ -11,6 +11,8 @@
 namespace hysteron {
 namespace {
 
+constexpr double longest_rounded = 1.0 + 1e-12;  ///< a dead time of exactly so many samples may be rounded up
+
 /// Which parameters of a block hang together, by their places. Found once, by what the description calls them.
 struct Relations {
   std::optional<std::size_t> low{};        ///< MN and MX
@@ -106,7 +108,7 @@ std::vector<Contradiction> contradictions(const BlockType& block, std::string_vi
   if (is_given(relations.dead_time) && period > 0.0) {
     const double wanted = values[*relations.dead_time].front();
     const double longest = static_cast<double>(relations.samples) * period;
-    if (wanted > longest * (1.0 + 1e-12)) {
+    if (wanted > longest * longest_rounded) {
       found.push_back(
           {*relations.dead_time,
            fmt::format("{} = {} s is longer than the {} samples of {} s that {} holds", name(*relations.dead_time),
@@ -114,6 +116,51 @@ std::vector<Contradiction> contradictions(const BlockType& block, std::string_vi
            fmt::format("At this sample time {} is at most {} s; let the part run less often by @every, or "
                        "connect two in series.",
                        block.params[*relations.dead_time].name, number_text(longest))});
+    }
+  }
+  return found;
+}
+
+std::vector<RisingNumbers> rising_numbers(const Graph& graph) {
+  using Number = RisingNumbers::Number;
+  std::vector<RisingNumbers> found;
+  for (const Node& node : graph.nodes) {
+    if (node.block == nullptr || node.block->params.empty()) {
+      continue;
+    }
+    const Relations& relations = known_relations(*node.block);
+    const auto number = [&](std::optional<std::size_t> param, std::size_t element = 0) -> std::optional<Number> {
+      const Wire* const wire = param ? &graph.wire(node, node.block->inputs.size() + *param) : nullptr;
+      if (wire != nullptr && wire->from == Wire::From::Literal) {
+        return Number{.constant = graph.literals[wire->index]};
+      }
+      if (wire != nullptr && wire->from == Wire::From::Parameter) {
+        return Number{.parameter = wire->index, .element = element};
+      }
+      return std::nullopt;
+    };
+    const auto add = [&](RisingNumbers one) {
+      const bool varies = std::ranges::any_of(one.numbers, [](const Number& n) { return n.parameter.has_value(); });
+      if (varies || (one.count && one.count->parameter)) {
+        found.push_back(std::move(one));
+      }
+    };
+    const auto low = number(relations.low);
+    if (const auto high = number(relations.high); low && high) {
+      add({.numbers = {*low, *high}});
+    }
+    if (const auto count = number(relations.count); count && !relations.columns.empty()) {
+      const auto first = number(relations.columns.front());
+      RisingNumbers column{.strictly = true, .count = count};
+      const std::size_t length = first && first->parameter ? graph.parameters[*first->parameter].value.size() : 0;
+      for (std::size_t element = 0; element < length; ++element) {
+        column.numbers.push_back(*number(relations.columns.front(), element));
+      }
+      add(std::move(column));
+    }
+    const double period = period_of(graph, node);
+    if (const auto wanted = number(relations.dead_time); wanted && period > 0.0) {
+      add({.numbers = {*wanted, {.constant = static_cast<double>(relations.samples) * period * longest_rounded}}});
     }
   }
   return found;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,21 @@ std::vector<std::span<const double>> numbers_of_params(const Graph& graph, const
   }
   return values;
 }
+
+/// The same rules for who changes parameters of a running program and has no graph: numbers that must rise from one to
+/// the next.
+struct RisingNumbers {
+  struct Number {
+    std::optional<std::size_t> parameter{};  ///< of the graph; else it is constant
+    std::size_t element = 0;                 ///< of the parameter
+    double constant = 0.0;
+  };
+  std::vector<Number> numbers{};
+  bool strictly = false;          ///< each above the one before; else at least at it
+  std::optional<Number> count{};  ///< so many of them count; else all
+};
+/// Those of all instances in which a parameter of the graph takes part.
+[[nodiscard]] std::vector<RisingNumbers> rising_numbers(const Graph& graph);
 
 /// The period of a node in s; 0 where the graph states none.
 [[nodiscard]] inline double period_of(const Graph& graph, const Node& node) {

@@ -20,6 +20,7 @@
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
+#include "runtime/task/staged_parameters.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
@@ -59,7 +60,10 @@ std::string status_line(const Task& task, const std::string& how) {
 
 /// What the run file asks to keep: read before the program starts.
 Recovery recover_into(RetainFiles& files, const RetainConfig& retain, StepProgram& program) {
-  Recovery recovery = recover(files, program.shape().layout, retain.mismatch);
+  Recovery recovery =
+      recover(files, program.shape().layout, retain.mismatch, [&](const RetainedValues& values) -> std::string {
+        return refusal_of(program.shape(), values.parameters, parameters_of(program));
+      });
   if (!recovery.refused.empty()) {
     refuse_retained(retain, recovery.refused);
   }

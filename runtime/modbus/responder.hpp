@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/modbus/frame.hpp"
@@ -81,8 +82,8 @@ class Responder {
   /// The answer to a PDU of at least one byte.
   [[nodiscard]] Reply answer(std::span<const std::uint8_t> pdu, const Caller& caller);
 
-  /// Why the door refused last; for logs.
-  [[nodiscard]] const std::string& last_refusal() const { return refusal_; }
+  /// Why the door refused since the last call; for logs. Empty where it did not.
+  [[nodiscard]] std::string take_refusal() { return std::exchange(refusal_, {}); }
 
  private:
   using Pdu = std::span<const std::uint8_t>;

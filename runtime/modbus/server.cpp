@@ -255,6 +255,9 @@ class Server::Loop {
         break;
       }
     }
+    if (const std::string why = responder_.take_refusal(); !why.empty()) {
+      tell_of_refusal(client, "by the program: " + why, now);
+    }
     const bool has_output = !client.connection.output().empty() || client.transport->has_output();
     const bool wants_input = client.connection.wants_input() > 0 && client.transport->wants_input();
     const std::uint32_t events =
@@ -287,7 +290,9 @@ class Server::Loop {
       const auto below = place->second.transport->due(now);
       if (const auto ending = below ? below : place->second.connection.due(now)) {
         if (*ending == Ending::tls_failed || *ending == Ending::handshake_late) {
-          tell_of_refusal(place->second, now);
+          const std::string failure = place->second.transport->failure();
+          tell_of_refusal(place->second,
+                          "by TLS: " + (failure.empty() ? "the handshake took too long." : failure + "."), now);
         }
         forget(place, counters_.ended.at(static_cast<std::size_t>(*ending)));
       }
@@ -295,15 +300,13 @@ class Server::Loop {
   }
 
   /// Once a second: whoever is refused cannot fill a log.
-  void tell_of_refusal(const Client& client, Instant now) {
+  void tell_of_refusal(const Client& client, const std::string& why, Instant now) {
     if (!options_.client_refused || (told_ && now < *told_ + std::chrono::seconds(1))) {
       ++untold_;
       return;
     }
-    const std::string failure = client.transport->failure();
-    options_.client_refused(fmt::format("{} is refused by TLS: {}{}.", address_text(client.peer),
-                                        failure.empty() ? "the handshake took too long" : failure,
-                                        untold_ > 0 ? fmt::format("; {} others before", untold_) : ""));
+    options_.client_refused(fmt::format("{} is refused {}{}", address_text(client.peer), why,
+                                        untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
     told_ = now;
     untold_ = 0;
   }

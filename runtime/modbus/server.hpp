@@ -35,8 +35,8 @@ struct ServerOptions {
   /// Called in the server's thread when the client is lost, and when it is back. Must return at once.
   std::function<void(bool lost)> client_lost{};
   std::shared_ptr<const TlsContext> tls{};  ///< none: in the clear
-  /// Called in the server's thread with a line on a client that TLS refused, once a second at the most. Must return at
-  /// once.
+  /// Called in the server's thread with a line on a client that TLS refused, or on a request that the program refused,
+  /// once a second at the most. Must return at once.
   std::function<void(const std::string& line)> client_refused{};
   Place place{};  ///< of these settings, for errors
 };

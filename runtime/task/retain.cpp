@@ -124,7 +124,7 @@ Slot decode_slot(std::span<const std::byte> bytes) {
   return slot;
 }
 
-Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy) {
+Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy, const RetainCheck& check) {
   std::array<Slot, 2> slots;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (const auto bytes = files.read(i)) {
@@ -135,17 +135,21 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   const std::size_t newest = sequence_of(slots[1]) > sequence_of(slots[0]) ? 1 : 0;
   Recovery recovery{.sequence = sequence_of(slots[newest]), .next_slot = 1 - newest};
   const bool any_broken = std::ranges::any_of(slots, [](const Slot& one) { return one.status == SlotStatus::broken; });
-  if (slots[newest].status == SlotStatus::whole && slots[newest].values.layout == layout) {
+  const bool is_whole = slots[newest].status == SlotStatus::whole;
+  const bool is_of_program = is_whole && slots[newest].values.layout == layout;
+  const std::string unfit = is_of_program && check ? check(slots[newest].values) : "";
+  if (is_of_program && unfit.empty()) {
     recovery.values = slots[newest].values;
     recovery.note = any_broken ? "one retain slot was broken; the other was taken" : "";
     return recovery;
   }
-  if (slots[newest].status != SlotStatus::whole && !any_broken) {
+  if (!is_whole && !any_broken) {
     recovery.next_slot = 0;
     return recovery;  // a first start
   }
-  const std::string what = slots[newest].status == SlotStatus::whole ? "The retained values are of another diagram."
-                                                                     : "No retain slot is whole.";
+  const std::string what = !unfit.empty() ? "The retained parameters cannot be: " + unfit
+                           : is_whole     ? "The retained values are of another diagram."
+                                          : "No retain slot is whole.";
   if (policy == MismatchPolicy::refuse) {
     recovery.refused = what;
     return recovery;

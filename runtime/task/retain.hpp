@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -85,8 +86,12 @@ struct Recovery {
   std::array<bool, 2> aside{};  ///< the slots to be put aside before anything is written
 };
 
+/// Why a program cannot take retained values of its own layout, a sentence; empty where it can.
+using RetainCheck = std::function<std::string(const RetainedValues&)>;
+
 /// Reads both slots and says how to start; changes nothing.
-[[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy);
+[[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy,
+                               const RetainCheck& check = {});
 /// Puts aside what the recovery says. Empty, or why it failed.
 [[nodiscard]] std::string put_aside(RetainFiles& files, const Recovery& recovery);
 

@@ -1,5 +1,6 @@
 #include "runtime/task/staged_parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,11 +29,69 @@ std::string refusal_of(const ProgramSignal& signal, double value) {
   return {};
 }
 
-StagedParameters::StagedParameters(std::vector<ProgramSignal> parameters, std::vector<double> values, SetCheck check)
-    : parameters_(std::move(parameters)),
-      committed_(std::move(values)),
-      staged_(committed_),
-      check_(std::move(check)) {}
+namespace {
+
+class Relation {
+ public:
+  Relation(const ProgramShape& shape, const ProgramRelation& relation, std::span<const double> values)
+      : shape_(&shape), relation_(&relation), values_(values) {}
+
+  [[nodiscard]] bool changes(std::span<const double> has) const {
+    const auto changed = [&](const RelatedNumber& one) {
+      return one.parameter && values_[*one.parameter] != has[*one.parameter];
+    };
+    return std::ranges::any_of(relation_->numbers, changed) || (relation_->count && changed(*relation_->count));
+  }
+  [[nodiscard]] std::string refusal() const {
+    const double count = relation_->count ? value(*relation_->count) : 0.0;
+    const std::size_t all = relation_->numbers.size();
+    const std::size_t used = count > 0.0 && count < static_cast<double>(all) ? static_cast<std::size_t>(count) : all;
+    for (std::size_t i = 1; i < used; ++i) {
+      const RelatedNumber& low = relation_->numbers[i - 1];
+      const RelatedNumber& high = relation_->numbers[i];
+      if (!(relation_->strictly ? value(low) < value(high) : value(low) <= value(high))) {
+        return high.parameter
+                   ? text(high) + (relation_->strictly ? " must be above " : " must be at least ") + text(low) + "."
+                   : text(low) + (relation_->strictly ? " must be below " : " must be at most ") + text(high) + ".";
+      }
+    }
+    return {};
+  }
+
+ private:
+  [[nodiscard]] double value(const RelatedNumber& one) const {
+    return one.parameter ? values_[*one.parameter] : one.constant;
+  }
+  [[nodiscard]] std::string text(const RelatedNumber& one) const {
+    return (one.parameter ? shape_->parameters[*one.parameter].name + " = " : "") + number_text(value(one));
+  }
+
+  const ProgramShape* shape_;
+  const ProgramRelation* relation_;
+  std::span<const double> values_;
+};
+
+}  // namespace
+
+std::string refusal_of(const ProgramShape& shape, std::span<const double> values, std::span<const double> has) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] != has[i]) {
+      if (auto refusal = refusal_of(shape.parameters[i], values[i]); !refusal.empty()) {
+        return refusal;
+      }
+    }
+  }
+  for (const ProgramRelation& one : shape.relations) {
+    const Relation relation(shape, one, values);
+    if (auto refusal = relation.changes(has) ? relation.refusal() : ""; !refusal.empty()) {
+      return refusal;
+    }
+  }
+  return {};
+}
+
+StagedParameters::StagedParameters(const ProgramShape& shape, std::vector<double> values)
+    : shape_(&shape), committed_(std::move(values)), staged_(committed_) {}
 
 void StagedParameters::stage(std::size_t parameter, double value) {
   staged_[parameter] = value;
@@ -43,18 +102,11 @@ void StagedParameters::discard() {
 }
 
 std::string StagedParameters::commit() {
-  for (std::size_t i = 0; i < staged_.size(); ++i) {
-    if (auto refusal = refusal_of(parameters_[i], staged_[i]); !refusal.empty()) {
-      return refusal;
-    }
+  auto refusal = refusal_of(*shape_, staged_, committed_);
+  if (refusal.empty()) {
+    committed_ = staged_;
   }
-  if (check_) {
-    if (auto refusal = check_(staged_); !refusal.empty()) {
-      return refusal;
-    }
-  }
-  committed_ = staged_;
-  return {};
+  return refusal;
 }
 
 }  // namespace hysteron::runtime

@@ -2,7 +2,6 @@
 // all.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,18 +10,16 @@
 
 namespace hysteron::runtime {
 
-/// Why a set of parameters cannot be; empty where it can. For what no single range says: an order, a sum.
-using SetCheck = std::function<std::string(std::span<const double>)>;
-
 class StagedParameters {
  public:
-  StagedParameters(std::vector<ProgramSignal> parameters, std::vector<double> values, SetCheck check = {});
+  /// The shape must outlive it.
+  StagedParameters(const ProgramShape& shape, std::vector<double> values);
 
   /// Nothing is checked but that the number is one: a set may be out of range while it is being entered.
   void stage(std::size_t parameter, double value);
   void discard();
   /// The set becomes what counts, whole; or, where anything is refused, nothing changes and the reason is given. What
-  /// was staged stays staged then, to be mended.
+  /// was staged stays staged then, to be mended. What stays as it is in the program is not judged.
   [[nodiscard]] std::string commit();
 
   [[nodiscard]] bool any_staged() const { return staged_ != committed_; }
@@ -30,13 +27,16 @@ class StagedParameters {
   [[nodiscard]] const std::vector<double>& committed() const { return committed_; }
 
  private:
-  std::vector<ProgramSignal> parameters_;
+  const ProgramShape* shape_;
   std::vector<double> committed_;
   std::vector<double> staged_;
-  SetCheck check_;
 };
 
 /// Why a signal cannot take a value, as a sentence that names it; empty where it can.
 [[nodiscard]] std::string refusal_of(const ProgramSignal& signal, double value);
+/// Why a program cannot take new values in the place of those that it has; empty where it can. What does not change is
+/// not judged, nor are relations in which nothing changes.
+[[nodiscard]] std::string refusal_of(const ProgramShape& shape, std::span<const double> values,
+                                     std::span<const double> has);
 
 }  // namespace hysteron::runtime

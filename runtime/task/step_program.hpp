@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,13 +27,28 @@ struct ProgramSignal {
   bool low_excluded = false;  ///< must be above low, not at it
 };
 
+/// A parameter, or a number of the diagram that does not change.
+struct RelatedNumber {
+  std::optional<std::size_t> parameter{};
+  double constant = 0.0;
+};
+
+/// Numbers that must rise from one to the next: a lower and an upper bound, the points of a table. What no range of a
+/// single parameter can say.
+struct ProgramRelation {
+  std::vector<RelatedNumber> numbers{};
+  bool strictly = false;                 ///< each above the one before; else at least at it
+  std::optional<RelatedNumber> count{};  ///< so many of them count; else all
+};
+
 struct ProgramShape {
   std::string name{};
   std::int64_t period = 0;  ///< of the steps, in nanoseconds
   std::vector<ProgramSignal> inputs{};
   std::vector<ProgramSignal> outputs{};
   std::vector<ProgramSignal> parameters{};
-  std::vector<ProgramSignal> inner{};  ///< signals within the diagram that can be looked at; often none
+  std::vector<ProgramRelation> relations{};  ///< among the parameters
+  std::vector<ProgramSignal> inner{};        ///< signals within the diagram that can be looked at; often none
   /// Two programs whose layouts are the same text understand each other's state: same diagram, whatever its parameters.
   std::string layout{};
 };

@@ -25,11 +25,11 @@ std::vector<bool> device_inputs(const TaskSettings& settings) {
   return result;
 }
 
-Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments, SetCheck check)
+Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments)
     : program_(&program),
       settings_(fitting(settings, program.shape())),
       attachments_(attachments),
-      door_(program, device_inputs(settings), settings.outputs, std::move(check)),
+      door_(program, device_inputs(settings), settings.outputs),
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
       watchdog_(settings.watchdog),
       computed_(program.shape().outputs.size()),

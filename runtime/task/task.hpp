@@ -50,7 +50,7 @@ struct TaskAttachments {
 class Task final : private CycleBody {
  public:
   /// The loop's period is the program's. Throws std::invalid_argument where settings do not fit the program.
-  Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments = {}, SetCheck check = {});
+  Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments = {});
 
   /// Runs until it is stopped or ends by itself, and then brings the outputs to their safe values, for as long as their
   /// holds and ramps take. In the calling thread, whose scheduling is the caller's care.

@@ -40,12 +40,11 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
 
 }  // namespace
 
-TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
-                   SetCheck check)
+TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety)
     : device_inputs_(std::move(device_inputs)),
       snapshots_(width_of(program.shape())),
       published_(width_of(program.shape())),
-      parameters_(program.shape().parameters, parameters_of(program), std::move(check)),
+      parameters_(program.shape(), parameters_of(program)),
       wanted_(first_orders(program)),
       orders_(wanted_) {
   const ProgramShape& shape = program.shape();

@@ -44,9 +44,9 @@ struct TaskStatus {
 
 class TaskDoor final : public PointDoor {
  public:
-  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
-  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
-           SetCheck check = {});
+  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output. The program
+  /// must outlive the door.
+  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety);
 
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;

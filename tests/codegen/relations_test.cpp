@@ -1,6 +1,7 @@
 // Parameters of one block that cannot work together are refused, in the text of a diagram and in a parameter file.
 #include "codegen/graph/relations.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <string>
@@ -94,6 +95,30 @@ TEST(Relations, ABlockThatIsUsedTwiceHasItsFaultOnce) {
                     "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
                     "VAR A : P; C : P; END_VAR A(X := U); C(X := A.Z); Y := C.Z; END_FUNCTION_BLOCK"),
             "B.MN = 5 is above MX = 1\n");
+}
+
+/// As p0[2] for an element of the graph's first parameter, and a number for a constant.
+std::string rising(const std::string& part) {
+  const Program program = compile_text(text_with(part));
+  const auto text_of = [](const RisingNumbers::Number& one) {
+    return one.parameter ? fmt::format("p{}[{}]", *one.parameter, one.element) : fmt::format("{}", one.constant);
+  };
+  std::string all;
+  for (const RisingNumbers& list : rising_numbers(program.graph)) {
+    for (const auto& one : list.numbers) {
+      all += text_of(one) + (list.strictly ? " < " : " <= ");
+    }
+    all += list.count ? "count " + text_of(*list.count) + "; " : "; ";
+  }
+  return all;
+}
+
+TEST(Relations, AreListedForWhoChangesParametersLater) {
+  EXPECT_EQ(rising("HY_LIMIT := (MX := 1.0);"), "p0[0] <= p1[0] <= ; ");
+  EXPECT_EQ(rising("HY_DEAD_TIME;"), "p0[0] <= 1.024000000001024 <= ; ");
+  EXPECT_TRUE(rising("HY_TABLE := (X := [0.0, 1.0], Y := [2.0, 1.0], COUNT := 2);").starts_with("p0[0] < p0[1] < "));
+  EXPECT_TRUE(rising("HY_TABLE := (X := [0.0, 1.0], Y := [2.0, 1.0], COUNT := 2);").ends_with(" < count p2[0]; "));
+  EXPECT_EQ(rising("HY_LAG;"), "");
 }
 
 TEST(Relations, AreCheckedInAParameterFileToo) {

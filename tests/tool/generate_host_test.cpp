@@ -42,12 +42,14 @@ constexpr const char* hosted_plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
     HYST : HY_HYSTERESIS_RO := (C1 := 1.5, C2 := 0.1, C3 := 0.7);
     WAVE : HY_SINE := (AMPLITUDE := 3.0, FREQUENCY := 7.0);
     SUM : HY_INTEGRAL;
+    BOUND : HY_LIMIT := (MN := -4.0);
   END_VAR
 
   HYST(XIN := X * WAVE.XOUT);
   SUM(XIN := WAVE.XOUT, R1 := RESET);
   Y := HYST.XOUT;
-  Z := EXP(SUM.XOUT * 0.5);
+  BOUND(XIN := SUM.XOUT);
+  Z := EXP(BOUND.XOUT * 0.5);
   BUSY := WAVE.XOUT > 1.0;
   WAVE();
   N := COUNT * 2;
@@ -141,6 +143,11 @@ TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
     EXPECT_THAT(source.path, AllOf(Not(StartsWith("codegen/")), Not(StartsWith("tool/")), Not(StartsWith("blocks/"))));
   }
   EXPECT_TRUE(bench.read("made/here/run.toml").ends_with(bench.read("RUN.toml")));
+  EXPECT_THAT(
+      bench.read("made/here/main.cpp"),
+      ContainsRegex("\\.relations = \\{\n +\\{\\.numbers = \\{\n +\\{\\.parameter = [0-9]+\\},\n +\\{\\.parameter = "
+                    "[0-9]+\\}\\}\\}\\},\n"))
+      << "a commit is judged there as by serve";
   EXPECT_LE(std::ranges::count(bench.read("made/here/README.md"), '\n'), 22);
   const auto again = bench.shell("hysteron generate plant.st --host --config RUN.toml --out made/here --float32");
   EXPECT_EQ(again.code, 0) << "what was generated before is replaced: " << again.err;

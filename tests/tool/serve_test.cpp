@@ -1,11 +1,15 @@
 // hysteron serve, replay and map as a user runs them: the same bits by both engines, and safe outputs at the end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/task/task.hpp"
+#include "runtime/task/task_door.hpp"
 #include "tests/support/counted_new.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/tool/workbench.hpp"
@@ -118,6 +122,64 @@ TEST(Serve, RunsOnTheVirtualClockAndReplaysToTheBit) {
     const auto run = bench.shell("hysteron run plant.st --in record.csv --out again.csv");
     EXPECT_EQ(run.code, 0) << run.err;
     EXPECT_EQ(bench.shell("rm -r kept").code, 0);
+  }
+}
+
+/// What a parameter file may not say, a client may not commit, and the other way round.
+TEST(Serve, ACommitIsJudgedAsAParameterFileIs) {
+  constexpr const char* bounded = R"(FUNCTION_BLOCK BOUNDED  (* @ts 1ms *)
+  VAR_INPUT X : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR
+    L : HY_LIMIT := (MN := -1.0, MX := 1.0);
+    T : HY_TABLE := (X := [0.0, 1.0, 2.0], Y := [0.0, 2.0, 3.0], COUNT := 3);
+    D : HY_DEAD_TIME := (DEAD_TIME := 0.5);
+  END_VAR
+  L(XIN := X);
+  T(XIN := L.XOUT);
+  D(XIN := T.XOUT);
+  Y := D.XOUT;
+END_FUNCTION_BLOCK
+)";
+  const test::Workbench bench;
+  bench.write("plant.st", bounded);
+  bench.write("RUN.toml", "[outputs.Y]\nsafe = 0.0\n");
+  struct Set {
+    std::string file;
+    std::vector<std::pair<std::string, double>> writes;
+    std::string refusal;
+  };
+  const std::vector<Set> sets{
+      {"[parameters.L]\nMN = 5.0\n", {{"L.MN", 5.0}}, "L.MX = 1 must be at least L.MN = 5."},
+      {"[parameters.L]\nMN = 5.0\nMX = 5.0\n", {{"L.MN", 5.0}, {"L.MX", 5.0}}, ""},
+      {"[parameters.T]\nX = [0.0, 1.0, 1.0]\n", {{"T.X[2]", 1.0}}, "T.X[2] = 1 must be above T.X[1] = 1."},
+      {"[parameters.T]\nX = [0.0, 1.0, 1.0]\nCOUNT = 2\n", {{"T.X[2]", 1.0}, {"T.COUNT", 2.0}}, ""},
+      {"[parameters.D]\nDEAD_TIME = 1.024\n", {{"D.DEAD_TIME", 1.024}}, ""},
+      {"[parameters.D]\nDEAD_TIME = 2.0\n", {{"D.DEAD_TIME", 2.0}}, "D.DEAD_TIME = 2 must be at most 1.02"}};
+  for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
+    for (const Set& set : sets) {
+      const auto program = tool::step_program(compile_text(bounded), engine, false);
+      runtime::TaskDoor door(*program, {false}, {{}});
+      std::vector<runtime::PointWrite> writes;
+      const auto add = [&](const std::string& name, double value) {
+        const auto points = door.points();
+        const auto at = std::ranges::find(points, name, &runtime::Point::name);
+        ASSERT_NE(at, points.end()) << name;
+        writes.push_back({static_cast<std::size_t>(at - points.begin()), value});
+      };
+      for (const auto& [name, value] : set.writes) {
+        add(name, value);
+      }
+      add("task.commit", 1.0);
+      const std::string why = door.write(writes);
+      EXPECT_TRUE(set.refusal.empty() ? why.empty() : why.starts_with(set.refusal)) << why;
+    }
+  }
+  for (const Set& set : sets) {
+    bench.write("p.toml", set.file);
+    const auto served = bench.shell("hysteron serve plant.st --params p.toml --config RUN.toml --virtual --cycles 5");
+    EXPECT_EQ(served.code, set.refusal.empty() ? 0 : 2) << set.file << served.err;
+    EXPECT_EQ(served.err.find("HY214") == std::string::npos, set.refusal.empty()) << served.err;
   }
 }
 

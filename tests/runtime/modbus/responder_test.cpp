@@ -188,7 +188,7 @@ TEST(Responder, OtherRefusalsComeAfterTheChecks) {
   EXPECT_EQ(bench.ask({6, 0x20, 0, 0, 5}, guest), (Bytes{0x86, 2}));
   bench.door.refuse("I16.W is not now");
   EXPECT_EQ(bench.ask(bench.write_request("I16.W", 5)), (Bytes{0x90, 4}));
-  EXPECT_EQ(bench.responder.last_refusal(), "I16.W is not now");
+  EXPECT_EQ(bench.responder.take_refusal(), "I16.W is not now");
   bench.door.refuse("");
   EXPECT_EQ(bench.ask(bench.write_request("I16.W", 5)).at(0), 16);
   EXPECT_EQ(bench.door.writes(), 1U);

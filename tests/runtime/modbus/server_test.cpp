@@ -7,6 +7,9 @@
 
 #include <atomic>
 #include <filesystem>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "runtime/modbus/listen.hpp"
 #include "support/errors.hpp"
@@ -53,6 +56,25 @@ TEST(Server, AnswersAndCounts) {
   EXPECT_EQ(status.exceptions, 1U);
   EXPECT_EQ(status.writes, 1U);
   EXPECT_EQ(status.closed_by_client, 1U);
+}
+
+TEST(Server, SaysWhyTheProgramRefusedARequest) {
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  ServerBench bench({.client_refused = [&](const std::string& line) {
+    const std::scoped_lock lock(mutex);
+    lines.push_back(line);
+  }});
+  bench.door.refuse("L.MX = 1 must be at least L.MN = 5.");
+  const ClientSocket client(bench.server.port());
+  EXPECT_EQ(ask(client, write_one), framed(2, {0x86, 4}));
+  EXPECT_EQ(ask(client, write_one), framed(2, {0x86, 4}));
+  bench.door.refuse("");
+  EXPECT_EQ(ask(client, write_one), write_one);
+  EXPECT_EQ(ask(client, framed(4, {99})), framed(4, {227, 1}));
+  const std::scoped_lock lock(mutex);
+  EXPECT_EQ(lines, std::vector<std::string>{"127.0.0.1 is refused by the program: L.MX = 1 must be at least L.MN = 5."})
+      << "one a second at the most";
 }
 
 TEST(Server, ListensOnLoopbackUnlessToldOtherwise) {

@@ -108,6 +108,21 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
   EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "No retain slot is whole.");
 }
 
+TEST(Retain, ParametersThatTheProgramCannotTakeAreRefusedOrPutAside) {
+  MemoryFiles files;
+  files.slots[0] = encode_slot(some_values(4));
+  const auto check = [&](const RetainedValues& values) {
+    EXPECT_EQ(values.parameters, some_values(4).parameters);
+    return std::string("L.MX = 1 must be at least L.MN = 5.");
+  };
+  const std::string layout = some_values(4).layout;
+  EXPECT_EQ(recover(files, layout, MismatchPolicy::refuse, check).refused,
+            "The retained parameters cannot be: L.MX = 1 must be at least L.MN = 5.");
+  const auto cold = recover(files, layout, MismatchPolicy::cold, check);
+  EXPECT_FALSE(cold.values);
+  EXPECT_TRUE(cold.aside[0]);
+}
+
 TEST(Retain, TheThreadWritesTheNewestAndCountsRefusals) {
   test::Accumulator program;
   MemoryFiles files;

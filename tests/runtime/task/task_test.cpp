@@ -156,13 +156,33 @@ TEST(Task, ParametersAreStagedAndAppliedAsASet) {
   EXPECT_EQ(sum, 9.0);
 }
 
-TEST(Task, ASetThatNoSingleRangeRefusesIsRefusedByItsCheck) {
+TEST(Task, ASetThatNoSingleRangeRefusesIsRefusedByTheRelationsOfItsProgram) {
+  Accumulator program;  // G.A = 1, G.B = -1
+  const RelatedNumber a{.parameter = 0};
+  const RelatedNumber b{.parameter = 1};
+  program.mutable_shape().relations = {{.numbers = {b, a}, .strictly = true},
+                                       {.numbers = {a, {.constant = 7.0}}},
+                                       {.numbers = {{.constant = -9.0}, b, {.constant = -20.0}}, .count = a}};
+  Task task(program, settings(1), {});
+  TaskDoor& door = task.door();
+  write(door, {{"G.A", -1.0}, {"task.commit", 1.0}}, "G.A = -1 must be above G.B = -1.");
+  write(door, {{"G.A", -3.0}, {"G.B", -4.0}, {"task.commit", 1.0}}, "G.B = -4 must be at most -20.");
+  write(door, {{"G.A", 7.5}, {"task.commit", 1.0}}, "G.A = 7.5 must be at most 7.");
+  write(door, {{"G.A", 2.0}, {"G.B", -9.5}, {"task.commit", 1.0}}, "G.B = -9.5 must be at least -9.");
+  write(door, {{"G.A", 2.0}, {"G.B", -8.5}, {"task.commit", 1.0}}, "");
+  run(task);
+  EXPECT_EQ(program.parameter(1), -8.5);
+  EXPECT_EQ(test::value(door, "task.commits"), 1.0) << "nothing of what was refused";
+}
+
+TEST(Task, WhatACommitLeavesAsItIsDoesNotRefuseIt) {
   Accumulator program;
-  Task task(program, settings(1), {}, [](std::span<const double> set) {
-    return set[0] > set[1] ? std::string() : std::string("G.A must be above G.B.");
-  });
-  write(task.door(), {{"G.A", -3.0}, {"task.commit", 1.0}}, "G.A must be above G.B.");
-  write(task.door(), {{"G.A", -3.0}, {"G.B", -4.0}, {"task.commit", 1.0}}, "");
+  program.set_parameter(1, std::numeric_limits<double>::infinity());  // as a bound that is not set
+  program.mutable_shape().relations = {{.numbers = {{.parameter = 1}, {.constant = 0.0}}}};
+  Task task(program, settings(1), {});
+  write(task.door(), {{"G.A", 5.0}, {"task.commit", 1.0}}, "");
+  run(task);
+  EXPECT_EQ(program.parameter(0), 5.0);
 }
 
 TEST(Task, AWriteIsTakenWholeOrNotAtAll) {

@@ -19,13 +19,14 @@ using nlohmann::json;
 
 const std::string bearer = std::string("Bearer ") + test::token;
 
-/// G.A from -1e9 to 1e9, in mm; both parameters only with a sum of 0.
+/// G.A from -1e9 to 1e9, in mm, and at least G.B.
 struct PageBench {
   explicit PageBench(Access access)
       : responder(door, {.name = "ACCUMULATOR", .period = 1'000'000}, std::move(access)) {}
 
   static const test::Accumulator& with_unit(test::Accumulator& program) {
     program.mutable_shape().parameters[0].unit = "mm";
+    program.mutable_shape().relations = {{.numbers = {{.parameter = 1}, {.parameter = 0}}}};
     program.mutable_shape().inner = {{.name = "SUM.XOUT", .unit = "um"}};
     return program;
   }
@@ -49,9 +50,7 @@ struct PageBench {
   }
 
   test::Accumulator program;
-  TaskDoor door{with_unit(program), {false}, {{}, {}}, [](std::span<const double> set) {
-                  return set[0] + set[1] == 0.0 ? std::string() : std::string("G.A and G.B must have the sum 0.");
-                }};
+  TaskDoor door{with_unit(program), {false}, {{}, {}}};
   Responder responder;
 };
 
@@ -123,9 +122,9 @@ TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
   }
   EXPECT_EQ(bench.post("/api/stage", std::string(60'000, '[')).status, 400U);
   // The set as a whole is refused at the commit, and stays staged to be mended.
-  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 3})").status, 200U);
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": -3})").status, 200U);
   (void)bench.door.take_orders();
-  EXPECT_EQ(bench.refusal("/api/commit"), "G.A and G.B must have the sum 0.");
+  EXPECT_EQ(bench.refusal("/api/commit"), "G.A = -3 must be at least G.B = -1.");
   EXPECT_EQ(bench.door.take_orders(), nullptr) << "nothing reaches the task";
   EXPECT_EQ(bench.staged().size(), 1U);
   EXPECT_EQ(bench.post("/api/discard").status, 200U);

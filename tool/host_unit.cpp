@@ -83,7 +83,7 @@ std::string longest_stop(const runtime::RunConfig& config) {
   return longest < 1e9 ? fmt::format("{:.0f}", std::ceil(longest)) : "infinity";
 }
 
-std::string rights_of(const runtime::RunConfig& config) {
+std::string rights_of(const runtime::RunConfig& config, const std::string& unit) {
   std::string rights;
   std::vector<std::string> capabilities;
   if (config.scheduling.scheduling == runtime::Scheduling::fifo) {
@@ -140,6 +140,15 @@ std::string rights_of(const runtime::RunConfig& config) {
       }
     }
   }
+  if (!folders.empty()) {
+    rights += fmt::format(
+        "# Folders elsewhere than in %S must belong to the service's user, which is else made at its start:\n"
+        "#   useradd --system --no-create-home {}\n",
+        unit);
+  }
+  for (const std::string& folder : folders) {
+    rights += fmt::format("#   install -d -o {} \"{}\"\n", unit, folder);
+  }
   for (const std::string& folder : folders) {
     rights += fmt::format("ReadWritePaths={}\n", word("-" + folder));
   }
@@ -151,7 +160,7 @@ std::string rights_of(const runtime::RunConfig& config) {
 std::string service_unit(const HostNames& names, const runtime::RunConfig& config) {
   return fmt::format(fmt::runtime(unit_text), fmt::arg("title", names.title), fmt::arg("name", names.name),
                      fmt::arg("unit", names.unit), fmt::arg("stop", longest_stop(config)),
-                     fmt::arg("rights", rights_of(config)));
+                     fmt::arg("rights", rights_of(config, names.unit)));
 }
 
 }  // namespace hysteron::tool

@@ -1,8 +1,6 @@
 #include "runtime/host/host.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -10,17 +8,17 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "runtime/config/device_field.hpp"
+#include "runtime/host/notices.hpp"
 #include "runtime/host/output_turn.hpp"
+#include "runtime/host/retained_state.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
-#include "runtime/task/staged_parameters.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
@@ -31,8 +29,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
-
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
 
@@ -40,46 +36,27 @@ void ask_to_stop(int /*signal*/) {
   stop_asked.store(true, std::memory_order_relaxed);
 }
 
-std::string status_line(const Task& task, const std::string& how) {
+std::string status_line(const Task& task, const std::string& how, const std::string& unwritten) {
   const LoopStatistics& s = task.statistics();
   const auto events = [&](Cause cause) { return s.events[static_cast<std::size_t>(cause)]; };
   const Fault fault = task.fault() == Fault::stop ? Fault::none : task.fault();  // to end as asked is none
   return fmt::format(
       "{}; {} cycles, {} skipped; late: {} woken, {} own CPU, {} pre-empted, {} steal; start p99.99 {:.1f} us, worst "
-      "{:.1f} us in cycle {}; fault: {}\n",
+      "{:.1f} us in cycle {}{}; fault: {}\n",
       how, s.run, s.skipped, events(Cause::late_wake), events(Cause::own_cpu), events(Cause::preempted),
       events(Cause::host_steal), static_cast<double>(s.lateness.percentile(0.9999)) * 1e-3,
-      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), name_of(fault));
-}
-
-[[noreturn]] void refuse_retained(const RetainConfig& retain, const std::string& cause) {
-  throw InputError(error::retained_values_unfit, retain.place, cause,
-                   "run the diagram that they are of, name another folder, or write mismatch = \"cold\", which puts "
-                   "the files aside.");
-}
-
-/// What the run file asks to keep: read before the program starts.
-Recovery recover_into(RetainFiles& files, const RetainConfig& retain, StepProgram& program) {
-  Recovery recovery =
-      recover(files, program.shape().layout, retain.mismatch, [&](const RetainedValues& values) -> std::string {
-        return refusal_of(program.shape(), values.parameters, parameters_of(program));
-      });
-  if (!recovery.refused.empty()) {
-    refuse_retained(retain, recovery.refused);
-  }
-  if (recovery.values) {
-    for (std::size_t i = 0; i < recovery.values->parameters.size(); ++i) {
-      program.set_parameter(i, recovery.values->parameters[i]);
-    }
-    program.restore(recovery.values->state);
-  }
-  return recovery;
+      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), unwritten, name_of(fault));
 }
 
 std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
   try {
     return std::make_unique<Trace>(settings, program);
   } catch (const std::system_error& problem) {
+    if (problem.code() == std::errc::resource_unavailable_try_again) {
+      throw InputError(error::file_of_another_task, place,
+                       fmt::format("Another task that runs writes its trace to {}.", settings.file.string()),
+                       "end that task first, or name another file.");
+    }
     throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
                      "name a file in a folder that is there and may be written to.");
   }
@@ -113,15 +90,6 @@ void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
   }
 }
 
-/// A line to standard error, where it takes one at once: a server's thread waits for nobody who reads.
-void tell(const std::string& line) {
-  pollfd error{STDERR_FILENO, POLLOUT, 0};
-  if (::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
-    const std::string whole = "Modbus: " + line.substr(0, longest_line) + "\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, whole.data(), whole.size());
-  }
-}
-
 std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task,
                                              const std::shared_ptr<const modbus::TlsContext>& tls) {
   const PlannedMap planned = planned_map(config, title, task.door());
@@ -135,7 +103,7 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .heartbeat = config.heartbeat,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },
                             .tls = tls,
-                            .client_refused = tell,
+                            .client_refused = [](const std::string& line) { tell("Modbus", line); },
                             .place = config.place});
   write_lock_file(config, planned);
   return server;
@@ -194,7 +162,7 @@ class CyclicThread {
 };
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, const Task& task, nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, const Task& task, WriteNotices& notices, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -204,6 +172,7 @@ void wait_for(const CyclicThread& cyclic, const Task& task, nanoseconds period) 
   bool is_stopping = false;
   while (!cyclic.is_done()) {
     std::this_thread::sleep_for(milliseconds(5));
+    notices.look();
     if (!is_stopping && stop_asked.load()) {
       tell_service_manager("STOPPING=1");
       is_stopping = true;
@@ -257,7 +226,10 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
     }
   }
   if (config.trace) {
-    refuse_to_overwrite({.file = config.trace->file.string(), .mend = mend, .place = config.trace_place}, inputs);
+    // What stands there is moved to the second name.
+    for (const auto& file : {config.trace->file, previous_trace(config.trace->file)}) {
+      refuse_to_overwrite({.file = file.string(), .mend = mend, .place = config.trace_place}, inputs);
+    }
   }
 }
 
@@ -288,14 +260,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
         SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
   }
   std::string how = fmt::format("{}: {}", shape.name, options.how);
-  std::optional<RetainFolder> folder;
-  Recovery recovery;
-  if (config.retain) {
-    folder.emplace(config.retain->folder);
-    recovery = recover_into(*folder, *config.retain, program);
-    how += recovery.values ? fmt::format(", from retained state {}", recovery.sequence) : "";
-    how += recovery.note.empty() ? "" : ", " + recovery.note;
-  }
+  const auto retained = config.retain ? std::make_unique<RetainedState>(*config.retain, program) : nullptr;
+  how += retained ? retained->told() : "";
   Task task(program, config.task);
   // Read after the guard was forked: the guard needs no key.
   const auto tls =
@@ -305,15 +271,11 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
 
-  if (folder) {
-    if (const auto problem = put_aside(*folder, recovery); !problem.empty()) {
-      refuse_retained(*config.retain, "The retained files cannot be put aside: " + problem + ".");
-    }
-  }
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
   std::unique_ptr<Retainer> retainer;
-  if (folder) {
-    retainer = std::make_unique<Retainer>(*folder, program, recovery);
+  if (retained) {
+    retained->put_aside();
+    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery());
   }
   std::unique_ptr<DeviceField> field;
   if (!config.devices.empty()) {
@@ -322,16 +284,24 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   task.attach({.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
 
+  WriteNotices notices(retainer.get(), trace.get());
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
-    wait_for(cyclic, task, nanoseconds(shape.period));
+    wait_for(cyclic, task, notices, nanoseconds(shape.period));
     end = cyclic.end();
   }
-  print(status_line(task, shape.name + ": " + std::string(name_of(end))));
-  return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop;
+  if (retainer) {
+    retainer->finish();
+  }
+  if (trace) {
+    trace->finish();
+  }
+  const std::string unwritten = notices.at_the_end();
+  print(status_line(task, shape.name + ": " + std::string(name_of(end)), unwritten));
+  return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop && unwritten.empty();
 }
 
 }  // namespace hysteron::runtime

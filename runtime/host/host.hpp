@@ -29,14 +29,15 @@ struct HostOptions {
 /// where points came.
 [[nodiscard]] modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program);
 
-/// Throws InputError HY709 where the run file has the trace, the lock file or what is retained written over one of the
-/// inputs, or over a file that it names itself. The inputs are those that the run file does not name, and the run file.
+/// Throws InputError HY709 where the run file has the trace or the one before it, the lock file or what is retained
+/// written over one of the inputs, or over a file that it names itself. The inputs are those that the run file does not
+/// name, and the run file.
 void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs);
 
 /// Runs until SIGTERM, Ctrl-C, a fault that ends it or its number of cycles. Prints a line when it runs, and another at
-/// its end. True where it ended as asked, with its outputs safe. Throws InputError HY811, HY812, HY814 and those of the
-/// server, and then no device and no file was touched. To be called while the process has one thread: it forks the
-/// guard.
+/// its end. True where it ended as asked, with its outputs safe and all that it keeps on the disk. Throws InputError
+/// HY811, HY812, HY814 to HY816 and those of the server, and then no device and no file was touched. To be called while
+/// the process has one thread: it forks the guard.
 [[nodiscard]] bool run_host(StepProgram& program, RunConfig config, const HostOptions& options,
                             const std::function<void(std::string_view)>& print);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
 namespace hysteron::runtime {
 namespace {
@@ -148,7 +149,7 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
     return recovery;  // a first start
   }
   const std::string what = !unfit.empty() ? "The retained parameters cannot be: " + unfit
-                           : is_whole     ? "The retained values are of another diagram."
+                           : is_whole     ? "The retained values are of another diagram, or of another engine."
                                           : "No retain slot is whole.";
   if (policy == MismatchPolicy::refuse) {
     recovery.refused = what;
@@ -187,9 +188,16 @@ Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recover
   });
 }
 
-Retainer::~Retainer() {
+void Retainer::finish() {
   stop_.store(true, std::memory_order_relaxed);
-  writer_.join();
+  if (writer_.joinable()) {
+    writer_.join();
+  }
+}
+
+std::string Retainer::problem() const {
+  const std::scoped_lock lock(mutex_);
+  return problem_;
 }
 
 void Retainer::offer(const StepProgram& program) noexcept {
@@ -208,13 +216,16 @@ void Retainer::write_newest() {
   }
   RetainedValues values = *taken;
   values.sequence = sequence_ + 1;
-  if (files_->write(slot_, encode_slot(values)).empty()) {
+  std::string problem = files_->write(slot_, encode_slot(values));
+  if (problem.empty()) {
     sequence_ = values.sequence;
     slot_ = 1 - slot_;
     written_.store(sequence_, std::memory_order_relaxed);
   } else {
     failures_.fetch_add(1, std::memory_order_relaxed);
   }
+  const std::scoped_lock lock(mutex_);
+  problem_ = std::move(problem);
 }
 
 }  // namespace hysteron::runtime

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,7 +52,8 @@ class RetainFiles {
   RetainFiles(const RetainFiles&) = delete;
   RetainFiles& operator=(const RetainFiles&) = delete;
   virtual ~RetainFiles() = default;
-  /// Nothing where there is no such slot.
+  /// Nothing where there is no such slot. Throws std::system_error where there is one that cannot be read: what it
+  /// holds is not lost, and must not be taken for missing.
   [[nodiscard]] virtual std::optional<std::vector<std::byte>> read(std::size_t slot) = 0;
   /// Whole or not at all. Empty, or why it failed.
   virtual std::string write(std::size_t slot, std::span<const std::byte> bytes) = 0;
@@ -59,10 +61,15 @@ class RetainFiles {
   virtual std::string put_aside(std::size_t slot) = 0;
 };
 
-/// Files retain_a and retain_b in a folder, which is made where it is missing.
+/// Files retain_a and retain_b in a folder.
 class RetainFolder final : public RetainFiles {
  public:
   explicit RetainFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ~RetainFolder() override;
+  /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Throws
+  /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task
+  /// holds it.
+  void open();
   [[nodiscard]] std::optional<std::vector<std::byte>> read(std::size_t slot) override;
   std::string write(std::size_t slot, std::span<const std::byte> bytes) override;
   std::string put_aside(std::size_t slot) override;
@@ -70,6 +77,7 @@ class RetainFolder final : public RetainFiles {
 
  private:
   std::filesystem::path folder_;
+  int held_ = -1;
 };
 
 enum class MismatchPolicy : std::uint8_t {
@@ -99,8 +107,7 @@ using RetainCheck = std::function<std::string(const RetainedValues&)>;
 class Retainer {
  public:
   Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start);
-  /// Writes what was offered last, and ends.
-  ~Retainer();
+  ~Retainer() { finish(); }
   Retainer(const Retainer&) = delete;
   Retainer& operator=(const Retainer&) = delete;
 
@@ -110,6 +117,10 @@ class Retainer {
   /// Sequence number of the newest slot on the disk.
   [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_.load(std::memory_order_relaxed); }
+  /// Why the newest state is not on the disk; empty where it is, or none was offered. From any thread.
+  [[nodiscard]] std::string problem() const;
+  /// Writes what was offered last, and ends.
+  void finish();
 
  private:
   void write_newest();
@@ -120,6 +131,8 @@ class Retainer {
   std::uint64_t sequence_;
   std::atomic<std::uint64_t> written_;
   std::atomic<std::uint64_t> failures_{0};
+  mutable std::mutex mutex_;  ///< never taken by the cyclic thread
+  std::string problem_{};
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

@@ -1,11 +1,13 @@
 // The slots as files: written aside, flushed, renamed, and the folder flushed, so that the rename is on the disk too.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "runtime/task/retain.hpp"
@@ -51,17 +53,43 @@ std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
   return folder_ / (slot == 0 ? "retain_a" : "retain_b");
 }
 
+RetainFolder::~RetainFolder() {
+  if (held_ >= 0) {
+    (void)close(held_);
+  }
+}
+
+void RetainFolder::open() {
+  std::error_code unknown;  // the next call says what is wrong
+  std::filesystem::create_directories(folder_, unknown);
+  held_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (held_ < 0 || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
+      flock(held_, LOCK_EX | LOCK_NB) != 0) {
+    throw std::system_error(errno, std::generic_category(), folder_.string());
+  }
+}
+
 std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
-  std::ifstream file(path_of(slot), std::ios::binary);
-  if (!file) {
+  const auto refuse = [&] { throw std::system_error(errno, std::generic_category(), path_of(slot).string()); };
+  const File file(::open(path_of(slot).c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) {
+    if (errno != ENOENT) {
+      refuse();
+    }
     return std::nullopt;
   }
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  std::vector<std::byte> bytes(text.size());
-  if (!text.empty()) {
-    std::memcpy(bytes.data(), text.data(), text.size());
+  std::vector<std::byte> bytes;
+  std::array<std::byte, 4096> part{};
+  for (;;) {
+    const auto count = ::read(file.get(), part.data(), part.size());
+    if (count < 0 && errno != EINTR) {
+      refuse();
+    }
+    if (count == 0) {
+      return bytes;
+    }
+    bytes.insert(bytes.end(), part.begin(), part.begin() + std::max<std::ptrdiff_t>(count, 0));
   }
-  return bytes;
 }
 
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
@@ -70,7 +98,7 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   const auto path = path_of(slot);
   const auto fresh = std::filesystem::path(path).concat(".new");
   {
-    const File file(open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    const File file(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
     if (file.get() < 0 || !write_all(file.get(), bytes) || fsync(file.get()) != 0) {
       return problem(fresh);
     }
@@ -78,7 +106,7 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   if (rename(fresh.c_str(), path.c_str()) != 0) {
     return problem(path);
   }
-  const File folder(open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const File folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   return folder.get() < 0 || fsync(folder.get()) != 0 ? problem(folder_) : std::string();
 }
 

@@ -168,11 +168,22 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
     if (settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0 && !tripped_) {
       attachments_.retainer->offer(*program_);
     }
-    status_.retained = attachments_.retainer->written();
   }
-  status_.dropped = attachments_.trace == nullptr ? 0 : attachments_.trace->dropped();
+  count_writes();
   door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
   return true;
+}
+
+void Task::count_writes() noexcept {
+  status_.write_failures = 0;
+  if (attachments_.retainer != nullptr) {
+    status_.retained = attachments_.retainer->written();
+    status_.write_failures += attachments_.retainer->failures();
+  }
+  if (attachments_.trace != nullptr) {
+    status_.dropped = attachments_.trace->dropped();
+    status_.write_failures += attachments_.trace->is_cut() ? 1 : 0;
+  }
 }
 
 void Task::settle(Clock& clock, Fault fault) {

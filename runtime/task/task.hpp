@@ -79,6 +79,7 @@ class Task final : private CycleBody {
   [[nodiscard]] Fault read_inputs() noexcept;
   [[nodiscard]] bool write_outputs() noexcept;
   void beat() noexcept { beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
+  void count_writes() noexcept;
   void settle(Clock& clock, Fault fault);
 
   StepProgram* program_;

@@ -7,7 +7,7 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::size_t status_count = 15;
+constexpr std::size_t status_count = 16;
 constexpr std::size_t command_count = 4;
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
 
@@ -79,6 +79,7 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   add_status("task.commits", PointType::uint64, "1", "sets of parameters applied");
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
   add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
+  add_status("task.write_failures", PointType::uint64, "1", "writes of the trace or of retained values that failed");
   first_command_ = points_.size();
   add_command("task.commit", WriteRight::parameters,
               "any number but 0: the staged parameters count from the next step on");
@@ -217,6 +218,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.commits),
       static_cast<double>(status.retained),
       static_cast<double>(status.dropped),
+      static_cast<double>(status.write_failures),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

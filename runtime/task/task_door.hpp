@@ -39,6 +39,7 @@ struct TaskStatus {
   std::uint64_t commits = 0;  ///< sets of parameters applied
   std::uint64_t retained = 0;
   std::uint64_t dropped = 0;
+  std::uint64_t write_failures = 0;  ///< of the trace and of retained values
   double heartbeat = 0.0;
 };
 

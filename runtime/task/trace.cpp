@@ -11,6 +11,26 @@
 namespace hysteron::runtime {
 namespace {
 
+/// A record is its length, its kind and its contents.
+constexpr std::size_t record_head = 5;
+
+std::size_t end_of_record(std::string_view records, std::size_t begin) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, records.data() + begin, sizeof(length));
+  return begin + record_head + length;
+}
+
+TraceKind kind_of_record(std::string_view records, std::size_t begin) {
+  return static_cast<TraceKind>(records[begin + 4]);
+}
+
+void append_record(std::string& to, TraceKind kind, std::span<const std::byte> contents) {
+  const auto length = static_cast<std::uint32_t>(contents.size());
+  to.append(reinterpret_cast<const char*>(&length), sizeof(length));
+  to += static_cast<char>(kind);
+  to.append(reinterpret_cast<const char*>(contents.data()), contents.size());
+}
+
 template <class T>
 std::span<const std::byte> bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
@@ -23,11 +43,10 @@ TraceSelector::TraceSelector(const TraceHead& head, std::optional<TraceTrigger> 
 
 void TraceSelector::feed(std::span<const std::byte> records, std::string& out) {
   const std::string_view all(reinterpret_cast<const char*>(records.data()), records.size());
-  for (std::size_t at = 0; at + 5 <= all.size() && !finished_;) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, all.data() + at, sizeof(length));
-    feed_one(static_cast<TraceKind>(all[at + 4]), all.substr(at, 5 + length), out);
-    at += 5 + length;
+  for (std::size_t at = 0; at + record_head <= all.size() && !finished_;) {
+    const std::size_t end = end_of_record(all, at);
+    feed_one(kind_of_record(all, at), all.substr(at, end - at), out);
+    at = end;
   }
 }
 
@@ -84,16 +103,16 @@ bool TraceSelector::fires(std::string_view contents) {
 Trace::Trace(const TraceSettings& settings, const StepProgram& program)
     : ring_(settings.ring_bytes),
       selector_(head_of(program), settings.trigger),
-      file_(settings.file, std::ios::binary | std::ios::trunc),
+      file_(settings.file),
       parameters_(parameters_of(program)),
       state_(program.state_size()),
       state_every_(settings.trigger ? std::max<std::uint64_t>(1, settings.trigger->before)
                                     : std::numeric_limits<std::uint64_t>::max()),
       waits_(settings.waits) {
-  if (!file_) {
+  const std::string head = text_of(head_of(program));
+  if (file_.write(head) < head.size()) {
     throw std::system_error(errno, std::generic_category(), settings.file.string());
   }
-  file_ << text_of(head_of(program));
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
       write_out(false);
@@ -103,9 +122,11 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
   });
 }
 
-Trace::~Trace() {
+void Trace::finish() {
   stop_.store(true, std::memory_order_relaxed);
-  writer_.join();
+  if (writer_.joinable()) {
+    writer_.join();
+  }
 }
 
 bool Trace::push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept {
@@ -168,20 +189,37 @@ void Trace::write_out(bool last) {
   std::vector<std::byte> records;
   ring_.take(records);
   std::string out;
+  const std::uint64_t before = selector_.steps_written();
   selector_.feed(records, out);
+  write_records(out, selector_.steps_written() - before);
   if (last) {
-    const std::array<std::uint64_t, 2> numbers{selector_.steps_written(), dropped()};
-    const std::uint32_t length = sizeof(numbers);
-    out.append(reinterpret_cast<const char*>(&length), sizeof(length));
-    out += static_cast<char>(TraceKind::end);
-    out.append(reinterpret_cast<const char*>(numbers.data()), sizeof(numbers));
-  }
-  if (!out.empty()) {
-    file_.write(out.data(), static_cast<std::streamsize>(out.size()));
-    file_.flush();
-    if (!file_) {
-      failures_.fetch_add(1, std::memory_order_relaxed);
+    const std::array<std::uint64_t, 2> numbers{kept_, dropped()};
+    std::string end;
+    append_record(end, TraceKind::end, std::as_bytes(std::span(numbers)));
+    // A file that takes no more has often room for so little, once what was half a record is gone from it.
+    if (const std::size_t written = file_.write(end); written < end.size()) {
+      file_.take_back(written);
     }
+  }
+}
+
+void Trace::write_records(std::string_view records, std::uint64_t steps) {
+  const std::size_t written = is_cut() ? 0 : file_.write(records);
+  if (written == records.size()) {
+    kept_ += steps;
+    return;
+  }
+  std::size_t whole = 0;
+  std::uint64_t whole_steps = 0;
+  for (std::size_t end = 0; (end = end_of_record(records, whole)) <= written; whole = end) {
+    whole_steps += kind_of_record(records, whole) == TraceKind::step ? 1 : 0;
+  }
+  file_.take_back(written - whole);
+  kept_ += whole_steps;
+  dropped_.fetch_add(steps - whole_steps, std::memory_order_relaxed);
+  if (!is_cut()) {
+    problem_ = file_.problem();
+    cut_.store(true, std::memory_order_release);
   }
 }
 

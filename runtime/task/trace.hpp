@@ -2,7 +2,8 @@
 //
 // Without a trigger everything is written. With one, so many steps before it, the step itself and so many after it; the
 // recording begins at a kept state, so that it can be replayed. What the ring has no room for is counted, exactly, and
-// the next state makes what follows replayable again.
+// the next state makes what follows replayable again. Where the file takes no more, the trace ends with its last whole
+// record, and every step from there on is counted as dropped.
 #pragma once
 
 #include <atomic>
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +19,7 @@
 
 #include "runtime/task/byte_ring.hpp"
 #include "runtime/task/trace_file.hpp"
+#include "runtime/task/trace_output.hpp"
 
 namespace hysteron::runtime {
 
@@ -71,10 +72,9 @@ class TraceSelector {
 
 class Trace {
  public:
-  /// Throws std::system_error where the file cannot be opened.
+  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does.
   Trace(const TraceSettings& settings, const StepProgram& program);
-  /// Writes what is left, and the end.
-  ~Trace();
+  ~Trace() { finish(); }
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
 
@@ -87,15 +87,21 @@ class Trace {
             std::span<const double> computed, std::span<const double> outputs) noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_.load(std::memory_order_relaxed); }
+  /// Whether it was cut short: something could not be written, and nothing was from there on.
+  [[nodiscard]] bool is_cut() const noexcept { return cut_.load(std::memory_order_acquire); }
+  /// Why; once it is cut.
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+  /// Writes what is left, and the end. No step comes after it.
+  void finish();
 
  private:
   bool push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept;
   void write_out(bool last);
+  void write_records(std::string_view records, std::uint64_t steps);
 
   ByteRing ring_;
   TraceSelector selector_;
-  std::ofstream file_;
+  TraceOutput file_;
   std::vector<double> parameters_;
   std::vector<std::byte> state_;
   std::uint64_t state_every_;
@@ -103,7 +109,9 @@ class Trace {
   bool needs_state_ = true;
   bool waits_;
   std::atomic<std::uint64_t> dropped_{0};
-  std::atomic<std::uint64_t> failures_{0};
+  std::uint64_t kept_ = 0;  ///< steps in the file; of the writer, as the next two
+  std::string problem_{};
+  std::atomic<bool> cut_{false};
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

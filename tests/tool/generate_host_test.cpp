@@ -182,8 +182,12 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
   EXPECT_THAT(
       unit("[devices.stage]\nserial = \"/dev/ttyUSB3\"\n[inputs.X]\ndevice = \"stage\"\n"
            "[retain]\nfolder = \"/srv/kept\"\n[trace]\nfile = \"/srv/traces/run.trace\"\n"),
-      AllOf(HasSubstr("\nDevicePolicy=closed\nSupplementaryGroups=dialout\nDeviceAllow=/dev/ttyUSB3 rw\n"),
-            HasSubstr("\nReadWritePaths=-/srv/kept\nReadWritePaths=-/srv/traces\n"), Not(HasSubstr("PrivateDevices"))));
+      AllOf(
+          HasSubstr("\nDevicePolicy=closed\nSupplementaryGroups=dialout\nDeviceAllow=/dev/ttyUSB3 rw\n"),
+          HasSubstr("\n#   useradd --system --no-create-home hysteron-plant\n"
+                    "#   install -d -o hysteron-plant \"/srv/kept\"\n#   install -d -o hysteron-plant \"/srv/traces\"\n"
+                    "ReadWritePaths=-/srv/kept\nReadWritePaths=-/srv/traces\n"),
+          Not(HasSubstr("PrivateDevices"))));
   EXPECT_THAT(unit("[modbus]\n[tls]\ncertificate = \"server.pem\"\nkey = \"/etc/my keys/server.key\"\n"
                    "clients = \"/etc/ssl/clients.pem\"\n[roles]\noperator = [\"read\"]\n"),
               AllOf(HasSubstr("\nAmbientCapabilities=CAP_NET_BIND_SERVICE\n"),

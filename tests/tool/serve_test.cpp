@@ -272,7 +272,7 @@ TEST(Serve, ErrorPagesKeepTheirWord) {
   constexpr const char* small =
       "FUNCTION_BLOCK PLANT (* @ts 1ms *)\n  VAR_INPUT X : LREAL := 1.0; END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n"
       "  VAR A : HY_GAIN := (K := 2.0); END_VAR\n  A(XIN := X);\n  Y := A.XOUT;\nEND_FUNCTION_BLOCK\n";
-  for (const int number : {811, 812, 840, 841, 842, 843, 844}) {
+  for (const int number : {811, 812, 816, 840, 841, 842, 843, 844}) {
     const test::Workbench bench;
     bench.write("plant.st", served_plant);
     bench.write("RUN.toml", std::string(run_file) + "[retain]\nfolder = \"of_another_diagram\"\n");

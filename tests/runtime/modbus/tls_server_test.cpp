@@ -27,7 +27,7 @@ using test::framed;
 constexpr milliseconds patience{5000};
 
 /// Register 0 is an input, register 1 a parameter, register 2 the command that resets.
-std::vector<Point> points() {
+std::vector<Point> served_points() {
   auto list = test::registers_to_serve();
   list[0].right = WriteRight::inputs;
   list[1].right = WriteRight::parameters;
@@ -60,7 +60,7 @@ class TlsServer : public ::testing::Test {
   }
 
   test::TlsFiles files_;
-  test::MemoryDoor door_{points()};
+  test::MemoryDoor door_{served_points()};
   std::mutex mutex_;
   std::string told_;
   std::unique_ptr<Server> server_;

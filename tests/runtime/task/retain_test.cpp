@@ -95,7 +95,8 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
   EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "");  // a first start
   files.slots[0] = encode_slot(some_values(4));
   const auto kept = files.slots[0];
-  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused, "The retained values are of another diagram.");
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::refuse).refused,
+            "The retained values are of another diagram, or of another engine.");
   EXPECT_EQ(files.slots[0], kept);
   const auto cold = recover(files, "other", MismatchPolicy::cold);
   EXPECT_EQ(cold.refused, "");

@@ -2,12 +2,15 @@
 #include "runtime/task/trace.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -157,9 +160,57 @@ TEST(Trace, ACutFileIsReadUpToTheCutAndABrokenOneRefused) {
             "the trace is of another diagram (ACCUMULATOR), or was made by another way of running it");
 }
 
+/// While it lives, no file of this process grows beyond a size.
+class LimitedFiles {
+ public:
+  explicit LimitedFiles(rlim_t size) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
+    (void)::getrlimit(RLIMIT_FSIZE, &limit_);
+    const rlimit smaller{size, limit_.rlim_max};
+    (void)::setrlimit(RLIMIT_FSIZE, &smaller);
+  }
+  ~LimitedFiles() {
+    (void)::setrlimit(RLIMIT_FSIZE, &limit_);
+    (void)std::signal(SIGXFSZ, before_);
+  }
+  LimitedFiles(const LimitedFiles&) = delete;
+  LimitedFiles& operator=(const LimitedFiles&) = delete;
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int);
+};
+
+TEST(Trace, AFileThatTakesNoMoreEndsWithAWholeStepAndTheRestIsCounted) {
+  const hysteron::test::ScratchFolder scratch;
+  const std::size_t record = 5 + 20 + 5 * 8;
+  const std::size_t end = 5 + 16;
+  const auto whole = traced_run({.file = scratch / "whole"}, 5000).size();
+  // Room for a thousand steps, and for a part of one in which the end has room.
+  const LimitedFiles limit(whole - end - 4000 * record + end + 3);
+  Accumulator program;
+  Trace trace({.file = scratch / "trace"}, program);
+  Task task(program, {.loop = {.cycles = 5000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});
+  program.during_step = [&, step = 0](std::span<double>) mutable {
+    EXPECT_TRUE(++step < 4000 || hysteron::test::soon([&] { return trace.is_cut(); }));
+  };
+  VirtualClock clock;
+  const std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+  trace.finish();
+  EXPECT_EQ(trace.problem(), (scratch / "trace") + ": File too large");
+  EXPECT_EQ(trace.dropped(), 4000U);
+  EXPECT_EQ(test::value(task.door(), "task.write_failures"), 1.0);
+  const auto result = replayed(hysteron::test::contents_of(scratch / "trace"));
+  EXPECT_EQ(result.steps, 1000U);
+  EXPECT_EQ(result.dropped, 4000U);
+  EXPECT_EQ(result.different, 0U);
+  EXPECT_TRUE(result.complete);
+}
+
 TEST(Trace, AFileThatCannotBeOpenedIsSaid) {
   const Accumulator program;
   EXPECT_THROW(Trace({.file = "/nowhere/at/all"}, program), std::system_error);
+  EXPECT_THROW(Trace({.file = "/dev/full"}, program), std::system_error);
 }
 
 }  // namespace

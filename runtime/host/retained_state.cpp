@@ -1,0 +1,81 @@
+#include "runtime/host/retained_state.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <system_error>
+#include <vector>
+
+#include "runtime/task/staged_parameters.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+constexpr std::size_t most_names = 3;
+
+[[noreturn]] void refuse_folder(const RetainConfig& config, const std::string& problem) {
+  throw InputError(
+      error::unusable_retain_folder, config.place,
+      fmt::format("Values cannot be retained in {}: {}.", config.folder, problem),
+      "give this user the right to read and write it, remove what is in its way, or name another folder; one "
+      "that is missing is made.");
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most_names; ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return text + (names.size() > most_names ? fmt::format(" and {} more", names.size() - most_names) : "");
+}
+
+}  // namespace
+
+RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
+    : config_(config), folder_(config.folder) {
+  const std::vector<double> given = parameters_of(program);
+  try {
+    folder_.open();
+    recovery_ = recover(folder_, program.shape().layout, config.mismatch, [&](const RetainedValues& values) {
+      return refusal_of(program.shape(), values.parameters, given);
+    });
+  } catch (const std::system_error& problem) {
+    if (problem.code() == std::errc::resource_unavailable_try_again) {
+      throw InputError(error::file_of_another_task, config.place,
+                       fmt::format("Another task that runs retains its values in {}.", config.folder),
+                       "end that task first, or name another folder.");
+    }
+    refuse_folder(config, problem.what());
+  }
+  if (!recovery_.refused.empty()) {
+    throw InputError(
+        error::retained_values_unfit, config.place, recovery_.refused,
+        "run the diagram that they are of, by the engine that retained them, name another folder, or write "
+        "mismatch = \"cold\", which puts the files aside.");
+  }
+  if (recovery_.values) {
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      program.set_parameter(i, recovery_.values->parameters[i]);
+      if (program.parameter(i) != given[i]) {
+        others.push_back(program.shape().parameters[i].name);
+      }
+    }
+    program.restore(recovery_.values->state);
+    told_ = fmt::format(", from retained state {}", recovery_.sequence);
+    if (!others.empty()) {
+      told_ += fmt::format(" with {} parameter{} as retained and not as given: {} (an empty {} gives those given)",
+                           others.size(), others.size() == 1 ? "" : "s", names_text(others), config.folder);
+    }
+  }
+  told_ += recovery_.note.empty() ? "" : ", " + recovery_.note;
+}
+
+void RetainedState::put_aside() {
+  if (const auto problem = runtime::put_aside(folder_, recovery_); !problem.empty()) {
+    refuse_folder(config_, problem);
+  }
+}
+
+}  // namespace hysteron::runtime

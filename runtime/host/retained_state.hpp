@@ -1,0 +1,33 @@
+// What a run goes on from: the retained values of its folder, taken into the program before it starts.
+#pragma once
+
+#include <string>
+
+#include "runtime/config/run_config.hpp"
+#include "runtime/task/retain.hpp"
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+class RetainedState {
+ public:
+  /// Takes parameters and state into the program; changes nothing in the folder. Throws InputError HY811 where what is
+  /// there is of no use, HY815 where another task holds the folder, HY816 where it cannot be used.
+  RetainedState(const RetainConfig& config, StepProgram& program);
+
+  /// For the status line, beginning with a comma: what the program goes on from, and the parameters that are retained
+  /// and not as they were given. Empty at a first start.
+  [[nodiscard]] const std::string& told() const { return told_; }
+  /// Before anything is written: files that do not fit and are not wanted are renamed. Throws InputError HY816.
+  void put_aside();
+  [[nodiscard]] RetainFolder& folder() { return folder_; }
+  [[nodiscard]] const Recovery& recovery() const { return recovery_; }
+
+ private:
+  RetainConfig config_;
+  RetainFolder folder_;
+  Recovery recovery_{};
+  std::string told_{};
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,94 @@
+#include "runtime/task/trace_output.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+namespace hysteron::runtime {
+namespace {
+
+/// Opened and locked, and still the file of that name: whoever held the lock before may have moved it away.
+int open_locked(const std::filesystem::path& file, struct stat& about) {
+  for (;;) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    struct stat now {};
+    if (descriptor < 0 || ::fstat(descriptor, &about) != 0) {
+      return descriptor;
+    }
+    if (!S_ISREG(about.st_mode)) {
+      return descriptor;  // a pipe or a device, which have no lock
+    }
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      (void)::close(descriptor);
+      errno = reason;
+      return -1;
+    }
+    if (::stat(file.c_str(), &now) == 0 && now.st_ino == about.st_ino && now.st_dev == about.st_dev &&
+        ::fstat(descriptor, &about) == 0) {
+      return descriptor;
+    }
+    (void)::close(descriptor);
+  }
+}
+
+}  // namespace
+
+std::filesystem::path previous_trace(const std::filesystem::path& file) {
+  return std::filesystem::path(file).concat(".1");
+}
+
+TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
+  const auto refuse = [&] { throw std::system_error(errno, std::generic_category(), file_.string()); };
+  struct stat about {};
+  descriptor_ = open_locked(file_, about);
+  if (descriptor_ >= 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
+    const int before = descriptor_;  // locked until the new file is
+    if (::rename(file_.c_str(), previous_trace(file_).c_str()) == 0) {
+      descriptor_ = open_locked(file_, about);
+    } else {
+      descriptor_ = -1;
+    }
+    const int reason = errno;
+    (void)::close(before);
+    errno = reason;
+  }
+  if (descriptor_ < 0) {
+    refuse();
+  }
+}
+
+TraceOutput::~TraceOutput() {
+  (void)::close(descriptor_);
+}
+
+std::size_t TraceOutput::write(std::string_view bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const auto count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno != EINTR) {
+      const int reason = errno;
+      problem_ = file_.string() + ": " + std::strerror(reason);
+      errno = reason;
+      break;
+    }
+    done += count < 0 ? 0 : static_cast<std::size_t>(count);
+  }
+  size_ += done;
+  return done;
+}
+
+void TraceOutput::take_back(std::size_t bytes) noexcept {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size_ - bytes)) == 0) {
+    size_ -= bytes;
+    (void)::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET);
+  }
+}
+
+}  // namespace hysteron::runtime

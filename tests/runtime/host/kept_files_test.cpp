@@ -1,0 +1,199 @@
+// What a run keeps on the disk, the trace and the retained state: no other task writes it, no start loses it, and what
+// could not be written is said.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "runtime/host/host.hpp"
+#include "runtime/host/notices.hpp"
+#include "runtime/task/trace_output.hpp"
+#include "support/diagnostic.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/error_page.hpp"
+#include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using hysteron::test::contents_of;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+struct HostRun {
+  bool well = false;
+  std::string out{};
+  std::string err{};  ///< or the error that it was refused with
+};
+
+HostRun host_run(const std::string& rest, double a = 1.0) {
+  test::Accumulator program;
+  program.set_parameter(0, a);
+  HostRun outcome;
+  testing::internal::CaptureStderr();
+  try {
+    const auto config =
+        parse_run_config("RUN.toml", "[outputs.Y]\nsafe = 0.0\n[outputs.TORN]\nsafe = 0.0\n" + rest, program.shape());
+    outcome.well = run_host(program, config, {.how = "linked", .cycles = 20, .virtual_time = true},
+                            [&](std::string_view text) { outcome.out += text; });
+  } catch (const InputError& refused) {
+    const Diagnostic& first = refused.diagnostics().all().front();
+    outcome.out = fmt::format("HY{}:{}: {} {}", first.number, first.place.line, first.cause, first.mend);
+  }
+  outcome.err = testing::internal::GetCapturedStderr();
+  return outcome;
+}
+
+class KeptFiles : public testing::Test {
+ protected:
+  [[nodiscard]] std::string retain(const std::string& rest = "") const {
+    return fmt::format("[retain]\nfolder = \"{}\"\n{}", folder / "kept", rest);
+  }
+  [[nodiscard]] std::string trace() const { return fmt::format("[trace]\nfile = \"{}\"\n", folder / "run.trace"); }
+
+  hysteron::test::ScratchFolder folder{};
+};
+
+TEST_F(KeptFiles, TheTraceOfTheRunBeforeIsKept) {
+  std::string before;
+  for (const double a : {1.0, 2.0, 3.0}) {
+    EXPECT_TRUE(host_run(trace(), a).well);
+    EXPECT_EQ(contents_of(folder / "run.trace.1"), before);
+    before = contents_of(folder / "run.trace");
+    EXPECT_NE(before, "");
+  }
+  EXPECT_EQ(folder.names().size(), 2U);
+}
+
+TEST_F(KeptFiles, OfATaskThatRunsAreRefusedAndLeftAlone) {
+  EXPECT_TRUE(host_run(retain() + trace()).well);
+  {
+    RetainFolder held(folder / "kept");
+    held.open();
+    EXPECT_THAT(host_run(retain()).out,
+                HasSubstr("HY815:5: Another task that runs retains its values in " + (folder / "kept")));
+  }
+  const TraceOutput other(folder / "run.trace");
+  const auto names = folder.names();
+  EXPECT_THAT(host_run(trace()).out, HasSubstr("HY815:6: Another task that runs writes its trace to "));
+  EXPECT_EQ(folder.names(), names);
+  EXPECT_EQ(contents_of(folder / "run.trace"), "");
+}
+
+TEST_F(KeptFiles, ThePageOfThoseOfAnotherTaskKeepsItsWord) {
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  RetainFolder held("retained");
+  held.open();
+  const auto page = hysteron::test::read_error_page("HY815");
+  const auto table = [](const std::string& text) { return text.substr(text.find("[retain]")); };
+  EXPECT_TRUE(host_run(table(page.fails.text)).out.starts_with("HY815:"));
+  EXPECT_TRUE(host_run(table(page.mended.text)).well);
+  std::filesystem::current_path(before);
+}
+
+TEST_F(KeptFiles, ASlotThatCannotBeReadIsNotTakenForMissing) {
+  for (int slot = 0; slot < 2; ++slot) {
+    EXPECT_TRUE(host_run(retain()).well);
+  }
+  for (const char* const slot : {"kept/retain_a", "kept/retain_b"}) {
+    const hysteron::test::ScratchFolder elsewhere;
+    std::filesystem::rename(folder / slot, elsewhere / "slot");
+    std::filesystem::create_directory(folder / slot);
+    const auto names = folder.names();
+    EXPECT_THAT(
+        host_run(retain("mismatch = \"cold\"\n")).out,
+        AllOf(HasSubstr("HY816:5: "), HasSubstr((folder / slot) + ": Is a directory"), HasSubstr("remove what")));
+    EXPECT_EQ(folder.names(), names);
+    std::filesystem::remove(folder / slot);
+    std::filesystem::rename(elsewhere / "slot", folder / slot);
+  }
+  EXPECT_TRUE(host_run(retain()).well);
+}
+
+TEST_F(KeptFiles, ParametersThatAreRetainedAndNotAsGivenAreSaid) {
+  EXPECT_TRUE(host_run(retain(), 1.5).well);
+  EXPECT_THAT(host_run(retain(), 1.5).out, AllOf(HasSubstr(", from retained state 1;"), Not(HasSubstr("as given"))));
+  EXPECT_THAT(
+      host_run(retain(), 2.5).out,
+      HasSubstr(fmt::format(", from retained state 2 with 1 parameter as retained and not as given: G.A (an empty "
+                            "{} gives those given); ",
+                            folder / "kept")));
+}
+
+TEST_F(KeptFiles, AStateThatCannotBeWrittenIsAFaultOfTheRun) {
+  for (const char* const slot : {"kept/retain_a.new", "kept/retain_b.new"}) {
+    std::filesystem::create_directories(folder / slot);
+  }
+  const auto refused = host_run(retain("every = 1\n"));
+  EXPECT_FALSE(refused.well);
+  const std::string cause = (folder / "kept/retain_a.new") + ": Is a directory";
+  EXPECT_THAT(refused.out, HasSubstr("; the last state is not retained: " + cause + "; fault: none\n"));
+}
+
+/// A disk that can be full.
+class Disk final : public RetainFiles {
+ public:
+  std::optional<std::vector<std::byte>> read(std::size_t /*slot*/) override { return std::nullopt; }
+  std::string write(std::size_t /*slot*/, std::span<const std::byte> /*bytes*/) override {
+    return full ? "kept/retain_a.new: No space left on device" : "";
+  }
+  std::string put_aside(std::size_t /*slot*/) override { return {}; }
+  std::atomic<bool> full{false};
+};
+
+TEST(WriteNotices, AFailureIsSaidOnceAndOnceThatItIsOver) {
+  Disk disk;
+  test::Accumulator program;
+  Retainer retainer(disk, program, {});
+  WriteNotices notices(&retainer, nullptr);
+  const auto said = [&](bool full) {
+    disk.full = full;
+    testing::internal::CaptureStderr();
+    for (int i = 0; i < 3; ++i) {
+      const auto tried = retainer.written() + retainer.failures();
+      retainer.offer(program);
+      EXPECT_TRUE(hysteron::test::soon([&] { return retainer.written() + retainer.failures() > tried; }));
+      EXPECT_TRUE(hysteron::test::soon([&] { return retainer.problem().empty() != full; }));
+      notices.look();
+    }
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(said(false), "");
+  for (const std::string newest : {"3", "6"}) {
+    EXPECT_EQ(said(true),
+              "Retain: the newest state on the disk stays " + newest +
+                  ": kept/retain_a.new: No space left on device. Clear what is in the way there; each further "
+                  "state is tried again.\n");
+    EXPECT_THAT(notices.at_the_end(), HasSubstr("; the last state is not retained: kept/retain_a.new: "));
+    EXPECT_EQ(said(false), fmt::format("Retain: written again, state {}.\n", std::stoi(newest) + 1));
+    EXPECT_EQ(notices.at_the_end(), "");
+  }
+  EXPECT_EQ(retainer.failures(), 6U);
+}
+
+TEST(WriteNotices, FailuresAreAmongTheStatusOfTheTask) {
+  Disk disk;
+  disk.full = true;
+  test::Accumulator program;
+  Retainer retainer(disk, program, {});
+  Task task(program, {.loop = {.cycles = 20}, .inputs = {{}}, .outputs = {{}, {}}, .retain_every = 1},
+            {.retainer = &retainer});
+  program.during_step = [&, step = 0](std::span<double>) mutable {
+    EXPECT_TRUE(++step < 10 || hysteron::test::soon([&] { return retainer.failures() > 0; }));
+  };
+  VirtualClock clock;
+  const std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+  EXPECT_GT(test::value(task.door(), "task.write_failures"), 0.0);
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

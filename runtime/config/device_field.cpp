@@ -19,6 +19,7 @@ double seconds(nanoseconds time) {
 DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::function<bool()>& may_write)
     : inputs_(config.device_inputs),
       outputs_(config.device_outputs),
+      input_count_(config.task.inputs.size()),
       period_(config.task.loop.period),
       in_turn_(in_turn),
       written_(outputs_.size()) {
@@ -62,7 +63,10 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
     rounds();
   }
   Fault fault = Fault::none;
-  const auto note = [&](Fault found) { fault = fault == Fault::none ? found : fault; };
+  const auto note = [&](Fault found, std::size_t port) {
+    faulty_port_ = fault == Fault::none ? port : faulty_port_;
+    fault = fault == Fault::none ? found : fault;
+  };
   for (const DeviceInput& input : inputs_) {
     const RemoteReading reading = reading_of(input.link);
     switch (input.tells) {
@@ -70,7 +74,7 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
         if (reading.quality != Quality::never) {
           inputs[input.port] = reading.value;
         }
-        note(input.link.faults ? fault_of(input.link, reading) : Fault::none);
+        note(input.link.faults ? fault_of(input.link, reading) : Fault::none, input.port);
         break;
       case Tells::age:
         inputs[input.port] = seconds(reading.age);
@@ -84,7 +88,7 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
     const RemoteReading reading = reading_of(output.link);
     // In the first cycle in turn nothing has been written yet.
     if (output.link.faults && !(in_turn_ && reading.quality == Quality::never)) {
-      note(fault_of(output.link, reading));
+      note(fault_of(output.link, reading), input_count_ + output.port);
     }
   }
   return fault;
@@ -104,6 +108,7 @@ Delivery DeviceField::delivery() noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const RemoteReading reading = reading_of(outputs_[i].link);
     if (reading.quality != Quality::good || reading.value != written_[i]) {
+      faulty_port_ = input_count_ + outputs_[i].port;
       return in_turn_ ? Delivery::failed : Delivery::pending;
     }
   }

@@ -28,6 +28,7 @@ class DeviceField final : public FieldIo {
   /// lost_link where a device has not been reached for as long as a value may be old, stale_input where it was reached
   /// and refuses the value. Before that a value keeps its last number.
   Fault read(std::span<double> inputs) noexcept override;
+  [[nodiscard]] std::size_t faulty_port() const noexcept override { return faulty_port_; }
   void write(std::span<const double> outputs) noexcept override;
   /// In turn, it is tried once.
   Delivery delivery() noexcept override;
@@ -40,6 +41,8 @@ class DeviceField final : public FieldIo {
   std::vector<DeviceInput> inputs_;
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;
+  std::size_t input_count_;  ///< of the diagram
+  std::size_t faulty_port_ = no_port;
   std::int64_t period_;  ///< of the task
   bool in_turn_;
   std::vector<std::vector<std::int64_t>> rounds_since_good_;  ///< in turn, where only rounds count as time

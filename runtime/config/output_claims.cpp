@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstring>
 #include <system_error>
-#include <variant>
 
 #include "support/sha256.hpp"
 
@@ -16,11 +15,8 @@ namespace hysteron::runtime {
 namespace {
 
 std::string name_of(const modbus::DeviceOptions& device, const modbus::Stretch& at) {
-  const auto* const serial = std::get_if<modbus::SerialLink>(&device.link);
-  const auto* const tcp = std::get_if<modbus::TcpLink>(&device.link);
-  const std::string where = serial != nullptr ? serial->path : fmt::format("{}:{}", tcp->host, tcp->port);
   return "hysteron-output-" +
-         sha256(fmt::format("{} {} {} {}", where, device.unit, static_cast<int>(at.area), at.address));
+         sha256(fmt::format("{} {} {} {}", text_of(device.link), device.unit, static_cast<int>(at.area), at.address));
 }
 
 struct Address {

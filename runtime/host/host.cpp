@@ -36,7 +36,8 @@ void ask_to_stop(int /*signal*/) {
   stop_asked.store(true, std::memory_order_relaxed);
 }
 
-std::string status_line(const Task& task, const std::string& how, const std::string& unwritten) {
+/// `besides`: what else is to be said before the fault.
+std::string status_line(const Task& task, const std::string& how, const std::string& besides) {
   const LoopStatistics& s = task.statistics();
   const auto events = [&](Cause cause) { return s.events[static_cast<std::size_t>(cause)]; };
   const Fault fault = task.fault() == Fault::stop ? Fault::none : task.fault();  // to end as asked is none
@@ -45,7 +46,7 @@ std::string status_line(const Task& task, const std::string& how, const std::str
       "{:.1f} us in cycle {}{}; fault: {}\n",
       how, s.run, s.skipped, events(Cause::late_wake), events(Cause::own_cpu), events(Cause::preempted),
       events(Cause::host_steal), static_cast<double>(s.lateness.percentile(0.9999)) * 1e-3,
-      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), unwritten, name_of(fault));
+      static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), besides, name_of(fault));
 }
 
 std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
@@ -162,7 +163,7 @@ class CyclicThread {
 };
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, const Task& task, WriteNotices& notices, nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, const Task& task, RunNotices& notices, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -282,9 +283,11 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     field = std::make_unique<DeviceField>(config, options.virtual_time,
                                           [&guard] { return guard == nullptr || guard->may_write(); });
   }
-  task.attach({.field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()});
+  const TaskAttachments attachments{
+      .field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()};
+  task.attach(attachments);
 
-  WriteNotices notices(retainer.get(), trace.get());
+  RunNotices notices(config, shape, task, attachments);
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);
@@ -299,9 +302,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (trace) {
     trace->finish();
   }
-  const std::string unwritten = notices.at_the_end();
-  print(status_line(task, shape.name + ": " + std::string(name_of(end)), unwritten));
-  return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop && unwritten.empty();
+  print(status_line(task, shape.name + ": " + std::string(name_of(end)), notices.at_the_end()));
+  return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop && notices.all_is_written();
 }
 
 }  // namespace hysteron::runtime

@@ -10,6 +10,32 @@ namespace hysteron::runtime {
 namespace {
 
 constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
+constexpr std::chrono::seconds pace{1};
+
+/// What to look for.
+std::string_view meaning_of(Fault fault) {
+  switch (fault) {
+    case Fault::hang:
+      return "a cycle took longer than the watchdog allows, or none began in time";
+    case Fault::not_finite:
+      return "the diagram gives infinity or no number";
+    case Fault::stale_input:
+      return "nothing that could be taken came for as long as it may be old";
+    case Fault::lost_link:
+      return "the device has not answered for as long as the value may be old";
+    case Fault::missed_cycle:
+      return "a period passed without a cycle, and missed = \"stop\"";
+    case Fault::lost_client:
+      return "no telegram of the client came for heartbeat_time";
+    case Fault::not_safe:
+      return "the next step to the safe value is lost in rounding";
+    case Fault::none:
+    case Fault::crash:
+    case Fault::stop:
+      break;
+  }
+  return "the task ended";
+}
 
 }  // namespace
 
@@ -46,6 +72,68 @@ std::string WriteNotices::at_the_end() const {
     text += fmt::format("; the trace was cut short, {} steps are not in it: {}", trace_->dropped(), trace_->problem());
   }
   return text;
+}
+
+FaultNotices::FaultNotices(const RunConfig& config, const ProgramShape& shape) {
+  for (const auto* const signals : {&shape.inputs, &shape.outputs}) {
+    for (const ProgramSignal& signal : *signals) {
+      ports_.push_back(signal.name);
+    }
+  }
+  const auto on_device = [&](std::size_t port, const DeviceLink& link) {
+    const modbus::DeviceOptions& device = config.devices[link.device];
+    ports_[port] += fmt::format(" on {} ({})", device.name, text_of(device.link));
+  };
+  for (const DeviceInput& input : config.device_inputs) {
+    if (input.tells == Tells::value) {
+      on_device(input.port, input.link);
+    }
+  }
+  for (const DeviceOutput& output : config.device_outputs) {
+    on_device(shape.inputs.size() + output.port, output.link);
+  }
+}
+
+std::string FaultNotices::last_of(const FaultReport& report) const {
+  return std::string(name_of(report.last)) + (report.port < ports_.size() ? ", " + ports_[report.port] : "");
+}
+
+std::string FaultNotices::line(const FaultReport& report, Clock::time_point now) {
+  if (report == told_ || now < next_) {
+    return {};
+  }
+  next_ = now + pace;
+  told_ = report;
+  return report.fault == Fault::none
+             ? fmt::format("none any more; {} since the start, the last: {}.", report.count, last_of(report))
+             : fmt::format("{}: {}; {} since the start.", last_of(report), meaning_of(report.fault), report.count);
+}
+
+RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task,
+                       const TaskAttachments& attachments)
+    : task_(&task),
+      guard_(attachments.guard),
+      writes_(attachments.retainer, attachments.trace),
+      faults_(config, shape) {}
+
+void RunNotices::look() {
+  writes_.look();
+  FaultReport report = task_->faults();
+  if (guard_ != nullptr && !guard_->may_write() && report.fault == Fault::none) {
+    // A task that hangs cannot say so.
+    report = {.fault = guard_->fault(), .last = guard_->fault(), .count = report.count + 1};
+  }
+  if (const std::string line = faults_.line(report, FaultNotices::Clock::now()); !line.empty()) {
+    tell("Fault", line);
+  }
+}
+
+std::string RunNotices::at_the_end() const {
+  const FaultReport report = task_->faults();
+  const std::string faults = report.count == 0 ? ""
+                                               : fmt::format("; {} fault{}, the last: {}", report.count,
+                                                             report.count == 1 ? "" : "s", faults_.last_of(report));
+  return faults + writes_.at_the_end();
 }
 
 }  // namespace hysteron::runtime

@@ -1,11 +1,16 @@
 // Lines on standard error while a task runs: what went wrong beside the cycle, and that it is well again.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "runtime/config/run_config.hpp"
+#include "runtime/task/fault_log.hpp"
 #include "runtime/task/retain.hpp"
+#include "runtime/task/task.hpp"
 #include "runtime/task/trace.hpp"
 
 namespace hysteron::runtime {
@@ -30,6 +35,42 @@ class WriteNotices {
   const Trace* trace_;
   bool told_retain_ = false;
   bool told_trace_ = false;
+};
+
+/// The faults of the task, a line a second at the most: those that come and go faster are counted in the next.
+class FaultNotices {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  FaultNotices(const RunConfig& config, const ProgramShape& shape);
+
+  /// What is to be said at this time; empty where nothing changed since it was last called, or the second is not over.
+  [[nodiscard]] std::string line(const FaultReport& report, Clock::time_point now);
+  /// The newest fault, and what it is of: lost link, Y on stage (127.0.0.1:502).
+  [[nodiscard]] std::string last_of(const FaultReport& report) const;
+
+ private:
+  std::vector<std::string> ports_{};  ///< inputs, outputs
+  FaultReport told_{};
+  Clock::time_point next_{};
+};
+
+/// All that is said while a task runs.
+class RunNotices {
+ public:
+  RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task, const TaskAttachments& attachments);
+
+  /// To be called as time goes by, from a thread that is not the task's.
+  void look();
+  /// For the status line at the end, each part beginning with a semicolon. Once trace and retained state are finished.
+  [[nodiscard]] std::string at_the_end() const;
+  [[nodiscard]] bool all_is_written() const { return writes_.at_the_end().empty(); }
+
+ private:
+  const Task* task_;
+  const Guard* guard_;
+  WriteNotices writes_;
+  FaultNotices faults_;
 };
 
 }  // namespace hysteron::runtime

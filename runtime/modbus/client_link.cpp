@@ -57,6 +57,11 @@ class Turn {
 
 }  // namespace
 
+std::string text_of(const std::variant<TcpLink, SerialLink>& link) {
+  const auto* const tcp = std::get_if<TcpLink>(&link);
+  return tcp == nullptr ? std::get<SerialLink>(link).path : tcp->host + ":" + std::to_string(tcp->port);
+}
+
 void ClientLink::Free::operator()(void* context) const {
   ::modbus_free(static_cast<modbus_t*>(context));
 }

@@ -32,6 +32,9 @@ struct SerialLink {
   friend bool operator==(const SerialLink&, const SerialLink&) = default;
 };
 
+/// Where a device is: 127.0.0.1:502, /dev/ttyUSB0.
+[[nodiscard]] std::string text_of(const std::variant<TcpLink, SerialLink>& link);
+
 enum class Exchange : std::uint8_t {
   answered,
   exception,     ///< the device refuses; the link is sound

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/task/fault_log.hpp"
 #include "runtime/task/safe_outputs.hpp"
 
 namespace hysteron::runtime {
@@ -20,6 +21,8 @@ class FieldIo {
 
   /// Sets the inputs that devices give, and no others. A lost link or an old value is said by the fault.
   virtual Fault read(std::span<double> inputs) noexcept = 0;
+  /// Whose value the fault is that read() or delivery() gave last: of the inputs, and then of the outputs.
+  [[nodiscard]] virtual std::size_t faulty_port() const noexcept { return no_port; }
   virtual void write(std::span<const double> outputs) noexcept = 0;
   /// Whether the devices have taken what was written last. Asked at the end, when nobody tries on.
   virtual Delivery delivery() noexcept { return Delivery::done; }

@@ -82,9 +82,14 @@ double SafeOutputs::target(std::size_t output) const noexcept {
   return limited(outputs_[output], outputs_[output].value);
 }
 
-Fault SafeOutputs::worst() const noexcept {
+std::size_t SafeOutputs::worst_output() const noexcept {
   const auto found = std::ranges::find_if(faults_, [](Fault one) { return one != Fault::none; });
-  return found == faults_.end() ? Fault::none : *found;
+  return static_cast<std::size_t>(found - faults_.begin());
+}
+
+Fault SafeOutputs::worst() const noexcept {
+  const std::size_t output = worst_output();
+  return output == faults_.size() ? Fault::none : faults_[output];
 }
 
 bool SafeOutputs::stuck() const noexcept {

@@ -60,6 +60,8 @@ class SafeOutputs {
   [[nodiscard]] Fault fault(std::size_t output) const noexcept { return faults_[output]; }
   /// Any output's fault; none where there is none.
   [[nodiscard]] Fault worst() const noexcept;
+  /// The output of that fault; behind the last where there is none.
+  [[nodiscard]] std::size_t worst_output() const noexcept;
   /// Whether no output will move any more while the fault lasts.
   [[nodiscard]] bool settled() const noexcept;
   /// Whether an output is not safe and never will be: its next step towards the safe value is lost in rounding.

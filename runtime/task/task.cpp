@@ -68,6 +68,7 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
   Fault fault = read_inputs();
   if (tripped_) {
     fault = Fault::hang;
+    faulty_port_ = no_port;
   } else {
     if (attachments_.trace != nullptr) {
       attachments_.trace->before_step(moment.number, *program_);
@@ -76,6 +77,8 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
   }
   safe_.step(computed_, fault);
   status_.fault = safe_.worst();
+  status_.state = status_.fault == Fault::none ? TaskState::running : TaskState::faulted;
+  faults_.note(status_.fault, status_.fault == fault ? faulty_port_ : inputs_.size() + safe_.worst_output());
   const bool written = write_outputs();
   if (attachments_.trace != nullptr && !tripped_) {
     attachments_.trace->step(moment.number, moment.period, status_.fault, inputs_, computed_, safe_.values());
@@ -112,7 +115,6 @@ void Task::take_orders() noexcept {
     resets_seen_ = orders->resets;
     tripped_ = false;
     client_was_lost_.store(false, std::memory_order_relaxed);
-    status_.state = TaskState::running;
     watchdog_ = Watchdog(settings_.watchdog);
     program_->reset();
     if (attachments_.trace != nullptr) {
@@ -124,19 +126,20 @@ void Task::take_orders() noexcept {
 
 Fault Task::read_inputs() noexcept {
   Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(inputs_);
+  faulty_port_ = fault == Fault::none ? no_port : attachments_.field->faulty_port();
   if (fault == Fault::none &&
       (client_is_lost_.load(std::memory_order_relaxed) || client_was_lost_.load(std::memory_order_relaxed))) {
     fault = Fault::lost_client;
   }
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
-    // A number that is none would stay in the program's state for ever.
-    if (!std::isfinite(inputs_[i])) {
-      inputs_[i] = last_good_[i];
-      fault = fault == Fault::none ? Fault::stale_input : fault;
-    } else if (stale && fault == Fault::none) {
+    const bool is_number = std::isfinite(inputs_[i]);
+    if ((stale || !is_number) && fault == Fault::none) {
       fault = Fault::stale_input;
+      faulty_port_ = i;
     }
+    // A number that is none would stay in the program's state for ever.
+    inputs_[i] = is_number ? inputs_[i] : last_good_[i];
     last_good_[i] = inputs_[i];
   }
   return fault;
@@ -149,6 +152,7 @@ bool Task::write_outputs() noexcept {
       guard_took_over_ = true;
       status_.fault = attachments_.guard->fault();
       status_.state = TaskState::faulted;
+      faults_.note(status_.fault);
       return false;
     }
   }
@@ -163,15 +167,22 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
     tripped_ = true;
     status_.state = TaskState::faulted;
     status_.fault = Fault::hang;
+    faults_.note(Fault::hang);
   }
   if (attachments_.retainer != nullptr) {
     if (settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0 && !tripped_) {
       attachments_.retainer->offer(*program_);
     }
   }
-  count_writes();
-  door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
+  publish(statistics);
   return true;
+}
+
+void Task::publish(const LoopStatistics& statistics) noexcept {
+  count_writes();
+  status_.faults = faults_.newest().count;
+  status_.last_fault = faults_.newest().last;
+  door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
 }
 
 void Task::count_writes() noexcept {
@@ -189,6 +200,9 @@ void Task::count_writes() noexcept {
 void Task::settle(Clock& clock, Fault fault) {
   // To end as asked is no fault; what was wrong just before still is.
   const Fault held = status_.fault == Fault::none || fault != Fault::stop ? fault : status_.fault;
+  if (fault != Fault::stop) {
+    faults_.note(fault);
+  }
   std::int64_t waited = 0;
   Delivery delivery = Delivery::pending;
   for (std::int64_t due = clock.now() + settings_.loop.period;; due += settings_.loop.period) {
@@ -208,7 +222,7 @@ void Task::settle(Clock& clock, Fault fault) {
       break;
     }
     status_.fault = held;
-    door_.publish(*program_, inputs_, safe_.values(), status_, statistics_);
+    publish(statistics_);
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
@@ -216,12 +230,20 @@ void Task::settle(Clock& clock, Fault fault) {
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;
-    status_.fault = !safe_.settled() ? Fault::not_safe : delivery != Delivery::done ? Fault::lost_link : held;
+    if (!safe_.settled()) {
+      status_.fault = Fault::not_safe;
+      faults_.note(Fault::not_safe);
+    } else if (delivery != Delivery::done) {
+      status_.fault = Fault::lost_link;
+      faults_.note(Fault::lost_link, attachments_.field->faulty_port());
+    } else {
+      status_.fault = held;
+    }
     if (attachments_.guard != nullptr && safe_.settled()) {
       (void)attachments_.guard->goodbye();
     }
   }
-  door_.publish(*program_, inputs_, safe_.values(), status_, statistics_);
+  publish(statistics_);
 }
 
 }  // namespace hysteron::runtime

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/task/cyclic_loop.hpp"
+#include "runtime/task/fault_log.hpp"
 #include "runtime/task/field_io.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
@@ -63,6 +64,8 @@ class Task final : private CycleBody {
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
   /// After run(): what ended it, or what was wrong at its end; stop where nothing was.
   [[nodiscard]] Fault fault() const noexcept { return status_.fault; }
+  /// From any thread.
+  [[nodiscard]] FaultReport faults() const noexcept { return faults_.report(); }
   /// From any thread: moves for as long as the cycles go on, those on the way to the safe values too.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::span<const double> outputs() const noexcept { return safe_.values(); }
@@ -80,6 +83,7 @@ class Task final : private CycleBody {
   [[nodiscard]] bool write_outputs() noexcept;
   void beat() noexcept { beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
   void count_writes() noexcept;
+  void publish(const LoopStatistics& statistics) noexcept;
   void settle(Clock& clock, Fault fault);
 
   StepProgram* program_;
@@ -90,6 +94,8 @@ class Task final : private CycleBody {
   Watchdog watchdog_;
   LoopStatistics statistics_{};
   TaskStatus status_{};
+  FaultLog faults_{};
+  std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found
   std::vector<double> inputs_;
   std::vector<double> last_good_;
   std::vector<double> computed_;

@@ -7,7 +7,7 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::size_t status_count = 16;
+constexpr std::size_t status_count = 18;
 constexpr std::size_t command_count = 4;
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
 
@@ -61,11 +61,11 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   for (const ProgramSignal& parameter : shape.parameters) {
     add(point_of(parameter, PointKind::parameter, true));
   }
-  add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
-  add_status(
-      "task.fault", PointType::uint16, "1",
+  constexpr const char* faults =
       "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
-      "9 not safe");
+      "9 not safe";
+  add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
+  add_status("task.fault", PointType::uint16, "1", faults);
   add_status("task.cycles", PointType::uint64, "1", "cycles that were run");
   add_status("task.skipped", PointType::uint64, "1", "periods that passed without a cycle");
   add_status("task.elapsed", PointType::uint64, "1", "periods by the clock: cycles + skipped");
@@ -80,6 +80,8 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
   add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
   add_status("task.write_failures", PointType::uint64, "1", "writes of the trace or of retained values that failed");
+  add_status("task.faults", PointType::uint64, "1", "faults that began");
+  add_status("task.last_fault", PointType::uint16, "1", faults);
   first_command_ = points_.size();
   add_command("task.commit", WriteRight::parameters,
               "any number but 0: the staged parameters count from the next step on");
@@ -219,6 +221,8 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.retained),
       static_cast<double>(status.dropped),
       static_cast<double>(status.write_failures),
+      static_cast<double>(status.faults),
+      static_cast<double>(status.last_fault),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

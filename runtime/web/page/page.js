@@ -131,8 +131,8 @@ function buildCycles() {
   description.points.forEach((point, at) => {
     if (point.kind !== "status") return;
     const row = add(body, "tr", {});
-    const isState = point.name === "task.state" || point.name === "task.fault";
-    add(row, "th", { textContent: isState ? point.name.slice(5) : point.meaning, scope: "row", title: point.name });
+    const isState = ["task.state", "task.fault", "task.last_fault"].includes(point.name);
+    add(row, "th", { textContent: isState ? point.name.slice(5).replace("_", " ") : point.meaning, scope: "row", title: point.name });
     const cell = add(row, "td", { className: "number" });
     cell.dataset.value = point.name;
     statusRows.push({ cell, at, point, names: isState ? names(point.meaning) : null });

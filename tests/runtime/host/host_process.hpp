@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <span>
@@ -77,6 +79,7 @@ class HostProcess {
     said_ = modbus::Descriptor(ends[0]);
     process_ = ::fork();
     if (process_ == 0) {
+      (void)::dup2(::fileno(told_.get()), STDERR_FILENO);
       Twice program;
       const auto say = [&](std::string_view text) {
         [[maybe_unused]] const ssize_t written = ::write(ends[1], text.data(), text.size());
@@ -132,6 +135,13 @@ class HostProcess {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   /// What it said before it ran; all that it said, where it was refused.
   [[nodiscard]] const std::string& said_before() const { return before_; }
+  /// What it said on standard error up to now.
+  [[nodiscard]] std::string told() const {
+    std::string text(4096, '\0');
+    const auto size = ::pread(::fileno(told_.get()), text.data(), text.size(), 0);
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    return text;
+  }
   void send(int signal) const { ::kill(process_, signal); }
   /// Ends it by SIGKILL. Its guard goes on.
   void kill() {
@@ -160,7 +170,11 @@ class HostProcess {
     return text;
   }
 
+  struct Close {
+    void operator()(std::FILE* file) const { (void)std::fclose(file); }
+  };
   modbus::Descriptor said_;
+  std::unique_ptr<std::FILE, Close> told_{std::tmpfile()};
   std::string before_;
   pid_t process_ = 0;
   std::uint16_t port_ = 0;

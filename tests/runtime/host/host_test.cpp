@@ -63,6 +63,39 @@ TEST(Host, ADeviceThatDiesAndAClientThatIsLostMakeTheOutputsSafeUntilTheyAreBack
   EXPECT_EQ(stage.taken(), -1.0) << "the last values arrive before it ends";
 }
 
+TEST(Host, NamesTheDeviceThatIsLostAndCountsFaults) {
+  Stage stage;
+  stage.give(0.25);
+  HostProcess host(run_file(stage.port, x_on_stage));
+  stage.start();
+  auto client = host.client({"Y", "task.state", "task.fault", "task.faults", "task.last_fault"});
+  const auto shows = [&](std::size_t point, double value) {
+    return test::soon([&] { return client->read(point).value == value; });
+  };
+  EXPECT_TRUE(shows(0, 0.5));
+  EXPECT_TRUE(shows(1, 1.0));
+  const double before = client->read(3).value;
+  stage.server.reset();
+  EXPECT_TRUE(shows(2, static_cast<double>(Fault::lost_link)));
+  EXPECT_TRUE(shows(1, 2.0)) << "task.state is faulted";
+  EXPECT_GT(client->read(3).value, before);
+  const auto told = [&](const std::string& text) {
+    return test::soon([&] { return host.told().find(text) != std::string::npos; });
+  };
+  EXPECT_TRUE(
+      told(fmt::format("Fault: lost link, X on stage (127.0.0.1:{}): the device has not answered ", stage.port)) ||
+      told(fmt::format("Fault: lost link, Y on stage (127.0.0.1:{}): the device has not answered ", stage.port)))
+      << host.told();
+  stage.start();
+  EXPECT_TRUE(shows(1, 1.0));
+  EXPECT_TRUE(shows(4, static_cast<double>(Fault::lost_link))) << "the newest stays to be seen";
+  EXPECT_TRUE(told("Fault: none any more; ")) << host.told();
+  const auto [code, said] = host.end();
+  EXPECT_EQ(code, 0);
+  EXPECT_NE(said.find(" on stage (127.0.0.1:"), std::string::npos) << said;
+  EXPECT_TRUE(said.ends_with("; fault: none")) << said;
+}
+
 TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {
   Stage stage;
   const auto silent = modbus::listen_on("127.0.0.1", 0, {});  // connections are made, and nobody takes them
@@ -104,6 +137,7 @@ TEST(Host, WhereTheStepHangsTheGuardHoldsTheDeviceAndTheTaskWritesNoMore) {
     EXPECT_EQ(stage.taken(), -1.0);
     return stage.door.writes() > writes + 50;
   }));
+  EXPECT_TRUE(test::soon([&] { return host.told().find("Fault: hang: ") != std::string::npos; })) << host.told();
 }
 
 TEST(Host, ServesOpenPlcsAddresses) {

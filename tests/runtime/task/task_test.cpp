@@ -111,6 +111,43 @@ TEST(Task, AFaultThatHoldsAtTheEndIsNotForgotten) {
   }
 }
 
+TEST(Task, CountsFaultsAndKeepsTheNewestOfThem) {
+  Accumulator program;
+  Field field;
+  Task task(program, settings(40), {.field = &field});
+  const std::vector<Fault> faults{Fault::none, Fault::lost_link, Fault::none, Fault::stale_input};
+  std::vector<double> states;
+  program.during_step = [&, step = 0U](std::span<double> outputs) mutable {
+    states.push_back(test::value(task.door(), "task.state"));
+    field.fault = faults[++step / 5 % 4];
+    outputs[0] = step == 12 ? std::numeric_limits<double>::infinity() : outputs[0];
+  };
+  run(task);
+  // Twice lost, twice stale, once not finite.
+  const FaultReport report = task.faults();
+  EXPECT_EQ(report.count, 5U);
+  EXPECT_EQ(test::value(task.door(), "task.faults"), 5.0);
+  EXPECT_EQ(report.last, Fault::stale_input);
+  EXPECT_EQ(test::value(task.door(), "task.last_fault"), static_cast<double>(Fault::stale_input));
+  EXPECT_EQ(std::count(states.begin(), states.end(), 2.0), 20)
+      << "faulted while one holds, but for the last cycle, which is not seen";
+}
+
+TEST(Task, AFaultIsOfAnInputOrAnOutput) {
+  Accumulator program;
+  Task task(program, settings(3), {});
+  program.during_step = [&](std::span<double> outputs) { outputs[1] = std::numeric_limits<double>::quiet_NaN(); };
+  run(task);
+  EXPECT_EQ(task.faults(), (FaultReport{.fault = Fault::not_finite, .last = Fault::not_finite, .port = 2, .count = 1}));
+  Field field;
+  field.input = std::numeric_limits<double>::quiet_NaN();
+  Accumulator sound;
+  Task stale(sound, settings(3), {.field = &field});
+  run(stale);
+  EXPECT_EQ(stale.faults(),
+            (FaultReport{.fault = Fault::stale_input, .last = Fault::stale_input, .port = 0, .count = 1}));
+}
+
 TEST(Task, RunsTheProgramAndEndsInSafeOutputs) {
   Accumulator program;
   Field field;

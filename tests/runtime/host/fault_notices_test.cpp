@@ -1,0 +1,66 @@
+// Faults are said once each, with what they are of, and no faster than a reader can follow.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "runtime/host/notices.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+
+class FaultLines : public testing::Test {
+ protected:
+  std::string line(const FaultReport& report, int at) {
+    return notices.line(report, FaultNotices::Clock::time_point(milliseconds(10'000 + at)));
+  }
+
+  const ProgramShape shape{.name = "AXIS",
+                           .period = 1'000'000,
+                           .inputs = {{.name = "X"}, {.name = "X_AGE"}},
+                           .outputs = {{.name = "Y"}, {.name = "Z"}}};
+  const RunConfig config = parse_run_config("RUN.toml",
+                                            "[outputs.Y]\nsafe = 0.0\ndevice = \"bus\"\n[outputs.Z]\nsafe = 0.0\n"
+                                            "[devices.bus]\nserial = \"/dev/ttyS0\"\n[devices.stage]\nport = 1503\n"
+                                            "[inputs.X]\ndevice = \"stage\"\n[inputs.X_AGE]\nage_of = \"X\"\n",
+                                            shape);
+  FaultNotices notices{config, shape};
+};
+
+TEST_F(FaultLines, NameTheDeviceItsAddressAndTheCause) {
+  const auto of = [&](Fault fault, std::size_t port) {
+    return notices.last_of({.fault = fault, .last = fault, .port = port, .count = 1});
+  };
+  EXPECT_EQ(of(Fault::lost_link, 0), "lost link, X on stage (127.0.0.1:1503)");
+  EXPECT_EQ(of(Fault::stale_input, 1), "stale input, X_AGE");
+  EXPECT_EQ(of(Fault::lost_link, 2), "lost link, Y on bus (/dev/ttyS0)");
+  EXPECT_EQ(of(Fault::not_finite, 3), "not finite, Z");
+  EXPECT_EQ(of(Fault::hang, no_port), "hang");
+  for (const Fault fault : {Fault::hang, Fault::not_finite, Fault::stale_input, Fault::lost_link, Fault::missed_cycle,
+                            Fault::lost_client, Fault::not_safe}) {
+    FaultNotices fresh{config, shape};
+    const auto said = fresh.line({.fault = fault, .last = fault, .count = 1}, FaultNotices::Clock::now());
+    EXPECT_TRUE(said.starts_with(std::string(name_of(fault)) + ": ")) << said;
+    EXPECT_TRUE(said.ends_with("; 1 since the start.")) << said;
+  }
+}
+
+TEST_F(FaultLines, ComeOnceForEachChangeAndOnceASecondAtTheMost) {
+  EXPECT_EQ(line({}, 0), "");
+  const FaultReport lost{.fault = Fault::lost_link, .last = Fault::lost_link, .port = 0, .count = 1};
+  const std::string of_x = "lost link, X on stage (127.0.0.1:1503)";
+  EXPECT_EQ(line(lost, 5),
+            of_x + ": the device has not answered for as long as the value may be old; 1 since the start.");
+  EXPECT_EQ(line(lost, 2000), "");
+  const FaultReport over{.last = Fault::lost_link, .port = 0, .count = 1};
+  EXPECT_EQ(line(over, 2005), "none any more; 1 since the start, the last: " + of_x + ".");
+  EXPECT_EQ(line(lost, 2010), "") << "too soon";
+  const FaultReport again{.last = Fault::lost_link, .port = 0, .count = 700};
+  EXPECT_EQ(line(again, 3004), "") << "too soon";
+  EXPECT_EQ(line(again, 3005), "none any more; 700 since the start, the last: " + of_x + ".");
+  EXPECT_EQ(line(again, 9000), "");
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

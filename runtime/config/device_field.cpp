@@ -94,6 +94,14 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
   return fault;
 }
 
+std::uint64_t DeviceField::not_taken() const noexcept {
+  std::uint64_t count = 0;
+  for (const auto& device : devices_) {
+    count += device->not_taken();
+  }
+  return count;
+}
+
 void DeviceField::write(std::span<const double> outputs) noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     written_[i] = outputs[outputs_[i].port];

@@ -28,6 +28,7 @@ class DeviceField final : public FieldIo {
   /// lost_link where a device has not been reached for as long as a value may be old, stale_input where it was reached
   /// and refuses the value. Before that a value keeps its last number.
   Fault read(std::span<double> inputs) noexcept override;
+  [[nodiscard]] std::uint64_t not_taken() const noexcept override;
   [[nodiscard]] std::size_t faulty_port() const noexcept override { return faulty_port_; }
   void write(std::span<const double> outputs) noexcept override;
   /// In turn, it is tried once.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "runtime/modbus/value_bits.hpp"
@@ -19,6 +21,13 @@ constexpr std::array<modbus::Area, 2> written_areas{modbus::Area::holding_regist
 constexpr std::array<Words, 2> network_keys{"host", "port"};
 constexpr std::array<Words, 3> line_keys{"baud", "parity", "stop_bits"};
 constexpr std::array<Words, 4> value_keys{"register", "area", "type", "on_loss"};
+
+/// A limit as a device can tell it: one that stands at 0.1 in a real32 has not left it.
+double as_held(double limit, PointType type) {
+  return type == PointType::real32 && std::abs(limit) <= std::numeric_limits<float>::max()
+             ? static_cast<double>(static_cast<float>(limit))
+             : limit;
+}
 
 }  // namespace
 
@@ -141,6 +150,9 @@ void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlRe
   InputSettings& settings = config_->task.inputs[port];
   const auto link = read_link(shape_->inputs[port].name, false, longest_age, table);
   if (link) {
+    modbus::RemoteValue& value = config_->devices[link->device].values[link->value];
+    value.low = as_held(shape_->inputs[port].low, value.type);
+    value.high = as_held(shape_->inputs[port].high, value.type);
     config_->device_inputs.push_back({.port = port, .link = *link});
     settings.from_device = true;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <numeric>
@@ -124,6 +125,8 @@ class Device::Worker {
     const std::scoped_lock lock(mutex_);
     return status_;
   }
+
+  [[nodiscard]] std::uint64_t not_taken() const noexcept { return not_taken_.load(std::memory_order_relaxed); }
 
   bool round() {
     bool sound = link_.is_open() || connect();
@@ -261,7 +264,8 @@ class Device::Worker {
         cell.quality = cell.quality == Quality::never ? Quality::never : Quality::refused;
       } else if (outcome == Exchange::answered) {
         const auto value = block.written ? std::optional(cell.sent) : decoded(block, options_.values[i], answer);
-        cell.quality = value ? Quality::good : Quality::refused;  // an integer beyond 2^53 is no value that we can hold
+        cell.quality = value ? Quality::good : Quality::refused;
+        not_taken_.fetch_add(value ? 0 : 1, std::memory_order_relaxed);
         cell.value = value.value_or(cell.value);
         cell.good_at = value ? Clock::now() - begin_ : cell.good_at;
       }
@@ -309,6 +313,7 @@ class Device::Worker {
     return request;
   }
 
+  /// Nothing where it is none that may be taken.
   [[nodiscard]] std::optional<double> decoded(const Block& block, const RemoteValue& value,
                                               const std::vector<std::uint8_t>& answer) const {
     const std::uint32_t offset = value.at.address - block.address;
@@ -321,7 +326,9 @@ class Device::Worker {
       const std::size_t at = 2 + 2 * (offset + word);
       used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
     }
-    return value_of(from_registers(used, options_.order), value.type);
+    const auto read = value_of(from_registers(used, options_.order), value.type);
+    const bool is_fit = read && std::isfinite(*read) && *read >= value.low && *read <= value.high;
+    return is_fit ? read : std::nullopt;
   }
 
   const DeviceOptions options_;
@@ -332,6 +339,7 @@ class Device::Worker {
   std::condition_variable_any woken_;
   std::vector<Cell> cells_;
   DeviceStatus status_;
+  std::atomic<std::uint64_t> not_taken_{0};
   ClientLink link_;
   std::jthread thread_;
 };
@@ -348,6 +356,9 @@ void Device::write(std::size_t value, double number) {
 }
 std::chrono::nanoseconds Device::longest_age(std::size_t value) const {
   return worker_->longest_age(value);
+}
+std::uint64_t Device::not_taken() const noexcept {
+  return worker_->not_taken();
 }
 bool Device::round() {
   return worker_->round();

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -27,6 +28,8 @@ struct RemoteValue {
   PointType type = PointType::uint16;
   bool written = false;                     ///< sent to the device every period, once it has a value; else read from it
   std::chrono::nanoseconds longest_age{0};  ///< beyond that it is old; 0: ten periods, or the response time
+  double low = -std::numeric_limits<double>::infinity();  ///< of what is read: what is outside is not taken
+  double high = std::numeric_limits<double>::infinity();
   friend bool operator==(const RemoteValue&, const RemoteValue&) = default;
 };
 
@@ -53,7 +56,7 @@ enum class Quality : std::uint8_t {
   never,    ///< not good since the start
   good,     ///< read, or taken by the device, and not old
   old,      ///< the link is up, but the value did not come for its longest age
-  refused,  ///< the device answered the last request with an exception
+  refused,  ///< the device answered the last request with an exception, or with a value that is not taken
   lost,     ///< no link
 };
 
@@ -91,6 +94,8 @@ class Device {
   [[nodiscard]] RemoteReading read(std::size_t value) const;
   void write(std::size_t value, double number);
   [[nodiscard]] DeviceStatus status() const;
+  /// Values that were read and not taken: beyond their limits, not finite, or an integer that no double holds.
+  [[nodiscard]] std::uint64_t not_taken() const noexcept;
   /// The age beyond which a value is old.
   [[nodiscard]] std::chrono::nanoseconds longest_age(std::size_t value) const;
   /// Without a thread: connects where there is no link, and exchanges every value once; waits for the answers. False

@@ -21,6 +21,8 @@ class FieldIo {
 
   /// Sets the inputs that devices give, and no others. A lost link or an old value is said by the fault.
   virtual Fault read(std::span<double> inputs) noexcept = 0;
+  /// Values that devices gave and that were not taken, since the start.
+  [[nodiscard]] virtual std::uint64_t not_taken() const noexcept { return 0; }
   /// Whose value the fault is that read() or delivery() gave last: of the inputs, and then of the outputs.
   [[nodiscard]] virtual std::size_t faulty_port() const noexcept { return no_port; }
   virtual void write(std::span<const double> outputs) noexcept = 0;

@@ -180,6 +180,7 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
 
 void Task::publish(const LoopStatistics& statistics) noexcept {
   count_writes();
+  status_.not_taken = attachments_.field == nullptr ? 0 : attachments_.field->not_taken();
   status_.faults = faults_.newest().count;
   status_.last_fault = faults_.newest().last;
   door_.publish(*program_, inputs_, safe_.values(), status_, statistics);

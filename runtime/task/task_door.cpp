@@ -7,7 +7,7 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::size_t status_count = 18;
+constexpr std::size_t status_count = 19;
 constexpr std::size_t command_count = 4;
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
 
@@ -80,6 +80,7 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
   add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
   add_status("task.write_failures", PointType::uint64, "1", "writes of the trace or of retained values that failed");
+  add_status("task.not_taken", PointType::uint64, "1", "values of devices beyond the limits of their input, or none");
   add_status("task.faults", PointType::uint64, "1", "faults that began");
   add_status("task.last_fault", PointType::uint16, "1", faults);
   first_command_ = points_.size();
@@ -221,6 +222,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.retained),
       static_cast<double>(status.dropped),
       static_cast<double>(status.write_failures),
+      static_cast<double>(status.not_taken),
       static_cast<double>(status.faults),
       static_cast<double>(status.last_fault),
   };

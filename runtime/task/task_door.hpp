@@ -40,6 +40,7 @@ struct TaskStatus {
   std::uint64_t retained = 0;
   std::uint64_t dropped = 0;
   std::uint64_t write_failures = 0;  ///< of the trace and of retained values
+  std::uint64_t not_taken = 0;       ///< values of devices
   std::uint64_t faults = 0;          ///< that began
   Fault last_fault = Fault::none;    ///< the newest, over or not
   double heartbeat = 0.0;

@@ -1,11 +1,13 @@
 // The task's inputs and outputs on devices: values, their age and quality, and who may write.
 #include "runtime/config/device_field.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <thread>
@@ -139,6 +141,51 @@ TEST(DeviceField, WhatADeviceRefusesIsStale) {
   stage.refuse("not now");
   EXPECT_TRUE(reads(Fault::stale_input));
   EXPECT_EQ(inputs[3], static_cast<double>(Quality::refused));
+}
+
+TEST(DeviceField, WhatIsOutsideOfTheLimitsOfAnInputIsNotTaken) {
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
+  stage.start();
+  ProgramShape limited = shape();
+  limited.inputs[0].low = -1.0;
+  limited.inputs[0].high = 2.0;
+  DeviceField field(parse_run_config("RUN.toml",
+                                     fmt::format("[devices.stage]\nport = {}\n[outputs.Y]\nsafe = 0.0\n[inputs.X]\n"
+                                                 "device = \"stage\"\narea = \"input\"\n[inputs.X_QUALITY]\n"
+                                                 "quality_of = \"X\"\n",
+                                                 port),
+                                     limited),
+                    true);
+  Inputs inputs{};
+  for (const double sound : {-1.0, 0.5, 2.0}) {
+    stage.give(sound);
+    EXPECT_EQ(field.read(inputs), Fault::none) << sound;
+    EXPECT_EQ(inputs[0], sound);
+  }
+  std::uint64_t refused = 0;
+  for (const double wrong : {-1.0000001, 2.0000001, 1e300, -HUGE_VAL, std::nan("")}) {
+    stage.give(wrong);
+    EXPECT_EQ(field.read(inputs), Fault::stale_input) << wrong;
+    EXPECT_EQ(field.faulty_port(), 0U);
+    EXPECT_EQ(inputs[0], 2.0) << "the last that was taken stays";
+    EXPECT_EQ(inputs[2], static_cast<double>(Quality::refused));
+    EXPECT_EQ(field.not_taken(), ++refused);
+  }
+  stage.give(0.5);
+  EXPECT_EQ(field.read(inputs), Fault::none);
+}
+
+TEST(DeviceField, ALimitIsAsTheTypeOnTheDeviceCanTellIt) {
+  ProgramShape limited = shape();
+  limited.inputs[0].low = -0.7;
+  limited.inputs[0].high = 0.1;
+  const std::string text = "[devices.stage]\n[outputs.Y]\nsafe = 0.0\n[inputs.X]\ndevice = \"stage\"\ntype = ";
+  const auto narrow = parse_run_config("RUN.toml", text + "\"real32\"\n", limited).devices[0].values[0];
+  EXPECT_EQ(narrow.low, static_cast<double>(-0.7F));
+  EXPECT_EQ(narrow.high, static_cast<double>(0.1F));
+  const auto wide = parse_run_config("RUN.toml", text + "\"real64\"\n", limited).devices[0].values[0];
+  EXPECT_EQ(wide.high, 0.1);
 }
 
 TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {

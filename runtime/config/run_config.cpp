@@ -261,6 +261,8 @@ class Reader {
     table.read_whole("port", modbus.port);
     table.read("allow", modbus.allow);
     table.read_whole("connections", modbus.connections);
+    modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
+    table.read_whole("connections_per_address", modbus.connections_per_address);
     table.read("read_only", modbus.read_only);
     std::size_t order = 0;
     table.read_choice("word_order", order);

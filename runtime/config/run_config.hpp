@@ -56,6 +56,7 @@ struct ModbusConfig {
   std::uint16_t port = 1502;
   std::vector<std::string> allow{};
   std::size_t connections = 32;
+  std::size_t connections_per_address = 8;
   bool read_only = false;
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;

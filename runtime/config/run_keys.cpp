@@ -186,6 +186,8 @@ constexpr std::array modbus_keys{
     RunKey{"port", whole, "1502", "its port, with `[tls]` by default 802; 0: any that is free", 0.0, 65535.0},
     RunKey{"allow", texts, "[]", "the networks whose clients are served; none: all that reach the address"},
     RunKey{"connections", whole, "32", "clients at once", 1.0, 1000.0},
+    RunKey{"connections_per_address", whole, "(a quarter of them)",
+           "of one IPv4 address, or of the 64 bits that an IPv6 address begins with", 1.0, 1000.0},
     RunKey{"read_only", flag, "false", "writes are refused"},
     RunKey{.name = "word_order",
            .kind = choice,

@@ -100,6 +100,7 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .port = config.port,
                             .allow = config.allow,
                             .connections = config.connections,
+                            .connections_per_address = config.connections_per_address,
                             .read_only = config.read_only,
                             .heartbeat = config.heartbeat,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },

@@ -20,6 +20,12 @@ AddressBytes mapped(const in_addr& four) {
   return bytes;
 }
 
+in_addr four_of(const AddressBytes& bytes) {
+  in_addr four{};
+  std::memcpy(&four, bytes.data() + 12, sizeof four);
+  return four;
+}
+
 /// The bits of a byte that belong to the first `length` bits of an address.
 std::uint8_t mask_of_byte(std::size_t index, unsigned length) {
   const unsigned before = static_cast<unsigned>(index) * 8;
@@ -56,6 +62,14 @@ std::optional<AddressBytes> address_bytes(const sockaddr_storage& peer) {
     return bytes;
   }
   return std::nullopt;
+}
+
+std::optional<AddressBytes> origin_of(const sockaddr_storage& peer) {
+  auto bytes = address_bytes(peer);
+  if (bytes && *bytes != mapped(four_of(*bytes))) {
+    std::fill(bytes->begin() + 8, bytes->end(), std::uint8_t{0});
+  }
+  return bytes;
 }
 
 std::optional<Network> Network::parse(std::string_view text) {

@@ -18,6 +18,10 @@ using AddressBytes = std::array<std::uint8_t, 16>;
 [[nodiscard]] std::optional<AddressBytes> address_bytes(std::string_view text);
 [[nodiscard]] std::optional<AddressBytes> address_bytes(const sockaddr_storage& peer);
 
+/// Who a peer is when connections are counted: its IPv4 address, or the /64 of its IPv6 address, since whoever has one
+/// address of that has all. Nothing for other families.
+[[nodiscard]] std::optional<AddressBytes> origin_of(const sockaddr_storage& peer);
+
 class Network {
  public:
   /// 192.168.10.0/24, fd00::/8, 10.1.2.3. Empty where it is none, or has bits set behind its length.

@@ -34,8 +34,8 @@ constexpr milliseconds accept_pause{100};
 /// Written by the server's thread alone.
 struct Counters {
   using Count = std::atomic<std::uint64_t>;
-  Count open{0}, accepted{0}, refused_full{0}, refused_address{0}, requests{0}, exceptions{0}, writes{0},
-      closed_by_client{0}, client_lost{0};
+  Count open{0}, accepted{0}, refused_full{0}, refused_share{0}, refused_address{0}, requests{0}, exceptions{0},
+      writes{0}, closed_by_client{0}, client_lost{0};
   std::array<Count, endings> ended{};
 };
 
@@ -97,6 +97,7 @@ class Server::Loop {
   struct Client {
     Descriptor socket;
     sockaddr_storage peer{};
+    std::optional<AddressBytes> origin{};
     std::unique_ptr<Transport> transport;
     Connection connection;
     std::uint32_t watched = EPOLLIN;
@@ -189,10 +190,22 @@ class Server::Loop {
         add(counters_.refused_address);
       } else if (clients_.size() >= options_.connections) {
         add(counters_.refused_full);
+      } else if (has_its_share(peer)) {
+        add(counters_.refused_share);
+        tell_of_refusal(
+            peer,
+            fmt::format("a connection beyond the {} of connections_per_address.", options_.connections_per_address),
+            now);
       } else {
         take(std::move(socket), peer, now);
       }
     }
+  }
+
+  [[nodiscard]] bool has_its_share(const sockaddr_storage& peer) const {
+    const auto count =
+        std::ranges::count(clients_, origin_of(peer), [](const auto& client) { return client.second.origin; });
+    return options_.connections_per_address > 0 && static_cast<std::size_t>(count) >= options_.connections_per_address;
   }
 
   void take(Descriptor socket, const sockaddr_storage& peer, Instant now) {
@@ -202,6 +215,7 @@ class Server::Loop {
     if (watch(socket, mark, EPOLLIN)) {
       clients_.emplace(mark, Client{.socket = std::move(socket),
                                     .peer = peer,
+                                    .origin = origin_of(peer),
                                     .transport = make_transport(options_.tls.get(), options_.limits, now),
                                     .connection = Connection(now, options_.limits)});
       add(counters_.accepted);
@@ -256,7 +270,7 @@ class Server::Loop {
       }
     }
     if (const std::string why = responder_.take_refusal(); !why.empty()) {
-      tell_of_refusal(client, "by the program: " + why, now);
+      tell_of_refusal(client.peer, "by the program: " + why, now);
     }
     const bool has_output = !client.connection.output().empty() || client.transport->has_output();
     const bool wants_input = client.connection.wants_input() > 0 && client.transport->wants_input();
@@ -291,7 +305,7 @@ class Server::Loop {
       if (const auto ending = below ? below : place->second.connection.due(now)) {
         if (*ending == Ending::tls_failed || *ending == Ending::handshake_late) {
           const std::string failure = place->second.transport->failure();
-          tell_of_refusal(place->second,
+          tell_of_refusal(place->second.peer,
                           "by TLS: " + (failure.empty() ? "the handshake took too long." : failure + "."), now);
         }
         forget(place, counters_.ended.at(static_cast<std::size_t>(*ending)));
@@ -300,12 +314,12 @@ class Server::Loop {
   }
 
   /// Once a second: whoever is refused cannot fill a log.
-  void tell_of_refusal(const Client& client, const std::string& why, Instant now) {
+  void tell_of_refusal(const sockaddr_storage& peer, const std::string& why, Instant now) {
     if (!options_.client_refused || (told_ && now < *told_ + std::chrono::seconds(1))) {
       ++untold_;
       return;
     }
-    options_.client_refused(fmt::format("{} is refused {}{}", address_text(client.peer), why,
+    options_.client_refused(fmt::format("{} is refused {}{}", address_text(peer), why,
                                         untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
     told_ = now;
     untold_ = 0;
@@ -359,6 +373,7 @@ ServerStatus Server::status() const {
   return {.open = now.open,
           .accepted = now.accepted,
           .refused_full = now.refused_full,
+          .refused_share = now.refused_share,
           .refused_address = now.refused_address,
           .requests = now.requests,
           .exceptions = now.exceptions,

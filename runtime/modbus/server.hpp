@@ -28,6 +28,7 @@ struct ServerOptions {
   std::uint16_t port = 1502;         ///< 0 takes any that is free
   std::vector<std::string> allow{};  ///< networks in CIDR notation; none: whoever can reach the port
   std::size_t connections = 32;
+  std::size_t connections_per_address = 0;  ///< 0: as many as connections
   bool read_only = false;
   ConnectionLimits limits{};
   HeartbeatOptions heartbeat{};
@@ -35,8 +36,8 @@ struct ServerOptions {
   /// Called in the server's thread when the client is lost, and when it is back. Must return at once.
   std::function<void(bool lost)> client_lost{};
   std::shared_ptr<const TlsContext> tls{};  ///< none: in the clear
-  /// Called in the server's thread with a line on a client that TLS refused, or on a request that the program refused,
-  /// once a second at the most. Must return at once.
+  /// Called in the server's thread with a line on a client that TLS refused or that has too many connections, or on a
+  /// request that the program refused, once a second at the most. Must return at once.
   std::function<void(const std::string& line)> client_refused{};
   Place place{};  ///< of these settings, for errors
 };
@@ -46,6 +47,7 @@ struct ServerStatus {
   std::uint64_t open = 0;  ///< connections now
   std::uint64_t accepted = 0;
   std::uint64_t refused_full = 0;     ///< beyond the connections allowed at once
+  std::uint64_t refused_share = 0;    ///< beyond those allowed from one address
   std::uint64_t refused_address = 0;  ///< not in the allow-list
   std::uint64_t requests = 0;
   std::uint64_t exceptions = 0;

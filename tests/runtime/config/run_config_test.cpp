@@ -129,6 +129,8 @@ lock_file = "plant.lock"
   EXPECT_EQ(config.trace->trigger->level, 2.5);
   EXPECT_EQ(config.trace->trigger->before, 7U);
   EXPECT_EQ(config.modbus->port, 1600);
+  EXPECT_EQ(config.modbus->connections, 4U);
+  EXPECT_EQ(config.modbus->connections_per_address, 1U) << "a quarter of them";
   EXPECT_EQ(config.modbus->word_order, modbus::WordOrder::cdab);
   EXPECT_TRUE(config.modbus->read_only);
 }

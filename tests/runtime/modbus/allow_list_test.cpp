@@ -63,5 +63,22 @@ TEST(AllowList, AnEmptyListAllowsEveryoneAndAListNobodyElse) {
   EXPECT_FALSE(is_allowed({*Network::parse("0.0.0.0/0")}, local));
 }
 
+TEST(AllowList, AnOriginIsAnAddressOrTheHalfOfOne) {
+  const auto origin = [](const char* text) {
+    sockaddr_storage peer{};
+    sockaddr_in6 six{};
+    six.sin6_family = AF_INET6;
+    const auto bytes = *address_bytes(text);
+    std::memcpy(&six.sin6_addr, bytes.data(), bytes.size());
+    std::memcpy(&peer, &six, sizeof six);
+    return origin_of(peer);
+  };
+  EXPECT_EQ(origin("10.1.2.3"), address_bytes("10.1.2.3"));
+  EXPECT_NE(origin("10.1.2.3"), origin("10.1.2.4"));
+  EXPECT_EQ(origin("2001:db8:1:2::3"), origin("2001:db8:1:2:ffff::4"));
+  EXPECT_NE(origin("2001:db8:1:2::3"), origin("2001:db8:1:3::3"));
+  EXPECT_FALSE(origin_of(sockaddr_storage{}));
+}
+
 }  // namespace
 }  // namespace hysteron::runtime::modbus

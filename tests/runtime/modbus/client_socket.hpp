@@ -26,14 +26,18 @@ using Bytes = std::vector<std::uint8_t>;
 
 class ClientSocket {
  public:
-  /// Through TLS where a context is given; the handshake is done here.
+  /// Through TLS where a context is given; the handshake is done here. From another address of loopback where one is.
   explicit ClientSocket(std::uint16_t port, std::chrono::milliseconds patience = std::chrono::seconds(5),
-                        ssl_ctx_st* tls = nullptr)
+                        ssl_ctx_st* tls = nullptr, in_addr_t from = INADDR_ANY)
       : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), patience_(patience) {
     sockaddr_in peer{};
     peer.sin_family = AF_INET;
     peer.sin_port = htons(port);
     peer.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(from);
+    (void)::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&here), sizeof here);
     const int on = 1;
     ::setsockopt(socket_.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     const auto seconds = std::chrono::floor<std::chrono::seconds>(patience);

@@ -99,6 +99,38 @@ TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
       << "a place that is free is given again";
 }
 
+TEST(Server, OneAddressHasItsShareAndLeavesTheRestToOthers) {
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  ServerBench bench({.connections = 8, .connections_per_address = 3, .client_refused = [&](const std::string& line) {
+                       const std::scoped_lock lock(mutex);
+                       lines.push_back(line);
+                     }});
+  const auto client_of = [&](unsigned host) {
+    return std::make_unique<ClientSocket>(bench.server.port(), std::chrono::seconds(5), nullptr,
+                                          INADDR_LOOPBACK + host);
+  };
+  std::vector<std::unique_ptr<ClientSocket>> clients;
+  for (const unsigned host : {0U, 1U}) {
+    for (int i = 0; i < 3; ++i) {
+      clients.push_back(client_of(host));
+      ASSERT_EQ(ask(*clients.back(), test::read_one).size(), 11U);
+    }
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_TRUE(client_of(host)->sees_the_end());
+    }
+  }
+  EXPECT_EQ(bench.server.status().refused_share, 10U);
+  EXPECT_EQ(bench.server.status().refused_full, 0U);
+  EXPECT_EQ(ask(*client_of(2), test::read_one).size(), 11U) << "there is room for others";
+  clients.erase(clients.begin());
+  EXPECT_TRUE(test::soon([&] { return bench.server.status().open == 5; }));
+  EXPECT_EQ(ask(*client_of(0), test::read_one).size(), 11U) << "a place that is free is given again";
+  const std::scoped_lock lock(mutex);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.front(), "127.0.0.1 is refused a connection beyond the 3 of connections_per_address.");
+}
+
 TEST(Server, TheAllowListIsAskedBeforeAByteIsRead) {
   ServerBench bench({.allow = {"10.0.0.0/8"}});
   const ClientSocket client(bench.server.port());

@@ -89,6 +89,9 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(MODBUS REQUIRED IMPORTED_TARGET libmodbus)
 
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options(-Wno-restrict)  # GCC 12 at -O3 warns falsely of std::string concatenation
+endif()
 # A fused multiply-add, a reordered sum, or a function of constants that the compiler rounds in its own way would change
 # the bits that the diagram defines.
 add_compile_options(-Wall -Wextra {flags})

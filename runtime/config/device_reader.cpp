@@ -169,8 +169,10 @@ void DeviceReader::read_told(std::size_t port, std::string_view key, Tells tells
     return;
   }
   if (config_->task.inputs[port].from_device) {
-    wrong(table.place(key), shape_->inputs[port].name + " has two sources.",
-          "keep one of device, age_of and quality_of.");
+    wrong(
+        table.place(key),
+        shape_->inputs[port].name + " is given by another key already, and " + std::string(key) + " would give it too.",
+        "keep one of device, age_of and quality_of; the age and the quality of a value are inputs of their own.");
   }
   config_->task.inputs[port].from_device = true;
   told_.push_back({.port = port, .tells = tells, .of = of, .place = table.place(key)});

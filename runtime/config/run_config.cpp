@@ -11,6 +11,7 @@
 #include "runtime/config/device_reader.hpp"
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
+#include "runtime/modbus/value_bits.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -121,7 +122,7 @@ class Reader {
     if (period != shape_.period) {
       found_.error(error::wrong_period, table.place("period"),
                    "The period is not the sample time of " + shape_.name + ", which is " +
-                       number_text(static_cast<double>(shape_.period) * 1e-6) + "ms.",
+                       time_text(static_cast<double>(shape_.period)) + ".",
                    "leave the key out, or state another sample time in the diagram: (* @ts 1ms *).");
     }
     std::size_t policy = 0;
@@ -185,16 +186,50 @@ class Reader {
     output.action = static_cast<SafeAction>(action);
     devices_.read_output(*index, read_longest_age(table), table);
     has_safe_value_[*index] = has_safe_value_[*index] || table.has("safe");
-    if (!(output.low <= output.high) || output.value < output.low || output.value > output.high) {
-      found_.error(error::unfit_safe_value, table.place(table.has("safe") ? "safe" : "low"),
-                   "The safe value " + number_text(output.value) + " of " + shape_.outputs[*index].name +
-                       " is not within its limits, " + number_text(output.low) + " to " + number_text(output.high) +
-                       ".",
-                   "choose a safe value that the output may have, or widen the limits.");
-    }
+    check_safe_value(*index, table);
     if (output.action == SafeAction::ramp && !table.has("ramp")) {
       found_.error(error::unfit_safe_value, table.place("on_fault"), "A ramp is asked for, and no rate is given.",
                    "write the change a second: ramp = 20.0.");
+    }
+  }
+
+  /// Held against the types first: no limit makes an integer hold a half.
+  void check_safe_value(std::size_t port, const TomlReader& table) {
+    const std::string& name = shape_.outputs[port].name;
+    const OutputSafety& output = config_.task.outputs[port];
+    const auto refuse = [&](const std::string& why, const std::string& mend) {
+      found_.error(error::unfit_safe_value, table.place("safe"),
+                   "The safe value " + number_text(output.value) + " of " + name + why, mend);
+    };
+    const auto is_held = [&](PointType type, const std::string& where, const std::string& mend) {
+      const bool held = modbus::holds(type, output.value);
+      const auto [low, high] = modbus::limits_of(type);
+      if (!held) {
+        refuse(" is none that the type of " + where + " holds, " + modbus::name_of(type) + ".",
+               std::string("choose a ") + (type == PointType::real32 ? "" : "whole ") + "number from " +
+                   number_text(low) + " to " + number_text(high) + mend + ".");
+      }
+      return held;
+    };
+    if (!is_held(shape_.outputs[port].type, "the output", "")) {
+      return;
+    }
+    const auto on_device = std::ranges::find(config_.device_outputs, port, &DeviceOutput::port);
+    if (on_device != config_.device_outputs.end()) {
+      const modbus::DeviceOptions& device = config_.devices[on_device->link.device];
+      if (!is_held(device.values[on_device->link.value].type, "its place on " + device.name, ", or another type")) {
+        return;
+      }
+    }
+    if (!(output.low <= output.high)) {
+      found_.error(error::run_value_out_of_range, table.place(table.has("low") ? "low" : "high"),
+                   "The limits of " + name + " leave no value: low is " + number_text(output.low) + ", and high " +
+                       number_text(output.high) + ".",
+                   "choose a low that is at most high; what is left out here counts as the diagram or the type of the "
+                   "register has it.");
+    } else if (output.value < output.low || output.value > output.high) {
+      refuse(" is not within its limits, " + number_text(output.low) + " to " + number_text(output.high) + ".",
+             "choose a safe value that the output may have, or widen the limits.");
     }
   }
 

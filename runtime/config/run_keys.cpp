@@ -256,12 +256,6 @@ constexpr std::array tables{
     RunTable{"[addresses]", "A line for each point of the server whose address is given.", address_keys},
 };
 
-std::string time_text(double nanoseconds) {
-  constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
-  const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
-  return number_text(nanoseconds / unit->first) + unit->second;
-}
-
 std::string kind_text(const RunKey& key) {
   constexpr std::array<const char*, 6> names{"true or false", "text",         "list of texts",
                                              "number",        "whole number", "time"};
@@ -296,6 +290,12 @@ std::string default_text(const RunKey& key) {
 }
 
 }  // namespace
+
+std::string time_text(double nanoseconds) {
+  constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
+  const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
+  return number_text(nanoseconds / unit->first) + unit->second;
+}
 
 std::span<const RunTable> run_tables() {
   return tables;

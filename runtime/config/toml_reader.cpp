@@ -21,10 +21,6 @@ std::string listed(std::span<const std::string_view> words) {
   return text;
 }
 
-std::string duration_text(std::int64_t nanoseconds) {
-  return number_text(static_cast<double>(nanoseconds) * 1e-6) + "ms";
-}
-
 }  // namespace
 
 TomlReader::TomlReader(const std::string& file, std::string name, const toml::table& table,
@@ -65,7 +61,8 @@ void TomlReader::wrong_type(std::string_view key, const std::string& wanted, con
 
 void TomlReader::out_of_range(std::string_view key, const std::string& range) {
   diagnostics_->error(error::run_value_out_of_range, place(key), std::string(key) + " must be " + range + ".",
-                      "choose a value in that range, or leave the key out.");
+                      declared(key).otherwise == "(required)" ? "choose a value in that range."
+                                                              : "choose a value in that range, or leave the key out.");
 }
 
 void TomlReader::read(std::string_view key, bool& into) {
@@ -80,7 +77,7 @@ void TomlReader::read(std::string_view key, bool& into) {
 void TomlReader::read(std::string_view key, std::string& into) {
   if (const auto* const node = table_->get(key)) {
     if (!node->is_string() || node->as_string()->get().empty()) {
-      return wrong_type(key, "a text", "\"name\"");
+      return wrong_type(key, "a text that is not empty", "\"name\"");
     }
     into = node->as_string()->get();
   }
@@ -150,7 +147,8 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::in
     return wrong_type(key, "a length of time in ns, us, ms or s", "\"5ms\"");
   }
   if (*value < low || *value > high) {
-    return out_of_range(key, "from " + duration_text(low) + " to " + duration_text(high));
+    return out_of_range(key,
+                        "from " + time_text(static_cast<double>(low)) + " to " + time_text(static_cast<double>(high)));
   }
   into = *value;
 }

@@ -63,6 +63,21 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
   }
 }
 
+/// An error about a file that the run file names is said at the place that names it.
+template <class Work>
+auto placed(const Place& place, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& refused) {
+    Diagnostics diagnostics;
+    for (Diagnostic one : refused.diagnostics().all()) {
+      one.place = one.place.line == 0 ? place : one.place;
+      diagnostics.add(std::move(one));
+    }
+    throw InputError(std::move(diagnostics));
+  }
+}
+
 /// A register map, and what its lock file has to say from now on.
 struct PlannedMap {
   modbus::RegisterMap map{};
@@ -76,7 +91,8 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
                              .given = config.addresses,
                              .lock_file = config.lock_file};
   const bool has_lock = !config.lock_file.empty() && std::filesystem::exists(config.lock_file);
-  request.lock_text = has_lock ? read_text_file(config.lock_file) : config.first_addresses;
+  request.lock_text =
+      has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : config.first_addresses;
   PlannedMap planned{.map = modbus::make_register_map(door.points(), request)};
   if (!config.lock_file.empty()) {
     const auto text = modbus::lock_text(planned.map);
@@ -87,7 +103,7 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
 
 void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
   if (!planned.lock_text.empty()) {
-    write_file_atomically(config.lock_file, planned.lock_text);
+    placed(config.place, [&] { write_file_atomically(config.lock_file, planned.lock_text); });
   }
 }
 
@@ -246,6 +262,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   (void)std::signal(SIGTERM, ask_to_stop);
   (void)std::signal(SIGINT, ask_to_stop);
 
+  tell_of_unused_devices(config);
   // What can refuse the start comes first: the outputs' claims, the guard, which writes nothing before the first cycle,
   // what was retained, and the servers. Only then files are begun and devices reached.
   OutputClaims claims(config);

@@ -109,6 +109,16 @@ std::string FaultNotices::line(const FaultReport& report, Clock::time_point now)
              : fmt::format("{}: {}; {} since the start.", last_of(report), meaning_of(report.fault), report.count);
 }
 
+void tell_of_unused_devices(const RunConfig& config) {
+  for (const modbus::DeviceOptions& device : config.devices) {
+    if (device.values.empty()) {
+      tell("Run file", fmt::format("no input and no output is on the device {0}. Write device = \"{0}\" below one, or "
+                                   "remove [devices.{0}].",
+                                   device.name));
+    }
+  }
+}
+
 RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task,
                        const TaskAttachments& attachments)
     : task_(&task),

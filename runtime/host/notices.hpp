@@ -55,6 +55,9 @@ class FaultNotices {
   Clock::time_point next_{};
 };
 
+/// A line for each device that no input and no output of the task lies on.
+void tell_of_unused_devices(const RunConfig& config);
+
 /// All that is said while a task runs.
 class RunNotices {
  public:

@@ -78,6 +78,12 @@ std::pair<double, double> limits_of(PointType type) {
   return {0.0, 0.0};
 }
 
+bool holds(PointType type, double value) {
+  const auto [low, high] = limits_of(type);
+  const bool is_real = type == PointType::real32 || type == PointType::real64;
+  return value >= low && value <= high && (is_real || value == std::trunc(value));
+}
+
 std::optional<double> value_of(std::uint64_t bits, PointType type) {
   constexpr std::int64_t exact = std::int64_t{1} << 53U;
   switch (type) {

@@ -67,6 +67,9 @@ constexpr const char* name_of(PointType type) {
 /// The lowest and the highest number that a type holds, and a double exactly.
 [[nodiscard]] std::pair<double, double> limits_of(PointType type);
 
+/// Whether the type holds a number, but for the rounding of a real.
+[[nodiscard]] bool holds(PointType type, double value);
+
 /// The value of bits; empty where an integer is beyond ±2^53 and a double would not hold it exactly.
 [[nodiscard]] std::optional<double> value_of(std::uint64_t bits, PointType type);
 

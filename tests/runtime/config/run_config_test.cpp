@@ -1,6 +1,7 @@
 // The run file: what it says arrives, and what it must not say is refused at its place.
 #include "runtime/config/run_config.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -155,6 +156,62 @@ TEST(RunConfig, CollectsErrorsInTheOrderOfTheFile) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[inputs.X]\nregister = 3\n"), "810@4:12 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[retain]\nevery = 5\n"), "804@3:1 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[modbus]\nallow = [1]\n"), "804@4:9 ");
+}
+
+/// Place, cause and mend of the only error.
+std::string error_of(std::string_view text, const ProgramShape& shape = plant()) {
+  try {
+    (void)parse_run_config("RUN.toml", text, shape);
+  } catch (const InputError& refused) {
+    const Diagnostic& one = refused.diagnostics().all().front();
+    return fmt::format("{}@{}:{} {} | {}", one.number, one.place.line, one.place.column, one.cause, one.mend);
+  }
+  return "";
+}
+
+TEST(RunConfig, ASafeValueIsOneThatItsTypesHold) {
+  const auto on_device = [](const std::string& safe, const std::string& rest) {
+    return "[devices.a]\n[outputs.W]\nsafe = 0\n[outputs.Y]\nsafe = " + safe + "\ndevice = \"a\"\n" + rest;
+  };
+  ProgramShape shape = plant_of_two();
+  shape.outputs[0].low = -1e300;
+  shape.outputs[0].high = 1e300;
+  EXPECT_EQ(error_of(on_device("0.5", "type = \"int16\"\n"), shape),
+            "808@5:8 The safe value 0.5 of Y is none that the type of its place on a holds, int16. | choose a whole "
+            "number from -32768 to 32767, or another type.");
+  for (const auto& [safe, rest] : {std::pair("40000", "type = \"int16\"\n"),
+                                   {"-1", "type = \"uint32\"\n"},
+                                   {"2", "area = \"coil\"\n"},
+                                   {"1e39", "type = \"real32\"\n"}}) {
+    EXPECT_EQ(errors_of(on_device(safe, rest), shape), "808@5:8 ") << safe << rest;
+  }
+  for (const auto& [safe, rest] : {std::pair("-32768", "type = \"int16\"\n"),
+                                   {"1", "area = \"coil\"\n"},
+                                   {"0.1", "type = \"real32\"\n"},
+                                   {"1e39", "type = \"real64\"\n"}}) {
+    EXPECT_EQ(errors_of(on_device(safe, rest), shape), "") << safe << rest;
+  }
+  shape.outputs[0].type = PointType::int32;
+  EXPECT_EQ(error_of("[outputs.W]\nsafe = 0\n[outputs.Y]\nsafe = 0.5\n", shape),
+            "808@4:8 The safe value 0.5 of Y is none that the type of the output holds, int32. | choose a whole number "
+            "from -2147483648 to 2147483647.");
+}
+
+TEST(RunConfig, WhatIsWrongIsWhatIsNamed) {
+  const std::string y = "[outputs.Y]\nsafe = 0\n";
+  EXPECT_TRUE(error_of(y + "low = 3\nhigh = 1\n")
+                  .starts_with("805@3:7 The limits of Y leave no value: low is 3, and high 1. |"))
+      << error_of(y + "low = 3\nhigh = 1\n");
+  EXPECT_EQ(errors_of(y + "high = -20\n"), "805@3:8 ") << "the diagram's low is -10";
+  EXPECT_EQ(error_of("[outputs.Y]\nsafe = nan\n"),
+            "805@2:8 safe must be a finite number. | choose a value in that range.");
+  EXPECT_EQ(error_of(y + "[modbus]\nlisten = \"\"\n"),
+            "804@4:10 listen must be a text that is not empty. | write it as in listen = \"name\".");
+  ProgramShape fast = plant();
+  fast.period = 100'000;
+  EXPECT_TRUE(error_of(y + "[task]\nperiod = \"1ms\"\n", fast)
+                  .starts_with("809@4:10 The period is not the sample time of PLANT, which is 100us. |"))
+      << error_of(y + "[task]\nperiod = \"1ms\"\n", fast);
 }
 
 TEST(RunConfig, AHeartbeatOfWritesNeedsWrites) {

@@ -138,6 +138,20 @@ TEST_F(KeptFiles, AStateThatCannotBeWrittenIsAFaultOfTheRun) {
   EXPECT_THAT(refused.out, HasSubstr("; the last state is not retained: " + cause + "; fault: none\n"));
 }
 
+TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
+  const auto with = [](const std::string& file) {
+    return host_run("[modbus]\nport = 0\nlock_file = \"" + file + "\"\n").out;
+  };
+  EXPECT_TRUE(with(folder.path().string()).starts_with("HY100:5: ")) << with(folder.path().string());
+  EXPECT_TRUE(with("/dev/null/a.lock").starts_with("HY700:5: ")) << with("/dev/null/a.lock");
+}
+
+TEST_F(KeptFiles, ADeviceThatNothingIsOnIsSaid) {
+  EXPECT_EQ(host_run("[devices.stage]\nport = 1\n").err,
+            "Run file: no input and no output is on the device stage. Write device = \"stage\" below one, or remove "
+            "[devices.stage].\n");
+}
+
 /// A disk that can be full.
 class Disk final : public RetainFiles {
  public:

@@ -45,22 +45,25 @@ std::filesystem::path previous_trace(const std::filesystem::path& file) {
 }
 
 TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
-  const auto refuse = [&] { throw std::system_error(errno, std::generic_category(), file_.string()); };
+  const auto refuse = [](const std::filesystem::path& path) {
+    throw std::system_error(errno, std::generic_category(), path.string());
+  };
   struct stat about {};
   descriptor_ = open_locked(file_, about);
   if (descriptor_ >= 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
     const int before = descriptor_;  // locked until the new file is
-    if (::rename(file_.c_str(), previous_trace(file_).c_str()) == 0) {
-      descriptor_ = open_locked(file_, about);
-    } else {
-      descriptor_ = -1;
-    }
+    const auto kept = previous_trace(file_);
+    const bool moved = ::rename(file_.c_str(), kept.c_str()) == 0;
+    descriptor_ = moved ? open_locked(file_, about) : -1;
     const int reason = errno;
     (void)::close(before);
     errno = reason;
+    if (!moved) {
+      refuse(kept);
+    }
   }
   if (descriptor_ < 0) {
-    refuse();
+    refuse(file_);
   }
 }
 

@@ -251,6 +251,9 @@ TEST(Serve, OverwritesNoneOfItsInputs) {
     refused("[modbus]\nport = 0\nlock_file = \"" + output + "\"\n", output, serve);
   }
   refused("[modbus]\nport = 0\nlock_file = \"a.lock\"\n[trace]\nfile = \"./a.lock\"\n", "./a.lock", serve);
+  bench.write("run.trace.1", served_plant);
+  refused("[trace]\nfile = \"run.trace\"\n", "run.trace.1",
+          "serve run.trace.1 --config RUN.toml --virtual --cycles 5", "run.trace.1");
   refused("[retain]\nfolder = \"fresh\"\n[trace]\nfile = \"fresh/retain_b\"\n", "fresh/retain_b", serve);
   refused("[retain]\nfolder = \"kept\"\n", "kept/retain_a",
           "serve kept/retain_a --config RUN.toml --virtual --cycles 5", "kept/retain_a");

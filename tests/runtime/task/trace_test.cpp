@@ -211,6 +211,16 @@ TEST(Trace, AFileThatCannotBeOpenedIsSaid) {
   const Accumulator program;
   EXPECT_THROW(Trace({.file = "/nowhere/at/all"}, program), std::system_error);
   EXPECT_THROW(Trace({.file = "/dev/full"}, program), std::system_error);
+  const hysteron::test::ScratchFolder scratch;
+  scratch.write("trace", "of the run before");
+  std::filesystem::create_directories(scratch / "trace.1");
+  try {
+    const Trace trace({.file = scratch / "trace"}, program);
+    ADD_FAILURE() << "the trace before it could not be kept";
+  } catch (const std::system_error& problem) {
+    EXPECT_EQ(problem.what(), (scratch / "trace.1") + ": Is a directory");
+  }
+  EXPECT_EQ(hysteron::test::contents_of(scratch / "trace"), "of the run before");
 }
 
 }  // namespace

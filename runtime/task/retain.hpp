@@ -65,6 +65,8 @@ class RetainFiles {
 class RetainFolder final : public RetainFiles {
  public:
   explicit RetainFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  RetainFolder(const RetainFolder&) = delete;
+  RetainFolder& operator=(const RetainFolder&) = delete;
   ~RetainFolder() override;
   /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task

@@ -280,8 +280,11 @@ class Enumeration {
           candidate.variant.text = with_block(*source_, *declared.variable, kind.block);
         }
         candidate.family = kind.of_output ? instance + ".XOUT" : instance;
-        add(std::move(candidate),
-            {.effect = kind.id, .block = kind.block, .edge = instance + ".XOUT", .instance = instance});
+        add(std::move(candidate), {.effect = kind.id,
+                                   .block = kind.block,
+                                   .edge = instance + ".XOUT",
+                                   .is_own = enriched || kind.change == Change::Free,
+                                   .instance = instance});
       }
     }
   }

@@ -19,6 +19,7 @@ struct Applied {
   std::string block{};               ///< HY_CREEP
   std::string edge{};                ///< HYST.XOUT; of a richer block, its output
   bool at_port = false;              ///< that edge is an input or an output of the diagram
+  bool is_own = false;               ///< of a block that the diagram has: parameters are moved, nothing is added
   std::vector<std::string> twins{};  ///< edges on which it gained as much: not told apart, and not fitted
   std::string instance{};            ///< path of the block that carries it
   std::vector<EffectParameter> parameters{};
@@ -29,6 +30,7 @@ struct Applied {
 
   [[nodiscard]] bool has(Role role) const;
   [[nodiscard]] bool has_gap() const;
+  [[nodiscard]] std::string place() const { return effect + "@" + edge; }
 };
 
 /// A diagram with the effects added so far.

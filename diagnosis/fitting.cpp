@@ -73,7 +73,7 @@ std::vector<std::string> Explanation::names() const {
 std::vector<std::string> Explanation::places() const {
   std::vector<std::string> places;
   for (const Applied& applied : variant.effects) {
-    places.push_back(applied.effect + "@" + applied.edge);
+    places.push_back(applied.place());
   }
   std::ranges::sort(places);
   return places;

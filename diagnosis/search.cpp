@@ -125,22 +125,6 @@ class Searcher {
   /// The first round is done whole: each effect gets its chance. Later ones end where they are when time is up.
   [[nodiscard]] bool must_stop() const { return can_stop_ && options_.out_of_time && options_.out_of_time(); }
 
-  /// Lines of the residual's spectrum, and periods over a signal, for what oscillates.
-  [[nodiscard]] Hints hints_of(const VectorXd& residuals) const {
-    Hints hints{.sample_time = task_.records.front().sample_time()};
-    for (const records::Record& record : task_.records) {
-      hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
-    }
-    const Index rows = std::min<Index>(residuals.size(), std::ssize(task_.records.front().time()));
-    for (const std::string& output : task_.outputs) {
-      if (const double step = common_step(task_.records.front().column(output).values); step > 0.0) {
-        hints.quanta.push_back(step);
-      }
-    }
-    hints.frequencies = strongest_lines(residuals.head(rows), hints.sample_time, 6);
-    return hints;
-  }
-
   using Wanted = std::function<bool(const Applied&)>;
   static bool any(const Applied& /*effect*/) { return true; }
 
@@ -160,7 +144,7 @@ class Searcher {
     result.tried += candidates.size();
     // Lines and periods show best where a calibration has taken off what is none.
     const VectorXd& shown = from.variant.effects.empty() ? result.calibrated.fit.residuals : from.fit.residuals;
-    const Hints hints = hints_of(shown);
+    const Hints hints = hints_of(task_, shown);
     Model model(task_, *from.variant.program, from.variant.further);
     const Background background(model, from.fit);
 
@@ -347,6 +331,7 @@ class Searcher {
 
   /// Each effect of the best pair in turn gives its place to those with fewer parameters on its edge: the first part of
   /// a warm-up is a drift, and by itself the drift may have been the worse one beside an effect that was still missing.
+  /// Also where the other effect had been expanded: it may have been with other settings.
   void simplify(std::vector<Explanation>& found, Search& result) {
     if (found.empty()) {
       return;
@@ -354,8 +339,9 @@ class Searcher {
     const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
     for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
       const Applied& richer = best.variant.effects[i];
-      Explanation rest = without(best, i, result.calibrated.variant);
-      if (std::isfinite(rest.fit.cost) && !expanded_.contains(rest.places())) {
+      // Not fitted again: bent towards what the missing effect did, the others would lead a fit astray.
+      const Explanation rest = without(best, i, result.calibrated.variant, 0);
+      if (std::isfinite(rest.fit.cost)) {
         const auto simpler = [&](const Applied& one) {
           return one.paths.size() < richer.paths.size() && root_of(one.edge) == root_of(richer.edge);
         };
@@ -364,8 +350,10 @@ class Searcher {
     }
   }
 
-  /// A set without one of its effects, built anew on the bare diagram and fitted from where it stood.
-  [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare) const {
+  /// A set without one of its effects, built anew on the bare diagram and fitted, in so many steps, from where it
+  /// stood.
+  [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare,
+                                    int iterations = 30) const {
     Explanation result{.variant = bare};
     result.fit.cost = std::numeric_limits<double>::infinity();
     VectorXd start = whole.fit.x.head(std::ssize(task_.known));
@@ -405,7 +393,7 @@ class Searcher {
     const Index states = model.unknowns() - start.size();
     start.conservativeResize(model.unknowns());
     start.tail(states) = whole.fit.x.tail(states);
-    result.fit = fit(model, start, {.iterations = 30});
+    result.fit = fit(model, start, {.iterations = iterations});
     keep_starts(result, model);
     return result;
   }

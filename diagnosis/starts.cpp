@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "diagnosis/spectrum.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -188,6 +190,21 @@ bool in_range(const Field& field, double value) {
 }
 
 }  // namespace
+
+Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
+  Hints hints{.sample_time = task.records.front().sample_time()};
+  for (const records::Record& record : task.records) {
+    hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
+  }
+  for (const std::string& output : task.outputs) {
+    if (const double step = common_step(task.records.front().column(output).values); step > 0.0) {
+      hints.quanta.push_back(step);
+    }
+  }
+  const Eigen::Index rows = std::min<Eigen::Index>(residuals.size(), std::ssize(task.records.front().time()));
+  hints.frequencies = strongest_lines(residuals.head(rows), hints.sample_time, 6);
+  return hints;
+}
 
 std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& input, const Extent* auxiliary) {
   constexpr double off_start = 0.1;

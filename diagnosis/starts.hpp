@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/candidates.hpp"
+#include "diagnosis/model.hpp"
 #include "diagnosis/signals.hpp"
 
 namespace hysteron::diagnosis {
@@ -17,6 +18,9 @@ struct Hints {
   std::vector<double> frequencies{};  ///< of lines in the residual, Hz
   std::vector<double> quanta{};       ///< steps on which the measured values lie
 };
+
+/// Lines of the residual's spectrum, for what oscillates, and steps of the measured values.
+[[nodiscard]] Hints hints_of(const Task& task, const Eigen::VectorXd& residuals);
 
 /// Sizes to be tried for one parameter: for a strength, from small to large; for a shape, all over its range.
 struct Grid {

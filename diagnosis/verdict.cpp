@@ -146,7 +146,7 @@ class Judge {
       if (best == nullptr) {
         break;
       }
-      best = simplest_near(*best);
+      best = own_near(*simplest_near(*best));
       const bool better = support(*best) - support(*chosen) > least_significance;
       const bool notable =
           chosen->fit.cost - best->fit.cost > least_gain(search_.calibrated.fit.cost, floor_cost_, size);
@@ -177,6 +177,24 @@ class Judge {
       }
     }
     return simplest;
+  }
+
+  /// Parameters of blocks that the diagram has go before effects that are added to it, where these close no more than
+  /// would have to be named beside them: noise of a logged input that makes a branching detector chatter is quieted by
+  /// a quantiser in front of it too, and by its dead band with an extreme that the noise has shifted.
+  [[nodiscard]] const Explanation* own_near(const Explanation& best) const {
+    const auto own = [](const Explanation& one) {
+      return std::ranges::count(one.variant.effects, true, &Applied::is_own);
+    };
+    const std::size_t size = best.variant.effects.size();
+    const double unnamed = least_gain(search_.calibrated.fit.cost, floor_cost_, size + 1);
+    const Explanation* nearest = &best;
+    for (const Explanation& one : search_.explanations) {
+      if (one.variant.effects.size() == size && own(one) > own(*nearest) && one.fit.cost < best.fit.cost + unnamed) {
+        nearest = &one;
+      }
+    }
+    return nearest;
   }
 
   const Task& task_;

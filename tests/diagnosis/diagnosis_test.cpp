@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -187,6 +188,30 @@ TEST(Diagnosis, ACubeIsAboutZeroWhereTheRecordReachesALittleFarther) {
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects.front().id, "odd_nonlinearity");
   EXPECT_LT(found.gap.improved, 1.05 * 0.001);
+}
+
+TEST(Diagnosis, NoiseOfALoggedInputIsNoQuantiserOfTheMachine) {
+  // A quantiser before the loop quiets the detector too, and where the voltage rests on multiples of its quantum it
+  // leaves less than a dead band does, whose extremes the noise has shifted.
+  std::vector<double> voltage = test::rich_voltage();
+  for (std::size_t k = 0; k < voltage.size(); ++k) {
+    voltage[k] = 0.5 * std::round(2.0 * voltage[k]);
+  }
+  for (std::size_t k = 1; k < voltage.size(); ++k) {
+    voltage[k] = std::clamp(voltage[k], voltage[k - 1] - 0.05, voltage[k - 1] + 0.05);
+  }
+  const records::Record quiet =
+      test::measured(test::program_of(test::stack()), test::record_of("U", std::move(voltage)), 0.005);
+  test::Noise noise(7);
+  const records::Record logged = test::changed(quiet, "U", [&](std::vector<double>& values) {
+    std::ranges::for_each(values, [&](double& value) { value += 0.001 * noise(); });
+  });
+  const Diagnosis found = diagnose(test::input_of(test::stack(), test::stack_parameters, {logged}),
+                                   {.effects = {"quantization", "backlash", "branch_chatter", "dead_zone"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "branch_chatter") << found.summary;
+  ASSERT_FALSE(found.rivals.empty());
+  EXPECT_THAT(found.rivals.front().effects, ElementsAre("branch_chatter"));
 }
 
 TEST(Diagnosis, AConstantBeforeAnIntegratorIsNoDriftBehindIt) {

@@ -143,7 +143,7 @@ class Enumeration {
     return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.effect == effect; });
   }
 
-  /// Whether an instance is an effect that was added: no motion of the machine.
+  /// Whether an instance is an effect that was added, or carries one: no motion of the machine.
   [[nodiscard]] bool added_before(const std::string& instance) const {
     return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.instance == instance; });
   }
@@ -283,7 +283,7 @@ class Enumeration {
         add(std::move(candidate), {.effect = kind.id,
                                    .block = kind.block,
                                    .edge = instance + ".XOUT",
-                                   .is_own = enriched || kind.change == Change::Free,
+                                   .is_own = (enriched || kind.change == Change::Free) && !added_before(instance),
                                    .instance = instance});
       }
     }

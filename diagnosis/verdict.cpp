@@ -187,7 +187,7 @@ class Judge {
       return std::ranges::count(one.variant.effects, true, &Applied::is_own);
     };
     const std::size_t size = best.variant.effects.size();
-    const double unnamed = least_gain(search_.calibrated.fit.cost, floor_cost_, size + 1);
+    const double unnamed = least_gain(search_.calibrated.fit.cost, floor_cost_, 2);
     const Explanation* nearest = &best;
     for (const Explanation& one : search_.explanations) {
       if (one.variant.effects.size() == size && own(one) > own(*nearest) && one.fit.cost < best.fit.cost + unnamed) {

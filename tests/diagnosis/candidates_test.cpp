@@ -271,6 +271,18 @@ TEST(Candidates, AnEffectThatIsThereIsNotTriedTwice) {
   }
 }
 
+TEST(Candidates, WhatABlockGotWithAnEffectIsNoParameterOfTheDiagram) {
+  const auto chatter = candidates(test::stack(), "STACK", {.effects = {"branch_chatter"}});
+  ASSERT_FALSE(chatter.empty());
+  EXPECT_TRUE(chatter.front().own().is_own);
+  const auto richer = candidates(test::stack(), "STACK", {.effects = {"asymmetry"}});
+  ASSERT_FALSE(richer.empty());
+  EXPECT_FALSE(richer.front().own().is_own);
+  const auto second = candidates_of(richer.front().variant, "STACK", {.effects = {"curve_shape"}});
+  ASSERT_FALSE(second.empty());
+  EXPECT_FALSE(second.front().own().is_own);
+}
+
 TEST(Candidates, WiresThatServeAnEffectAreNoEdgesOfTheMachine) {
   const auto first = candidates(test::axis(), "AXIS", {.effects = {"coulomb_friction"}});
   ASSERT_FALSE(first.empty());

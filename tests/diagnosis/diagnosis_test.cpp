@@ -194,9 +194,7 @@ TEST(Diagnosis, NoiseOfALoggedInputIsNoQuantiserOfTheMachine) {
   // A quantiser before the loop quiets the detector too, and where the voltage rests on multiples of its quantum it
   // leaves less than a dead band does, whose extremes the noise has shifted.
   std::vector<double> voltage = test::rich_voltage();
-  for (std::size_t k = 0; k < voltage.size(); ++k) {
-    voltage[k] = 0.5 * std::round(2.0 * voltage[k]);
-  }
+  std::ranges::for_each(voltage, [](double& level) { level = 0.5 * std::round(2.0 * level); });
   for (std::size_t k = 1; k < voltage.size(); ++k) {
     voltage[k] = std::clamp(voltage[k], voltage[k - 1] - 0.05, voltage[k - 1] + 0.05);
   }

@@ -114,8 +114,11 @@ Delivery DeviceField::delivery() noexcept {
     rounds();
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    const RemoteReading reading = reading_of(outputs_[i].link);
-    if (reading.quality != Quality::good || reading.value != written_[i]) {
+    const DeviceLink& link = outputs_[i].link;
+    const RemoteReading reading = reading_of(link);
+    const bool is_taken = in_turn_ ? reading.quality == Quality::good && reading.value == written_[i]
+                                   : devices_[link.device]->has_taken(link.value, written_[i]);
+    if (!is_taken) {
       faulty_port_ = input_count_ + outputs_[i].port;
       return in_turn_ ? Delivery::failed : Delivery::pending;
     }
@@ -151,8 +154,7 @@ bool DeviceOutputs::write(std::span<const double> values) {
   for (const DeviceOutput& output : outputs_) {
     modbus::Device& device = *devices_[output.link.device];
     device.write(output.link.value, values[output.port]);
-    const RemoteReading reading = device.read(output.link.value);
-    all = all && reading.quality == Quality::good && reading.value == values[output.port];
+    all = device.has_taken(output.link.value, values[output.port]) && all;
   }
   return all;
 }

@@ -82,9 +82,15 @@ class Device::Worker {
       : options_(options),
         work_(std::move(work)),
         blocks_(blocks_of(options.values)),
+        order_(blocks_.size()),
+        failed_(blocks_.size()),
         cells_(options.values.size()),
-        link_(options.link, options.unit, options.response),
-        thread_(work_.own_thread ? std::jthread([this](const std::stop_token& stop) { run(stop); }) : std::jthread()) {}
+        link_(options.link, options.unit, options.response) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    if (work_.own_thread) {
+      thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    }
+  }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   Worker(Worker&&) = delete;
@@ -128,15 +134,18 @@ class Device::Worker {
 
   [[nodiscard]] std::uint64_t not_taken() const noexcept { return not_taken_.load(std::memory_order_relaxed); }
 
+  [[nodiscard]] bool has_taken(std::size_t value, double number) const {
+    const RemoteReading now = read(value);
+    const bool was_answered = now.quality != Quality::never && now.quality != Quality::refused;
+    return was_answered && now.value == number && now.age <= longest_age(value);
+  }
+
   bool round() {
-    bool sound = link_.is_open() || connect();
-    for (std::size_t i = 0; i < blocks_.size() && sound; ++i) {
-      sound = is_sound(serve(blocks_[i]));
-    }
-    if (!sound) {
+    if ((!link_.is_open() && !connect()) || !serve_all({})) {
       lose();
+      return false;
     }
-    return sound;
+    return true;
   }
 
  private:
@@ -150,6 +159,8 @@ class Device::Worker {
     std::atomic<bool> is_given{false};
     SnapshotRing told{3};
   };
+
+  enum class Attempt : std::uint8_t { failed_last, failed_writes_first, failed_reads_first };
 
   static void tell(Cell& cell) {
     const std::array<double, 3> row{cell.value, static_cast<double>(cell.quality),
@@ -167,26 +178,56 @@ class Device::Worker {
         wait = pause(stop, wait);
         continue;
       }
-      bool sound = true;
-      for (const Block& block : blocks_) {
-        sound = is_sound(serve(block));
-        if (!sound || stop.stop_requested()) {
-          break;
-        }
-        wait = options_.first_wait;
-      }
-      if (sound) {
+      const auto before = answers_;
+      const bool is_sound = serve_all(stop);
+      wait = answers_ == before ? wait : options_.first_wait;
+      if (is_sound) {
         sleep_until(stop, begin + options_.period);
       } else {
         wait = pause(stop, wait);
       }
     }
     // What the task wrote last, its safe values, still has to arrive.
-    for (const Block& block : blocks_) {
-      if (block.written && link_.is_open()) {
-        (void)serve(block);
+    attempt_ = Attempt::failed_last;
+    put_in_order();
+    for (const std::size_t i : order_) {
+      if (blocks_[i].written && link_.is_open()) {
+        (void)serve(blocks_[i]);
       }
     }
+  }
+
+  /// Every block once, up to one that fails, which ends the link; false then.
+  bool serve_all(const std::stop_token& stop) {
+    put_in_order();
+    for (const std::size_t i : order_) {
+      if (!is_sound(serve(blocks_[i]))) {
+        failed_[i] = ++failures_;
+        recovers_ = true;
+        attempt_ = static_cast<Attempt>((static_cast<int>(attempt_) + 1) % 3);
+        return false;
+      }
+      failed_[i] = 0;
+      if (stop.stop_requested()) {
+        return true;
+      }
+    }
+    recovers_ = false;
+    return true;
+  }
+
+  /// What is read first, while all is well: the diagram is to have what is new. On a new link what is written first,
+  /// for then it may be a safe value that waits. Blocks that failed when they were last tried come after all others,
+  /// since each takes the link with it, but for two attempts of three: what fails may fail by what went before it on
+  /// the link, so that one begins with the writes that failed and one with the reads, the longest ago first. So
+  /// whatever fails for ever keeps no other block from its turn.
+  void put_in_order() {
+    std::ranges::sort(order_, {}, [&](std::size_t i) {
+      const bool is_suspect = failed_[i] != 0;
+      const bool goes_first =
+          is_suspect && attempt_ == (blocks_[i].written ? Attempt::failed_writes_first : Attempt::failed_reads_first);
+      return std::tuple(goes_first ? 0 : is_suspect ? 2 : 1, blocks_[i].written != recovers_, failed_[i], i);
+    });
   }
 
   bool connect() {
@@ -198,6 +239,7 @@ class Device::Worker {
     const std::scoped_lock lock(mutex_);
     status_.state = LinkState::running;
     ++status_.connections;
+    recovers_ = true;
     return true;
   }
 
@@ -258,6 +300,7 @@ class Device::Worker {
     std::vector<std::uint8_t> answer;
     const Exchange outcome = link_.exchange(request, answer);
     count(outcome);
+    answers_ += is_sound(outcome) ? 1 : 0;
     for (const std::size_t i : block.values) {
       Cell& cell = cells_[i];
       if (outcome == Exchange::exception) {
@@ -335,6 +378,12 @@ class Device::Worker {
   const DeviceWork work_;
   const Clock::time_point begin_ = Clock::now();
   const std::vector<Block> blocks_;
+  std::vector<std::size_t> order_;     ///< in which the blocks are served
+  std::vector<std::uint64_t> failed_;  ///< by block: the number of the failure that it ended with; 0: it was well
+  std::uint64_t failures_ = 0;         ///< of all blocks
+  std::uint64_t answers_ = 0;          ///< exceptions among them
+  bool recovers_ = true;               ///< no round of this link went well yet
+  Attempt attempt_ = Attempt::failed_last;
   mutable std::mutex mutex_;
   std::condition_variable_any woken_;
   std::vector<Cell> cells_;
@@ -359,6 +408,9 @@ std::chrono::nanoseconds Device::longest_age(std::size_t value) const {
 }
 std::uint64_t Device::not_taken() const noexcept {
   return worker_->not_taken();
+}
+bool Device::has_taken(std::size_t value, double number) const {
+  return worker_->has_taken(value, number);
 }
 bool Device::round() {
   return worker_->round();

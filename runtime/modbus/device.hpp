@@ -3,9 +3,10 @@
 //
 //   connecting → running → (anything but the exact answer) → waiting → connecting …
 //
-// The wait before the next attempt doubles up to a limit and is short again after an exchange that went well. Every
-// value has an age and a quality; the last good value stays readable, and it is for the task to say what it does
-// without.
+// The wait before the next attempt doubles up to a limit and is short again after an exchange that went well. On a new
+// link writes go first, and what failed before goes last, so that a value that can be written arrives whatever else
+// fails. Every value has an age and a quality; the last good value stays readable, and it is for the task to say what
+// it does without.
 #pragma once
 
 #include <chrono>
@@ -93,6 +94,8 @@ class Device {
 
   [[nodiscard]] RemoteReading read(std::size_t value) const;
   void write(std::size_t value, double number);
+  /// Whether the device took this number within the longest age of the value, even where the link was lost since.
+  [[nodiscard]] bool has_taken(std::size_t value, double number) const;
   [[nodiscard]] DeviceStatus status() const;
   /// Values that were read and not taken: beyond their limits, not finite, or an integer that no double holds.
   [[nodiscard]] std::uint64_t not_taken() const noexcept;

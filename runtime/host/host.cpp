@@ -179,8 +179,24 @@ class CyclicThread {
   std::thread thread_;
 };
 
+/// A guard that dies is noticed here: the task does not go on without it.
+void watch_over(Guard& guard, Task& task) {
+  const std::string death = guard.death();
+  if (death.empty()) {
+    return;
+  }
+  const bool was_idle = guard.may_write();
+  tell("Guard",
+       fmt::format("process {} is gone: {}. {}", guard.process(), death,
+                   was_idle ? "The task takes its outputs to their safe values and ends, for nothing would if "
+                              "it hung or died. Find out what ended the process, and start the task again."
+                            : "It held the outputs on devices, and nobody writes them now: see to the devices, "
+                              "end the task, and find out what ended the process."));
+  task.guard_lost();
+}
+
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, const Task& task, RunNotices& notices, nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -190,6 +206,9 @@ void wait_for(const CyclicThread& cyclic, const Task& task, RunNotices& notices,
   bool is_stopping = false;
   while (!cyclic.is_done()) {
     std::this_thread::sleep_for(milliseconds(5));
+    if (guard != nullptr) {
+      watch_over(*guard, task);
+    }
     notices.look();
     if (!is_stopping && stop_asked.load()) {
       tell_service_manager("STOPPING=1");
@@ -311,7 +330,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
-    wait_for(cyclic, task, notices, nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), notices, nanoseconds(shape.period));
     end = cyclic.end();
   }
   if (retainer) {

@@ -29,6 +29,8 @@ std::string_view meaning_of(Fault fault) {
       return "no telegram of the client came for heartbeat_time";
     case Fault::not_safe:
       return "the next step to the safe value is lost in rounding";
+    case Fault::lost_guard:
+      return "its process is gone, and nothing would make the outputs safe if the task hung or died";
     case Fault::none:
     case Fault::crash:
     case Fault::stop:
@@ -143,7 +145,11 @@ std::string RunNotices::at_the_end() const {
   const std::string faults = report.count == 0 ? ""
                                                : fmt::format("; {} fault{}, the last: {}", report.count,
                                                              report.count == 1 ? "" : "s", faults_.last_of(report));
-  return faults + writes_.at_the_end();
+  const std::string left =
+      guard_ == nullptr || !guard_->holds_on()
+          ? ""
+          : fmt::format("; its guard, process {}, goes on until the devices have their safe values", guard_->process());
+  return faults + left + writes_.at_the_end();
 }
 
 }  // namespace hysteron::runtime

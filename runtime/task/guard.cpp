@@ -1,5 +1,6 @@
 #include "runtime/task/guard.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <ctime>
 #include <new>
 #include <stdexcept>
@@ -32,6 +34,17 @@ bool gone_by(int process, std::int64_t time) {
   return ppoll(&descriptor, 1, &wait, nullptr) > 0;
 }
 
+/// Who reads what the task prints waits for the end of the last process that could still write there.
+void leave_standard_streams() {
+  const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    (void)dup2(nowhere, stream);
+  }
+  if (nowhere > STDERR_FILENO) {
+    (void)close(nowhere);
+  }
+}
+
 /// The life of the guard's process. Gives back when its work is done.
 void guard_life(const GuardSettings& settings, GuardPage& page, SafeOutputs outputs, OutputDevice& device, int task) {
   std::vector<double> last(outputs.values().begin(), outputs.values().end());
@@ -51,6 +64,7 @@ void guard_life(const GuardSettings& settings, GuardPage& page, SafeOutputs outp
         return;
       }
       device.task_is_gone();
+      leave_standard_streams();
     }
     if (page.word.load(std::memory_order_acquire) == GuardWord::goodbye) {
       return;
@@ -106,6 +120,8 @@ Guard::Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDe
   for (std::size_t i = 0; i < outputs.values().size(); ++i) {
     page_->outputs[i].store(outputs.values()[i]);
   }
+  // Where whoever started this ignores the ends of its children, the guard's end could not be seen.
+  (void)std::signal(SIGCHLD, SIG_DFL);
   // Opened before the fork: the number of a process that is gone may be given to another.
   const auto task = static_cast<int>(syscall(SYS_pidfd_open, getpid(), 0));
   process_ = task < 0 ? -1 : fork();
@@ -134,7 +150,7 @@ Guard::Guard(const GuardSettings& settings, const SafeOutputs& outputs, OutputDe
 Guard::~Guard() {
   GuardWord word = GuardWord::starting;
   (void)page_->word.compare_exchange_strong(word, GuardWord::goodbye);
-  if (page_->word.load() == GuardWord::goodbye) {
+  if (page_->word.load() == GuardWord::goodbye && !is_reaped_) {
     (void)waitpid(process_, nullptr, 0);
   }
   (void)munmap(page_, sizeof(GuardPage));
@@ -145,6 +161,18 @@ void Guard::cycle_ends(std::span<const double> outputs) noexcept {
     page_->outputs[i].store(outputs[i], std::memory_order_relaxed);
   }
   page_->in_step.store(false, std::memory_order_release);
+}
+
+std::string Guard::death() {
+  int status = 0;
+  if (is_reaped_ || waitpid(process_, &status, WNOHANG) != process_) {
+    return {};
+  }
+  is_reaped_ = true;
+  if (WIFEXITED(status)) {
+    return WEXITSTATUS(status) == 0 ? "" : "its exit code is " + std::to_string(WEXITSTATUS(status));
+  }
+  return "it was ended by signal " + std::to_string(WTERMSIG(status)) + ", " + strsignal(WTERMSIG(status));
 }
 
 bool Guard::goodbye() noexcept {

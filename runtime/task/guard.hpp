@@ -73,8 +73,16 @@ class Guard {
   [[nodiscard]] bool may_write() const noexcept {
     return page_->word.load(std::memory_order_acquire) != GuardWord::taken;
   }
-  /// The task has put its outputs into their safe state itself; the guard ends. False where it had taken over before.
+  /// The devices have taken the safe values from the task itself; the guard ends. False where it had taken over before.
   bool goodbye() noexcept;
+
+  /// Whether its process lives on until devices have the safe values. Once the task is at its end.
+  [[nodiscard]] bool holds_on() const noexcept {
+    const GuardWord word = page_->word.load();
+    return !is_reaped_ && (word == GuardWord::running || word == GuardWord::taken);
+  }
+  /// What ended the guard's process before its work was done, said once; empty else. Waits for nothing.
+  [[nodiscard]] std::string death();
 
   [[nodiscard]] Fault fault() const noexcept { return page_->fault.load(); }
   [[nodiscard]] pid_t process() const noexcept { return process_; }
@@ -82,6 +90,7 @@ class Guard {
  private:
   GuardPage* page_ = nullptr;
   pid_t process_ = -1;
+  bool is_reaped_ = false;
 };
 
 }  // namespace hysteron::runtime

@@ -36,8 +36,9 @@ double longest_way(const OutputSafety& output, double sample_time) noexcept {
 }
 
 std::string_view name_of(Fault fault) {
-  constexpr std::array<std::string_view, 10> names{"none",      "hang",         "crash", "not finite",  "stale input",
-                                                   "lost link", "missed cycle", "stop",  "lost client", "not safe"};
+  constexpr std::array<std::string_view, 11> names{"none",        "hang",      "crash",        "not finite",
+                                                   "stale input", "lost link", "missed cycle", "stop",
+                                                   "lost client", "not safe",  "lost guard"};
   return names[static_cast<std::size_t>(fault)];
 }
 

@@ -25,6 +25,7 @@ enum class Fault : std::uint8_t {
   stop,          ///< the task ends as asked
   lost_client,   ///< the Modbus client that has to be heard is silent
   not_safe,      ///< at the end: an output cannot reach its safe value, since its ramp is lost in rounding
+  lost_guard,    ///< the guard's process is gone, though its work was not done
 };
 [[nodiscard]] std::string_view name_of(Fault fault);
 

@@ -50,11 +50,18 @@ void Task::client_lost(bool lost) noexcept {
   client_is_lost_.store(lost, std::memory_order_relaxed);
 }
 
+void Task::guard_lost() noexcept {
+  guard_is_lost_.store(true, std::memory_order_relaxed);
+}
+
 LoopEnd Task::run(Clock& clock, const std::atomic<bool>& stop) {
   status_.state = TaskState::running;
   const LoopEnd end = run_loop(settings_.loop, clock, *this, stop, statistics_);
   if (!guard_took_over_) {
-    settle(clock, end == LoopEnd::missed ? Fault::missed_cycle : tripped_ ? Fault::hang : Fault::stop);
+    settle(clock, end == LoopEnd::missed ? Fault::missed_cycle
+                  : tripped_             ? Fault::hang
+                  : guard_is_lost_       ? Fault::lost_guard
+                                         : Fault::stop);
   }
   return end;
 }
@@ -175,7 +182,7 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
     }
   }
   publish(statistics);
-  return true;
+  return !guard_is_lost_.load(std::memory_order_relaxed);
 }
 
 void Task::publish(const LoopStatistics& statistics) noexcept {
@@ -240,7 +247,8 @@ void Task::settle(Clock& clock, Fault fault) {
     } else {
       status_.fault = held;
     }
-    if (attachments_.guard != nullptr && safe_.settled()) {
+    // Where a device has not taken its safe value, the guard goes on once this process is gone, as after a crash.
+    if (attachments_.guard != nullptr && delivery == Delivery::done) {
       (void)attachments_.guard->goodbye();
     }
   }

@@ -60,6 +60,9 @@ class Task final : private CycleBody {
   [[nodiscard]] TaskDoor& door() noexcept { return door_; }
   /// From a server's thread: the client that has to be heard is lost, or is back. Counts from the next cycle on.
   void client_lost(bool lost) noexcept;
+  /// From a thread beside the cyclic one: the guard's process died. The task ends after this cycle, with safe outputs:
+  /// nobody would make them safe if it hung or died.
+  void guard_lost() noexcept;
   /// Not while it runs; then, points() of the door say the same.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
   /// After run(): what ended it, or what was wrong at its end; stop where nothing was.
@@ -106,6 +109,7 @@ class Task final : private CycleBody {
   std::atomic<std::uint64_t> beats_{0};
   std::atomic<bool> client_is_lost_{false};
   std::atomic<bool> client_was_lost_{false};  ///< and no reset came since; only where one is asked for
+  std::atomic<bool> guard_is_lost_{false};
   bool tripped_ = false;
   bool guard_took_over_ = false;
 };

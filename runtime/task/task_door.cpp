@@ -63,7 +63,7 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   }
   constexpr const char* faults =
       "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
-      "9 not safe";
+      "9 not safe, 10 lost guard";
   add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
   add_status("task.fault", PointType::uint16, "1", faults);
   add_status("task.cycles", PointType::uint64, "1", "cycles that were run");

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
@@ -141,6 +142,13 @@ class HostProcess {
     const auto size = ::pread(::fileno(told_.get()), text.data(), text.size(), 0);
     text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     return text;
+  }
+  /// The process of its guard.
+  [[nodiscard]] pid_t guard() const {
+    std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process_));
+    pid_t child = 0;
+    children >> child;
+    return child;
   }
   void send(int signal) const { ::kill(process_, signal); }
   /// Ends it by SIGKILL. Its guard goes on.

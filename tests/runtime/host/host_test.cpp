@@ -18,6 +18,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/config/output_claims.hpp"
+#include "runtime/config/run_config.hpp"
 #include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
@@ -113,14 +115,48 @@ TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {
   EXPECT_TRUE(said.ends_with("fault: lost link")) << said;
 }
 
-TEST(Host, ADeviceThatDoesNotTakeTheSafeValuesIsSaidAtTheEnd) {
+TEST(Host, ADeviceThatDoesNotTakeTheSafeValuesIsSaidAtTheEndAndLeftToTheGuard) {
   Stage stage;
-  HostProcess host(run_file(stage.port, ""));
-  const auto client = host.client({"task.cycles"});
-  EXPECT_TRUE(test::soon([&] { return client->read(0).value > 0.0; }));
+  stage.give(0.25);
+  const std::string text = run_file(stage.port, x_on_stage);
+  HostProcess host(text);
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == 0.5; }));
+  const pid_t guard = host.guard();
+  stage.server.reset();
   const auto [code, said] = host.end();
   EXPECT_EQ(code, 1);
+  EXPECT_NE(said.find(fmt::format("; its guard, process {}, goes on until the devices have their safe values", guard)),
+            std::string::npos)
+      << said;
   EXPECT_TRUE(said.ends_with("fault: lost link")) << said;
+  EXPECT_EQ(stage.taken(), 0.5);
+  EXPECT_EQ(::kill(guard, 0), 0) << "it waits for the device";
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; }));
+  const test::Twice program;
+  OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
+  EXPECT_TRUE(test::soon([&] { return !claims.claim(); })) << "and ends when the device has them";
+}
+
+TEST(Host, ADeathOfTheGuardIsSaidAndEndsTheTaskWithSafeOutputs) {
+  Stage stage;
+  stage.give(0.25);
+  stage.start();
+  HostProcess host(run_file(stage.port, x_on_stage));
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == 0.5; }));
+  const pid_t guard = host.guard();
+  ASSERT_GT(guard, 0);
+  ASSERT_EQ(::kill(guard, SIGKILL), 0);
+  const auto [code, said] = host.ended();
+  EXPECT_EQ(code, 1);
+  EXPECT_TRUE(said.starts_with("TWICE: stopped by a fault; ")) << said;
+  EXPECT_TRUE(said.ends_with("fault: lost guard")) << said;
+  EXPECT_EQ(said.find("its guard, process"), std::string::npos) << said;
+  EXPECT_EQ(stage.taken(), -1.0);
+  EXPECT_NE(host.told().find(fmt::format("Guard: process {} is gone: it was ended by signal 9", guard)),
+            std::string::npos)
+      << host.told();
 }
 
 TEST(Host, WhereTheStepHangsTheGuardHoldsTheDeviceAndTheTaskWritesNoMore) {

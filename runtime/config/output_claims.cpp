@@ -1,22 +1,88 @@
 #include "runtime/config/output_claims.hpp"
 
+#include <arpa/inet.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
 #include <system_error>
+#include <variant>
 
+#include "runtime/modbus/value_bits.hpp"
 #include "support/sha256.hpp"
 
 namespace hysteron::runtime {
 namespace {
 
-std::string name_of(const modbus::DeviceOptions& device, const modbus::Stretch& at) {
-  return "hysteron-output-" +
-         sha256(fmt::format("{} {} {} {}", text_of(device.link), device.unit, static_cast<int>(at.area), at.address));
+/// As digits; what leads to this machine without naming it, and IPv4 in the clothes of IPv6, as what it stands for.
+std::string digits_of(const addrinfo& found) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (found.ai_family == AF_INET6) {
+    in6_addr address = reinterpret_cast<const sockaddr_in6*>(found.ai_addr)->sin6_addr;
+    if (IN6_IS_ADDR_V4MAPPED(&address)) {
+      return ::inet_ntop(AF_INET, &address.s6_addr[12], text.data(), text.size());
+    }
+    address = IN6_IS_ADDR_UNSPECIFIED(&address) ? in6addr_loopback : address;
+    return ::inet_ntop(AF_INET6, &address, text.data(), text.size());
+  }
+  in_addr address = reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr;
+  address.s_addr = address.s_addr == htonl(INADDR_ANY) ? htonl(INADDR_LOOPBACK) : address.s_addr;
+  return ::inet_ntop(AF_INET, &address, text.data(), text.size());
+}
+
+/// By what the system reaches a device: all addresses of a host, the one file of a serial line. As the run file spells
+/// it where that leads to nothing.
+std::set<std::string> ways_to(const std::variant<modbus::TcpLink, modbus::SerialLink>& link) {
+  if (const auto* const serial = std::get_if<modbus::SerialLink>(&link)) {
+    std::error_code none;
+    const auto path = std::filesystem::canonical(serial->path, none);
+    return {none ? serial->path : path.string()};
+  }
+  const auto& tcp = std::get<modbus::TcpLink>(link);
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (::getaddrinfo(tcp.host.c_str(), nullptr, &hints, &found) != 0) {
+    return {text_of(link)};
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> release(found, &::freeaddrinfo);
+  std::set<std::string> ways;
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    if (one->ai_family == AF_INET || one->ai_family == AF_INET6) {
+      ways.insert(fmt::format("{}:{}", digits_of(*one), tcp.port));
+    }
+  }
+  return ways;
+}
+
+std::string name_of(const std::string& way, std::uint8_t unit, modbus::Area area, std::uint32_t address) {
+  return "hysteron-output-" + sha256(fmt::format("{} {} {} {}", way, unit, static_cast<int>(area), address));
+}
+
+/// Out of the way of devices and clients: select has room for the descriptors below FD_SETSIZE alone. Where the limits
+/// do not let it, it stays where it is.
+void move_up(modbus::Descriptor& socket) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
+    limit.rlim_cur = limit.rlim_max;
+    (void)::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  if (const int higher = ::fcntl(socket.number(), F_DUPFD_CLOEXEC, FD_SETSIZE); higher >= 0) {
+    socket = modbus::Descriptor(higher);
+  }
 }
 
 struct Address {
@@ -68,22 +134,39 @@ std::optional<pid_t> listener_of(const std::string& name) {
 }  // namespace
 
 OutputClaims::OutputClaims(const RunConfig& config) {
-  for (const DeviceOutput& output : config.device_outputs) {
-    const modbus::DeviceOptions& device = config.devices[output.link.device];
-    names_.push_back(name_of(device, device.values[output.link.value].at));
+  std::vector<std::set<std::string>> ways;
+  for (const modbus::DeviceOptions& device : config.devices) {
+    ways.push_back(ways_to(device.link));
+  }
+  std::map<std::string, std::size_t> outputs;
+  for (std::size_t i = 0; i < config.device_outputs.size(); ++i) {
+    const DeviceLink& link = config.device_outputs[i].link;
+    const modbus::DeviceOptions& device = config.devices[link.device];
+    const modbus::RemoteValue& value = device.values[link.value];
+    const auto width = static_cast<std::uint32_t>(modbus::registers_of(value.type));
+    for (const std::string& way : ways[link.device]) {
+      for (std::uint32_t address = value.at.address; address < value.at.address + width; ++address) {
+        const std::string name = name_of(way, device.unit, value.at.area, address);
+        if (const auto [first, is_new] = outputs.emplace(name, i); !is_new) {
+          own_ = own_ ? own_ : Holder{.output = i, .address = address, .own = first->second};
+        }
+        claims_.push_back({.name = name, .output = i, .address = address});
+      }
+    }
   }
 }
 
 std::optional<OutputClaims::Holder> OutputClaims::claim() {
-  if (!sockets_.empty()) {
-    return std::nullopt;  // claimed before
+  if (own_ || !sockets_.empty()) {
+    return own_;  // or claimed before
   }
   std::vector<modbus::Descriptor> sockets;
-  for (const std::string& name : names_) {
+  for (const Claim& claim : claims_) {
     sockets.push_back(socket_or_throw());
-    if (!bind_to(sockets.back(), name)) {
+    move_up(sockets.back());
+    if (!bind_to(sockets.back(), claim.name)) {
       // None is kept: of two tasks that wait for one another's outputs, each would wait for ever.
-      return Holder{.output = sockets.size() - 1, .guard = listener_of(name)};
+      return Holder{.output = claim.output, .address = claim.address, .guard = listener_of(claim.name)};
     }
   }
   sockets_ = std::move(sockets);

@@ -1,9 +1,10 @@
 // Who writes an output of a device: one task at a time, and the guard of a task that is gone comes before the next one.
 //
-// A claim is a socket bound to a name that follows from the device's address, unit, area and first register. Task and
-// guard share it, so the system frees it when the last of them is gone, however they end; no file is left over. A guard
-// whose task is gone listens on its claims: so a new task knows that it has to wait, and for which process. Names count
-// within one network namespace, where such tasks reach the same devices.
+// A claim is a socket bound to a name, one for each register or coil that an output covers. The name follows from the
+// device's address, however the run file spells it, unit, area and register. Task and guard share it, so the system
+// frees it when the last of them is gone, however they end; no file is left over. A guard whose task is gone listens on
+// its claims: so a new task knows that it has to wait, and for which process. Names count within one network namespace,
+// where such tasks reach the same devices.
 #pragma once
 
 #include <sys/types.h>
@@ -23,8 +24,10 @@ class OutputClaims {
   explicit OutputClaims(const RunConfig& config);
 
   struct Holder {
-    std::size_t output = 0;        ///< in RunConfig::device_outputs: the first that is claimed by another
-    std::optional<pid_t> guard{};  ///< the process of the guard that works there alone; none: a task
+    std::size_t output = 0;            ///< in RunConfig::device_outputs: the first that is claimed by another
+    std::uint32_t address = 0;         ///< of the register or coil
+    std::optional<pid_t> guard{};      ///< the process of the guard that works there alone; none: a task
+    std::optional<std::size_t> own{};  ///< another output of the same run file, which covers the same register
   };
   /// Claims all outputs on devices, or none, and then says who has one of them. Throws std::system_error where the
   /// system gives no socket.
@@ -33,8 +36,14 @@ class OutputClaims {
   void listen() const noexcept;
 
  private:
-  std::vector<std::string> names_{};
-  std::vector<modbus::Descriptor> sockets_{};  ///< as names_, where claimed
+  struct Claim {
+    std::string name{};
+    std::size_t output = 0;
+    std::uint32_t address = 0;
+  };
+  std::vector<Claim> claims_{};
+  std::optional<Holder> own_{};                ///< where two outputs of the run file meet
+  std::vector<modbus::Descriptor> sockets_{};  ///< as claims_, where claimed
 };
 
 }  // namespace hysteron::runtime

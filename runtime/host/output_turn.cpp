@@ -25,7 +25,19 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
       return true;
     }
     const DeviceOutput& output = config.device_outputs[holder->output];
-    const std::string& device = config.devices[output.link.device].name;
+    const modbus::DeviceOptions& options = config.devices[output.link.device];
+    const std::string& device = options.name;
+    const modbus::Area area = options.values[output.link.value].at.area;
+    const std::string place =
+        fmt::format("{} {} of {}", modbus::holds_bits(area) ? "coil" : "holding register", holder->address, device);
+    if (holder->own) {
+      const DeviceOutput& other = config.device_outputs[*holder->own];
+      throw InputError(
+          error::device_register_twice, output.place,
+          fmt::format("Two outputs write {}: this one, and one on {}, which leads to the same device.", place,
+                      config.devices[other.link.device].name),
+          "describe the device once, and give each output a place of its own; a real64 takes four registers.");
+    }
     if (holder->guard) {
       tries = 0;
       if (!told) {
@@ -39,7 +51,7 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
     } else if (++tries > most_tries) {
       throw InputError(
           error::output_of_another_task, output.place,
-          fmt::format("Another task that runs on this machine writes the same register of {}.", device),
+          fmt::format("Another task that runs on this machine writes {}.", place),
           "end that task first, or give one of the two another register; a run file that is served already is served "
           "once.");
     }

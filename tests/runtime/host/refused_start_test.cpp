@@ -66,7 +66,9 @@ TEST(RefusedStart, OfATaskThatRunsAlready) {
   EXPECT_TRUE(test::soon([&] { return stage.taken() == 0.5; }));
   const auto before = stage.door.history(1).size();
   HostProcess second(run_file(stage.port, x_on_stage));
-  EXPECT_TRUE(second.said_before().starts_with("HY814 RUN.toml:12: Another task ")) << second.said_before();
+  EXPECT_TRUE(second.said_before().starts_with(
+      "HY814 RUN.toml:12: Another task that runs on this machine writes holding register 0 of stage."))
+      << second.said_before();
   EXPECT_EQ(second.ended().first, 2);
   EXPECT_TRUE(test::soon([&] { return stage.door.history(1).size() > before + 20; }));
   const auto taken = stage.door.history(1);

@@ -16,6 +16,7 @@
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/failed_writes.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -34,10 +35,12 @@ int run_program(const std::vector<std::string>& command, const Streams& streams)
   constexpr int writing = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, streams.output.c_str(), writing, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, streams.errors.c_str(), writing, 0600);
-  // The tool ignores SIGPIPE; a compiler need not know how to.
+  // The tool ignores them; a compiler need not know how to.
   sigset_t defaults;
   sigemptyset(&defaults);
-  sigaddset(&defaults, SIGPIPE);
+  for (const int signal : signals_of_failed_writes) {
+    sigaddset(&defaults, signal);
+  }
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
 

@@ -22,7 +22,8 @@ constexpr std::string_view serve_replay_examples = R"(Examples:
 Runs the diagram over the recorded inputs, from the recorded state and parameters, and compares every output, bit by bit.
 The record has t, which counts steps, and inputs and outputs as they left, for run, tune and diagnose. The engine must
 be the one that the trace was recorded with, for the bytes of its state.
-Exit codes: 0 the same bits; 1 other bits, or steps that were dropped; 2 no trace of this diagram.
+Exit codes: 0 the same bits; 1 other bits, steps that were dropped or cannot be replayed, or no step; 2 no trace of this
+diagram.
 )";
 
 struct ServeReplayOptions {
@@ -75,9 +76,16 @@ int replay(const ServeReplayOptions& options, Console& console) {
                 "its inputs.");
   }
   console.report(found);
-  console.print(fmt::format("{} steps replayed, {} with other bits; {} dropped while recording{}\n", result.steps,
-                            result.different, result.dropped, result.complete ? "" : "; the end is missing"));
-  return result.different == 0 && result.without_state == 0 && result.dropped == 0 ? exit_ok : exit_findings;
+  const std::string before_state =
+      result.without_state == 0
+          ? ""
+          : fmt::format("; {} stand before the first state and cannot be replayed", result.without_state);
+  console.print(fmt::format("{} steps replayed, {} with other bits; {} dropped while recording{}{}{}\n", result.steps,
+                            result.different, result.dropped, before_state,
+                            result.complete ? "" : "; the end is missing",
+                            result.steps > 0 ? "" : "; there is nothing to compare"));
+  const bool is_whole = result.different == 0 && result.without_state == 0 && result.dropped == 0 && result.steps > 0;
+  return is_whole ? exit_ok : exit_findings;
 }
 
 }  // namespace

@@ -274,15 +274,26 @@ class Reader {
     trace.file = file;
     std::string trigger;
     table.read("trigger", trigger);
-    if (!trigger.empty()) {
+    TraceTrigger kept;
+    table.read_whole("before", kept.before);
+    table.read_whole("after", kept.after);
+    if (trigger.empty()) {
+      for (const char* const key : {"before", "after"}) {
+        if (table.has(key)) {
+          found_.error(error::wrong_run_value, table.place(key),
+                       std::string(key) + " counts cycles around a trigger, and none is given.",
+                       "write one as in trigger = \"fault\", or remove the key.");
+        }
+      }
+    } else {
       trace.trigger = parse_trigger(trigger, shape_);
       if (!trace.trigger) {
         found_.error(error::wrong_run_value, table.place("trigger"),
                      "The trigger \"" + trigger + "\" is not understood.",
                      "write an input or output, < or >, and a number: \"U > 5.0\"; or \"fault\".");
       } else {
-        table.read_whole("before", trace.trigger->before);
-        table.read_whole("after", trace.trigger->after);
+        trace.trigger->before = kept.before;
+        trace.trigger->after = kept.after;
       }
     }
     config_.trace = std::move(trace);

@@ -59,7 +59,9 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
                        "end that task first, or name another file.");
     }
     throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
-                     "name a file in a folder that is there and may be written to.");
+                     problem.code() == std::errc::no_space_on_device || problem.code() == std::errc::file_too_large
+                         ? "make room on the disk, or name a file on another one."
+                         : "name an ordinary file, in a folder that is there and may be written to.");
   }
 }
 
@@ -90,7 +92,10 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
                              .order = config.word_order,
                              .given = config.addresses,
                              .lock_file = config.lock_file};
-  const bool has_lock = !config.lock_file.empty() && std::filesystem::exists(config.lock_file);
+  // Where that cannot be told, reading it says why.
+  std::error_code unknown;
+  const bool has_lock =
+      !config.lock_file.empty() && (std::filesystem::exists(config.lock_file, unknown) || unknown != std::error_code{});
   request.lock_text =
       has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : config.first_addresses;
   PlannedMap planned{.map = modbus::make_register_map(door.points(), request)};
@@ -280,6 +285,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   stop_asked.store(false);
   (void)std::signal(SIGTERM, ask_to_stop);
   (void)std::signal(SIGINT, ask_to_stop);
+  if (std::signal(SIGHUP, ask_to_stop) == SIG_IGN) {
+    (void)std::signal(SIGHUP, SIG_IGN);  // as nohup wants it
+  }
 
   tell_of_unused_devices(config);
   // What can refuse the start comes first: the outputs' claims, the guard, which writes nothing before the first cycle,

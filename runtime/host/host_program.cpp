@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -16,6 +15,7 @@
 #include "runtime/host/host.hpp"
 #include "runtime/modbus/map_text.hpp"
 #include "support/errors.hpp"
+#include "support/failed_writes.hpp"
 #include "support/render.hpp"
 #include "support/text_file.hpp"
 
@@ -105,7 +105,7 @@ int run(StepProgram& program, const HostProgram& host, std::span<const char* con
 }  // namespace
 
 int host_program(StepProgram& program, const HostProgram& host, int argc, const char* const* argv) {
-  (void)std::signal(SIGPIPE, SIG_IGN);  // whoever reads what it prints may go: the task stays
+  let_writes_fail();  // whoever reads what it prints may go: the task stays
   try {
     return run(program, host, {argv, static_cast<std::size_t>(argc)});
   } catch (const InputError& refused) {

@@ -111,7 +111,9 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
       waits_(settings.waits) {
   const std::string head = text_of(head_of(program));
   if (file_.write(head) < head.size()) {
-    throw std::system_error(errno, std::generic_category(), settings.file.string());
+    const int reason = errno;
+    file_.give_back();
+    throw std::system_error(reason, std::generic_category(), settings.file.string());
   }
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {

@@ -16,13 +16,16 @@ namespace {
 /// Opened and locked, and still the file of that name: whoever held the lock before may have moved it away.
 int open_locked(const std::filesystem::path& file, struct stat& about) {
   for (;;) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    // Without waiting: a pipe has no end for writing until somebody reads it.
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
     struct stat now {};
     if (descriptor < 0 || ::fstat(descriptor, &about) != 0) {
       return descriptor;
     }
     if (!S_ISREG(about.st_mode)) {
-      return descriptor;  // a pipe or a device, which have no lock
+      (void)::close(descriptor);  // a pipe or a device, which have no lock, and nothing to cut off a torn step from
+      errno = ENXIO;
+      return -1;
     }
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
@@ -50,7 +53,7 @@ TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
   };
   struct stat about {};
   descriptor_ = open_locked(file_, about);
-  if (descriptor_ >= 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
+  if (descriptor_ >= 0 && about.st_size > 0) {
     const int before = descriptor_;  // locked until the new file is
     const auto kept = previous_trace(file_);
     const bool moved = ::rename(file_.c_str(), kept.c_str()) == 0;
@@ -61,6 +64,7 @@ TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
     if (!moved) {
       refuse(kept);
     }
+    has_moved_ = true;
   }
   if (descriptor_ < 0) {
     refuse(file_);
@@ -85,6 +89,12 @@ std::size_t TraceOutput::write(std::string_view bytes) {
   }
   size_ += done;
   return done;
+}
+
+void TraceOutput::give_back() noexcept {
+  if (has_moved_) {
+    (void)::rename(previous_trace(file_).c_str(), file_.c_str());
+  }
 }
 
 void TraceOutput::take_back(std::size_t bytes) noexcept {

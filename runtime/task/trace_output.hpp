@@ -26,6 +26,8 @@ class TraceOutput {
   [[nodiscard]] std::size_t write(std::string_view bytes);
   /// Takes back the last bytes that were written, as far as the file allows.
   void take_back(std::size_t bytes) noexcept;
+  /// Nothing begins here after all: what was moved away has its name again.
+  void give_back() noexcept;
   /// Why writing failed last, with the file's name; empty where it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
@@ -33,6 +35,7 @@ class TraceOutput {
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
+  bool has_moved_ = false;
   std::string problem_{};
 };
 

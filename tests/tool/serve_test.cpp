@@ -192,14 +192,50 @@ TEST(Serve, GoesOnFromWhatItRetained) {
   EXPECT_NE(bench.shell(command).out.find("from retained state"), std::string::npos);
 }
 
+TEST(Serve, AFileAtTheLimitOfItsSizeIsSaidAndEndsNothing) {
+  const test::Workbench bench;
+  bench.write("plant.st", served_plant);
+  bench.write("RUN.toml", std::string(run_file) + "[trace]\nfile = \"run.trace\"\n");
+  const auto served = bench.shell(
+      "ulimit -f 40 && hysteron serve plant.st --config RUN.toml --virtual --cycles 5000 --engine interpreter");
+  EXPECT_EQ(served.code, 1);
+  EXPECT_NE(served.out.find("5000 cycles, 0 skipped"), std::string::npos) << served.out;
+  EXPECT_NE(served.out.find("the trace was cut short, "), std::string::npos) << served.out;
+  EXPECT_NE(served.out.find("run.trace: File too large; fault: none\n"), std::string::npos) << served.out;
+  const auto before = bench.read("run.trace");
+  const auto none = bench.shell(
+      "(ulimit -f 0; hysteron serve plant.st --config RUN.toml --virtual --cycles 5 --engine interpreter; echo ended "
+      "$?) "
+      "2>&1 | cat");
+  EXPECT_NE(none.out.find("HY812 error: RUN.toml:6:"), std::string::npos) << none.out;
+  EXPECT_NE(none.out.find("mend: make room on the disk, "), std::string::npos) << none.out;
+  EXPECT_NE(none.out.find("ended 2\n"), std::string::npos) << none.out;
+  EXPECT_TRUE(bench.read("run.trace") == before) << "the trace of the run before has its name again";
+}
+
+TEST(Serve, AReplayThatComparesNothingIsNoSuccess) {
+  const test::Workbench bench;
+  bench.write("plant.st", served_plant);
+  bench.write("RUN.toml", std::string(run_file) + "[trace]\nfile = \"run.trace\"\ntrigger = \"fault\"\n");
+  const std::string engine = " --engine interpreter";
+  EXPECT_EQ(bench.shell("hysteron serve plant.st --config RUN.toml --virtual --cycles 50" + engine).code, 0);
+  const auto replayed = bench.shell("hysteron replay plant.st --trace run.trace" + engine);
+  EXPECT_EQ(replayed.code, 1);
+  EXPECT_EQ(replayed.out,
+            "0 steps replayed, 0 with other bits; 0 dropped while recording; there is nothing to compare\n");
+}
+
 TEST(Serve, EndsInSafeOutputsAtSigterm) {
   const test::Workbench bench;
   bench.write("plant.st", served_plant);
   bench.write("RUN.toml", std::string(run_file) + "[task]\nscheduling = \"other\"\nlock_memory = false\n");
-  const auto served = bench.shell("timeout --preserve-status -s TERM 1 hysteron serve plant.st --config RUN.toml");
-  EXPECT_EQ(served.code, 0) << served.err;
-  EXPECT_NE(served.out.find("PLANT: stopped; "), std::string::npos) << served.out;
-  EXPECT_NE(served.out.find("fault: none\n"), std::string::npos) << served.out;
+  for (const std::string signal : {"TERM", "INT", "HUP"}) {
+    const auto served =
+        bench.shell("timeout --preserve-status -s " + signal + " 1 hysteron serve plant.st --config RUN.toml");
+    EXPECT_EQ(served.code, 0) << served.err;
+    EXPECT_NE(served.out.find("PLANT: stopped; "), std::string::npos) << served.out;
+    EXPECT_NE(served.out.find("fault: none\n"), std::string::npos) << served.out;
+  }
 }
 
 TEST(Serve, PrintsTheMapOfItsPoints) {
@@ -252,8 +288,8 @@ TEST(Serve, OverwritesNoneOfItsInputs) {
   }
   refused("[modbus]\nport = 0\nlock_file = \"a.lock\"\n[trace]\nfile = \"./a.lock\"\n", "./a.lock", serve);
   bench.write("run.trace.1", served_plant);
-  refused("[trace]\nfile = \"run.trace\"\n", "run.trace.1",
-          "serve run.trace.1 --config RUN.toml --virtual --cycles 5", "run.trace.1");
+  refused("[trace]\nfile = \"run.trace\"\n", "run.trace.1", "serve run.trace.1 --config RUN.toml --virtual --cycles 5",
+          "run.trace.1");
   refused("[retain]\nfolder = \"fresh\"\n[trace]\nfile = \"fresh/retain_b\"\n", "fresh/retain_b", serve);
   refused("[retain]\nfolder = \"kept\"\n", "kept/retain_a",
           "serve kept/retain_a --config RUN.toml --virtual --cycles 5", "kept/retain_a");

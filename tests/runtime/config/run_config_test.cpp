@@ -351,6 +351,14 @@ TEST(RunConfig, AnOutputUnderTwoSpellingsIsRefused) {
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0\n[outputs.y]\nsafe = 1\n"), "802@3:10 ");
 }
 
+TEST(RunConfig, CyclesAroundATriggerNeedOne) {
+  const std::string trace = "[outputs.Y]\nsafe = 0\n[trace]\nfile = \"run.trace\"\n";
+  EXPECT_EQ(errors_of(trace + "before = 10\nafter = 20\n"), "804@5:10 804@6:9 ");
+  EXPECT_EQ(errors_of(trace + "before = -1\ntrigger = \"fault\"\n"), "805@5:10 ");
+  EXPECT_EQ(errors_of(trace + "after = \"many\"\n"), "804@5:9 804@5:9 ");
+  EXPECT_EQ(errors_of(trace + "after = 20\ntrigger = \"fault\"\n"), "");
+}
+
 TEST(RunConfig, DurationsAreWholeNanoseconds) {
   EXPECT_EQ(parse_duration("5ms"), 5'000'000);
   EXPECT_EQ(parse_duration("0.25us"), 250);

@@ -1,8 +1,11 @@
 // What a run keeps on the disk, the trace and the retained state: no other task writes it, no start loses it, and what
 // could not be written is said.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
@@ -26,6 +29,7 @@ using hysteron::test::contents_of;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 struct HostRun {
   bool well = false;
@@ -144,6 +148,20 @@ TEST_F(KeptFiles, ALockFileThatCannotBeOneIsRefusedAtItsTable) {
   };
   EXPECT_TRUE(with(folder.path().string()).starts_with("HY100:5: ")) << with(folder.path().string());
   EXPECT_TRUE(with("/dev/null/a.lock").starts_with("HY700:5: ")) << with("/dev/null/a.lock");
+  const std::string loop = folder / "loop";
+  std::filesystem::create_symlink(loop, loop);
+  for (const std::string& file : {loop, folder / std::string(300, 'a'), loop + "/a.lock"}) {
+    EXPECT_THAT(with(file), AllOf(StartsWith("HY100:5: "), HasSubstr(file))) << file;
+  }
+}
+
+TEST_F(KeptFiles, ATraceThatIsNoOrdinaryFileIsRefusedAtOnce) {
+  const std::string pipe = folder / "run.trace";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(host_run(trace()).out, AllOf(StartsWith("HY812:"), HasSubstr("name an ordinary file, ")));
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  EXPECT_THAT(host_run(trace()).out, StartsWith("HY812:")) << "with a reader as without";
+  ::close(reader);
 }
 
 TEST_F(KeptFiles, ADeviceThatNothingIsOnIsSaid) {

@@ -79,7 +79,8 @@ class Guard {
   /// Whether its process lives on until devices have the safe values. Once the task is at its end.
   [[nodiscard]] bool holds_on() const noexcept {
     const GuardWord word = page_->word.load();
-    return !is_reaped_ && (word == GuardWord::running || word == GuardWord::taken);
+    const bool is_at_work = word == GuardWord::running || (word == GuardWord::taken && page_->safe_at.load() == 0);
+    return is_at_work && !is_reaped_;
   }
   /// What ended the guard's process before its work was done, said once; empty else. Waits for nothing.
   [[nodiscard]] std::string death();

@@ -124,7 +124,14 @@ Answer Responder::write(const Request& request) {
 }
 
 Answer Responder::stage(std::string_view body) {
-  const auto values = nlohmann::json::parse(body, nullptr, false);
+  nlohmann::json values;
+  try {
+    values = nlohmann::json::parse(body);
+  } catch (const nlohmann::json::out_of_range&) {
+    return refusal(400, "A number in the body is beyond what a double holds, 1.8e308.");
+  } catch (const nlohmann::json::parse_error&) {
+    // It stays empty.
+  }
   if (!values.is_object() || values.empty()) {
     return refusal(400, "The body is no JSON object of parameters and their values.");
   }

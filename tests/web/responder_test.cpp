@@ -121,6 +121,8 @@ TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
     EXPECT_EQ(bench.post("/api/stage", body).status, 400U) << body;
   }
   EXPECT_EQ(bench.post("/api/stage", std::string(60'000, '[')).status, 400U);
+  const std::string beyond = bench.post("/api/stage", R"({"G.A": 1e999})").body;
+  EXPECT_NE(beyond.find("beyond what a double holds"), std::string::npos) << beyond;
   // The set as a whole is refused at the commit, and stays staged to be mended.
   EXPECT_EQ(bench.post("/api/stage", R"({"G.A": -3})").status, 200U);
   (void)bench.door.take_orders();

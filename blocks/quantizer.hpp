@@ -1,4 +1,4 @@
-// HY_QUANTIZER: XOUT = QUANTUM·round(XIN/QUANTUM)
+// HY_QUANTIZER: XOUT = QUANTUM·round(XIN/QUANTUM), or the mean of such with thresholds apart
 #pragma once
 
 #include "blocks/ports.hpp"
@@ -10,20 +10,27 @@ struct Quantizer : Stateless {
   static constexpr About about{.name = "HY_QUANTIZER",
                                .title = "Quantizer",
                                .group = Group::Shaping,
-                               .equation = "XOUT = QUANTUM·round(XIN/QUANTUM)",
+                               .equation = "XOUT = QUANTUM·round(XIN/QUANTUM), or its mean over XIN/QUANTUM ± SPREAD",
                                .meaning =
                                    "Rounds a signal to the nearest whole multiple of QUANTUM, halves away from zero: "
                                    "the resolution of a converter or an encoder. The error is at most QUANTUM/2. A "
-                                   "signal beyond 2^31 quanta, and any signal where QUANTUM is 0, passes as it is.",
+                                   "signal beyond 2^31 quanta, and any signal where QUANTUM is 0, passes as it is. "
+                                   "With SPREAD each threshold is spread evenly over the share SPREAD of a quantum to "
+                                   "either side, and the output "
+                                   "is the mean, a ramp in place of a jump: what a converter with uneven codes, or "
+                                   "with noise in front of it, gives in the mean.",
                                .effect = "quantization"};
 
   template <class S>
   struct Params {
     S QUANTUM;
+    S SPREAD;
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{
-          HY_FIELD(QUANTUM).in("'x").otherwise(0.0).at_least(0.0).neutral_at(0.0).means("smallest step of the output")};
+          HY_FIELD(QUANTUM).in("'x").otherwise(0.0).at_least(0.0).neutral_at(0.0).means("step of the output"),
+          HY_FIELD(SPREAD).in("1").within(0.0, 0.4).otherwise(0.0).means(
+              "share of QUANTUM by which thresholds lie lower or higher; 0 for even steps")};
     }
   };
   template <class S>
@@ -36,7 +43,12 @@ struct Quantizer : Stateless {
     const Bool<S> coarse = params.QUANTUM > S(0.0);
     const S quanta = in.XIN / select(coarse, params.QUANTUM, S(1.0));
     const Bool<S> countable = coarse && abs(quanta) < S(2147483000.0);
-    return {.XOUT = select(countable, params.QUANTUM * to_real<S>(nearest(quanta)), in.XIN)};
+    const S code = to_real<S>(nearest(quanta));
+    const S rest = quanta - code;
+    const Bool<S> even = params.SPREAD == S(0.0);
+    const S beyond = max(abs(rest) - (S(0.5) - params.SPREAD), S(0.0)) / select(even, S(1.0), S(2.0) * params.SPREAD);
+    const S ramp = select(rest < S(0.0), -beyond, beyond);
+    return {.XOUT = select(countable, params.QUANTUM * select(even, code, code + ramp), in.XIN)};
   }
 };
 

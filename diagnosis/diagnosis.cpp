@@ -41,8 +41,6 @@ constexpr double above_fast_floor = 2.0;
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
 constexpr double far_above_fast_floor = 4.0;
-/// What stands out of the floor by less of it is no gap.
-constexpr double least_excess = 0.35;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
 /// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
@@ -235,8 +233,8 @@ class Run {
       gap.closed = share.closed;
       gap.closed_low = share.low;
       gap.closed_high = share.high;
-      const bool refit_is_worse = matters(gap.calibrated, gap.nominal, gap.floor.value);
-      const bool effects_are_worse = named() && matters(gap.improved, gap.nominal, gap.floor.value);
+      const bool refit_is_worse = matters(gap.calibrated, gap.nominal, gap.floor);
+      const bool effects_are_worse = named() && matters(gap.improved, gap.nominal, gap.floor);
       if (refit_is_worse || effects_are_worse) {
         result_.warnings.push_back(warning_of_worse(gap, refit_is_worse, effects_are_worse));
       }
@@ -246,13 +244,13 @@ class Run {
   }
 
   /// Whether one RMS is so far above another one that the difference is no noise and matters to the user.
-  [[nodiscard]] bool matters(double high, double low, double floor) const {
-    return excess(high, low) > std::max(least_excess * floor, options_.material);
+  [[nodiscard]] bool matters(double high, double low, const NoiseFloor& floor) const {
+    return excess(high, low) > std::max(least_excess(floor), options_.material);
   }
 
   /// Whether something remains of an output's residuals, beyond the floor, that matters to the user.
   [[nodiscard]] bool material(const VectorXd& residuals, std::size_t output) const {
-    return matters(rms(residuals, output), floors_[output].value, floors_[output].value);
+    return matters(rms(residuals, output), floors_[output].value, floors_[output]);
   }
   [[nodiscard]] bool material(const VectorXd& residuals) const {
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
@@ -418,8 +416,8 @@ class Run {
   [[nodiscard]] bool below_material(const Explanation& kept) const {
     bool above = false;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const double floor = floors_[output].value;
-      above = above || excess(rms(kept.fit.residuals, output), floor) > least_excess * floor;
+      const NoiseFloor& floor = floors_[output];
+      above = above || excess(rms(kept.fit.residuals, output), floor.value) > least_excess(floor);
     }
     return above && !material(kept.fit.residuals);
   }
@@ -436,13 +434,14 @@ class Run {
     return options_.effects.empty() || std::ranges::find(options_.effects, effect) != options_.effects.end();
   }
 
-  /// What was left out of the fits: an effect of its own where it outweighs the noise, else a remark.
+  /// What was left out of the fits: an effect of its own where it is no small part of the noise, else a remark.
   void add_left_out(const Findings& findings, const std::vector<Edge>& edges) {
     double gap = gap_energy(findings);
     for (const LeftOut& one : left_out_) {
-      const double ratio = one.rms / floors_[one.output].value;
+      const NoiseFloor& floor = floors_[one.output];
+      const double ratio = one.rms / floor.value;
       result_.warnings.push_back(one.remark);
-      if (ratio < 1.0 || !is_tried(one.effect)) {
+      if (one.rms < least_excess(floor) || !is_tried(one.effect)) {
         continue;
       }
       const Edge* const edge = find_edge(edges, task_.outputs[one.output]);

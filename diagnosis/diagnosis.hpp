@@ -29,8 +29,7 @@ struct DiagnosisInput {
 };
 
 struct DiagnosisOptions {
-  double material =
-      0.0;  ///< smallest gap that matters, RMS in the output's unit; a quarter of the floor counts at least
+  double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; noise_floor.hpp says the least
   std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
   int most_effects = 3;
   double budget = 60.0;  ///< seconds after which no further effect is added

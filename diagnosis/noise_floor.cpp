@@ -175,6 +175,12 @@ double noise_by_differences(const std::vector<double>& values) {
   return std::isfinite(best) ? best : 0.0;
 }
 
+double least_excess(const NoiseFloor& floor) {
+  constexpr double of_repeats = 0.35;
+  constexpr double of_others = 0.5;
+  return (floor.evidence == "repeats" ? of_repeats : of_others) * floor.value;
+}
+
 NoiseRange noise_range(double left) {
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
   return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};

@@ -32,6 +32,10 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
                                      const std::vector<std::vector<Signal>>& others = {});
 
+/// The RMS by which a gap stands out of the floor at least, as √(rms² − floor²), in the unit of the output. More where
+/// the floor comes from dwells or differences: they may have missed slow noise.
+[[nodiscard]] double least_excess(const NoiseFloor& floor);
+
 /// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is
 /// no more than what is left; where less is left than the floor, this counted a fast effect as noise.
 struct NoiseRange {

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <unsupported/Eigen/FFT>
 
 namespace hysteron::diagnosis {
@@ -36,6 +38,106 @@ std::vector<double> places_of(std::vector<Peak> peaks, std::size_t count) {
   }
   return places;
 }
+
+/// |Σ exp(2πi·turns·y)| over values y, and the steps 1/turns on which they may lie.
+class Lattice {
+ public:
+  explicit Lattice(const std::vector<double>& values) : values_(values) {
+    if (values.size() < 64) {
+      return;
+    }
+    const auto [low, high] = std::ranges::minmax(values);
+    const double range = high - low;
+    if (!(range > 0.0) || !std::isfinite(range)) {
+      return;
+    }
+    bin_ = 1.0 / (static_cast<double>(padding) * range);
+    // Which of many narrow bins are taken, each once: where the machine rests its values are many, and lie on any step.
+    std::vector<double> taken(padding * bins, 0.0);
+    for (const double value : values) {
+      const double place = std::floor((value - low) / range * static_cast<double>(bins));
+      taken[std::min(static_cast<std::size_t>(place), bins - 1)] = 1.0;
+    }
+    count_ = std::accumulate(taken.begin(), taken.end(), 0.0);
+    std::vector<std::complex<double>> transform;
+    Eigen::FFT<double> fft;
+    fft.fwd(transform, taken);
+    std::ranges::transform(std::span(transform).first(last + 2), std::back_inserter(heights_),
+                           [](const std::complex<double>& one) { return std::abs(one); });
+  }
+
+  /// The highest of all, if above half of what it can be; 0 where there is none.
+  [[nodiscard]] double clear() const {
+    double best = 0.5 * count_;
+    std::size_t found = 0;
+    for (std::size_t k = first; k <= last && !heights_.empty(); ++k) {
+      if (heights_[k] > 1.02 * best) {  // of a step and its parts, the step
+        best = heights_[k];
+        found = k;
+      }
+    }
+    return found == 0 ? 0.0 : refined(found);
+  }
+
+  /// The one that stands highest over its neighbours.
+  [[nodiscard]] double faint() const {
+    constexpr double over_chance = 5.0;  // times the RMS of as many places at random
+    double best = 6.0;
+    std::size_t found = 0;
+    for (std::size_t k = first + 1; k < last && !heights_.empty(); ++k) {
+      const double height = heights_[k];
+      if (height > heights_[k - 1] && height >= heights_[k + 1] && height > over_chance * std::sqrt(count_) &&
+          height > best * about(k)) {
+        best = height / about(k);
+        found = k;
+      }
+    }
+    return found == 0 ? 0.0 : refined(found);
+  }
+
+ private:
+  static constexpr std::size_t bins = 1U << 15U;
+  static constexpr std::size_t padding = 4;
+  static constexpr std::size_t first = 3 * padding;
+  static constexpr std::size_t last = bins / 8 * padding;
+
+  /// The median from a fifth below to a quarter above.
+  [[nodiscard]] double about(std::size_t k) const {
+    const std::size_t low = std::max(first, k * 4 / 5);
+    std::vector<double> near(heights_.begin() + static_cast<std::ptrdiff_t>(low),
+                             heights_.begin() + static_cast<std::ptrdiff_t>(std::min(last, k * 5 / 4 + 8)));
+    const auto middle = near.begin() + std::ssize(near) / 2;
+    std::ranges::nth_element(near, middle);
+    return *middle;
+  }
+
+  /// To the place itself by all values: many steps from 0 a small error has become a whole step.
+  [[nodiscard]] double refined(std::size_t k) const {
+    double found = static_cast<double>(k) * bin_;
+    double best = strength(found);
+    for (double half = 0.5 * bin_; half > 1e-7 * found; half *= 0.5) {
+      for (const double turns : {found - half, found + half}) {
+        if (const double here = strength(turns); here > best) {
+          best = here;
+          found = turns;
+        }
+      }
+    }
+    return 1.0 / found;
+  }
+  [[nodiscard]] double strength(double turns) const {
+    std::complex<double> sum = 0.0;
+    for (const double value : values_) {
+      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * value);
+    }
+    return std::abs(sum);
+  }
+
+  const std::vector<double>& values_;
+  std::vector<double> heights_{};
+  double count_ = 0.0;
+  double bin_ = 0.0;
+};
 
 }  // namespace
 
@@ -70,57 +172,11 @@ std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample
 }
 
 double common_step(const std::vector<double>& values) {
-  if (values.size() < 64) {
-    return 0.0;
-  }
-  const auto [low, high] = std::ranges::minmax(values);
-  const double range = high - low;
-  if (!(range > 0.0) || !std::isfinite(range)) {
-    return 0.0;
-  }
-  // Which of many narrow bins are taken, each once: where the machine rests its values are many, and lie on any step.
-  constexpr std::size_t bins = 1U << 15U;
-  constexpr std::size_t padding = 4;
-  constexpr std::size_t most_steps = bins / 8;
-  std::vector<double> taken(padding * bins, 0.0);
-  for (const double value : values) {
-    const double place = std::floor((value - low) / range * static_cast<double>(bins));
-    taken[std::min(static_cast<std::size_t>(place), bins - 1)] = 1.0;
-  }
-  const double count = std::accumulate(taken.begin(), taken.end(), 0.0);
-  std::vector<std::complex<double>> transform;
-  Eigen::FFT<double> fft;
-  fft.fwd(transform, taken);
-  double best = 0.5 * count;
-  double found = 0.0;
-  for (std::size_t k = 3 * padding; k <= most_steps * padding; ++k) {
-    if (std::abs(transform[k]) > 1.02 * best) {  // of a step and its parts, the step
-      best = std::abs(transform[k]);
-      found = static_cast<double>(k) / (static_cast<double>(padding) * range);
-    }
-  }
-  if (found == 0.0) {
-    return 0.0;
-  }
-  // To the place itself by all values: many steps from 0 a small error has become a whole step.
-  const auto strength = [&](double turns) {
-    std::complex<double> sum = 0.0;
-    for (const double value : values) {
-      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * value);
-    }
-    return std::abs(sum);
-  };
-  best = strength(found);
-  const double bin = 1.0 / (static_cast<double>(padding) * range);
-  for (double half = 0.5 * bin; half > 1e-7 * found; half *= 0.5) {
-    for (const double turns : {found - half, found + half}) {
-      if (const double here = strength(turns); here > best) {
-        best = here;
-        found = turns;
-      }
-    }
-  }
-  return 1.0 / found;
+  return Lattice(values).clear();
+}
+
+double faint_step(const std::vector<double>& values) {
+  return Lattice(values).faint();
 }
 
 std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,

@@ -15,6 +15,11 @@ namespace hysteron::diagnosis {
 /// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
+/// Likewise where noise of up to a third of the step hides it: the peak of |Σ exp(2πi y/q)| that stands highest over
+/// the median about it, if six times as high. A start for a fit, no finding: where a machine rests now and then, its
+/// levels may lie on a step by chance.
+[[nodiscard]] double faint_step(const std::vector<double>& values);
+
 /// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least
 /// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.
 [[nodiscard]] std::vector<double> strongest_periods(const Eigen::VectorXd& residuals,

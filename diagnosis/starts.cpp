@@ -134,7 +134,8 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
       // A share to both sides is a place: the middle, and near the ends.
       return parameter.field.minimum < 0.0 ? std::vector{0.0, 0.9, -0.9} : std::vector{0.02, 0.1, 0.4};
     case Role::Softness:
-      return {0.4};  // between sharp and as soft as can be; at 0 itself the first derivative is 0
+      // Between sharp and as soft as can be; at 0 itself the first derivative is 0.
+      return {0.4 * parameter.field.maximum};
     case Role::Level:
     case Role::Gap:
     case Role::Quantum:
@@ -197,7 +198,9 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
     hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
   }
   for (const std::string& output : task.outputs) {
-    if (const double step = common_step(task.records.front().column(output).values); step > 0.0) {
+    const std::vector<double>& values = task.records.front().column(output).values;
+    const double clear = common_step(values);
+    if (const double step = clear > 0.0 ? clear : faint_step(values); step > 0.0) {
       hints.quanta.push_back(step);
     }
   }
@@ -264,6 +267,9 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
         guesses.insert(guesses.end(), periods.begin(), periods.end());
         grid.guessed = guesses.size();
         grid.values.insert(grid.values.begin(), guesses.begin(), guesses.end());
+      }
+      if (parameter.role == Role::Softness && candidate.own().has(Role::Quantum)) {
+        grid.values.insert(grid.values.begin(), 0.0);  // steps have no derivative that would lead there
       }
       drop_unfit(grid.values);
     }

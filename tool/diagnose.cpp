@@ -243,7 +243,7 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
       ->option_text("NAME");
   app.add_option("--material", options->diagnosis.material,
-                 "The smallest gap that matters, RMS in the unit of the output; a quarter of the noise at least.")
+                 "The smallest gap that matters, RMS in the unit of the output; half the noise counts at least.")
       ->check(number_from_zero())
       ->option_text("SIZE");
   app.add_option("--effects", options->effects, "Tries these effects alone, by their identifiers.")

@@ -111,7 +111,7 @@ TEST(Switch, PassesTheChosenSignalOnly) {
 }
 
 TEST(Quantizer, ErrorIsHalfAQuantumAtMost) {
-  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = 0.1});
+  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = 0.1, .SPREAD = 0.0});
   for (double x = -5.0; x < 5.0; x += 0.00137) {
     const double y = quantizer({.XIN = x}).XOUT;
     EXPECT_LE(std::abs(y - x), 0.05 * (1.0 + 1e-12));
@@ -121,7 +121,7 @@ TEST(Quantizer, ErrorIsHalfAQuantumAtMost) {
 }
 
 TEST(Quantizer, HalvesGoAwayFromZeroAndNothingElseDoes) {
-  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = 1.0});
+  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = 1.0, .SPREAD = 0.0});
   EXPECT_EQ(quantizer({.XIN = 2.5}).XOUT, 3.0);
   EXPECT_EQ(quantizer({.XIN = -2.5}).XOUT, -3.0);
   EXPECT_EQ(quantizer({.XIN = 0.49999999999999994}).XOUT, 0.0) << "adding 1/2 and truncating would give 1";
@@ -131,7 +131,7 @@ TEST(Quantizer, HalvesGoAwayFromZeroAndNothingElseDoes) {
 
 TEST(Quantizer, ErrorOfARampIsWhiteWithVarianceOfATwelfth) {
   const double quantum = 0.01;
-  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = quantum});
+  Stepper<Quantizer> quantizer(1.0, {.QUANTUM = quantum, .SPREAD = 0.0});
   double sum = 0.0;
   const int count = 100000;
   for (int k = 0; k < count; ++k) {
@@ -140,6 +140,19 @@ TEST(Quantizer, ErrorOfARampIsWhiteWithVarianceOfATwelfth) {
     sum += e * e;
   }
   EXPECT_NEAR(sum / count, quantum * quantum / 12.0, 1e-3 * quantum * quantum);
+}
+
+TEST(Quantizer, SpreadThresholdsGiveTheMeanOfManyQuantizers) {
+  const double spread = 0.15;
+  Stepper<Quantizer> spread_out(1.0, {.QUANTUM = 2.0, .SPREAD = spread});
+  const int count = 2000;
+  for (double x = -5.0; x < 5.0; x += 0.0371) {
+    double sum = 0.0;
+    for (int k = 0; k < count; ++k) {
+      sum += 2.0 * std::round(0.5 * x + spread * ((2.0 * k + 1.0) / count - 1.0));
+    }
+    EXPECT_NEAR(spread_out({.XIN = x}).XOUT, sum / count, 2.0 / count) << x;
+  }
 }
 
 TEST(Backlash, FollowsHalfAGapBehindAndRestsInTheGap) {

@@ -140,29 +140,65 @@ TEST(Diagnosis, AQuantumOfAHundredStepsInsideIsFound) {
   EXPECT_NEAR(found.effects.front().parameters.front().value, quantum, 0.002 * quantum);
 }
 
-TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
-  // Rounded to some twenty steps, the output has no derivative by what lies before; the tuned values are two percent
-  // off.
-  const auto heater = [](std::string_view sensor) {
-    return fmt::format(
-        "FUNCTION_BLOCK HEATER (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR GAIN : "
-        "HY_GAIN := (K := 3.0); BODY : HY_LAG := (T1 := 0.4); {} END_VAR GAIN(XIN := FORCE); BODY(XIN := GAIN.XOUT); "
-        "{} "
-        "END_FUNCTION_BLOCK",
-        sensor, sensor.empty() ? "Y := BODY.XOUT;" : "ADC(XIN := BODY.XOUT); Y := ADC.XOUT;");
-  };
-  constexpr double quantum = 0.2137;
-  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
-  const Diagnosis found = diagnose(
+/// A heated body; rounded, its output has no derivative by what lies before.
+std::string heater(std::string_view sensor) {
+  return fmt::format(
+      "FUNCTION_BLOCK HEATER (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR GAIN : "
+      "HY_GAIN := (K := 3.0); BODY : HY_LAG := (T1 := 0.4); {} END_VAR GAIN(XIN := FORCE); BODY(XIN := GAIN.XOUT); {} "
+      "END_FUNCTION_BLOCK",
+      sensor, sensor.empty() ? "Y := BODY.XOUT;" : "ADC(XIN := BODY.XOUT); Y := ADC.XOUT;");
+}
+
+/// With tuned values that are two percent off.
+Diagnosis heater_diagnosed(std::vector<records::Record> log) {
+  return diagnose(
       test::input_of(
           heater(""),
           "[parameters.GAIN]\nK = 2.95\n[parameters.BODY]\nT1 = 0.407\n[fit.GAIN]\nK = {}\n[fit.BODY]\nT1 = {}\n",
-          {test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.01 * quantum)}),
+          std::move(log)),
       {.effects = {"quantization", "cogging", "backlash", "odd_nonlinearity"}});
+}
+
+TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
+  constexpr double quantum = 0.2137;  // some twenty steps
+  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
+  const Diagnosis found =
+      heater_diagnosed({test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.01 * quantum)});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects.front().id, "quantization");
   EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 1e-3 * quantum);
   EXPECT_LT(found.gap.improved, 2.0 * 0.01 * quantum);
+}
+
+TEST(Diagnosis, AFineQuantumIsFoundBehindNoiseOfItsOwnSize) {
+  constexpr double quantum = 0.0137;
+  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
+  const Diagnosis found =
+      heater_diagnosed({test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.28 * quantum)});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "quantization");
+  EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 1e-3 * quantum);
+}
+
+TEST(Diagnosis, UnevenStepsAreAQuantiserAndNoRipple) {
+  // The codes of a converter begin some tenth of a step too early or too late; the quantiser's even steps explain less
+  // than the first wave of a ripple does.
+  constexpr double quantum = 0.1137;
+  const Program machine = test::program_of(heater(""));
+  const records::Record smooth = test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.0);
+  const std::vector<double> late = test::Noise(11).white(4000, 0.08);
+  const std::vector<double> noise = test::Noise(12).white(smooth.size(), 0.02 * quantum);
+  const records::Record log = test::changed(smooth, "Y", [&](std::vector<double>& values) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double code = std::floor(values[k] / quantum);
+      const double threshold = 0.5 + late.at(static_cast<std::size_t>(code + 2000.0));
+      values[k] = quantum * (values[k] / quantum - code > threshold ? code + 1.0 : code) + noise[k];
+    }
+  });
+  const Diagnosis found = heater_diagnosed({log});
+  ASSERT_FALSE(found.effects.empty()) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "quantization");
+  EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 2e-3 * quantum);
 }
 
 TEST(Diagnosis, AWarmUpIsNotTakenForWhatFitsAGridBetter) {

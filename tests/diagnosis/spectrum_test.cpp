@@ -71,6 +71,31 @@ TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {
   EXPECT_NEAR((high - low) / periods[0], (high - low) / period, 0.03);
 }
 
+/// A motion over some 370 steps of `step`, with noise behind the rounding; at rest in between, where its values are
+/// many.
+std::vector<double> rounded_motion(double step, double deviation) {
+  std::vector<double> values = test::Noise(5).white(5000, deviation);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double t = 0.001 * static_cast<double>(k);
+    const double x = k % 1000 < 300 ? 0.71 : 1.9 * std::sin(3.1 * t) + 0.3 * std::sin(17.0 * t);
+    values[k] += step > 0.0 ? step * std::round(x / step) : x;
+  }
+  return values;
+}
+
+TEST(CommonStep, IsThatOfValuesWithLittleNoise) {
+  EXPECT_NEAR(common_step(rounded_motion(0.0117, 0.001)), 0.0117, 1e-3 * 0.0117);
+  EXPECT_EQ(common_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0) << "too faint to be sure of";
+  EXPECT_EQ(common_step(rounded_motion(0.0, 0.001)), 0.0);
+}
+
+TEST(FaintStep, IsSeenBehindNoiseOfItsOwnSize) {
+  EXPECT_NEAR(faint_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0117, 1e-3 * 0.0117);
+  EXPECT_EQ(faint_step(rounded_motion(0.0, 0.0117 / 3.5)), 0.0);
+  EXPECT_EQ(faint_step(std::vector<double>(40, 1.0)), 0.0);
+  EXPECT_EQ(faint_step(std::vector<double>(4000, 1.0)), 0.0);
+}
+
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {
   EXPECT_TRUE(strongest_periods(noise(1.0), {std::vector<double>(count, 2.0)}, 3).empty());
 }

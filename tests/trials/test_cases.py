@@ -9,12 +9,14 @@ import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from scipy import stats
 
 from trials.generator.case import PLANTS, Builder, Specification, build, from_label, scales, write
 from trials.generator.grid import Grid
+from trials.generator.piezo import Piezo
 from trials.generator.strata import AMBIGUOUS, FULL, HOMES, each, plan
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,6 +48,29 @@ class Agreement(unittest.TestCase):
                         left = float(np.sqrt(np.mean((case.log[output] - model) ** 2)))
                         self.assertLess(left, 1.06 * rms)
                         self.assertGreater(left, 0.9 * rms)
+
+
+class Turns(unittest.TestCase):
+    """A reversal makes the loop forget its branch: one that no sample shows would be a second effect, without a label."""
+
+    def test_a_dip_between_two_samples_is_seen(self) -> None:
+        plant = Builder(Specification("none", "piezo", (), 0.0, 3)).plant
+        self.assertTrue(plant.shows_its_turns())
+        middle = int(np.argmax(np.abs(np.gradient(plant.u))))
+        first = middle - middle % plant.grid.substeps
+        held = plant.u[first + 8]
+        plant.u[first + 8 : first + 11] = held + np.array([0.0, -1e-3, 0.0]) * np.sign(plant.u[first + 20] - plant.u[first])
+        self.assertFalse(plant.shows_its_turns())
+
+    def test_no_case_has_one(self) -> None:
+        asked: list[bool] = []
+        shows = Piezo.shows_its_turns
+        with mock.patch.object(Piezo, "shows_its_turns", lambda plant: asked.append(shows(plant)) or asked[-1]):
+            for seed in range(30):
+                builder = Builder(Specification("none", "piezo", (), 0.0, seed))
+                self.assertTrue(shows(builder.plant))
+                self.assertTrue(shows(builder.second()))
+        self.assertIn(False, asked, "some first draw hides a reversal, or nothing was tested")
 
 
 class Substeps(unittest.TestCase):

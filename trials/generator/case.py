@@ -143,6 +143,7 @@ class Builder:
         other = other_axis(rng, self.grid)
         has_other = needs_other or rng.random() < 0.5
         self.plant = make_plant(specification.plant, self.grid, rng, drive, other if has_other else None)
+        self._drive_until_shown(self.plant, rng)
         plant = self.plant
         for effect, _ in specification.effects:
             if effect == "offset" and isinstance(plant, Piezo) and not plant.zeroed:
@@ -156,6 +157,14 @@ class Builder:
         self.current_gain = 0.0
         if isinstance(plant, ClosedLoop):
             self.current_gain = self._noise_gain(plant)
+
+    def _drive_until_shown(self, plant: Plant, rng: np.random.Generator) -> None:
+        """Draws the excitation again while a reversal hides between two samples."""
+        for _ in range(50):
+            if plant.shows_its_turns():
+                return
+            plant.drive(excitation.join(rng, self.grid, self.plan))
+        raise RuntimeError(f"every excitation of plan {self.specification.plan} hides a reversal between two samples")
 
     def _noise_gain(self, plant: ClosedLoop) -> float:
         """RMS of the current per RMS of the position sensor's noise, through the controller."""
@@ -255,6 +264,7 @@ class Builder:
         plant = copy.deepcopy(self.plant)
         rng = np.random.default_rng(self.specification.seed + number)
         plant.drive(excitation.join(rng, self.grid, self.plan))
+        self._drive_until_shown(plant, rng)
         if plant.other is not None:
             plant.other = other_axis(rng, self.grid)
         return plant

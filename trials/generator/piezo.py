@@ -165,6 +165,18 @@ class Piezo(Plant):
         """Plays a relative excitation."""
         self.u = self.reach * x
 
+    def shows_its_turns(self) -> bool:
+        """The loop forgets its branch at the smallest reversal, and one between two samples leaves no trace of itself.
+        Behind a lag a reversal of a sample or two comes and goes with the way in which that lag is sampled."""
+
+        def into_loop(u: np.ndarray, dt: float) -> np.ndarray:
+            return u if self.place != "before" else op.lag(u, dt, self.time_constant)
+
+        fine = into_loop(self.u, self.grid.dt)
+        sampled = (self.grid.sample(fine), into_loop(self.grid.sample(self.u), self.grid.ts))
+        count = len(op.turning_points(fine))
+        return all(len(op.turning_points(x)) == count for x in sampled)
+
     def internal(self, effect: str) -> tuple[Realisation, ...]:
         """Effects that change the loop itself."""
         if effect == "branch_chatter":

@@ -57,6 +57,10 @@ class Plant(ABC):
     def drive(self, x: np.ndarray) -> None:
         """Plays a relative excitation, -1 to 1 on the fine clock, in the plant's own units."""
 
+    def shows_its_turns(self) -> bool:
+        """Whether each reversal that changes the machine is one of the samples, too: else no record could tell it."""
+        return True
+
     @abstractmethod
     def diagram(self) -> str:
         """The plant in the product's language."""

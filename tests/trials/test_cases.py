@@ -14,10 +14,11 @@ from unittest import mock
 import numpy as np
 from scipy import stats
 
-from trials.generator.case import PLANTS, Builder, Specification, build, from_label, scales, write
+from trials.generator.case import PLANTS, Builder, Specification, build, from_label, parameter_file, scales, write
 from trials.generator.grid import Grid
 from trials.generator.piezo import Piezo
 from trials.generator.strata import AMBIGUOUS, FULL, HOMES, each, plan
+from trials.scoring.fresh import checked
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = os.environ.get("HYSTERON_TOOL", str(ROOT / "build" / "hysteron"))
@@ -48,6 +49,27 @@ class Agreement(unittest.TestCase):
                         left = float(np.sqrt(np.mean((case.log[output] - model) ** 2)))
                         self.assertLess(left, 1.06 * rms)
                         self.assertGreater(left, 0.9 * rms)
+
+
+class Improved(unittest.TestCase):
+    """What the scorer finds of an improved diagram by running it."""
+
+    def test_the_machine_itself_is_nowhere_apart(self) -> None:
+        builder = Builder(Specification("calibration", "servo_speed", (), 10.0, 11))
+        case = builder.build()
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "improved.st").write_text(case.files["plant.st"])
+            (folder / "improved.toml").write_text(parameter_file(builder.plant.tuned(), builder.plant))
+            closed, apart = checked(case.label, name, TOOL)
+            self.assertGreater(closed, 0.999)
+            self.assertLess(apart, 0.1)
+            (folder / "improved.toml").write_text(case.files["params.toml"])
+            closed, apart = checked(case.label, name, TOOL)
+            self.assertAlmostEqual(closed, 0.0)
+            self.assertGreater(apart, 1.0)
+            (folder / "improved.st").write_text("no diagram")
+            self.assertTrue(all(np.isnan(checked(case.label, name, TOOL))))
 
 
 class Turns(unittest.TestCase):

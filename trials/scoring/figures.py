@@ -183,7 +183,8 @@ def misses(cases: list[Judgement]) -> list[dict[str, Any]]:
     return [
         {"case": c.name, "stratum": c.stratum, "plant": c.plant, "ratio": round(c.ratio, 2), "truth": list(c.truth),
          "realisations": list(c.realisations), "verdict": c.verdict, "effects": list(c.effects), "edges": list(c.edges),
-         "rivals": [sorted(r) for r in c.rivals], "confidence": c.confidence, "closed": c.closed, "closed_true": c.closed_true}
+         "rivals": [sorted(r) for r in c.rivals], "confidence": c.confidence, "closed": c.closed, "closed_true": c.closed_true,
+         "apart": c.apart}
         for c in sorted(cases, key=lambda c: (c.stratum, c.truth, c.name)) if not c.right
     ]  # fmt: skip
 

@@ -1,7 +1,8 @@
-"""Closure on a record that nobody has seen: the same machine, driven by another excitation, without noise.
+"""What the improved diagram does, against the machine itself.
 
-What a verdict claims of its held-out blocks is checked here against the truth: the improved diagram is run on the fresh
-record, and its error against the noise-free output is held against that of the diagram as it was.
+On a record that nobody has seen, the same machine driven by another excitation, without noise: what a verdict claims of its
+held-out blocks is checked there against the truth. And on the record of the case: how far the improved diagram is from the
+machine, in units of the noise that hid the difference.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ def outputs(product: str, diagram: Path, parameters: Path, log: Path, names: tup
     return np.array([[float(row[i]) for i in at] for row in rows[1:]])
 
 
-def closure(label: dict, verdict: str, product: str) -> float:
-    """1 - MSE(improved) / MSE(nominal), both against the noise-free fresh record."""
+def checked(label: dict, verdict: str, product: str) -> tuple[float, float]:
+    """1 - MSE(improved) / MSE(nominal), both against the noise-free fresh record; and the RMS of improved - machine on the
+    case's own record over the RMS of its noise, the larger one of two outputs."""
     folder = Path(verdict)
     builder = from_label(label)
     case = builder.build()
@@ -42,26 +44,29 @@ def closure(label: dict, verdict: str, product: str) -> float:
     clean = machine.simulate(machine.truth, case.injections)
     columns = machine.columns(case.injections) | dict(zip(machine.outputs, clean.T))
     weights = 1.0 / np.array(label["noise_rms"])
+    improved = (folder / "improved.st", folder / "improved.toml")
     with tempfile.TemporaryDirectory(prefix="fresh-") as name:
         scratch = Path(name)
-        for file in ("plant.st", "params.toml"):
+        for file in ("plant.st", "params.toml", "log.csv"):
             (scratch / file).write_text(case.files[file])
-        (scratch / "log.csv").write_text(table(builder.grid, columns))
-        before = outputs(product, scratch / "plant.st", scratch / "params.toml", scratch / "log.csv", machine.outputs)
-        after = outputs(product, folder / "improved.st", folder / "improved.toml", scratch / "log.csv", machine.outputs)
+        (scratch / "fresh.csv").write_text(table(builder.grid, columns))
+        before = outputs(product, scratch / "plant.st", scratch / "params.toml", scratch / "fresh.csv", machine.outputs)
+        after = outputs(product, *improved, scratch / "fresh.csv", machine.outputs)
+        here = outputs(product, *improved, scratch / "log.csv", machine.outputs)
+    apart = float("nan") if here is None else float(np.max(np.sqrt(np.mean(((here - case.clean) * weights) ** 2, axis=0))))
     if before is None or after is None:
-        return float("nan")
+        return float("nan"), apart
     error = [float(np.mean(((y - clean) * weights) ** 2)) for y in (before, after)]
-    return 1.0 - error[1] / error[0] if error[0] > 0.0 else float("nan")
+    return 1.0 - error[1] / error[0] if error[0] > 0.0 else float("nan"), apart
 
 
 def run_fresh(cases: list[Judgement], verdicts: Path, product: str, jobs: int) -> None:
-    """Fills in the closure on fresh records, for every verdict that left an improved diagram."""
+    """Fills in what the improved diagrams do, for every verdict that left one."""
     program = resolve(product)
     chosen = [c for c in cases if c.truth and (verdicts / c.name / "improved.st").exists()]
-    progress = Progress("fresh records", len(chosen))
+    progress = Progress("improved diagrams", len(chosen))
     with ProcessPoolExecutor(jobs) as pool:
-        futures = [pool.submit(closure, c.label, str(verdicts / c.name), program) for c in chosen]
+        futures = [pool.submit(checked, c.label, str(verdicts / c.name), program) for c in chosen]
         for case, future in zip(chosen, futures):
-            case.fresh = future.result()
+            case.fresh, case.apart = future.result()
             progress.step()

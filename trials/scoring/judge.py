@@ -46,6 +46,8 @@ class Judgement:
     """The same of the effect's own gap, which calibration cannot close: 0 where a refit of the known parameters ends."""
     fresh: float = math.nan
     """Closure on a record that nobody has seen, without noise; not a number where it was not run."""
+    apart: float = math.nan
+    """RMS distance of the improved diagram from the machine on the case's own record, over the noise; likewise."""
     answers: tuple[str, ...] = ()
     realisations: tuple[str, ...] = ()
     label: dict[str, Any] = field(default_factory=dict)

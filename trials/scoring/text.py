@@ -64,6 +64,21 @@ def confusions(score: Score, most: int = 25) -> str:
     return "\n".join([f"{'taken':>6s}  {'true':24s}for"] + [f"{n:6d}  {row:24s}{column}" for n, row, column in wrong[:most]])
 
 
+def misses(score: Score) -> str:
+    """What is in the library and was not named, the nearest to the machine first: two models that differ by less than the
+    noise are the same to a record."""
+    known = sorted((m for m in score.misses if m["truth"]), key=lambda m: (math.isnan(m["apart"]), m["apart"]))
+    lines = [f"{'from the machine':18s}{'R':>6s}  {'true':44s}named"]
+    for m in known:
+        true = " + ".join(m["realisations"])
+        named = " + ".join(m["effects"]) or m["verdict"]
+        apart = "–" if math.isnan(m["apart"]) else f"{m['apart']:.2f} of the noise"
+        lines.append(f"{apart:>18s}{m['ratio']:6.1f}  {true + ', ' + m['plant']:44s}{named}")
+    near = sum(m["apart"] < 1.0 for m in known)
+    very = sum(m["apart"] < 0.37 for m in known)
+    return "\n".join([*lines, f"{near} of {len(known)} are nearer to the machine than the noise, {very} than 0.37 of it"])
+
+
 def strata(score: Score) -> str:
     """Kinds of verdicts in each stratum."""
     return "\n".join(f"{name:14s}" + ", ".join(f"{kind} {n}" for kind, n in sorted(line.items())) for name, line in score.strata.items())
@@ -71,4 +86,4 @@ def strata(score: Score) -> str:
 
 def whole(score: Score, head: str) -> str:
     """All tables."""
-    return "\n\n".join([head, table(score), effects(score), plants(score), confusions(score), "verdicts by stratum\n" + strata(score)]) + "\n"
+    return "\n\n".join([head, table(score), effects(score), plants(score), confusions(score), misses(score), "verdicts by stratum\n" + strata(score)]) + "\n"

@@ -1,6 +1,7 @@
 // HY_HYSTERESIS_GENERAL: HY_HYSTERESIS_RO with asymmetry, dependence on rate and bias, shape, return-point memory
 #pragma once
 
+#include "blocks/bouc_wen.hpp"
 #include "blocks/effect_term.hpp"
 #include "blocks/hysteresis_ro.hpp"
 #include "blocks/return_points.hpp"
@@ -14,11 +15,13 @@ struct HysteresisGeneral {
       .title = "Ramberg-Osgood hysteresis with the effects it lacks",
       .group = Group::Memory,
       .equation =
-          "XOUT = y_i + (C1·d + (1 ± ASYMMETRY)·G(d) + B(d))·(1 + BIAS·(m − U0)/BIAS_REFERENCE) + D + R; d = XIN − "
+          "XOUT = y_i + (C1·d + (1 ± ASYMMETRY)·G(d) + B(d))·(1 + BIAS·(m − U0)/BIAS_REFERENCE) + D + R + W; d = XIN − "
           "u_i, p = |d|, e = ±ASYMMETRY_EXPONENT, G = d·C2·p^C3·(p/ASYMMETRY_REFERENCE)^e/(C3+e+1), B = "
           "SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D is the integral of "
           "(M(p)·DUHEM/DUHEM_REFERENCE + C2·p^C3·HARDENING/HARDENING_REFERENCE)·(u − U0) along the branch; R collects "
-          "G's increments times RATE·log10(1 + |XIN'|/RATE_REFERENCE); on the skeleton p = 2|d|",
+          "G's increments times RATE·log10(1 + |XIN'|/RATE_REFERENCE); W = BOUC_WEN·C1·z, z' = XIN' − β|XIN'|z − "
+          "γXIN'|z|, "
+          "β + γ = 1/BOUC_WEN_TRAVEL, 2γ/(β + γ) = BOUC_WEN_SKEW; on the skeleton p = 2|d|",
       .meaning =
           "HY_HYSTERESIS_RO, to the bit, where all its further parameters are 0. ASYMMETRY makes C2 larger upwards "
           "and smaller downwards, ASYMMETRY_EXPONENT does so with C3; a loop then no longer closes, and wanders by "
@@ -27,6 +30,8 @@ struct HysteresisGeneral {
           "does so by Duhem's form: the slope follows the input itself, and a loop wanders as it does with an "
           "asymmetry; HARDENING is the same of the part C2*p^C3 alone. SHAPE bends the branch by SHAPE·C1·SHAPE_DEPTH "
           "at the momentum SHAPE_DEPTH and leaves its start and its far end: C1, C2 and C3 have no such bend. "
+          "BOUC_WEN adds Bouc and Wen's element in parallel, whose z goes on from where it stood at a reversal, and so "
+          "remembers more than the last branching point. "
           "RETURN_POINT blends the output with that of a hysteresis which, when a loop closes, resumes the branch "
           "before it: 0 is the paper's memory of the last branching point, 1 full return-point memory of 8 "
           "interrupted branches; a deeper nesting forgets the innermost loop. Where a loop closes that way R begins "
@@ -34,19 +39,41 @@ struct HysteresisGeneral {
           "point.",
       .delay = "None.",
       .source =
-          "Strijbosch and Oomen, equations (2), (3) and (17); E. Madelung, Ann. Phys. 17 (1905) 861, for return points",
+          "Strijbosch and Oomen, equations (2), (3) and (17); E. Madelung, Ann. Phys. 17 (1905) 861, for return "
+          "points; "
+          "Y. K. Wen, J. Eng. Mech. Div. 102 (1976) 249, with n = 1",
       .enriches = "HY_HYSTERESIS_RO"};
 
   template <class S>
   using Rich = RichParams<S, HysteresisRo::Params<S>, "'x/s", "the rate of XIN", "'x", "U0", "'x">;
   template <class S>
   struct Params : Rich<S> {
+    S BOUC_WEN;
+    S BOUC_WEN_TRAVEL;
+    S BOUC_WEN_SKEW;
     S RETURN_POINT;
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple_cat(
           Rich<S>::fields(),
           std::tuple{
+              HY_FIELD(BOUC_WEN)
+                  .in("1")
+                  .within(-1.0, 1.0)
+                  .otherwise(0.0)
+                  .neutral_at(0.0)
+                  .effect("curve_shape")
+                  .means("slope of Bouc and Wen's element where it begins, over C1"),
+              HY_FIELD(BOUC_WEN_TRAVEL)
+                  .in("'x")
+                  .above(0.0)
+                  .otherwise(1.0)
+                  .means("what that element reaches at most, and over which it does so"),
+              HY_FIELD(BOUC_WEN_SKEW)
+                  .in("1")
+                  .within(0.0, 0.9)
+                  .otherwise(0.5)
+                  .means("share by which it bends less while it is undone; 0 for Dahl's element"),
               HY_FIELD(RETURN_POINT)
                   .in("1")
                   .within(0.0, 1.0)
@@ -70,6 +97,7 @@ struct HysteresisGeneral {
     ReturnPoints<S> STARTS_X;
     ReturnPoints<S> STARTS_Y;
     Bool<S> MOVING;
+    S BOUC_WEN_Z;
     using Self = State;
     static constexpr auto fields() {
       return std::tuple_cat(
@@ -85,7 +113,8 @@ struct HysteresisGeneral {
                      HY_FIELD(STARTS).otherwise(0.0).means("interrupted branches below that one"),
                      HY_FIELD(STARTS_X).in("'x").otherwise(0.0).means("their starts, the innermost last"),
                      HY_FIELD(STARTS_Y).in("'y").otherwise(0.0).means("outputs there"),
-                     HY_FIELD(MOVING).otherwise(0.0).means("a sample has been seen, so that there is a rate")});
+                     HY_FIELD(MOVING).otherwise(0.0).means("a sample has been seen, so that there is a rate"),
+                     HY_FIELD(BOUC_WEN_Z).in("'x").otherwise(0.0).means("z of Bouc and Wen's element")});
     }
   };
   template <class S>
@@ -108,6 +137,7 @@ struct HysteresisGeneral {
     ResumedBranch<S> resumed;
     Place<S> last;     ///< with the memory of the last branching point
     Place<S> returns;  ///< with return points
+    BoucWenPlace<S> parallel;
   };
 
   template <class S>
@@ -121,9 +151,11 @@ struct HysteresisGeneral {
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     const Sample<S> sample = find(params, held(params, state, in), in, ts);
-    return {.XOUT = with_term<S>(sample.last.y, params.RETURN_POINT * (sample.returns.y - sample.last.y)),
+    const S part = params.BOUC_WEN * params.C1;
+    const S loops = with_term<S>(sample.last.y, params.RETURN_POINT * (sample.returns.y - sample.last.y));
+    return {.XOUT = with_term<S>(loops, part * sample.parallel.z),
             .P = sample.last.momentum,
-            .SLOPE = sample.last.slope,
+            .SLOPE = with_term<S>(sample.last.slope, part * sample.parallel.slope),
             .Q = sample.branch.course.turned};
   }
   template <class S>
@@ -152,6 +184,7 @@ struct HysteresisGeneral {
     state.VIRGIN = resumed.virgin;
     state.STARTS = resumed.count;
     state.MOVING = Bool<S>(true);
+    state.BOUC_WEN_Z = sample.parallel.z;
   }
 
  private:
@@ -169,6 +202,7 @@ struct HysteresisGeneral {
     state.VIRGIN = params.START == Int<S>(0);
     state.STARTS = Int<S>(0);
     state.MOVING = Bool<S>(false);
+    state.BOUC_WEN_Z = S(0.0);
   }
   /// What is remembered before the present sample.
   template <class S>
@@ -187,6 +221,7 @@ struct HysteresisGeneral {
     result.VIRGIN = select(in.R1, fresh.VIRGIN, state.VIRGIN);
     result.STARTS = select(in.R1, fresh.STARTS, state.STARTS);
     result.MOVING = select(in.R1, fresh.MOVING, state.MOVING);
+    result.BOUC_WEN_Z = select(in.R1, fresh.BOUC_WEN_Z, state.BOUC_WEN_Z);
     return result;
   }
   /// Whether the sample interrupts a branch that has a start.
@@ -243,7 +278,10 @@ struct HysteresisGeneral {
     const S from = select(resumed.closed, in.XIN, select(turned, resumed.x, before.LAST_X));
     const Place<S> returns = place<S>(params, resumed.x, resumed.y, resumed.skeleton, from, in.XIN, share,
                                       select(turned || resumed.closed, S(0.0), before.RATE_PART_W));
-    return {.branch = branch, .resumed = resumed, .last = last, .returns = returns};
+    const BoucWenPlace<S> parallel =
+        bouc_wen<S>({.travel = params.BOUC_WEN_TRAVEL, .skew = params.BOUC_WEN_SKEW}, before.BOUC_WEN_Z,
+                    in.XIN - before.LAST_X, branch.course.heading < Int<S>(0));
+    return {.branch = branch, .resumed = resumed, .last = last, .returns = returns, .parallel = parallel};
   }
 };
 

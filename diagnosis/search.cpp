@@ -321,8 +321,12 @@ class Searcher {
       const Explanation best =
           *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
       for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
-        Explanation rest = without(best, i, result.calibrated.variant);
-        if (std::isfinite(rest.fit.cost) && expanded_.insert(rest.places()).second) {
+        // Not fitted again, and so another rest than the one that its effects were alone: bent towards what the missing
+        // effect did, they would leave no room for the right one.
+        Explanation rest = without(best, i, result.calibrated.variant, 0);
+        std::vector<std::string> stood = rest.places();
+        stood.push_back("beside " + best.variant.effects[i].place());
+        if (std::isfinite(rest.fit.cost) && expanded_.insert(std::move(stood)).second) {
           expand(rest, any, options_.fitted_later, result, found);
         }
       }

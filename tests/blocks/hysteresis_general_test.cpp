@@ -56,6 +56,12 @@ class SteppedLoop {
     const double h = (x - x_) / fine;
     for (int j = 0; j < fine; ++j) {
       y_ += h * slope(x_ + (j + 0.5) * h, sign, faster);
+      const double beta = (1.0 - 0.5 * p_.BOUC_WEN_SKEW) / p_.BOUC_WEN_TRAVEL;
+      const double gamma = 0.5 * p_.BOUC_WEN_SKEW / p_.BOUC_WEN_TRAVEL;
+      const double half = z_ + 0.5 * (h - beta * std::fabs(h) * z_ - gamma * h * std::fabs(z_));
+      const double change = h - beta * std::fabs(h) * half - gamma * h * std::fabs(half);
+      z_ += change;
+      y_ += p_.BOUC_WEN * p_.C1 * change;
     }
     x_ = x;
     first_ = false;
@@ -84,6 +90,7 @@ class SteppedLoop {
   double ts_;
   double x_ = 0.0;
   double y_ = 0.0;
+  double z_ = 0.0;
   double start_ = 0.0;
   double sign_ = 0.0;
   bool skeleton_ = true;
@@ -138,6 +145,13 @@ TEST(HysteresisGeneral, EachEffectIsItsDifferentialEquation) {
     params.SHAPE = -0.3;
     params.SHAPE_DEPTH = 0.4;
     expect_stepped(params, seed);
+    for (const double skew : {0.0, 0.6, 0.9}) {
+      params = loop_params();
+      params.BOUC_WEN = -0.4;
+      params.BOUC_WEN_TRAVEL = 0.25;
+      params.BOUC_WEN_SKEW = skew;
+      expect_stepped(params, seed);
+    }
   }
 }
 
@@ -153,6 +167,8 @@ TEST(HysteresisGeneral, SoAreAllTogether) {
     params.ASYMMETRY_EXPONENT = -0.15;
     params.SHAPE = 0.4;
     params.SHAPE_DEPTH = 0.7;
+    params.BOUC_WEN = 0.2;
+    params.BOUC_WEN_TRAVEL = 0.5;
     expect_stepped(params, seed);
   }
 }

@@ -141,6 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"bias_of_growth", "HY_HYSTERESIS_GENERAL := (" + loop + ", HARDENING := 0.1, HARDENING_REFERENCE := 2.0)",
              1e-5},
         Case{"curve_shape", "HY_HYSTERESIS_GENERAL := (" + loop + ", SHAPE := 0.2, SHAPE_DEPTH := 1.0)", 1e-5},
+        Case{"bouc_wen", "HY_HYSTERESIS_GENERAL := (" + loop + ", BOUC_WEN := 0.3, BOUC_WEN_TRAVEL := 0.5)", 1e-4},
         Case{"return_point", "HY_HYSTERESIS_GENERAL := (" + loop + ", RETURN_POINT := 1.0)", 5e-4}),
     [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
 

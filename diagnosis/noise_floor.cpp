@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
+#include "diagnosis/spectrum.hpp"
 #include "diagnosis/stretch_noise.hpp"
 #include "support/median.hpp"
 
@@ -175,6 +179,22 @@ double noise_by_differences(const std::vector<double>& values) {
   return std::isfinite(best) ? best : 0.0;
 }
 
+double noise_off_steps(const std::vector<double>& values) {
+  const double step = common_step(values);
+  if (!(step > 0.0)) {
+    return 0.0;
+  }
+  const std::complex<double> sum =
+      std::transform_reduce(values.begin(), values.end(), std::complex<double>{}, std::plus<>(),
+                            [&](double value) { return std::polar(1.0, 2.0 * std::numbers::pi * value / step); });
+  // Of a normal deviation σ the mean of the turned values is exp(−2π²σ²/step²) long. Values on the steps themselves,
+  // but for the digits of a file, say nothing of noise.
+  const double length = std::min(1.0, std::abs(sum) / static_cast<double>(values.size()));
+  const double off = step * std::sqrt(-2.0 * std::log(std::max(length, 1e-6))) * 0.5 * std::numbers::inv_pi;
+  constexpr double of_digits = 0.02;
+  return off > of_digits * step ? off : 0.0;
+}
+
 double least_excess(const NoiseFloor& floor) {
   constexpr double of_repeats = 0.35;
   constexpr double of_others = 0.5;
@@ -193,6 +213,8 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   std::vector<double> quanta;
   double sum = 0.0;
   double count = 0.0;
+  double off_steps = 0.0;
+  bool on_steps = true;
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     const double sigma = noise_by_differences(values);
@@ -201,7 +223,11 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
     const auto [low, high] = std::ranges::minmax(values);
     range = std::max(range, high - low);
     quanta.push_back(smallest_step(values));
+    const double off = noise_off_steps(values);
+    on_steps = on_steps && off > 0.0;
+    off_steps += off * off * static_cast<double>(values.size());
   }
+  floor.off_steps = on_steps && count > 0.0 ? std::sqrt(off_steps / count) : 0.0;
   floor.differences = count > 0.0 ? std::sqrt(sum / count) : 0.0;
   floor.dwells = noise_by_dwells(experiments, output, others);
   floor.repeats = noise_by_repeats(experiments, output);
@@ -218,6 +244,10 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   if (floor.dwells > floor.value || (floor.dwells > least && floor.differences > too_much * floor.dwells)) {
     floor.value = floor.dwells;
     floor.evidence = "dwells";
+  }
+  if (floor.off_steps > 0.0 && floor.off_steps < floor.value) {
+    floor.value = floor.off_steps;
+    floor.evidence = "steps";
   }
   if (floor.repeats > 0.0) {
     floor.value = std::max({floor.repeats, floor.differences, least});  // cycles may repeat to the bit

@@ -7,7 +7,11 @@
 //   signal itself is fast.
 // - dwells: while all that was logged stands still, what is left of y after a slow course is taken off.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
-// In the last two a line of one frequency is no noise, and quiet stretches count: in others the machine still moves.
+// - steps: where a sensor rounds and noise follows, what lies off the steps. The others count leaps between two steps,
+// too,
+//   so this one goes before differences and dwells.
+// In dwells and repeats a line of one frequency is no noise, and quiet stretches count: in others the machine still
+// moves.
 #pragma once
 
 #include <string>
@@ -24,9 +28,14 @@ struct NoiseFloor {
   double differences = 0.0;  ///< standard deviations in the unit of the output; 0 where there is no such evidence
   double dwells = 0.0;
   double repeats = 0.0;
+  double off_steps = 0.0;
   double value = 0.0;      ///< the one that counts, above 0
-  std::string evidence{};  ///< "repeats", "dwells" or "differences"
+  std::string evidence{};  ///< "repeats", "steps", "dwells" or "differences"
 };
+
+/// √(−2 ln |mean exp(2πi y/q)|)·q/2π, of values on steps q with noise behind the rounding; 0 where there are no steps,
+/// or the values lie on them.
+[[nodiscard]] double noise_off_steps(const std::vector<double>& values);
 
 /// For one measured output over all records. `others`: by record, what else was logged, and moves the machine perhaps.
 [[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,

@@ -201,6 +201,20 @@ TEST(NoiseFloor, AQuantumOfATenthOfTheRangeIsNoNoise) {
   EXPECT_LE(floor.value, 0.02 * range);
 }
 
+TEST(NoiseFloor, BehindARoundingIsWhatLiesOffItsSteps) {
+  constexpr double quantum = 0.5;
+  const std::vector<double> noise = test::Noise(7).white(4000, 0.06);
+  auto y = over_time(4000, slow_sine);
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    y[k] = quantum * std::round((y[k] + 0.9 * noise[y.size() - 1 - k]) / quantum) + 0.17 + noise[k];
+  }
+  EXPECT_NEAR(noise_off_steps(y), 0.06, 0.004) << "wherever the steps begin";
+  const NoiseFloor floor = noise_floor(experiment(over_time(4000, chirp), y), 0);
+  EXPECT_EQ(floor.evidence, "steps");
+  EXPECT_NEAR(floor.value, 0.06, 0.004);
+  EXPECT_EQ(noise_off_steps(over_time(4000, slow_sine)), 0.0);
+}
+
 TEST(NoiseFloor, WithoutNoiseIsSmallButAboveZero) {
   const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
   for (const auto& input : {over_time(4000, sine), over_time(4000, chirp)}) {

@@ -19,9 +19,9 @@ struct HysteresisGeneral {
           "u_i, p = |d|, e = ±ASYMMETRY_EXPONENT, G = d·C2·p^C3·(p/ASYMMETRY_REFERENCE)^e/(C3+e+1), B = "
           "SHAPE·C1·d·z·exp(2(1 − z)), z = p/SHAPE_DEPTH, m = (u_i + XIN)/2; D is the integral of "
           "(M(p)·DUHEM/DUHEM_REFERENCE + C2·p^C3·HARDENING/HARDENING_REFERENCE)·(u − U0) along the branch; R collects "
-          "G's increments times RATE·log10(1 + |XIN'|/RATE_REFERENCE); W = BOUC_WEN·C1·z, z' = XIN' − β|XIN'|z − "
-          "γXIN'|z|, "
-          "β + γ = 1/BOUC_WEN_TRAVEL, 2γ/(β + γ) = BOUC_WEN_SKEW; on the skeleton p = 2|d|",
+          "G's increments times RATE·log10(1 + |XIN'|/RATE_REFERENCE); W = BOUC_WEN·C1·z, "
+          "z' = XIN' − β|XIN'|z − γXIN'|z|, β + γ = 1/BOUC_WEN_TRAVEL, 2γ/(β + γ) = BOUC_WEN_SKEW; on the skeleton p = "
+          "2|d|",
       .meaning =
           "HY_HYSTERESIS_RO, to the bit, where all its further parameters are 0. ASYMMETRY makes C2 larger upwards "
           "and smaller downwards, ASYMMETRY_EXPONENT does so with C3; a loop then no longer closes, and wanders by "
@@ -40,8 +40,7 @@ struct HysteresisGeneral {
       .delay = "None.",
       .source =
           "Strijbosch and Oomen, equations (2), (3) and (17); E. Madelung, Ann. Phys. 17 (1905) 861, for return "
-          "points; "
-          "Y. K. Wen, J. Eng. Mech. Div. 102 (1976) 249, with n = 1",
+          "points; Y. K. Wen, J. Eng. Mech. Div. 102 (1976) 249, with n = 1",
       .enriches = "HY_HYSTERESIS_RO"};
 
   template <class S>

@@ -16,9 +16,8 @@ struct Quantizer : Stateless {
                                    "the resolution of a converter or an encoder. The error is at most QUANTUM/2. A "
                                    "signal beyond 2^31 quanta, and any signal where QUANTUM is 0, passes as it is. "
                                    "With SPREAD each threshold is spread evenly over the share SPREAD of a quantum to "
-                                   "either side, and the output "
-                                   "is the mean, a ramp in place of a jump: what a converter with uneven codes, or "
-                                   "with noise in front of it, gives in the mean.",
+                                   "either side, and the output is the mean, a ramp in place of a jump: what a "
+                                   "converter with uneven codes, or with noise in front of it, gives in the mean.",
                                .effect = "quantization"};
 
   template <class S>
@@ -48,7 +47,7 @@ struct Quantizer : Stateless {
     const Bool<S> even = params.SPREAD == S(0.0);
     const S beyond = max(abs(rest) - (S(0.5) - params.SPREAD), S(0.0)) / select(even, S(1.0), S(2.0) * params.SPREAD);
     const S ramp = select(rest < S(0.0), -beyond, beyond);
-    return {.XOUT = select(countable, params.QUANTUM * select(even, code, code + ramp), in.XIN)};
+    return {.XOUT = select(countable, params.QUANTUM * (code + ramp), in.XIN)};
   }
 };
 

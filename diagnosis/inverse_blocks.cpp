@@ -311,9 +311,14 @@ std::string hysteresis(InverseText& text, const BlockStage& stage) {
 /// One Newton step a sample on a model that is driven by the result: x(k) = x(k−1) + (y(k) − model(k−1))/slope(k−1).
 /// With return points the slope is at least that of the last step, since SLOPE is that of the last branching point.
 std::string hysteresis_general(InverseText& text, const BlockStage& stage) {
-  constexpr std::array<std::string_view, 9> extras{
-      "ASYMMETRY", "ASYMMETRY_EXPONENT", "RATE", "BIAS", "DUHEM", "HARDENING", "SHAPE", "BOUC_WEN", "RETURN_POINT"};
-  if (std::ranges::all_of(extras, [&](std::string_view one) { return stage.value(one) == 0.0; })) {
+  const BlockType& block = *stage.node.block;
+  const BlockType& plain = *find_block_type(block.about.enriches);
+  const bool is_plain = std::ranges::all_of(block.params, [&](const Field& one) {
+    const bool is_extra =
+        one.has_neutral() && std::ranges::find(plain.params, one.name, &Field::name) == plain.params.end();
+    return !is_extra || stage.value(one.name) == one.neutral;
+  });
+  if (is_plain) {
     return hysteresis(text, stage);
   }
   note_smooth(text, stage);

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <functional>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "diagnosis/spectrum.hpp"
 #include "diagnosis/stretch_noise.hpp"
@@ -184,12 +181,9 @@ double noise_off_steps(const std::vector<double>& values) {
   if (!(step > 0.0)) {
     return 0.0;
   }
-  const std::complex<double> sum =
-      std::transform_reduce(values.begin(), values.end(), std::complex<double>{}, std::plus<>(),
-                            [&](double value) { return std::polar(1.0, 2.0 * std::numbers::pi * value / step); });
   // Of a normal deviation σ the mean of the turned values is exp(−2π²σ²/step²) long. Values on the steps themselves,
   // but for the digits of a file, say nothing of noise.
-  const double length = std::min(1.0, std::abs(sum) / static_cast<double>(values.size()));
+  const double length = std::min(1.0, alignment(values, step));
   const double off = step * std::sqrt(-2.0 * std::log(std::max(length, 1e-6))) * 0.5 * std::numbers::inv_pi;
   constexpr double of_digits = 0.02;
   return off > of_digits * step ? off : 0.0;

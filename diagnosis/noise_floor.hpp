@@ -8,8 +8,7 @@
 // - dwells: while all that was logged stands still, what is left of y after a slow course is taken off.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
 // - steps: where a sensor rounds and noise follows, what lies off the steps. The others count leaps between two steps,
-// too,
-//   so this one goes before differences and dwells.
+//   too, so this one goes before differences and dwells.
 // In dwells and repeats a line of one frequency is no noise, and quiet stretches count: in others the machine still
 // moves.
 #pragma once
@@ -42,7 +41,7 @@ struct NoiseFloor {
                                      const std::vector<std::vector<Signal>>& others = {});
 
 /// The RMS by which a gap stands out of the floor at least, as √(rms² − floor²), in the unit of the output. More where
-/// the floor comes from dwells or differences: they may have missed slow noise.
+/// the floor does not come from repeats: what else there is may have missed slow noise.
 [[nodiscard]] double least_excess(const NoiseFloor& floor);
 
 /// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is

@@ -96,7 +96,6 @@ class Searcher {
         if (must_stop()) {
           break;
         }
-        expanded_.insert(one.places());
         expand(one, any, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
         begin_ += width_;
       }
@@ -312,6 +311,7 @@ class Searcher {
     const auto best_cost = [&] {
       return std::ranges::min(found, {}, [](const Explanation& one) { return one.fit.cost; }).fit.cost;
     };
+    std::set<std::pair<std::vector<std::string>, std::string>> tried;  // what stays, and beside what it stood
     for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
       const double cost = best_cost();
       if (cost <= well_closed * floor_cost_ || cost > worth_exchanging * before) {
@@ -321,12 +321,10 @@ class Searcher {
       const Explanation best =
           *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
       for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
-        // Not fitted again, and so another rest than the one that its effects were alone: bent towards what the missing
-        // effect did, they would leave no room for the right one.
+        // Not fitted again: bent towards what the missing effect did, the rest would leave no room for the right one.
         Explanation rest = without(best, i, result.calibrated.variant, 0);
-        std::vector<std::string> stood = rest.places();
-        stood.push_back("beside " + best.variant.effects[i].place());
-        if (std::isfinite(rest.fit.cost) && expanded_.insert(std::move(stood)).second) {
+        const bool is_new = tried.emplace(rest.places(), best.variant.effects[i].place()).second;
+        if (std::isfinite(rest.fit.cost) && is_new) {
           expand(rest, any, options_.fitted_later, result, found);
         }
       }
@@ -466,7 +464,6 @@ class Searcher {
   double floor_cost_;
   double nominal_cost_ = 0.0;
   bool can_stop_ = false;
-  std::set<std::vector<std::string>> expanded_{};
   KnownStarts known_starts_{};
   bool about_nominal_ = true;
   const SearchOptions& options_;

@@ -39,7 +39,7 @@ std::vector<double> places_of(std::vector<Peak> peaks, std::size_t count) {
   return places;
 }
 
-/// |Σ exp(2πi·turns·y)| over values y, and the steps 1/turns on which they may lie.
+/// The steps on which values may lie.
 class Lattice {
  public:
   explicit Lattice(const std::vector<double>& values) : values_(values) {
@@ -86,9 +86,11 @@ class Lattice {
     std::size_t found = 0;
     for (std::size_t k = first + 1; k < last && !heights_.empty(); ++k) {
       const double height = heights_[k];
-      if (height > heights_[k - 1] && height >= heights_[k + 1] && height > over_chance * std::sqrt(count_) &&
-          height > best * about(k)) {
-        best = height / about(k);
+      if (height <= heights_[k - 1] || height < heights_[k + 1] || height <= over_chance * std::sqrt(count_)) {
+        continue;
+      }
+      if (const double about = height_about(k); height > best * about) {
+        best = height / about;
         found = k;
       }
     }
@@ -102,7 +104,7 @@ class Lattice {
   static constexpr std::size_t last = bins / 8 * padding;
 
   /// The median from a fifth below to a quarter above.
-  [[nodiscard]] double about(std::size_t k) const {
+  [[nodiscard]] double height_about(std::size_t k) const {
     const std::size_t low = std::max(first, k * 4 / 5);
     std::vector<double> near(heights_.begin() + static_cast<std::ptrdiff_t>(low),
                              heights_.begin() + static_cast<std::ptrdiff_t>(std::min(last, k * 5 / 4 + 8)));
@@ -114,23 +116,16 @@ class Lattice {
   /// To the place itself by all values: many steps from 0 a small error has become a whole step.
   [[nodiscard]] double refined(std::size_t k) const {
     double found = static_cast<double>(k) * bin_;
-    double best = strength(found);
+    double best = alignment(values_, 1.0 / found);
     for (double half = 0.5 * bin_; half > 1e-7 * found; half *= 0.5) {
       for (const double turns : {found - half, found + half}) {
-        if (const double here = strength(turns); here > best) {
+        if (const double here = alignment(values_, 1.0 / turns); here > best) {
           best = here;
           found = turns;
         }
       }
     }
     return 1.0 / found;
-  }
-  [[nodiscard]] double strength(double turns) const {
-    std::complex<double> sum = 0.0;
-    for (const double value : values_) {
-      sum += std::polar(1.0, 2.0 * std::numbers::pi * turns * value);
-    }
-    return std::abs(sum);
   }
 
   const std::vector<double>& values_;
@@ -175,8 +170,18 @@ double common_step(const std::vector<double>& values) {
   return Lattice(values).clear();
 }
 
-double faint_step(const std::vector<double>& values) {
-  return Lattice(values).faint();
+double likely_step(const std::vector<double>& values) {
+  const Lattice lattice(values);
+  const double clear = lattice.clear();
+  return clear > 0.0 ? clear : lattice.faint();
+}
+
+double alignment(const std::vector<double>& values, double step) {
+  std::complex<double> sum = 0.0;
+  for (const double value : values) {
+    sum += std::polar(1.0, 2.0 * std::numbers::pi * value / step);
+  }
+  return std::abs(sum) / static_cast<double>(values.size());
 }
 
 std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,

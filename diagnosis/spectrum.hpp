@@ -15,10 +15,13 @@ namespace hysteron::diagnosis {
 /// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
-/// Likewise where noise of up to a third of the step hides it: the peak of |Σ exp(2πi y/q)| that stands highest over
-/// the median about it, if six times as high. A start for a fit, no finding: where a machine rests now and then, its
-/// levels may lie on a step by chance.
-[[nodiscard]] double faint_step(const std::vector<double>& values);
+/// That step, or one that noise of up to a third of it hides: the peak of |Σ exp(2πi y/q)| that stands highest over the
+/// median about it, if six times as high. A start for a fit, no finding: where a machine rests now and then, its levels
+/// may lie on a step by chance.
+[[nodiscard]] double likely_step(const std::vector<double>& values);
+
+/// How well values y lie on a step q: |mean of exp(2πi y/q)|, 1 on the step itself, wherever it begins.
+[[nodiscard]] double alignment(const std::vector<double>& values, double step);
 
 /// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least
 /// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.

@@ -198,9 +198,7 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
     hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
   }
   for (const std::string& output : task.outputs) {
-    const std::vector<double>& values = task.records.front().column(output).values;
-    const double clear = common_step(values);
-    if (const double step = clear > 0.0 ? clear : faint_step(values); step > 0.0) {
+    if (const double step = likely_step(task.records.front().column(output).values); step > 0.0) {
       hints.quanta.push_back(step);
     }
   }

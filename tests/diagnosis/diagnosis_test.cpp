@@ -159,11 +159,15 @@ Diagnosis heater_diagnosed(std::vector<records::Record> log) {
       {.effects = {"quantization", "cogging", "backlash", "odd_nonlinearity"}});
 }
 
+/// A record of the heater behind a sensor that rounds, with noise of this share of the quantum.
+records::Record rounded_heater(double quantum, double noise) {
+  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
+  return test::measured(machine, test::record_of("FORCE", test::rich_force()), noise * quantum);
+}
+
 TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
   constexpr double quantum = 0.2137;  // some twenty steps
-  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
-  const Diagnosis found =
-      heater_diagnosed({test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.01 * quantum)});
+  const Diagnosis found = heater_diagnosed({rounded_heater(quantum, 0.01)});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects.front().id, "quantization");
   EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 1e-3 * quantum);
@@ -172,9 +176,7 @@ TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
 
 TEST(Diagnosis, AFineQuantumIsFoundBehindNoiseOfItsOwnSize) {
   constexpr double quantum = 0.0137;
-  const Program machine = test::program_of(heater(fmt::format("ADC : HY_QUANTIZER := (QUANTUM := {});", quantum)));
-  const Diagnosis found =
-      heater_diagnosed({test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.28 * quantum)});
+  const Diagnosis found = heater_diagnosed({rounded_heater(quantum, 0.28)});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects.front().id, "quantization");
   EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 1e-3 * quantum);

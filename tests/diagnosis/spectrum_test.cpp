@@ -89,11 +89,11 @@ TEST(CommonStep, IsThatOfValuesWithLittleNoise) {
   EXPECT_EQ(common_step(rounded_motion(0.0, 0.001)), 0.0);
 }
 
-TEST(FaintStep, IsSeenBehindNoiseOfItsOwnSize) {
-  EXPECT_NEAR(faint_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0117, 1e-3 * 0.0117);
-  EXPECT_EQ(faint_step(rounded_motion(0.0, 0.0117 / 3.5)), 0.0);
-  EXPECT_EQ(faint_step(std::vector<double>(40, 1.0)), 0.0);
-  EXPECT_EQ(faint_step(std::vector<double>(4000, 1.0)), 0.0);
+TEST(LikelyStep, IsSeenBehindNoiseOfItsOwnSize) {
+  EXPECT_NEAR(likely_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0117, 1e-3 * 0.0117);
+  EXPECT_EQ(likely_step(rounded_motion(0.0, 0.0117 / 3.5)), 0.0);
+  EXPECT_EQ(likely_step(std::vector<double>(40, 1.0)), 0.0);
+  EXPECT_EQ(likely_step(std::vector<double>(4000, 1.0)), 0.0);
 }
 
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {

@@ -1,16 +1,15 @@
 #include "support/atomic_file.hpp"
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <filesystem>
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/render.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron {
@@ -30,29 +29,6 @@ int number_of_error(Action action) {
   }
   return 0;
 }
-
-/// No file may grow beyond a size: a disk that fills up while a file is written.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    (void)std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  FileSizeLimit(FileSizeLimit&&) = delete;
-  FileSizeLimit& operator=(FileSizeLimit&&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 TEST(AtomicFile, WritesAndReplaces) {
   const ScratchFolder folder;
@@ -86,7 +62,7 @@ TEST(AtomicFile, AFullDiskLeavesTheOldFileAndNothingElse) {
   folder.write("a.csv", "old");
   const auto before = folder.names();
   {
-    const FileSizeLimit limit(1000);
+    const test::FileSizeLimit limit(1000);
     EXPECT_EQ(number_of_error([&] { write_file_atomically(folder / "a.csv", std::string(5000, 'x')); }),
               error::unwritable_file);
     EXPECT_EQ(number_of_error([&] { write_file_atomically(folder / "new/b.csv", std::string(5000, 'x')); }),
@@ -131,7 +107,7 @@ TEST(AtomicFiles, AllOrNone) {
   folder.write("a.hpp", "old a");
   const auto before = folder.names();
   {
-    const FileSizeLimit limit(1000);
+    const test::FileSizeLimit limit(1000);
     EXPECT_EQ(number_of_error([&] {
                 write_files_atomically({{folder / "a.hpp", "new a"}, {folder / "gen/b.hpp", std::string(5000, 'x')}});
               }),

@@ -165,15 +165,15 @@ class Piezo(Plant):
         """Plays a relative excitation."""
         self.u = self.reach * x
 
+    def into_loop(self, u: np.ndarray, dt: float, parameters: dict[str, float]) -> np.ndarray:
+        """What reaches the loop of a voltage, where nothing is injected before it."""
+        return op.lag(u, dt, parameters["AMPLIFIER.T1"]) if self.place == "before" else u
+
     def shows_its_turns(self) -> bool:
         """The loop forgets its branch at the smallest reversal, and one between two samples leaves no trace of itself.
         Behind a lag a reversal of a sample or two comes and goes with the way in which that lag is sampled."""
-
-        def into_loop(u: np.ndarray, dt: float) -> np.ndarray:
-            return u if self.place != "before" else op.lag(u, dt, self.time_constant)
-
-        fine = into_loop(self.u, self.grid.dt)
-        sampled = (self.grid.sample(fine), into_loop(self.grid.sample(self.u), self.grid.ts))
+        fine = self.into_loop(self.u, self.grid.dt, self.truth)
+        sampled = (self.grid.sample(fine), self.into_loop(self.grid.sample(self.u), self.grid.ts, self.truth))
         count = len(op.turning_points(fine))
         return all(len(op.turning_points(x)) == count for x in sampled)
 
@@ -233,9 +233,7 @@ class Piezo(Plant):
 
     def chattering_model(self, parameters: dict[str, float], injections: list[Injection]) -> np.ndarray:
         """What a model driven by the noisy logged voltage would give: where the gap of branch_chatter comes from."""
-        u = self.columns(injections)["U"]
-        if self.place == "before":
-            u = op.lag(u, self.grid.ts, parameters["AMPLIFIER.T1"])
+        u = self.into_loop(self.columns(injections)["U"], self.grid.ts, parameters)
         y = hy.local_memory(u, self.loop(parameters)) + parameters.get("HYST.Y0", 0.0)
         if self.place == "after":
             y = op.lag(y, self.grid.ts, parameters["SENSOR.T1"])

@@ -65,8 +65,8 @@ def confusions(score: Score, most: int = 25) -> str:
 
 
 def misses(score: Score) -> str:
-    """What is in the library and was not named, the nearest to the machine first: two models that differ by less than the
-    noise are the same to a record."""
+    """Every case with an effect that was not judged rightly, the nearest to the machine first: two models that differ
+    by less than the noise are the same to a record."""
     known = sorted((m for m in score.misses if m["truth"]), key=lambda m: (math.isnan(m["apart"]), m["apart"]))
     lines = [f"{'from the machine':18s}{'R':>6s}  {'true':44s}named"]
     for m in known:

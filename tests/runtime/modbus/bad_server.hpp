@@ -1,7 +1,6 @@
 // A Modbus server that answers as a script says: well, late, wrong, not at all.
 #pragma once
 
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -15,6 +14,7 @@
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "tests/runtime/modbus/client_socket.hpp"
+#include "tests/runtime/modbus/readable.hpp"
 
 namespace hysteron::test {
 
@@ -58,11 +58,6 @@ class BadServer {
 
  private:
   using Descriptor = runtime::modbus::Descriptor;
-
-  static bool readable(const Descriptor& socket) {
-    pollfd one{socket.number(), POLLIN, 0};
-    return ::poll(&one, 1, 5) > 0;
-  }
 
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {

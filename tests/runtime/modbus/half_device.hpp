@@ -1,7 +1,6 @@
 // A device that keeps what is written to its holding registers, and leaves some requests without an answer.
 #pragma once
 
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -19,6 +18,7 @@
 #include "runtime/modbus/frame.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "tests/runtime/modbus/client_socket.hpp"
+#include "tests/runtime/modbus/readable.hpp"
 
 namespace hysteron::test {
 
@@ -50,11 +50,6 @@ class HalfDevice {
 
  private:
   using Descriptor = runtime::modbus::Descriptor;
-
-  static bool readable(const Descriptor& socket) {
-    pollfd one{socket.number(), POLLIN, 0};
-    return ::poll(&one, 1, 5) > 0;
-  }
 
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {

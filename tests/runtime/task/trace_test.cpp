@@ -2,13 +2,12 @@
 #include "runtime/task/trace.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <csignal>
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -160,33 +159,13 @@ TEST(Trace, ACutFileIsReadUpToTheCutAndABrokenOneRefused) {
             "the trace is of another diagram (ACCUMULATOR), or was made by another way of running it");
 }
 
-/// While it lives, no file of this process grows beyond a size.
-class LimitedFiles {
- public:
-  explicit LimitedFiles(rlim_t size) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
-    (void)::getrlimit(RLIMIT_FSIZE, &limit_);
-    const rlimit smaller{size, limit_.rlim_max};
-    (void)::setrlimit(RLIMIT_FSIZE, &smaller);
-  }
-  ~LimitedFiles() {
-    (void)::setrlimit(RLIMIT_FSIZE, &limit_);
-    (void)std::signal(SIGXFSZ, before_);
-  }
-  LimitedFiles(const LimitedFiles&) = delete;
-  LimitedFiles& operator=(const LimitedFiles&) = delete;
-
- private:
-  rlimit limit_{};
-  void (*before_)(int);
-};
-
 TEST(Trace, AFileThatTakesNoMoreEndsWithAWholeStepAndTheRestIsCounted) {
   const hysteron::test::ScratchFolder scratch;
   const std::size_t record = 5 + 20 + 5 * 8;
   const std::size_t end = 5 + 16;
   const auto whole = traced_run({.file = scratch / "whole"}, 5000).size();
   // Room for a thousand steps, and for a part of one in which the end has room.
-  const LimitedFiles limit(whole - end - 4000 * record + end + 3);
+  const test::FileSizeLimit limit(whole - end - 4000 * record + end + 3);
   Accumulator program;
   Trace trace({.file = scratch / "trace"}, program);
   Task task(program, {.loop = {.cycles = 5000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});

@@ -391,6 +391,14 @@ bool Applied::has(Role role) const {
   return std::ranges::any_of(parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
+bool Applied::has_end() const {
+  const auto is_end = [](const EffectParameter& one) {
+    return one.role == Role::Instant && std::isinf(one.field.preset);
+  };
+  return std::ranges::count(parameters, Role::Instant, &EffectParameter::role) == 2 &&
+         std::ranges::count_if(parameters, is_end) == 1 &&
+         std::ranges::count(parameters, true, &EffectParameter::strength) == 1;
+}
 bool Applied::has_gap() const {
   return std::ranges::any_of(parameters, [](const EffectParameter& one) { return is_gap(one.role); });
 }

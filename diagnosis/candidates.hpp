@@ -30,6 +30,7 @@ struct Applied {
 
   [[nodiscard]] bool has(Role role) const;
   [[nodiscard]] bool has_gap() const;
+  [[nodiscard]] bool has_end() const;  ///< one strength, that begins to act at one instant and ceases at another
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
 };
 

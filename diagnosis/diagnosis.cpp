@@ -19,6 +19,7 @@
 #include "diagnosis/inner_signals.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
+#include "diagnosis/materiality.hpp"
 #include "diagnosis/outlook.hpp"
 #include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
@@ -45,10 +46,6 @@ constexpr double far_above_fast_floor = 4.0;
 constexpr double sure_of_one_motion = 0.8;
 /// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
 constexpr double sure_of_missed_start = 0.5;
-
-double excess(double high, double low) {
-  return std::sqrt(std::max(0.0, high * high - low * low));
-}
 
 using Clock = std::chrono::steady_clock;
 
@@ -182,7 +179,7 @@ class Run {
   template <class Again>
   void search_from_another_start(std::unique_ptr<Searched>& searched, const Again& again) {
     const Judgement& first = searched->judgement;
-    std::optional<Task> free = material(nominal_)
+    std::optional<Task> free = materiality_.is_left(nominal_)
                                    ? with_free_start(task_, searched->search, first, floor_cost_, options_.threads)
                                    : std::nullopt;
     if (!free) {
@@ -233,32 +230,17 @@ class Run {
       gap.closed = share.closed;
       gap.closed_low = share.low;
       gap.closed_high = share.high;
-      const bool refit_is_worse = matters(gap.calibrated, gap.nominal, gap.floor);
-      const bool effects_are_worse = named() && matters(gap.improved, gap.nominal, gap.floor);
+      const bool refit_is_worse = materiality_.matters(gap.calibrated, gap.nominal, output);
+      const bool effects_are_worse = named() && materiality_.matters(gap.improved, gap.nominal, output);
       if (refit_is_worse || effects_are_worse) {
         result_.warnings.push_back(warning_of_worse(gap, refit_is_worse, effects_are_worse));
       }
       result_.gaps.push_back(gap);
     }
     result_.gap = result_.gaps[gap_output_];
-  }
-
-  /// Whether one RMS is so far above another one that the difference is no noise and matters to the user.
-  [[nodiscard]] bool matters(double high, double low, const NoiseFloor& floor) const {
-    return excess(high, low) > std::max(least_excess(floor), options_.material);
-  }
-
-  /// Whether something remains of an output's residuals, beyond the floor, that matters to the user.
-  [[nodiscard]] bool material(const VectorXd& residuals, std::size_t output) const {
-    return matters(rms(residuals, output), floors_[output].value, floors_[output]);
-  }
-  [[nodiscard]] bool material(const VectorXd& residuals) const {
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      if (material(residuals, output)) {
-        return true;
-      }
+    if (named() && materiality_.was_taken_for_noise(calibrated.fit.residuals, kept.fit.residuals)) {
+      result_.warnings.push_back(warning_of_floor(result_.gap));
     }
-    return false;
   }
 
   /// A cut agrees where the diagram before it, with its parameters refitted to this signal alone, explains it.
@@ -272,17 +254,19 @@ class Run {
       VectorXd weights = VectorXd::Zero(model.rows());
       weights.segment(static_cast<Index>(output) * rows, rows).setOnes();
       const Fit alone = fit(model, model.start(), {.iterations = 20, .weights = &weights});
-      result_.cuts.push_back(
-          {.signal = task_.outputs[output], .agrees = std::isfinite(alone.cost) && !material(alone.residuals, output)});
+      result_.cuts.push_back({.signal = task_.outputs[output],
+                              .agrees = std::isfinite(alone.cost) && !materiality_.is_left(alone.residuals, output)});
     }
   }
 
   void decide(const Search& found, const Judgement& judgement) {
     const Explanation& chosen = *judgement.chosen;
     const bool has_effect = !chosen.variant.effects.empty();
-    const bool gap_before = material(nominal_);
-    const bool gap_calibrated = material(found.calibrated.fit.residuals);
-    const bool gap_left = material(chosen.fit.residuals);
+    const bool gap_before = materiality_.is_left(nominal_);
+    const bool gap_calibrated =
+        materiality_.is_left(found.calibrated.fit.residuals) ||
+        (has_effect && materiality_.was_taken_for_noise(found.calibrated.fit.residuals, chosen.fit.residuals));
+    const bool gap_left = materiality_.is_left(chosen.fit.residuals);
 
     const Model model(task_, *base_.program);
     const Discrepancy left = discrepancy_of(model, chosen.fit.residuals);
@@ -409,17 +393,7 @@ class Run {
                  .options = options_,
                  .floor = floors_[gap_output_].value},
                 result_);
-    result_.summary = summary_of(result_, below_material(kept));
-  }
-
-  /// Whether what is left stands out of the noise, and is only too small to matter to the user.
-  [[nodiscard]] bool below_material(const Explanation& kept) const {
-    bool above = false;
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const NoiseFloor& floor = floors_[output];
-      above = above || excess(rms(kept.fit.residuals, output), floor.value) > least_excess(floor);
-    }
-    return above && !material(kept.fit.residuals);
+    result_.summary = summary_of(result_, materiality_.is_too_small(kept.fit.residuals));
   }
 
   [[nodiscard]] std::vector<std::string> ports() const {
@@ -479,6 +453,7 @@ class Run {
   Variant base_{};
   std::vector<std::string> unused_{};  ///< columns that the diagram does not name
   std::vector<NoiseFloor> floors_{};
+  Materiality materiality_{task_, floors_, options_.material};
   std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;

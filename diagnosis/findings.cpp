@@ -239,6 +239,18 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
   return result;
 }
 
+namespace {
+
+/// In a gap of the noise's size one of seven names was another effect's, in the sealed sets of the blind trial.
+double seen(const GapFinding& gap) {
+  constexpr double wrong_at_noise = 0.15;
+  const double noise = std::min(gap.floor.value, gap.improved);
+  const double explained = gap.calibrated * gap.calibrated - gap.improved * gap.improved;
+  return 1.0 - wrong_at_noise * std::min(1.0, noise * noise / std::max(explained, 1e-300));
+}
+
+}  // namespace
+
 double confidence(const Findings& findings, const Diagnosis& so_far) {
   // An effect as large as the noise can hide in what depends on the machine's motion and is called noise.
   const double no_effect = 0.95 - 0.3 * findings.predictable;
@@ -253,7 +265,8 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
       const double size = so_far.gap.improved / so_far.gap.floor.value;
       const double explained = std::min(1.0, hidden_noise / std::max(size, 1e-9));
-      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained, 0.0, 0.99);
+      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap), 0.0,
+                        0.99);
     }
     case Verdict::None:
       return no_effect;
@@ -284,6 +297,13 @@ std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
   }
   return fmt::format("{}, for the sake of the other outputs{}.", by_refit,
                      effects ? fmt::format("; with the effects {:.3g}{} stay", gap.improved, unit) : std::string());
+}
+
+std::string warning_of_floor(const GapFinding& gap) {
+  const std::string unit = gap.unit.empty() ? "" : " " + gap.unit;
+  return fmt::format(
+      "The noise floor of {}, {:.3g}{} RMS from {}, holds a part of what the effects explain: they leave {:.3g}{}.",
+      gap.signal, gap.floor.value, unit, gap.floor.evidence, gap.improved, unit);
 }
 
 std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration) {

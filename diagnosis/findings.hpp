@@ -34,6 +34,9 @@ struct Findings {
 /// That the refit of the known parameters gives up an output for the others, or the effects do, with both numbers.
 [[nodiscard]] std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects);
 
+/// What is said where effects leave less than a floor that took a part of them for noise.
+[[nodiscard]] std::string warning_of_floor(const GapFinding& gap);
+
 /// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict. `duration`: of the
 /// longest record, where a periodic disturbance was tried; else 0.
 [[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration);

@@ -29,10 +29,14 @@ void scan(Model& model, Fit& best, Index first, Index count) {
 }
 
 /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
-void pattern_search(Model& model, Fit& best, Index first, Index count) {
+/// `finest` is the last step, as a share.
+void pattern_search(Model& model, Fit& best, Index first, Index count, double finest) {
   VectorXd residuals;
   bool moved = false;
-  for (const double share : {0.08, 0.03, 0.01, 0.003}) {
+  for (const double share : {0.08, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4}) {
+    if (share < finest) {
+      break;
+    }
     for (Index j = first; j < first + count; ++j) {
       for (const double sign : {1.0, -1.0}) {
         VectorXd x = best.x;
@@ -59,6 +63,25 @@ void pattern_search(Model& model, Fit& best, Index first, Index count) {
   }
 }
 
+/// The unknowns of an effect with the frequency of a line that the residual shows held there, to half a turn over the
+/// record: while the rest is still far off, a fit would bend it towards what is no line.
+std::vector<Unknown> held_at_measured(const Task& task, const Screened& one, const Start& start) {
+  std::vector<Unknown> unknowns = one.unknowns;
+  const records::Record& record = task.records.front();
+  const double half_turn = 0.5 / (record.sample_time() * static_cast<double>(record.size()));
+  const Applied& own = one.candidate.own();
+  for (std::size_t k = 0; k < unknowns.size() && start.measured; ++k) {
+    const auto path = std::ranges::find(own.paths, unknowns[k].path);
+    if (own.parameters[static_cast<std::size_t>(path - own.paths.begin())].role == Role::Frequency) {
+      const double value = start.values[static_cast<Index>(k)];
+      unknowns[k].start = value;
+      unknowns[k].lower = std::max(unknowns[k].lower, value - half_turn);
+      unknowns[k].upper = std::min(unknowns[k].upper, value + half_turn);
+    }
+  }
+  return unknowns;
+}
+
 }  // namespace
 
 std::vector<std::string> Explanation::names() const {
@@ -79,23 +102,38 @@ std::vector<std::string> Explanation::places() const {
   return places;
 }
 
+Explanation placed(const Task& task, const Screened& one, const Start& start, const VectorXd& known) {
+  Explanation result{.variant = one.candidate.variant};
+  std::vector<Unknown>& further = result.variant.further;
+  const Index inherited = std::ssize(further);
+  std::ranges::move(held_at_measured(task, one, start), std::back_inserter(further));
+  const Index first = std::ssize(task.known) + inherited;
+  const Index own = std::ssize(one.unknowns);
+  VectorXd& x = result.fit.x;
+  x.resize(known.size() + own);
+  x << known.head(first), start.values, known.tail(known.size() - first);
+  for (Index j = 0; j < own; ++j) {
+    Unknown& unknown = further[static_cast<std::size_t>(inherited + j)];
+    unknown.start = std::clamp(start.values[j], unknown.lower, unknown.upper);
+  }
+  return result;
+}
+
 Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,
                        const KnownStarts& known_starts) {
   Explanation best{.variant = one.candidate.variant};
   best.fit.cost = std::numeric_limits<double>::infinity();
-  std::vector<Unknown>& further = best.variant.further;
-  const std::size_t inherited = further.size();
-  further.insert(further.end(), one.unknowns.begin(), one.unknowns.end());
-  Model model(task, *one.candidate.variant.program, further);
-  const Index first = model.first_further() + static_cast<Index>(inherited);
-  VectorXd x(model.unknowns());
   const auto begin_at = [&](const VectorXd& known, const Start& start) {
-    x.head(first) = known.head(first);
-    x.segment(first, std::ssize(one.unknowns)) = start.values;
-    x.tail(model.unknowns() - first - std::ssize(one.unknowns)) = known.tail(known.size() - first);
-    Fit here = fit(model, x, {.iterations = 5, .tolerance = 1e-4});
-    if (here.cost < best.fit.cost) {
-      best.fit = std::move(here);
+    Explanation here = placed(task, one, start, known);
+    std::vector<Unknown>& further = here.variant.further;
+    Model model(task, *here.variant.program, further);
+    here.fit = fit(model, here.fit.x, {.iterations = 5, .tolerance = 1e-4});
+    if (here.fit.cost < best.fit.cost) {
+      for (std::size_t j = 0; j < further.size(); ++j) {
+        further[j].unit = model.problem().parameters[task.known.size() + j].unit;
+      }
+      keep_starts(here, model);
+      best = std::move(here);
     }
   };
   const double worth = one.candidate.own().has(Role::Period) ? 0.25 : 0.5;  // of the best start's gain
@@ -107,10 +145,6 @@ Explanation begun_from(const Task& task, const Screened& one, const Explanation&
   if (from.variant.effects.empty()) {
     begin_at(known_starts.other, one.starts.front());
   }
-  for (std::size_t j = 0; j < further.size(); ++j) {
-    further[j].unit = model.problem().parameters[task.known.size() + j].unit;
-  }
-  keep_starts(best, model);
   return best;
 }
 
@@ -126,9 +160,10 @@ void finish(const Task& task, Explanation& one, bool thoroughly) {
   }
   one.fit = fit(model, one.fit.x, {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5});
   if (own.has_gap()) {
-    pattern_search(model, one.fit, 0, first + count);
+    // A hundred steps from 0, a quantum that is off by a thousandth is off by a tenth of itself.
+    pattern_search(model, one.fit, 0, first + count, thoroughly && own.has(Role::Quantum) ? 1e-4 : 0.003);
   } else if (thoroughly) {
-    pattern_search(model, one.fit, first, count);
+    pattern_search(model, one.fit, first, count, 0.003);
   }
   keep_starts(one, model);
 }

@@ -25,6 +25,9 @@ struct KnownStarts {
   VectorXd other{};  ///< the tuned ones where the screening was about the calibrated ones, else these
 };
 
+/// The effect beside what the diagram holds already, where its screening has found it; nothing is fitted.
+[[nodiscard]] Explanation placed(const Task& task, const Screened& one, const Start& start, const VectorXd& known);
+
 /// A few steps from each of its best starts, with the known parameters as in `from` and, on the bare diagram, as in
 /// `known.other` too. The cost is ∞ where none has a value.
 [[nodiscard]] Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,

@@ -7,6 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "diagnosis/grid_points.hpp"
+#include "diagnosis/superposition.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -15,67 +18,6 @@ constexpr double linear_within = 0.05;
 
 /// Of the gap, what a start has to explain for its parameters to be narrowed down.
 constexpr double worth_narrowing = 0.2;
-
-/// More settings of shapes than this are tried one shape at a time about the middle of each.
-constexpr std::size_t most_shapes = 16;
-
-bool is_searched_shape(const Applied& effect, const Grids& grids, std::size_t j) {
-  return !effect.parameters[j].strength && !grids.parameters[j].values.empty();
-}
-
-/// Every combination of the shapes' grids, or where these are many a star: one shape moved, the others in the middle.
-std::vector<VectorXd> shapes_of(const Applied& effect, const Grids& grids, const VectorXd& neutral) {
-  std::vector<VectorXd> shapes{neutral};
-  VectorXd middle = neutral;
-  for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
-    if (!is_searched_shape(effect, grids, j)) {
-      continue;
-    }
-    const std::vector<double>& values = grids.parameters[j].values;
-    middle[static_cast<Index>(j)] = values[values.size() / 2];
-    std::vector<VectorXd> more;
-    for (const VectorXd& shape : shapes) {
-      for (const double value : values) {
-        more.push_back(shape);
-        more.back()[static_cast<Index>(j)] = value;
-      }
-    }
-    shapes = std::move(more);
-  }
-  if (shapes.size() <= most_shapes) {
-    return shapes;
-  }
-  shapes.assign(1, middle);
-  for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
-    if (!is_searched_shape(effect, grids, j)) {
-      continue;
-    }
-    for (const double value : grids.parameters[j].values) {
-      if (value != middle[static_cast<Index>(j)]) {
-        shapes.push_back(middle);
-        shapes.back()[static_cast<Index>(j)] = value;
-      }
-    }
-  }
-  return shapes;
-}
-
-/// Whether two starts would lead to the same place: no parameter differs by a twentieth.
-bool is_near(const VectorXd& a, const VectorXd& b) {
-  constexpr double near = 0.05;
-  return ((a - b).array().abs() <= near * a.array().abs().max(b.array().abs())).all();
-}
-
-/// The point of a grid that is nearest to a value.
-std::size_t nearest(const std::vector<double>& values, double value) {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    if (std::abs(values[k] - value) < std::abs(values[best] - value)) {
-      best = k;
-    }
-  }
-  return best;
-}
 
 class Screening {
  public:
@@ -112,8 +54,12 @@ class Screening {
 
   Screened run(std::size_t keep) {
     std::vector<Start> starts;
-    for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
-      try_shape(shape, starts);
+    if (screened_.candidate.own().has_end()) {
+      try_intervals(starts);
+    } else {
+      for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
+        try_shape(shape, starts);
+      }
     }
     narrow(starts);
     return finished(std::move(starts), keep);
@@ -343,6 +289,40 @@ class Screening {
     }
   }
 
+  /// What begins at one instant and ends at another, from small steps at each of them.
+  void try_intervals(std::vector<Start>& starts) {
+    constexpr std::size_t most = 4;
+    const Index begin = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && !is_end(j); });
+    const Index end = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && is_end(j); });
+    const Index strength = strengths().front();
+    const std::vector<double>& instants = grids_.parameters[static_cast<std::size_t>(begin)].values;
+    const double never = grids_.parameters[static_cast<std::size_t>(end)].values.back();
+    const double small = grids_.parameters[static_cast<std::size_t>(strength)].values.front();
+    VectorXd values = neutral_;
+    values[end] = never;
+    values[strength] = small;
+    MatrixXd steps = MatrixXd::Zero(background_.residuals().size(), std::ssize(instants));
+    for (Index k = 0; k < std::ssize(instants); ++k) {
+      values[begin] = instants[static_cast<std::size_t>(k)];
+      if (const VectorXd change = change_at(values); change.size() > 0) {
+        steps.col(k) = change;
+      }
+    }
+    const auto at = [&](Index k) { return k < std::ssize(instants) ? instants[static_cast<std::size_t>(k)] : never; };
+    for (const Superposition::Interval& one : Superposition(steps, background_).intervals(most)) {
+      values[begin] = at(one.begin);
+      values[end] = at(one.end);
+      for (const double share : {1.0, 0.3}) {
+        values[strength] = share * one.size * small;
+        if (try_point(values, starts) > 0.5 * one.gain) {
+          break;
+        }
+      }
+    }
+  }
+  [[nodiscard]] bool is_instant(Index j) const { return parameter(j).role == Role::Instant; }
+  [[nodiscard]] bool is_end(Index j) const { return std::isinf(parameter(j).field.preset); }
+
   /// Whether all strengths are sizes of something that is added, so that a straight line is a guess for each of them.
   [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
     return std::ranges::all_of(list, [&](Index j) {
@@ -453,10 +433,13 @@ class Screening {
 
 }  // namespace
 
-Background::Background(const Model& model, const Fit& at)
-    : residuals_(at.residuals), projection_(at.jacobian, model.prior()) {
+Background::Background(VectorXd residuals, Projection known)
+    : residuals_(std::move(residuals)), projection_(std::move(known)) {
   unexplained_ = 0.5 * residuals_.dot(projected(residuals_));
 }
+
+Background::Background(const Model& model, const Fit& at)
+    : Background(at.residuals, Projection(at.jacobian, model.prior())) {}
 
 double Background::gain(const MatrixXd& changes, const VectorXd& low, const VectorXd& high, VectorXd& alpha) const {
   MatrixXd projected_changes(changes.rows(), changes.cols());

@@ -21,6 +21,7 @@ namespace hysteron::diagnosis {
 /// The residual that candidates are screened against, with the known part projected off.
 class Background {
  public:
+  Background(VectorXd residuals, Projection known);
   Background(const Model& model, const Fit& at);
 
   /// ½‖P r‖²

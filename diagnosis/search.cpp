@@ -16,7 +16,10 @@
 
 #include "diagnosis/drivers.hpp"
 #include "diagnosis/parallel.hpp"
+#include "diagnosis/sets.hpp"
+#include "diagnosis/shortlist.hpp"
 #include "diagnosis/spectrum.hpp"
+#include "diagnosis/superposition.hpp"
 #include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
@@ -26,10 +29,6 @@ namespace {
 constexpr std::size_t finished_always = 6;
 /// Of what a straight line leaves of the tuned parameters' part, a bent one leaves less than this where it is bent.
 constexpr double straight_enough = 0.5;
-/// Of one effect so many edges are fitted in a round.
-constexpr int most_edges = 5;
-/// Gains of one effect on two edges that differ by less, relatively, are of the same signal.
-constexpr double same_gain = 1e-5;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
 /// Of a period many are tried: the one that a straight line favours before a fit is often not the one.
@@ -68,7 +67,7 @@ Screened unless_refused(const Screen& screen) {
 class Searcher {
  public:
   Searcher(const Task& task, const std::string& top, double floor_cost, const SearchOptions& options)
-      : task_(task), top_(top), floor_cost_(floor_cost), options_(options) {}
+      : task_(task), top_(top), floor_cost_(floor_cost), sets_(task, top, options.candidates), options_(options) {}
 
   Search run(Variant base) {
     Search result;
@@ -92,6 +91,14 @@ class Searcher {
       begin_ = static_cast<double>(round) / options_.most_effects;
       width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
       std::vector<Explanation> found;
+      if (round == 1) {
+        pair_up(about_nominal_ ? nominal : result.calibrated, result, found);
+        move_each(found, result);
+      }
+      if (is_closed(found)) {
+        beam.clear();  // what remains to be seen is which others close it, too
+        exchange_in_best(found, result);
+      }
       for (const Explanation& one : beam) {
         if (must_stop()) {
           break;
@@ -175,6 +182,9 @@ class Searcher {
     }
     std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
     std::ranges::stable_sort(list, [](const Screened& a, const Screened& b) { return a.gain() > b.gain(); });
+    if (from.variant.effects.empty()) {
+      singles_ = list;
+    }
     keep_best(list, fitted);
     std::vector<Explanation> fits(list.size());
     done = 0;
@@ -266,22 +276,6 @@ class Searcher {
     });
   }
 
-  /// The best of a list by their gains, so many, and of each effect its two best edges.
-  [[nodiscard]] static std::vector<std::size_t> front_of(const std::vector<Screened>& list,
-                                                         const std::vector<Candidate>& candidates, std::size_t count) {
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return list[a].gain() > list[b].gain(); });
-    std::map<std::string, int> taken;
-    std::vector<std::size_t> front;
-    for (const std::size_t at : order) {
-      if (front.size() < count || ++taken[candidates[at].kind.id] <= 2) {
-        front.push_back(at);
-      }
-    }
-    return front;
-  }
-
   /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
   /// all that it was there for, and the other one by itself the better explanation.
   void without_each(std::vector<Explanation>& found, const Search& result) const {
@@ -296,7 +290,7 @@ class Searcher {
     std::vector<Explanation> reduced;
     for (const Explanation* const one : best) {
       for (std::size_t i = 0; i + 1 < one->variant.effects.size(); ++i) {
-        Explanation smaller = without(*one, i, result.calibrated.variant);
+        Explanation smaller = sets_.without(*one, i, result.calibrated.variant, 30);
         if (std::isfinite(smaller.fit.cost)) {
           reduced.push_back(std::move(smaller));
         }
@@ -305,28 +299,101 @@ class Searcher {
     std::ranges::move(reduced, std::back_inserter(found));
   }
 
+  /// Those pairs of effects that would explain most if what each of them does simply added up: neither need be among
+  /// the best by itself.
+  void pair_up(const Explanation& from, const Search& result, std::vector<Explanation>& found) {
+    constexpr std::size_t most_values = 20'000'000;
+    constexpr double range = 5.0;
+    Model model(task_, *from.variant.program);
+    const Background background(model, from.fit);
+    keep_best(singles_, std::min<std::size_t>(150, most_values / static_cast<std::size_t>(from.fit.residuals.size())));
+    MatrixXd changes = MatrixXd::Zero(from.fit.residuals.size(), std::ssize(singles_));
+    in_parallel(singles_.size(), options_.threads, [&](std::size_t i) {
+      const Explanation one = placed(task_, singles_[i], singles_[i].starts.front(), from.fit.x);
+      Model alone(task_, *one.variant.program, one.variant.further);
+      VectorXd residuals;
+      if (alone.residuals(one.fit.x, residuals)) {
+        changes.col(static_cast<Index>(i)) = residuals - background.residuals();
+      }
+    });
+    std::vector<Superposition::Pair> pairs;
+    std::set<std::set<std::string>> taken;
+    for (const Superposition::Pair& one : Superposition(changes, background).pairs(range)) {
+      std::set<std::string> names{effect_of(one.first), effect_of(one.second)};
+      if (pairs.size() < options_.pairs && names.size() == 2 && taken.insert(std::move(names)).second) {
+        pairs.push_back(one);
+      }
+    }
+    std::vector<Explanation> fits(pairs.size());
+    in_parallel(pairs.size(), options_.threads, [&](std::size_t i) {
+      fits[i] = sets_.together(singles_[static_cast<std::size_t>(pairs[i].first)],
+                               singles_[static_cast<std::size_t>(pairs[i].second)], from.fit.x);
+    });
+    std::erase_if(fits, [](const Explanation& one) { return !std::isfinite(one.fit.cost); });
+    finish_front(fits, result.calibrated.fit.cost);
+    std::ranges::move(fits, std::back_inserter(found));
+  }
+
+  /// The best pairs with each of their effects on any other of its edges: beside the other effect its place shows, by
+  /// itself it often did not.
+  void move_each(std::vector<Explanation>& found, Search& result) {
+    constexpr std::size_t most = 6;
+    constexpr int most_rounds = 3;
+    std::set<std::vector<std::string>> moved;
+    for (int round = 0; round < most_rounds && !is_closed(found); ++round) {
+      std::ranges::stable_sort(found, {}, [](const Explanation& one) { return one.fit.cost; });
+      std::vector<Explanation> best;
+      std::set<std::vector<std::string>> taken;
+      for (const Explanation& one : found) {
+        if (best.size() < most && taken.insert(one.names()).second && moved.insert(one.places()).second) {
+          best.push_back(one);
+        }
+      }
+      for (const Explanation& one : best) {
+        for (std::size_t i = 0; i < one.variant.effects.size() && !must_stop(); ++i) {
+          const Explanation rest = sets_.without(one, i, result.calibrated.variant, 0);
+          if (std::isfinite(rest.fit.cost)) {
+            const std::string& effect = one.variant.effects[i].effect;
+            expand(
+                rest, [&](const Applied& other) { return other.effect == effect; }, options_.fitted_later, result,
+                found);
+          }
+        }
+      }
+    }
+  }
+  [[nodiscard]] const std::string& effect_of(Index single) const {
+    return singles_[static_cast<std::size_t>(single)].candidate.own().effect;
+  }
+
+  [[nodiscard]] bool is_closed(const std::vector<Explanation>& found) const {
+    return std::ranges::any_of(found,
+                               [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });
+  }
+
   /// Each effect of the best pair in turn gives its place to any other: what was found first may have stood in for two,
   /// and is not what fits best beside the other one. It goes on while that helps.
   void exchange(std::vector<Explanation>& found, Search& result) {
     const auto best_cost = [&] {
       return std::ranges::min(found, {}, [](const Explanation& one) { return one.fit.cost; }).fit.cost;
     };
-    std::set<std::pair<std::vector<std::string>, std::string>> tried;  // what stays, and beside what it stood
     for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
       const double cost = best_cost();
       if (cost <= well_closed * floor_cost_ || cost > worth_exchanging * before) {
         return;
       }
       before = cost;
-      const Explanation best =
-          *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
-      for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
-        // Not fitted again: bent towards what the missing effect did, the rest would leave no room for the right one.
-        Explanation rest = without(best, i, result.calibrated.variant, 0);
-        const bool is_new = tried.emplace(rest.places(), best.variant.effects[i].place()).second;
-        if (std::isfinite(rest.fit.cost) && is_new) {
-          expand(rest, any, options_.fitted_later, result, found);
-        }
+      exchange_in_best(found, result);
+    }
+  }
+  void exchange_in_best(std::vector<Explanation>& found, Search& result) {
+    const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
+    for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
+      // Not fitted again: bent towards what the missing effect did, the rest would leave no room for the right one.
+      const Explanation rest = sets_.without(best, i, result.calibrated.variant, 0);
+      const bool is_new = exchanged_.emplace(rest.places(), best.variant.effects[i].place()).second;
+      if (std::isfinite(rest.fit.cost) && is_new) {
+        expand(rest, any, options_.fitted_later, result, found);
       }
     }
   }
@@ -342,96 +409,14 @@ class Searcher {
     for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
       const Applied& richer = best.variant.effects[i];
       // Not fitted again: bent towards what the missing effect did, the others would lead a fit astray.
-      const Explanation rest = without(best, i, result.calibrated.variant, 0);
+      const Explanation rest = sets_.without(best, i, result.calibrated.variant, 0);
       if (std::isfinite(rest.fit.cost)) {
         const auto simpler = [&](const Applied& one) {
-          return one.paths.size() < richer.paths.size() && root_of(one.edge) == root_of(richer.edge);
+          return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
         };
         expand(rest, simpler, options_.fitted_later, result, found);
       }
     }
-  }
-
-  /// A set without one of its effects, built anew on the bare diagram and fitted, in so many steps, from where it
-  /// stood.
-  [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare,
-                                    int iterations = 30) const {
-    Explanation result{.variant = bare};
-    result.fit.cost = std::numeric_limits<double>::infinity();
-    VectorXd start = whole.fit.x.head(std::ssize(task_.known));
-    for (std::size_t i = 0; i < whole.variant.effects.size(); ++i) {
-      if (i == dropped) {
-        continue;
-      }
-      const Applied& wanted = whole.variant.effects[i];
-      std::vector<Candidate> candidates =
-          candidates_of(result.variant, top_, {.effects = {wanted.effect}, .columns = options_.candidates.columns});
-      const auto match = std::ranges::find_if(candidates, [&](const Candidate& one) {
-        return one.own().block == wanted.block && one.own().wires == wanted.wires &&
-               root_of(one.own().edge) == root_of(wanted.edge);
-      });
-      if (match == candidates.end()) {
-        return result;
-      }
-      Applied& own = match->variant.effects.back();
-      for (const auto& [path, value] : wanted.settings) {
-        own.settings.emplace_back(own.instance + path.substr(wanted.instance.size()), value);
-      }
-      for (std::size_t j = 0; j < own.paths.size(); ++j) {
-        for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
-          const Unknown& unknown = whole.variant.further[k];
-          if (unknown.path == wanted.paths[j]) {
-            match->variant.further.push_back(unknown);
-            match->variant.further.back().path = own.paths[j];
-            start.conservativeResize(start.size() + 1);
-            start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
-          }
-        }
-      }
-      result.variant = std::move(match->variant);
-      result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
-    }
-    Model model(task_, *result.variant.program, result.variant.further);
-    const Index states = model.unknowns() - start.size();
-    start.conservativeResize(model.unknowns());
-    start.tail(states) = whole.fit.x.tail(states);
-    result.fit = fit(model, start, {.iterations = iterations});
-    keep_starts(result, model);
-    return result;
-  }
-
-  /// An edge behind an effect that was put on an edge before is that edge: HYST_CREEP.XOUT is HYST.XOUT.
-  [[nodiscard]] static std::string root_of(const std::string& edge) { return edge.substr(0, edge.find_first_of("._")); }
-
-  /// The best ones, but of no effect so many that others do not get their turn; each effect gets one: what a grid
-  /// promises of a level says little of what a fit finds.
-  static void keep_best(std::vector<Screened>& list, std::size_t count) {
-    std::map<std::string, int> taken;
-    std::vector<Screened> kept;
-    for (Screened& one : list) {
-      // Two edges with nothing but a gain between them are one: the other one gets the place.
-      const auto twin = std::ranges::find_if(kept, [&](const Screened& other) {
-        return other.candidate.own().effect == one.candidate.own().effect &&
-               std::abs(other.gain() - one.gain()) <= same_gain * other.gain();
-      });
-      if (twin != kept.end()) {
-        if (one.candidate.upstream < twin->candidate.upstream) {  // the first place where it can be
-          one.candidate.variant.effects.back().twins = std::move(twin->candidate.variant.effects.back().twins);
-          std::swap(*twin, one);
-        }
-        if (one.candidate.own().edge != twin->candidate.own().edge) {
-          twin->candidate.variant.effects.back().twins.push_back(one.candidate.own().edge);
-        }
-        continue;
-      }
-      int& times = taken[one.candidate.own().effect];
-      const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
-      if (times < most_edges && (kept.size() < count || times == 0 || (gap && times < 2))) {
-        ++times;
-        kept.push_back(std::move(one));
-      }
-    }
-    list = std::move(kept);
   }
 
   /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
@@ -462,10 +447,13 @@ class Searcher {
   const Task& task_;
   const std::string& top_;
   double floor_cost_;
+  Sets sets_;
   double nominal_cost_ = 0.0;
   bool can_stop_ = false;
   KnownStarts known_starts_{};
   bool about_nominal_ = true;
+  std::vector<Screened> singles_{};                                         ///< by themselves, best first
+  std::set<std::pair<std::vector<std::string>, std::string>> exchanged_{};  ///< what stayed, and beside what it stood
   const SearchOptions& options_;
   std::mutex mutex_{};
   double begin_ = 0.0;

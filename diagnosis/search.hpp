@@ -2,7 +2,9 @@
 //
 // 1. The known parameters alone are fitted: what that closes is calibration.
 // 2. Every candidate is screened against what is left; the best are fitted together with the known parameters.
-// 3. To the best sets, in a beam, one effect more is added in the same way, while it closes a notable part of the gap.
+// 3. Pairs whose changes would add up to the residual are fitted, and their effects moved to other edges. Where one of
+//    them closes the gap, each of its effects gives its place to all others once, to see which close it, too.
+// 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap.
 // Every set that was fitted is kept: the verdict weighs them against each other.
 #pragma once
 
@@ -21,7 +23,8 @@ struct SearchOptions {
   int most_effects = 3;
   std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
   std::size_t fitted_later = 10;  ///< and after each further one
-  std::size_t beam = 3;  ///< sets that a second effect is added to; a further one is added to the best set alone
+  std::size_t beam = 3;    ///< sets that a second effect is added to; a further one is added to the best set alone
+  std::size_t pairs = 10;  ///< pairs that are fitted because their changes would add up to the residual
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
 };

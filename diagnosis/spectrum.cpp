@@ -39,6 +39,18 @@ std::vector<double> places_of(std::vector<Peak> peaks, std::size_t count) {
   return places;
 }
 
+/// The median of the heights about a peak.
+double median_about(const std::vector<double>& heights, std::size_t at) {
+  constexpr std::size_t reach = 40;
+  const std::size_t first = at > reach ? at - reach : 1;
+  const std::size_t last = std::min(at + reach, heights.size() - 1);
+  std::vector<double> near(heights.begin() + static_cast<std::ptrdiff_t>(first),
+                           heights.begin() + static_cast<std::ptrdiff_t>(last));
+  const auto middle = near.begin() + std::ssize(near) / 2;
+  std::ranges::nth_element(near, middle);
+  return std::max(*middle, 1e-300);
+}
+
 /// The steps on which values may lie.
 class Lattice {
  public:
@@ -136,7 +148,15 @@ class Lattice {
 
 }  // namespace
 
-std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
+namespace {
+
+/// The peaks of a periodogram with a Hann window, each with its power and with that power over the median about it.
+struct Lines {
+  std::vector<Peak> powers;
+  std::vector<Peak> prominences;
+};
+
+Lines lines_of(const Eigen::VectorXd& values, double sample_time) {
   const auto size = static_cast<std::size_t>(values.size());
   if (size < 32) {
     return {};
@@ -155,14 +175,31 @@ std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample
   std::vector<std::complex<double>> transform;
   Eigen::FFT<double> fft;
   fft.fwd(transform, windowed);
-  const auto power = [&](std::size_t k) { return std::norm(transform[k]); };
-  std::vector<Peak> peaks;
-  for (std::size_t k = 6; k + 1 < length / 2; ++k) {
-    if (power(k) > power(k - 1) && power(k) >= power(k + 1)) {
-      const double at = static_cast<double>(k) + vertex(power(k - 1), power(k), power(k + 1));
-      peaks.push_back({.place = at / (static_cast<double>(length) * sample_time), .height = power(k)});
+  std::vector<double> power;
+  std::ranges::transform(std::span(transform).first(length / 2), std::back_inserter(power),
+                         [](const std::complex<double>& one) { return std::norm(one); });
+  Lines lines;
+  for (std::size_t k = 6; k + 1 < power.size(); ++k) {
+    if (power[k] > power[k - 1] && power[k] >= power[k + 1]) {
+      const double at = static_cast<double>(k) + vertex(power[k - 1], power[k], power[k + 1]);
+      const double place = at / (static_cast<double>(length) * sample_time);
+      lines.powers.push_back({.place = place, .height = power[k]});
+      lines.prominences.push_back({.place = place, .height = power[k] / median_about(power, k)});
     }
   }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
+  return places_of(lines_of(values, sample_time).powers, count);
+}
+
+std::vector<double> outstanding_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
+  constexpr double least = 20.0;  // of thousands of frequencies, chance makes one ten times as high
+  std::vector<Peak> peaks = lines_of(values, sample_time).prominences;
+  std::erase_if(peaks, [](const Peak& one) { return one.height < least; });
   return places_of(std::move(peaks), count);
 }
 

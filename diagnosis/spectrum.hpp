@@ -10,6 +10,11 @@ namespace hysteron::diagnosis {
 /// a parabola through the logarithms of three bins.
 [[nodiscard]] std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count);
 
+/// Those that stand at least twenty times above the median of the periodogram about them, highest first: what acts
+/// before an integrator leaves a line that slow residuals outweigh a thousandfold.
+[[nodiscard]] std::vector<double> outstanding_lines(const Eigen::VectorXd& values, double sample_time,
+                                                    std::size_t count);
+
 /// The step on which values lie, 0 where on none: the largest |Σ exp(2πi y/q)|/N over q from a third to 1/4096 of their
 /// range, if above 0.5, with N the narrow bins that hold a value. Values that are rounded by a sensor and then get
 /// noise of less than a tenth of the step show it.

@@ -97,8 +97,8 @@ std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, 
   return scaled(range / against, {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0});
 }
 
-std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
-                               const Hints& hints, const std::vector<double>& periods) {
+std::vector<double> shape_grid(const EffectParameter& parameter, bool ends, const Extent& input,
+                               const Extent* auxiliary, const Hints& hints, const std::vector<double>& periods) {
   const double range = size_or(input.range(), 1.0);
   const double across = auxiliary == nullptr ? range : size_or(auxiliary->range(), 1.0);
   switch (parameter.role) {
@@ -112,8 +112,9 @@ std::vector<double> shape_grid(const EffectParameter& parameter, const Extent& i
     case Role::Instant: {
       std::vector<double> values;
       const int later = std::isinf(parameter.field.preset) ? 1 : 0;  // an end comes after a beginning, or not at all
-      for (int k = 1 + later; k < 8 + later; ++k) {
-        values.push_back(0.125 * k * hints.duration);
+      const int parts = ends ? 48 : 8;
+      for (int k = 1 + later; k < parts + later; ++k) {
+        values.push_back(hints.duration * k / parts);
       }
       return values;
     }
@@ -203,7 +204,13 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
     }
   }
   const Eigen::Index rows = std::min<Eigen::Index>(residuals.size(), std::ssize(task.records.front().time()));
-  hints.frequencies = strongest_lines(residuals.head(rows), hints.sample_time, 6);
+  hints.frequencies = outstanding_lines(residuals.head(rows), hints.sample_time, 3);
+  hints.outstanding = hints.frequencies.size();
+  for (const double one : strongest_lines(residuals.head(rows), hints.sample_time, 6)) {
+    if (std::ranges::find(hints.frequencies, one) == hints.frequencies.end()) {
+      hints.frequencies.push_back(one);
+    }
+  }
   return hints;
 }
 
@@ -255,7 +262,10 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
       };
       grid.values = parameter.strength
                         ? strength_grid(parameter, is_oscillation(candidate.own()), input, auxiliary, hints)
-                        : shape_grid(parameter, input, auxiliary, hints, periods);
+                        : shape_grid(parameter, candidate.own().has_end(), input, auxiliary, hints, periods);
+      if (parameter.role == Role::Frequency) {
+        grid.measured = hints.outstanding;
+      }
       if (parameter.role == Role::Quantum) {
         // The steps that measured values lie on, and the periods at which the residual repeats over the signal: with
         // sixty steps over the range, a quantum that is off by a percent fits no better than any other.
@@ -284,6 +294,7 @@ Grids thinned(const Applied& effect, const Grids& grids, std::size_t stride) {
     const std::vector<double>& values = grids.parameters[j].values;
     const Role role = effect.parameters[j].role;
     if (values.size() <= short_enough || role == Role::Frequency || role == Role::Period ||
+        (role == Role::Instant && effect.has_end()) ||
         (role == Role::Duration && (is_oscillation(effect) || !effect.parameters[j].strength))) {
       continue;
     }

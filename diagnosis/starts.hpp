@@ -16,6 +16,7 @@ struct Hints {
   double sample_time = 0.0;
   double duration = 0.0;              ///< of the longest record, s
   std::vector<double> frequencies{};  ///< of lines in the residual, Hz
+  std::size_t outstanding = 0;        ///< so many of them, at the front, are lines beyond doubt
   std::vector<double> quanta{};       ///< steps on which the measured values lie
 };
 

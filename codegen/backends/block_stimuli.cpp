@@ -164,7 +164,7 @@ const std::vector<Entry>& entries() {
       {"HY_OFFSET", {.settings = "BIAS := 0.5", .pins = {{"XIN", sine(1.0)}}}},
       {"HY_DRIFT", {.settings = "RATE := 0.5", .pins = {{"XIN", square(1.0, 0.5)}}}},
       {"HY_THERMAL_DRIFT", {.settings = "SIZE := 0.5, T1 := 0.5", .pins = {{"XIN", square(1.0, 0.5)}}}},
-      {"HY_GAIN_DRIFT", {.settings = "RATE := 0.5", .pins = {{"XIN", sine(1.0, 0.5)}}}},
+      {"HY_GAIN_DRIFT", {.settings = "RATE := 0.5, SETTLING := 3.0", .pins = {{"XIN", sine(1.0, 0.5)}}}},
       {"HY_CREEP", {.settings = "GAIN := 0.2, T_ONSET := 0.01", .pins = {{"XIN", square(1.0, 1.0)}}}},
       {"HY_RELAXATION", {.settings = "GAIN := 0.5, T1 := 0.15", .pins = {{"XIN", square(1.0)}}}},
       {"HY_COULOMB_FRICTION",

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <sys/select.h>
 #include <sys/socket.h>
@@ -55,7 +56,11 @@ std::set<std::string> ways_to(const std::variant<modbus::TcpLink, modbus::Serial
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (::getaddrinfo(tcp.host.c_str(), nullptr, &hints, &found) != 0) {
+  // localhost is this machine (RFC 6761), also in a container without a table of hosts.
+  const bool resolved =
+      ::getaddrinfo(tcp.host.c_str(), nullptr, &hints, &found) == 0 ||
+      (::strcasecmp(tcp.host.c_str(), "localhost") == 0 && ::getaddrinfo("127.0.0.1", nullptr, &hints, &found) == 0);
+  if (!resolved) {
     return {text_of(link)};
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> release(found, &::freeaddrinfo);

@@ -21,7 +21,8 @@ TEST(Drift, IsExactAfterAHundredMillionSteps) {
     Drift::count(state);
   }
   EXPECT_EQ(Drift::output<double>({.RATE = 0.2}, state, {.XIN = 0.0}, ts).XOUT, 0.2 * (1e8 * ts));
-  EXPECT_EQ(GainDrift::output<double>({.RATE = 0.002}, state, {.XIN = 3.0}, ts).XOUT, 3.0 + 3.0 * (0.002 * 5000.0));
+  EXPECT_EQ(GainDrift::output<double>({.RATE = 0.002, .SETTLING = 0.0}, state, {.XIN = 3.0}, ts).XOUT,
+            3.0 + 3.0 * (0.002 * 5000.0));
 }
 
 TEST(Drift, StandsStillAtTheEndOfItsCount) {
@@ -47,11 +48,37 @@ TEST(ThermalDrift, ObeysItsDifferentialEquation) {
 }
 
 TEST(GainDrift, LeavesZeroAlone) {
-  Stepper<GainDrift> block(0.5, {.RATE = 0.1});
+  Stepper<GainDrift> block(0.5, {.RATE = 0.1, .SETTLING = 0.0});
   for (int k = 0; k < 10; ++k) {
     EXPECT_EQ(block({.XIN = 0.0}).XOUT, 0.0);
   }
   EXPECT_EQ(block({.XIN = 2.0}).XOUT, 2.0 * (1.0 + 0.1 * 5.0));
+}
+
+TEST(GainDrift, SettlesByItsDifferentialEquation) {
+  // g' = RATE − SETTLING·(g − 1), by small steps of the implicit midpoint rule; from the series to the exponential.
+  const double ts = 0.01;
+  for (const double settling : {0.02, 0.9, 40.0}) {
+    Stepper<GainDrift> block(ts, {.RATE = 0.3, .SETTLING = settling});
+    double drifted = 0.0;
+    const int fine = 200;
+    const double h = ts / fine;
+    for (int k = 0; k < 300; ++k) {
+      EXPECT_NEAR(block({.XIN = 2.0}).XOUT, 2.0 * (1.0 + drifted), 1e-7) << "settling " << settling << " step " << k;
+      for (int j = 0; j < fine; ++j) {
+        drifted += h * (0.3 - settling * drifted) / (1.0 + 0.5 * settling * h);
+      }
+    }
+  }
+}
+
+TEST(GainDrift, SettlesSmoothlyWhereTheSeriesEnds) {
+  const auto at = [](double settling) {
+    GainDrift::State<double> state = GainDrift::initial(GainDrift::Params<double>{.RATE = 1.0, .SETTLING = settling});
+    GainDrift::count(state);
+    return GainDrift::output<double>({.RATE = 1.0, .SETTLING = settling}, state, {.XIN = 1.0}, 1.0).XOUT;
+  };
+  EXPECT_NEAR(at(0.01), at(std::nextafter(0.01, 0.0)), 1e-12);
 }
 
 TEST(Load, TakesOffItsMeanOverEachInterval) {

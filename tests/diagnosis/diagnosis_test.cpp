@@ -165,6 +165,19 @@ records::Record rounded_heater(double quantum, double noise) {
   return test::measured(machine, test::record_of("FORCE", test::rich_force()), noise * quantum);
 }
 
+TEST(Diagnosis, ALoadThatIsOverBetweenTwoPartsOfAGridIsFound) {
+  const Program machine = test::program_of(heater("ADC : HY_LOAD := (SIZE := 0.6, T_ON := 3.37, T_OFF := 3.61);"));
+  const Diagnosis found =
+      diagnose(test::input_of(heater(""), "[parameters.GAIN]\nK = 2.95\n[fit.GAIN]\nK = {}\n",
+                              {test::measured(machine, test::record_of("FORCE", test::rich_force()), 0.01)}),
+               {.effects = {"load", "drift", "lag", "offset", "odd_nonlinearity"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "load");
+  ASSERT_EQ(found.effects.front().parameters.size(), 3U);
+  EXPECT_NEAR(found.effects.front().parameters[1].value, 3.37, 0.005);
+  EXPECT_NEAR(found.effects.front().parameters[2].value, 3.61, 0.005);
+}
+
 TEST(Diagnosis, ACoarseSensorHidesNoParameterOfWhatLiesBeforeIt) {
   constexpr double quantum = 0.2137;  // some twenty steps
   const Diagnosis found = heater_diagnosed({rounded_heater(quantum, 0.01)});

@@ -54,6 +54,25 @@ TEST(StrongestLines, TooFewSamplesHaveNone) {
   EXPECT_TRUE(strongest_lines(Eigen::VectorXd::Ones(20), sample_time, 3).empty());
 }
 
+TEST(OutstandingLines, AreSeenBelowWhatIsSlowAndAThousandTimesAsStrong) {
+  Eigen::VectorXd slow(count);
+  const Eigen::VectorXd steps = noise(1.0);
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    slow[k] = sum += 0.01 * steps[k];
+  }
+  const Eigen::VectorXd values = 300.0 * slow + sine(31.0, 0.05 * 300.0 * 0.1);
+  const auto lines = outstanding_lines(values, sample_time, 3);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NEAR(lines[0], 31.0, 0.2 * bin);
+  EXPECT_GT(std::abs(strongest_lines(values, sample_time, 1).front() - 31.0), 10.0);
+}
+
+TEST(OutstandingLines, NoiseHasNone) {
+  EXPECT_TRUE(outstanding_lines(noise(1.0), sample_time, 3).empty());
+  EXPECT_TRUE(outstanding_lines(Eigen::VectorXd::Ones(20), sample_time, 3).empty());
+}
+
 TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {
   // The position goes to and fro at a changing rate, so that the ripple has no line in time.
   std::vector<double> position;

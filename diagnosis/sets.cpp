@@ -1,0 +1,101 @@
+#include "diagnosis/sets.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// The settings of an effect, of its instance in another variant.
+void take_settings(Applied& own, const Applied& from) {
+  for (const auto& [path, value] : from.settings) {
+    own.settings.emplace_back(own.instance + path.substr(from.instance.size()), value);
+  }
+}
+
+}  // namespace
+
+bool Sets::same_root(std::string_view a, std::string_view b) {
+  return a.substr(0, a.find_first_of("._")) == b.substr(0, b.find_first_of("._"));
+}
+
+std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wanted) const {
+  std::vector<Candidate> list = candidates_of(base, top_, {.effects = {wanted.effect}, .columns = options_.columns});
+  std::erase_if(list, [&](const Candidate& one) {
+    return one.own().block != wanted.block || one.own().wires != wanted.wires ||
+           !same_root(one.own().edge, wanted.edge);
+  });
+  std::ranges::stable_partition(list, [&](const Candidate& one) { return one.own().edge == wanted.edge; });
+  return list;
+}
+
+Explanation Sets::without(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
+  Explanation result{.variant = bare};
+  result.fit.cost = std::numeric_limits<double>::infinity();
+  VectorXd start = whole.fit.x.head(std::ssize(task_.known));
+  for (std::size_t i = 0; i < whole.variant.effects.size(); ++i) {
+    if (i == dropped) {
+      continue;
+    }
+    const Applied& wanted = whole.variant.effects[i];
+    std::vector<Candidate> list = in_place_of(result.variant, wanted);
+    if (list.empty()) {
+      return result;
+    }
+    Variant& variant = list.front().variant;
+    Applied& own = variant.effects.back();
+    take_settings(own, wanted);
+    for (std::size_t j = 0; j < own.paths.size(); ++j) {
+      for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
+        const Unknown& unknown = whole.variant.further[k];
+        if (unknown.path == wanted.paths[j]) {
+          variant.further.push_back(unknown);
+          variant.further.back().path = own.paths[j];
+          start.conservativeResize(start.size() + 1);
+          start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
+        }
+      }
+    }
+    result.variant = std::move(variant);
+    result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
+  }
+  Model model(task_, *result.variant.program, result.variant.further);
+  const Index states = model.unknowns() - start.size();
+  start.conservativeResize(model.unknowns());
+  start.tail(states) = whole.fit.x.tail(states);
+  result.fit = fit(model, start, {.iterations = iterations});
+  keep_starts(result, model);
+  return result;
+}
+
+Explanation Sets::together(const Screened& first, const Screened& second, const VectorXd& known) const {
+  const Explanation base = placed(task_, first, first.starts.front(), known);
+  const Applied& wanted = second.candidate.own();
+  const std::string behind = base.variant.effects.back().instance + ".";
+  Explanation best{};
+  best.fit.cost = std::numeric_limits<double>::infinity();
+  for (Candidate& candidate : in_place_of(base.variant, wanted)) {
+    const std::string& edge = candidate.own().edge;
+    if (edge != wanted.edge && !edge.starts_with(behind)) {
+      continue;
+    }
+    Applied& own = candidate.variant.effects.back();
+    take_settings(own, wanted);
+    candidate.variant.program = compiled(candidate.variant.text, top_, candidate.variant.effects);
+    Screened there{.candidate = std::move(candidate), .unknowns = second.unknowns, .starts = second.starts};
+    for (Unknown& unknown : there.unknowns) {
+      unknown.path = there.candidate.own().instance + unknown.path.substr(wanted.instance.size());
+    }
+    for (Start& start : there.starts) {
+      start.about_calibration = false;
+    }
+    Explanation here = begun_from(task_, there, base, {});
+    if (here.fit.cost < best.fit.cost) {
+      best = std::move(here);
+    }
+  }
+  return best;
+}
+
+}  // namespace hysteron::diagnosis

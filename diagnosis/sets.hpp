@@ -1,0 +1,37 @@
+// Sets of effects built anew: the same effects, on another variant of the diagram.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "diagnosis/fitting.hpp"
+
+namespace hysteron::diagnosis {
+
+class Sets {
+ public:
+  Sets(const Task& task, const std::string& top, const CandidateOptions& options)
+      : task_(task), top_(top), options_(options) {}
+
+  /// A set without one of its effects, on the bare diagram, fitted in so many steps from where it stood. The cost is ∞
+  /// where it cannot be built.
+  [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare,
+                                    int iterations) const;
+
+  /// Two effects as they were screened, with the known parameters and states `known`, after a few steps of a fit; on
+  /// one edge in the better order. The cost is ∞ where the second one has no place beside the first.
+  [[nodiscard]] Explanation together(const Screened& first, const Screened& second, const VectorXd& known) const;
+
+  /// Whether two edges are one but for what was put onto it: HYST_CREEP.XOUT is HYST.XOUT.
+  [[nodiscard]] static bool same_root(std::string_view a, std::string_view b);
+
+ private:
+  /// The effect on that edge of another variant, or else about it.
+  [[nodiscard]] std::vector<Candidate> in_place_of(const Variant& base, const Applied& wanted) const;
+
+  const Task& task_;
+  const std::string& top_;
+  const CandidateOptions& options_;
+};
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,18 @@
+// Which of the candidates that were screened are followed: a choice by what they gain, that gives each effect its turn.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/screening.hpp"
+
+namespace hysteron::diagnosis {
+
+/// The best of a list by their gains, so many, and of each effect its two best edges; places in the list.
+[[nodiscard]] std::vector<std::size_t> front_of(const std::vector<Screened>& list,
+                                                const std::vector<Candidate>& candidates, std::size_t count);
+
+/// Of a list sorted by gain the best ones, so many, but of no effect so many that others do not get their turn; each
+/// effect gets one: what a grid promises of a level says little of what a fit finds.
+void keep_best(std::vector<Screened>& list, std::size_t count);
+
+}  // namespace hysteron::diagnosis

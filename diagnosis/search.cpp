@@ -176,7 +176,7 @@ class Searcher {
       say(0.4 * static_cast<double>(++done) / static_cast<double>(candidates.size()),
           candidates[i].own().effect + " at " + candidates[i].own().edge);
     });
-    refine(list, candidates, grids, from, background);
+    refine(list, candidates, grids, from, background, fitted);
     if (from.variant.effects.empty() && about_nominal_) {
       about_calibration(list, candidates, grids, result.calibrated);
     }
@@ -226,8 +226,8 @@ class Searcher {
 
   /// The whole grid near the starts of those candidates that the thin one has brought to the front.
   void refine(std::vector<Screened>& list, const std::vector<Candidate>& candidates, const std::vector<Grids>& grids,
-              const Explanation& from, const Background& background) {
-    const std::vector<std::size_t> order = front_of(list, candidates, options_.fitted_first);
+              const Explanation& from, const Background& background, std::size_t count) {
+    const std::vector<std::size_t> order = front_of(list, candidates, count);
     std::atomic<std::size_t> done{0};
     in_parallel(order.size(), options_.threads, [&](std::size_t i) {
       const std::size_t at = order[i];
@@ -337,15 +337,19 @@ class Searcher {
   /// The best pairs with each of their effects on any other of its edges: beside the other effect its place shows, by
   /// itself it often did not.
   void move_each(std::vector<Explanation>& found, Search& result) {
-    constexpr std::size_t most = 6;
-    constexpr int most_rounds = 3;
+    constexpr std::size_t edges = 4;
+    constexpr double far_behind = 5.0;
     std::set<std::vector<std::string>> moved;
-    for (int round = 0; round < most_rounds && !is_closed(found); ++round) {
+    for (const std::size_t most : {6, 2, 2}) {
+      if (is_closed(found)) {
+        return;
+      }
       std::ranges::stable_sort(found, {}, [](const Explanation& one) { return one.fit.cost; });
       std::vector<Explanation> best;
       std::set<std::vector<std::string>> taken;
       for (const Explanation& one : found) {
-        if (best.size() < most && taken.insert(one.names()).second && moved.insert(one.places()).second) {
+        if (best.size() < most && one.fit.cost < far_behind * found.front().fit.cost &&
+            taken.insert(one.names()).second && moved.insert(one.places()).second) {
           best.push_back(one);
         }
       }
@@ -355,8 +359,7 @@ class Searcher {
           if (std::isfinite(rest.fit.cost)) {
             const std::string& effect = one.variant.effects[i].effect;
             expand(
-                rest, [&](const Applied& other) { return other.effect == effect; }, options_.fitted_later, result,
-                found);
+                rest, [&](const Applied& other) { return other.effect == effect; }, edges, result, found);
           }
         }
       }

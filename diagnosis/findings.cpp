@@ -212,6 +212,11 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
     result.push_back(std::move(finding));
   }
   std::ranges::stable_sort(result, [](const EffectFinding& a, const EffectFinding& b) { return a.share > b.share; });
+  // Of those with equal shares the simplest has the first name: neither closes anything without the other.
+  constexpr double equal_share = 0.02;
+  const auto equal = std::ranges::find_if(
+      result, [&](const EffectFinding& one) { return one.share < result.front().share - equal_share; });
+  std::ranges::stable_sort(result.begin(), equal, {}, [](const EffectFinding& one) { return one.parameters.size(); });
   return result;
 }
 

@@ -452,7 +452,9 @@ double Background::gain(const MatrixXd& changes, const VectorXd& low, const Vect
     matrix(k, k) = matrix(k, k) > 0.0 ? matrix(k, k) * (1.0 + 1e-9) : 1.0;
   }
   alpha = (-matrix.ldlt().solve(slope)).cwiseMax(low).cwiseMin(high);
-  return -(alpha.dot(slope) + 0.5 * alpha.dot(matrix * alpha));
+  const double gained = -(alpha.dot(slope) + 0.5 * alpha.dot(matrix * alpha));
+  // More than all there is comes of rounding alone, where a change that grows without bound is projected.
+  return gained <= 1.001 * unexplained_ ? gained : 0.0;
 }
 
 Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -15,6 +16,7 @@
 #include <set>
 
 #include "diagnosis/drivers.hpp"
+#include "diagnosis/line_start.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/sets.hpp"
 #include "diagnosis/shortlist.hpp"
@@ -77,6 +79,7 @@ class Searcher {
     result.calibrated.fit = fit(model, model.start(), {.iterations = 40, .tolerance = 1e-7});
     Explanation nominal = result.calibrated;
     nominal.fit.x = model.start();
+    tuned_ = nominal.fit.x.head(std::ssize(task_.known));
     (void)model.residuals(nominal.fit.x, nominal.fit.residuals, &nominal.fit.jacobian);
     nominal.fit.cost = cost_of(model, nominal.fit.x, nominal.fit.residuals, nullptr);
     nominal_cost_ = Background(model, nominal.fit).unexplained();
@@ -93,10 +96,12 @@ class Searcher {
       std::vector<Explanation> found;
       if (round == 1) {
         pair_up(about_nominal_ ? nominal : result.calibrated, result, found);
+        pair_with_line(about_nominal_ ? nominal : result.calibrated, result, found);
         move_each(found, result);
       }
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too
+        simplify(found, result);
         exchange_in_best(found, result);
       }
       for (const Explanation& one : beam) {
@@ -334,13 +339,25 @@ class Searcher {
     std::ranges::move(fits, std::back_inserter(found));
   }
 
+  /// A line that stands out of the spectrum, beside any other effect: by itself it took on what that one does.
+  void pair_with_line(const Explanation& from, Search& result, std::vector<Explanation>& found) {
+    const auto line = std::ranges::find_if(singles_, is_line);
+    if (line == singles_.end() || is_closed(found) || must_stop()) {
+      return;
+    }
+    const Explanation alone = with_line(task_, *line, from);
+    if (std::isfinite(alone.fit.cost)) {
+      expand(alone, any, options_.fitted_first, result, found);
+    }
+  }
+
   /// The best pairs with each of their effects on any other of its edges: beside the other effect its place shows, by
   /// itself it often did not.
   void move_each(std::vector<Explanation>& found, Search& result) {
     constexpr std::size_t edges = 4;
     constexpr double far_behind = 5.0;
     std::set<std::vector<std::string>> moved;
-    for (const std::size_t most : {6, 2, 2}) {
+    for (const std::size_t most : std::array<std::size_t, 3>{6, 2, 2}) {
       if (is_closed(found)) {
         return;
       }
@@ -392,8 +409,7 @@ class Searcher {
   void exchange_in_best(std::vector<Explanation>& found, Search& result) {
     const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
     for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
-      // Not fitted again: bent towards what the missing effect did, the rest would leave no room for the right one.
-      const Explanation rest = sets_.without(best, i, result.calibrated.variant, 0);
+      const Explanation rest = sets_.rest_of(best, i, result.calibrated.variant, tuned_);
       const bool is_new = exchanged_.emplace(rest.places(), best.variant.effects[i].place()).second;
       if (std::isfinite(rest.fit.cost) && is_new) {
         expand(rest, any, options_.fitted_later, result, found);
@@ -411,9 +427,9 @@ class Searcher {
     const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
     for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
       const Applied& richer = best.variant.effects[i];
-      // Not fitted again: bent towards what the missing effect did, the others would lead a fit astray.
-      const Explanation rest = sets_.without(best, i, result.calibrated.variant, 0);
-      if (std::isfinite(rest.fit.cost)) {
+      const Explanation rest = sets_.rest_of(best, i, result.calibrated.variant, tuned_);
+      const bool is_new = simplified_.emplace(rest.places(), richer.place()).second;
+      if (std::isfinite(rest.fit.cost) && is_new) {
         const auto simpler = [&](const Applied& one) {
           return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
         };
@@ -454,9 +470,11 @@ class Searcher {
   double nominal_cost_ = 0.0;
   bool can_stop_ = false;
   KnownStarts known_starts_{};
+  VectorXd tuned_{};  ///< the known parameters as tuned
   bool about_nominal_ = true;
   std::vector<Screened> singles_{};                                         ///< by themselves, best first
   std::set<std::pair<std::vector<std::string>, std::string>> exchanged_{};  ///< what stayed, and beside what it stood
+  std::set<std::pair<std::vector<std::string>, std::string>> simplified_{};
   const SearchOptions& options_;
   std::mutex mutex_{};
   double begin_ = 0.0;

@@ -26,7 +26,8 @@ std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wan
     return one.own().block != wanted.block || one.own().wires != wanted.wires ||
            !same_root(one.own().edge, wanted.edge);
   });
-  std::ranges::stable_partition(list, [&](const Candidate& one) { return one.own().edge == wanted.edge; });
+  (void)std::stable_partition(list.begin(), list.end(),
+                              [&](const Candidate& one) { return one.own().edge == wanted.edge; });
   return list;
 }
 
@@ -67,6 +68,16 @@ Explanation Sets::without(const Explanation& whole, std::size_t dropped, const V
   result.fit = fit(model, start, {.iterations = iterations});
   keep_starts(result, model);
   return result;
+}
+
+Explanation Sets::rest_of(const Explanation& whole, std::size_t dropped, const Variant& bare,
+                          const VectorXd& tuned) const {
+  constexpr double absurd = 4.0;
+  Explanation rest = without(whole, dropped, bare, 0);
+  Explanation as_tuned = whole;
+  as_tuned.fit.x.head(tuned.size()) = tuned;
+  as_tuned = without(as_tuned, dropped, bare, 0);
+  return as_tuned.fit.cost * absurd < rest.fit.cost ? as_tuned : rest;
 }
 
 Explanation Sets::together(const Screened& first, const Screened& second, const VectorXd& known) const {

@@ -18,6 +18,12 @@ class Sets {
   [[nodiscard]] Explanation without(const Explanation& whole, std::size_t dropped, const Variant& bare,
                                     int iterations) const;
 
+  /// A set without one of its effects, not fitted again: bent towards what the missing effect did, the rest would leave
+  /// no room for the right one. Where the missing effect had taken over a gain of the diagram, a relaxation of 24 times
+  /// the signal a motor's constant, the known parameters are those as `tuned`.
+  [[nodiscard]] Explanation rest_of(const Explanation& whole, std::size_t dropped, const Variant& bare,
+                                    const VectorXd& tuned) const;
+
   /// Two effects as they were screened, with the known parameters and states `known`, after a few steps of a fit; on
   /// one edge in the better order. The cost is ∞ where the second one has no place beside the first.
   [[nodiscard]] Explanation together(const Screened& first, const Screened& second, const VectorXd& known) const;

@@ -1,0 +1,72 @@
+// Sets of effects built anew.
+#include "diagnosis/sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "diagnosis/task.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// An axis with a constant force beside it, and a relaxation of its drive.
+class RestOf : public testing::Test {
+ protected:
+  RestOf() {
+    add("offset", "FORCE", {0.05});
+    add("relaxation", "MASS.XOUT", {24.0, 0.02});
+  }
+
+  void add(const std::string& effect, const std::string& edge, const std::vector<double>& values) {
+    std::vector<Candidate> list = candidates_of(whole_.variant, "AXIS", {.effects = {effect}});
+    std::erase_if(list, [&](const Candidate& one) { return one.own().edge != edge; });
+    std::vector<Unknown> further = whole_.variant.further;
+    whole_.variant = list.front().variant;
+    whole_.variant.further = std::move(further);
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      whole_.variant.further.push_back({.path = whole_.variant.effects.back().paths[j],
+                                        .start = values[j],
+                                        .lower = 0.1 * values[j],
+                                        .upper = 10.0 * values[j],
+                                        .deviation = std::numeric_limits<double>::infinity()});
+    }
+  }
+  /// The set with this gain of the diagram, without the relaxation.
+  [[nodiscard]] Explanation rest(double gain) {
+    Model model(task_, *whole_.variant.program, whole_.variant.further);
+    whole_.fit.x = model.start();
+    whole_.fit.x[0] = gain;
+    return Sets(task_, "AXIS", options_).rest_of(whole_, 1, bare_, VectorXd::Constant(1, 0.5));
+  }
+
+  DiagnosisInput input_ =
+      test::input_of(test::axis(), test::axis_parameters,
+                     {test::measured(test::program_of(test::axis({"HY_OFFSET := (BIAS := 0.05)", "FORCE"})),
+                                     test::record_of("FORCE", test::rich_force()), 0.001)});
+  Task task_ = task_of(input_);
+  CandidateOptions options_{};
+  Variant bare_{.text = input_.text, .program = std::make_shared<const Program>(input_.program)};
+  Explanation whole_{.variant = bare_};
+};
+
+TEST_F(RestOf, StandsWhereTheWholeStood) {
+  const Explanation found = rest(0.5001);
+  ASSERT_EQ(found.names(), std::vector<std::string>{"offset"});
+  EXPECT_EQ(found.fit.x[0], 0.5001);
+  EXPECT_EQ(found.fit.x[1], 0.05);
+}
+
+TEST_F(RestOf, HasTheGainAsTunedWhereTheMissingEffectHadTakenItOver) {
+  const Explanation found = rest(0.5 / 24.0);
+  ASSERT_EQ(found.names(), std::vector<std::string>{"offset"});
+  EXPECT_EQ(found.fit.x[0], 0.5);
+  EXPECT_EQ(found.fit.x[1], 0.05);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

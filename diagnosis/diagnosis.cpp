@@ -32,12 +32,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// A floor is an estimate: that of slow noise is off by a tenth, even from repeats. Less above it is no claim that
-/// something is unknown.
-constexpr double above_floor = 1.2;
-/// The same of a floor from differences, which see fast noise only: in one trial of twenty it is below 0.61 of the
-/// noise.
-constexpr double above_fast_floor = 2.0;
 /// A residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
 /// is that of the fast part alone.
 constexpr double far_above_floor = 3.0;
@@ -295,15 +289,15 @@ class Run {
     }
   }
 
-  /// Of what is left, as a multiple of the floor, the share of its energy that no noise explains which the floor
-  /// misses.
+  /// Of what is left, as a multiple of the floor, the share of its energy that is beyond the noise.
   [[nodiscard]] double excess_of(double size) const {
-    const double hidden = std::max(hidden_noise, least_above());
-    return 1.0 - std::pow(hidden / std::max(size, hidden), 2);
+    const double noise = most_noise(floors_[gap_output_]);
+    return 1.0 - std::pow(noise / std::max(size, noise), 2);
   }
+  /// Less above the floor is no claim that something is unknown.
   [[nodiscard]] double least_above() const {
-    const std::string& evidence = floors_[gap_output_].evidence;
-    return evidence == "repeats" ? above_floor : evidence == "differences" ? above_fast_floor : hidden_noise;
+    const double noise = most_noise(floors_[gap_output_]);
+    return floors_[gap_output_].evidence == "repeats" ? noise : std::max(hidden_noise, noise);
   }
   [[nodiscard]] double far_above() const {
     return floors_[gap_output_].evidence == "differences" ? far_above_fast_floor : far_above_floor;

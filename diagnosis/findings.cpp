@@ -269,7 +269,8 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
       // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
       const double size = so_far.gap.improved / so_far.gap.floor.value;
-      const double explained = std::min(1.0, hidden_noise / std::max(size, 1e-9));
+      const double explained =
+          std::min(1.0, std::min(hidden_noise, most_noise(so_far.gap.floor)) / std::max(size, 1e-9));
       return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap), 0.0,
                         0.99);
     }

@@ -195,6 +195,10 @@ double least_excess(const NoiseFloor& floor) {
   return (floor.evidence == "repeats" ? of_repeats : of_others) * floor.value;
 }
 
+double most_noise(const NoiseFloor& floor) {
+  return floor.evidence == "differences" ? 2.0 : 1.2;
+}
+
 NoiseRange noise_range(double left) {
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
   return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};

@@ -14,6 +14,13 @@ void take_settings(Applied& own, const Applied& from) {
   }
 }
 
+/// Whether two effects have the same parameters: one effect may have several formulas in one block.
+bool same_formula(const Applied& a, const Applied& b) {
+  return std::ranges::equal(a.paths, b.paths, [&](const std::string& one, const std::string& other) {
+    return one.substr(a.instance.size()) == other.substr(b.instance.size());
+  });
+}
+
 }  // namespace
 
 bool Sets::same_root(std::string_view a, std::string_view b) {
@@ -24,7 +31,7 @@ std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wan
   std::vector<Candidate> list = candidates_of(base, top_, {.effects = {wanted.effect}, .columns = options_.columns});
   std::erase_if(list, [&](const Candidate& one) {
     return one.own().block != wanted.block || one.own().wires != wanted.wires ||
-           !same_root(one.own().edge, wanted.edge);
+           !same_root(one.own().edge, wanted.edge) || !same_formula(one.own(), wanted);
   });
   (void)std::stable_partition(list.begin(), list.end(),
                               [&](const Candidate& one) { return one.own().edge == wanted.edge; });
@@ -32,6 +39,16 @@ std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wan
 }
 
 Explanation Sets::without(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
+  try {
+    return rebuilt(whole, dropped, bare, iterations);
+  } catch (const InputError&) {  // a set that the diagram refuses is not the user's mistake
+    Explanation none{.variant = bare};
+    none.fit.cost = std::numeric_limits<double>::infinity();
+    return none;
+  }
+}
+
+Explanation Sets::rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
   Explanation result{.variant = bare};
   result.fit.cost = std::numeric_limits<double>::infinity();
   VectorXd start = whole.fit.x.head(std::ssize(task_.known));

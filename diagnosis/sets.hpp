@@ -32,7 +32,9 @@ class Sets {
   [[nodiscard]] static bool same_root(std::string_view a, std::string_view b);
 
  private:
-  /// The effect on that edge of another variant, or else about it.
+  [[nodiscard]] Explanation rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare,
+                                    int iterations) const;
+  /// The effect on that edge of another variant, in the same formula, or else about it.
   [[nodiscard]] std::vector<Candidate> in_place_of(const Variant& base, const Applied& wanted) const;
 
   const Task& task_;

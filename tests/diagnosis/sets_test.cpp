@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "diagnosis/task.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
@@ -66,6 +68,32 @@ TEST_F(RestOf, HasTheGainAsTunedWhereTheMissingEffectHadTakenItOver) {
   ASSERT_EQ(found.names(), std::vector<std::string>{"offset"});
   EXPECT_EQ(found.fit.x[0], 0.5);
   EXPECT_EQ(found.fit.x[1], 0.05);
+}
+
+TEST(Sets, KeepTheFormulaOfAnEffectThatHasSeveral) {
+  const DiagnosisInput input = test::input_of(
+      test::stack({}, "HY_HYSTERESIS_GENERAL"), test::stack_parameters,
+      {test::measured(test::program_of(test::stack()), test::record_of("U", test::rich_voltage()), 0.02)});
+  const Task task = task_of(input);
+  const Variant bare{.text = input.text, .program = std::make_shared<const Program>(input.program)};
+  const std::vector<Candidate> formulas = candidates_of(bare, "STACK", {.effects = {"curve_shape"}});
+  const auto is_shape = [](const Candidate& one) { return one.own().paths.front() == "HYST.SHAPE"; };
+  ASSERT_TRUE(std::ranges::any_of(formulas, is_shape));
+  ASSERT_FALSE(std::ranges::all_of(formulas, is_shape));
+  for (const Candidate& formula : formulas) {
+    Explanation whole{.variant = candidates_of(formula.variant, "STACK", {.effects = {"offset"}}).front().variant};
+    for (const Applied& effect : whole.variant.effects) {
+      whole.variant.further.push_back({.path = effect.paths.front(),
+                                       .lower = 0.0,
+                                       .upper = 0.4,
+                                       .deviation = std::numeric_limits<double>::infinity()});
+    }
+    whole.fit.x = Model(task, *whole.variant.program, whole.variant.further).start();
+    const Explanation rest = Sets(task, "STACK", {}).without(whole, 1, bare, 0);
+    ASSERT_TRUE(std::isfinite(rest.fit.cost)) << formula.own().paths.front();
+    ASSERT_EQ(rest.variant.further.size(), 1U);
+    EXPECT_EQ(rest.variant.further.front().path, formula.own().paths.front());
+  }
 }
 
 }  // namespace

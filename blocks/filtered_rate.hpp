@@ -19,19 +19,23 @@ S without_denormals(const S& x) {
   return select(abs(x) < S(1e-36), (x + S(1.0)) - S(1.0), x);
 }
 
-/// 1 − exp(−u) for u ≥ 0. Small u go through a series, since the difference from 1 would lose their digits (of a lag of
-/// 1 s at 50 µs in float, 6e-4).
+/// Below this (1 − exp(−u))/u goes through its series, since the difference from 1 would lose digits (of a lag of 1 s
+/// at 50 µs in float, 6e-4).
+inline constexpr double small_decay = 0.03125;
+
+/// (1 − exp(−u))/u by its series, for 0 ≤ u < small_decay.
+template <class S>
+S decayed_share(const S& u) {
+  return S(1.0) - u * (S(1.0 / 2.0) -
+                       u * (S(1.0 / 6.0) -
+                            u * (S(1.0 / 24.0) - u * (S(1.0 / 120.0) - u * (S(1.0 / 720.0) - u * S(1.0 / 5040.0))))));
+}
+
+/// 1 − exp(−u) for u ≥ 0.
 template <class S>
 S decayed_part(const S& u) {
   return either<S>(
-      u < S(0.03125),
-      [&] {
-        return u * (S(1.0) -
-                    u * (S(1.0 / 2.0) -
-                         u * (S(1.0 / 6.0) - u * (S(1.0 / 24.0) -
-                                                  u * (S(1.0 / 120.0) - u * (S(1.0 / 720.0) - u * S(1.0 / 5040.0)))))));
-      },
-      [&] { return S(1.0) - exp(-u); });
+      u < S(small_decay), [&] { return u * decayed_share(u); }, [&] { return S(1.0) - exp(-u); });
 }
 
 /// 1 − exp(−TS/T), the part that one sample forgets; 1 for T up to TS/64.

@@ -3,6 +3,7 @@
 
 #include "blocks/clock_time.hpp"
 #include "blocks/effect_term.hpp"
+#include "blocks/filtered_rate.hpp"
 #include "blocks/ports.hpp"
 
 namespace hysteron {
@@ -50,10 +51,8 @@ struct GainDrift : OfClockTime {
   template <class S>
   static S time_of_drift(const Params<S>& params, const S& time) {
     const S z = params.SETTLING * time;
-    const Bool<S> slow = z < S(0.01);
-    const S series =
-        time * (S(1.0) - z / S(2.0) * (S(1.0) - z / S(3.0) * (S(1.0) - z / S(4.0) * (S(1.0) - z / S(5.0)))));
-    return select(slow, series, (S(1.0) - exp(-z)) / select(slow, S(1.0), params.SETTLING));
+    const Bool<S> slow = z < S(small_decay);
+    return select(slow, time * decayed_share(z), (S(1.0) - exp(-z)) / select(slow, S(1.0), params.SETTLING));
   }
 };
 

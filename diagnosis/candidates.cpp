@@ -391,6 +391,10 @@ bool Applied::has(Role role) const {
   return std::ranges::any_of(parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
+const EffectParameter& Applied::parameter(const std::string& path) const {
+  return parameters[static_cast<std::size_t>(std::ranges::find(paths, path) - paths.begin())];
+}
+
 bool Applied::has_end() const {
   const auto is_end = [](const EffectParameter& one) {
     return one.role == Role::Instant && std::isinf(one.field.preset);

@@ -31,6 +31,8 @@ struct Applied {
   [[nodiscard]] bool has(Role role) const;
   [[nodiscard]] bool has_gap() const;
   [[nodiscard]] bool has_end() const;  ///< one strength, that begins to act at one instant and ceases at another
+  /// By one of its paths.
+  [[nodiscard]] const EffectParameter& parameter(const std::string& path) const;
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
 };
 

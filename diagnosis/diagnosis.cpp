@@ -291,12 +291,12 @@ class Run {
 
   /// Of what is left, as a multiple of the floor, the share of its energy that is beyond the noise.
   [[nodiscard]] double excess_of(double size) const {
-    const double noise = most_noise(floors_[gap_output_]);
+    const double noise = suspicious_from(floors_[gap_output_]);
     return 1.0 - std::pow(noise / std::max(size, noise), 2);
   }
   /// Less above the floor is no claim that something is unknown.
   [[nodiscard]] double least_above() const {
-    const double noise = most_noise(floors_[gap_output_]);
+    const double noise = suspicious_from(floors_[gap_output_]);
     return floors_[gap_output_].evidence == "repeats" ? noise : std::max(hidden_noise, noise);
   }
   [[nodiscard]] double far_above() const {

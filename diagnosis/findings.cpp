@@ -136,6 +136,18 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
   return shares;
 }
 
+/// In a gap of the noise's size one of seven names was another effect's, in the sealed sets of the blind trial.
+double seen(const GapFinding& gap) {
+  constexpr double wrong_at_noise = 0.15;
+  const double noise = std::min(gap.floor.value, gap.improved);
+  const double explained = gap.calibrated * gap.calibrated - gap.improved * gap.improved;
+  return 1.0 - wrong_at_noise * std::min(1.0, noise * noise / std::max(explained, 1e-300));
+}
+
+std::string unit_behind(const GapFinding& gap) {
+  return gap.unit.empty() ? "" : " " + gap.unit;
+}
+
 }  // namespace
 
 Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed) {
@@ -244,18 +256,6 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
   return result;
 }
 
-namespace {
-
-/// In a gap of the noise's size one of seven names was another effect's, in the sealed sets of the blind trial.
-double seen(const GapFinding& gap) {
-  constexpr double wrong_at_noise = 0.15;
-  const double noise = std::min(gap.floor.value, gap.improved);
-  const double explained = gap.calibrated * gap.calibrated - gap.improved * gap.improved;
-  return 1.0 - wrong_at_noise * std::min(1.0, noise * noise / std::max(explained, 1e-300));
-}
-
-}  // namespace
-
 double confidence(const Findings& findings, const Diagnosis& so_far) {
   // An effect as large as the noise can hide in what depends on the machine's motion and is called noise.
   const double no_effect = 0.95 - 0.3 * findings.predictable;
@@ -270,7 +270,7 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
       const double size = so_far.gap.improved / so_far.gap.floor.value;
       const double explained =
-          std::min(1.0, std::min(hidden_noise, most_noise(so_far.gap.floor)) / std::max(size, 1e-9));
+          std::min(1.0, std::min(hidden_noise, suspicious_from(so_far.gap.floor)) / std::max(size, 1e-9));
       return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap), 0.0,
                         0.99);
     }
@@ -294,7 +294,7 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
 }
 
 std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
-  const std::string unit = gap.unit.empty() ? "" : " " + gap.unit;
+  const std::string unit = unit_behind(gap);
   const std::string by_refit = fmt::format("The refit of the known parameters makes {} worse, {:.3g} → {:.3g}{} RMS",
                                            gap.signal, gap.nominal, gap.calibrated, unit);
   if (!refit) {
@@ -306,7 +306,7 @@ std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
 }
 
 std::string warning_of_floor(const GapFinding& gap) {
-  const std::string unit = gap.unit.empty() ? "" : " " + gap.unit;
+  const std::string unit = unit_behind(gap);
   return fmt::format(
       "The noise floor of {}, {:.3g}{} RMS from {}, holds a part of what the effects explain: they leave {:.3g}{}.",
       gap.signal, gap.floor.value, unit, gap.floor.evidence, gap.improved, unit);
@@ -405,9 +405,9 @@ std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& ga
 }
 
 std::string summary_of(const Diagnosis& found, bool below_material) {
-  std::string gap = fmt::format("{} {:.3g} → {:.3g} → {:.3g}{}{} RMS, floor {:.3g}", found.gap.signal,
-                                found.gap.nominal, found.gap.calibrated, found.gap.improved,
-                                found.gap.unit.empty() ? "" : " ", found.gap.unit, found.gap.floor.value);
+  std::string gap =
+      fmt::format("{} {:.3g} → {:.3g} → {:.3g}{} RMS, floor {:.3g}", found.gap.signal, found.gap.nominal,
+                  found.gap.calibrated, found.gap.improved, unit_behind(found.gap), found.gap.floor.value);
   std::vector<std::string> effects;
   for (const EffectFinding& effect : found.effects) {
     effects.push_back(fmt::format("{} at {}", effect.id, effect.edge));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hysteron::diagnosis {
 namespace {
@@ -69,10 +68,8 @@ std::vector<Unknown> held_at_measured(const Task& task, const Screened& one, con
   std::vector<Unknown> unknowns = one.unknowns;
   const records::Record& record = task.records.front();
   const double half_turn = 0.5 / (record.sample_time() * static_cast<double>(record.size()));
-  const Applied& own = one.candidate.own();
   for (std::size_t k = 0; k < unknowns.size() && start.measured; ++k) {
-    const auto path = std::ranges::find(own.paths, unknowns[k].path);
-    if (own.parameters[static_cast<std::size_t>(path - own.paths.begin())].role == Role::Frequency) {
+    if (one.candidate.own().parameter(unknowns[k].path).role == Role::Frequency) {
       const double value = start.values[static_cast<Index>(k)];
       unknowns[k].start = value;
       unknowns[k].lower = std::max(unknowns[k].lower, value - half_turn);
@@ -122,7 +119,6 @@ Explanation placed(const Task& task, const Screened& one, const Start& start, co
 Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,
                        const KnownStarts& known_starts) {
   Explanation best{.variant = one.candidate.variant};
-  best.fit.cost = std::numeric_limits<double>::infinity();
   const auto begin_at = [&](const VectorXd& known, const Start& start) {
     Explanation here = placed(task, one, start, known);
     std::vector<Unknown>& further = here.variant.further;

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 
 #include "diagnosis/model.hpp"
 
@@ -16,7 +17,7 @@ namespace hysteron::diagnosis {
 
 struct Fit {
   VectorXd x{};
-  double cost = 0.0;  ///< ½ Σ w r² + prior; ∞ where the model has no value at the start
+  double cost = std::numeric_limits<double>::infinity();  ///< ½ Σ w r² + prior; ∞ where there is no value at the start
   VectorXd residuals{};
   MatrixXd jacobian{};
   bool converged = false;

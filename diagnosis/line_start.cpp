@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
 namespace hysteron::diagnosis {
@@ -47,24 +46,18 @@ bool is_line(const Screened& one) {
 
 Explanation with_line(const Task& task, const Screened& one, const Explanation& from) {
   Explanation result = placed(task, one, *line_of(one), from.fit.x);
-  result.fit.cost = std::numeric_limits<double>::infinity();
   Model model(task, *result.variant.program, result.variant.further);
-  const Applied& own = one.candidate.own();
   const Index first = model.first_further() + std::ssize(result.variant.further) - std::ssize(one.unknowns);
   double frequency = 0.0;
   std::vector<Index> sizes;
   VectorXd neutral = result.fit.x;
-  for (std::size_t j = 0; j < own.paths.size(); ++j) {
-    const auto unknown = std::ranges::find(one.unknowns, own.paths[j], &Unknown::path);
-    if (unknown == one.unknowns.end()) {
-      continue;
-    }
-    const Index at = first + (unknown - one.unknowns.begin());
-    if (own.parameters[j].role == Role::Frequency) {
-      frequency = result.fit.x[at];
-    } else if (own.parameters[j].strength) {
-      sizes.push_back(at);
-      neutral[at] = own.parameters[j].field.neutral;
+  for (Index k = 0; k < std::ssize(one.unknowns); ++k) {
+    const EffectParameter& parameter = one.candidate.own().parameter(one.unknowns[static_cast<std::size_t>(k)].path);
+    if (parameter.role == Role::Frequency) {
+      frequency = result.fit.x[first + k];
+    } else if (parameter.strength) {
+      sizes.push_back(first + k);
+      neutral[first + k] = parameter.field.neutral;
     }
   }
   VectorXd without;

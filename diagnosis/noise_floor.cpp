@@ -195,8 +195,10 @@ double least_excess(const NoiseFloor& floor) {
   return (floor.evidence == "repeats" ? of_repeats : of_others) * floor.value;
 }
 
-double most_noise(const NoiseFloor& floor) {
-  return floor.evidence == "differences" ? 2.0 : 1.2;
+double suspicious_from(const NoiseFloor& floor) {
+  constexpr double of_differences = 2.0;
+  constexpr double of_others = 1.2;
+  return floor.evidence == "differences" ? of_differences : of_others;
 }
 
 NoiseRange noise_range(double left) {

@@ -9,15 +9,14 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <set>
 
 #include "diagnosis/drivers.hpp"
 #include "diagnosis/line_start.hpp"
 #include "diagnosis/parallel.hpp"
+#include "diagnosis/refusal.hpp"
 #include "diagnosis/sets.hpp"
 #include "diagnosis/shortlist.hpp"
 #include "diagnosis/spectrum.hpp"
@@ -56,14 +55,11 @@ double nats_gained(double cost_before, const Fit& fit) {
   return 0.5 * samples * std::log(cost_before / std::max(fit.cost, 1e-300));
 }
 
-/// What a candidate gains; no starts where the diagram refuses it: it is not the user's mistake.
-template <class Screen>
-Screened unless_refused(const Screen& screen) {
-  try {
-    return screen();
-  } catch (const InputError&) {
-    return {};
-  }
+double cost_of_fit(const Explanation& one) {
+  return one.fit.cost;
+}
+const Explanation& best_of(const std::vector<Explanation>& found) {
+  return *std::ranges::min_element(found, {}, cost_of_fit);
 }
 
 class Searcher {
@@ -88,15 +84,16 @@ class Searcher {
     about_nominal_ = Background(model, result.calibrated.fit).unexplained() > straight_enough * nominal_cost_;
     known_starts_ = {.calibrated = result.calibrated.fit.x,
                      .other = about_nominal_ ? result.calibrated.fit.x : nominal.fit.x};
-    std::vector<Explanation> beam{about_nominal_ ? nominal : result.calibrated};
+    const Explanation& bare = about_nominal_ ? nominal : result.calibrated;
+    std::vector<Explanation> beam{bare};
     for (int round = 0; round < options_.most_effects && !beam.empty(); ++round) {
       can_stop_ = round > 0;
       begin_ = static_cast<double>(round) / options_.most_effects;
       width_ = 1.0 / options_.most_effects / static_cast<double>(beam.size());
       std::vector<Explanation> found;
       if (round == 1) {
-        pair_up(about_nominal_ ? nominal : result.calibrated, result, found);
-        pair_with_line(about_nominal_ ? nominal : result.calibrated, result, found);
+        pair_up(bare, result, found);
+        pair_with_line(bare, result, found);
         move_each(found, result);
       }
       if (is_closed(found)) {
@@ -195,7 +192,6 @@ class Searcher {
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
       if (must_stop()) {
-        fits[i].fit.cost = std::numeric_limits<double>::infinity();
         return;
       }
       fits[i] = begun_from(task_, list[i], from, known_starts_);
@@ -216,7 +212,7 @@ class Searcher {
   /// To the end those fits that a few steps have brought to the front; one that closes a small part of what the best
   /// closes is ranked well enough.
   void finish_front(std::vector<Explanation>& fits, double cost_before) {
-    std::ranges::stable_sort(fits, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
+    std::ranges::stable_sort(fits, {}, cost_of_fit);
     const bool decides = !fits.empty() && is_worth_following(cost_before, fits.front().fit);
     std::atomic<std::size_t> done{0};
     in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
@@ -361,7 +357,7 @@ class Searcher {
       if (is_closed(found)) {
         return;
       }
-      std::ranges::stable_sort(found, {}, [](const Explanation& one) { return one.fit.cost; });
+      std::ranges::stable_sort(found, {}, cost_of_fit);
       std::vector<Explanation> best;
       std::set<std::vector<std::string>> taken;
       for (const Explanation& one : found) {
@@ -394,11 +390,8 @@ class Searcher {
   /// Each effect of the best pair in turn gives its place to any other: what was found first may have stood in for two,
   /// and is not what fits best beside the other one. It goes on while that helps.
   void exchange(std::vector<Explanation>& found, Search& result) {
-    const auto best_cost = [&] {
-      return std::ranges::min(found, {}, [](const Explanation& one) { return one.fit.cost; }).fit.cost;
-    };
     for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
-      const double cost = best_cost();
+      const double cost = best_of(found).fit.cost;
       if (cost <= well_closed * floor_cost_ || cost > worth_exchanging * before) {
         return;
       }
@@ -407,33 +400,35 @@ class Searcher {
     }
   }
   void exchange_in_best(std::vector<Explanation>& found, Search& result) {
-    const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
-    for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1; ++i) {
-      const Explanation rest = sets_.rest_of(best, i, result.calibrated.variant, tuned_);
-      const bool is_new = exchanged_.emplace(rest.places(), best.variant.effects[i].place()).second;
-      if (std::isfinite(rest.fit.cost) && is_new) {
-        expand(rest, any, options_.fitted_later, result, found);
-      }
-    }
+    replace_in_best(found, result, exchanged_, [](const Applied&, const Applied&) { return true; });
   }
 
   /// Each effect of the best pair in turn gives its place to those with fewer parameters on its edge: the first part of
   /// a warm-up is a drift, and by itself the drift may have been the worse one beside an effect that was still missing.
   /// Also where the other effect had been expanded: it may have been with other settings.
   void simplify(std::vector<Explanation>& found, Search& result) {
+    replace_in_best(found, result, simplified_, [](const Applied& richer, const Applied& one) {
+      return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
+    });
+  }
+
+  /// What stayed, and beside what it stood.
+  using Replaced = std::set<std::pair<std::vector<std::string>, std::string>>;
+
+  /// Each effect of the best pair in turn gives its place to those that `suits` lets have it, once.
+  template <class Suits>
+  void replace_in_best(std::vector<Explanation>& found, Search& result, Replaced& replaced, const Suits& suits) {
     if (found.empty()) {
       return;
     }
-    const Explanation best = *std::ranges::min_element(found, {}, [](const Explanation& one) { return one.fit.cost; });
+    const Explanation best = best_of(found);
     for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
-      const Applied& richer = best.variant.effects[i];
+      const Applied& gone = best.variant.effects[i];
       const Explanation rest = sets_.rest_of(best, i, result.calibrated.variant, tuned_);
-      const bool is_new = simplified_.emplace(rest.places(), richer.place()).second;
+      const bool is_new = replaced.emplace(rest.places(), gone.place()).second;
       if (std::isfinite(rest.fit.cost) && is_new) {
-        const auto simpler = [&](const Applied& one) {
-          return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
-        };
-        expand(rest, simpler, options_.fitted_later, result, found);
+        expand(
+            rest, [&](const Applied& one) { return suits(gone, one); }, options_.fitted_later, result, found);
       }
     }
   }
@@ -441,7 +436,7 @@ class Searcher {
   /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
   [[nodiscard]] std::vector<Explanation> next_beam(std::vector<Explanation>& found, const Search& result,
                                                    std::size_t width) const {
-    std::ranges::stable_sort(found, [](const Explanation& a, const Explanation& b) { return a.fit.cost < b.fit.cost; });
+    std::ranges::stable_sort(found, {}, cost_of_fit);
     std::vector<Explanation> beam;
     std::set<std::vector<std::string>> taken;
     const double gap = result.calibrated.fit.cost - floor_cost_;
@@ -472,9 +467,9 @@ class Searcher {
   KnownStarts known_starts_{};
   VectorXd tuned_{};  ///< the known parameters as tuned
   bool about_nominal_ = true;
-  std::vector<Screened> singles_{};                                         ///< by themselves, best first
-  std::set<std::pair<std::vector<std::string>, std::string>> exchanged_{};  ///< what stayed, and beside what it stood
-  std::set<std::pair<std::vector<std::string>, std::string>> simplified_{};
+  std::vector<Screened> singles_{};  ///< by themselves, best first
+  Replaced exchanged_{};
+  Replaced simplified_{};
   const SearchOptions& options_;
   std::mutex mutex_{};
   double begin_ = 0.0;

@@ -1,8 +1,9 @@
 #include "diagnosis/sets.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "diagnosis/refusal.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -39,18 +40,11 @@ std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wan
 }
 
 Explanation Sets::without(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
-  try {
-    return rebuilt(whole, dropped, bare, iterations);
-  } catch (const InputError&) {  // a set that the diagram refuses is not the user's mistake
-    Explanation none{.variant = bare};
-    none.fit.cost = std::numeric_limits<double>::infinity();
-    return none;
-  }
+  return unless_refused([&] { return rebuilt(whole, dropped, bare, iterations); });
 }
 
 Explanation Sets::rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
   Explanation result{.variant = bare};
-  result.fit.cost = std::numeric_limits<double>::infinity();
   VectorXd start = whole.fit.x.head(std::ssize(task_.known));
   for (std::size_t i = 0; i < whole.variant.effects.size(); ++i) {
     if (i == dropped) {
@@ -102,7 +96,6 @@ Explanation Sets::together(const Screened& first, const Screened& second, const 
   const Applied& wanted = second.candidate.own();
   const std::string behind = base.variant.effects.back().instance + ".";
   Explanation best{};
-  best.fit.cost = std::numeric_limits<double>::infinity();
   for (Candidate& candidate : in_place_of(base.variant, wanted)) {
     const std::string& edge = candidate.own().edge;
     if (edge != wanted.edge && !edge.starts_with(behind)) {

@@ -148,23 +148,16 @@ class Lattice {
 
 }  // namespace
 
-namespace {
-
-/// The peaks of a periodogram with a Hann window, each with its power and with that power over the median about it.
-struct Lines {
-  std::vector<Peak> powers;
-  std::vector<Peak> prominences;
-};
-
-Lines lines_of(const Eigen::VectorXd& values, double sample_time) {
+Periodogram::Periodogram(const Eigen::VectorXd& values, double sample_time) {
   const auto size = static_cast<std::size_t>(values.size());
   if (size < 32) {
-    return {};
+    return;
   }
   std::size_t length = 1;
   while (length < 2 * size) {
     length *= 2;
   }
+  bin_ = 1.0 / (static_cast<double>(length) * sample_time);
   const double mean = values.mean();
   std::vector<double> windowed(length, 0.0);
   for (std::size_t k = 0; k < size; ++k) {
@@ -175,32 +168,35 @@ Lines lines_of(const Eigen::VectorXd& values, double sample_time) {
   std::vector<std::complex<double>> transform;
   Eigen::FFT<double> fft;
   fft.fwd(transform, windowed);
-  std::vector<double> power;
-  std::ranges::transform(std::span(transform).first(length / 2), std::back_inserter(power),
+  std::ranges::transform(std::span(transform).first(length / 2), std::back_inserter(power_),
                          [](const std::complex<double>& one) { return std::norm(one); });
-  Lines lines;
-  for (std::size_t k = 6; k + 1 < power.size(); ++k) {
-    if (power[k] > power[k - 1] && power[k] >= power[k + 1]) {
-      const double at = static_cast<double>(k) + vertex(power[k - 1], power[k], power[k + 1]);
-      const double place = at / (static_cast<double>(length) * sample_time);
-      lines.powers.push_back({.place = place, .height = power[k]});
-      lines.prominences.push_back({.place = place, .height = power[k] / median_about(power, k)});
+  for (std::size_t k = 6; k + 1 < power_.size(); ++k) {
+    if (power_[k] > power_[k - 1] && power_[k] >= power_[k + 1]) {
+      peaks_.push_back(k);
     }
   }
-  return lines;
 }
 
-}  // namespace
-
-std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
-  return places_of(lines_of(values, sample_time).powers, count);
+double Periodogram::frequency_of(std::size_t peak) const {
+  return bin_ * (static_cast<double>(peak) + vertex(power_[peak - 1], power_[peak], power_[peak + 1]));
 }
 
-std::vector<double> outstanding_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count) {
+std::vector<double> Periodogram::strongest_lines(std::size_t count) const {
+  std::vector<Peak> lines;
+  std::ranges::transform(peaks_, std::back_inserter(lines),
+                         [&](std::size_t k) { return Peak{.place = frequency_of(k), .height = power_[k]}; });
+  return places_of(std::move(lines), count);
+}
+
+std::vector<double> Periodogram::outstanding_lines(std::size_t count) const {
   constexpr double least = 20.0;  // of thousands of frequencies, chance makes one ten times as high
-  std::vector<Peak> peaks = lines_of(values, sample_time).prominences;
-  std::erase_if(peaks, [](const Peak& one) { return one.height < least; });
-  return places_of(std::move(peaks), count);
+  std::vector<Peak> lines;
+  for (const std::size_t k : peaks_) {
+    if (const double height = power_[k] / median_about(power_, k); height >= least) {
+      lines.push_back({.place = frequency_of(k), .height = height});
+    }
+  }
+  return places_of(std::move(lines), count);
 }
 
 double common_step(const std::vector<double>& values) {

@@ -6,14 +6,24 @@
 
 namespace hysteron::diagnosis {
 
-/// The frequencies of the strongest lines, Hz, strongest first: peaks of the periodogram with a Hann window, refined by
-/// a parabola through the logarithms of three bins.
-[[nodiscard]] std::vector<double> strongest_lines(const Eigen::VectorXd& values, double sample_time, std::size_t count);
+/// With a Hann window. Its lines are its peaks, refined by a parabola through the logarithms of three bins.
+class Periodogram {
+ public:
+  Periodogram(const Eigen::VectorXd& values, double sample_time);
 
-/// Those that stand at least twenty times above the median of the periodogram about them, highest first: what acts
-/// before an integrator leaves a line that slow residuals outweigh a thousandfold.
-[[nodiscard]] std::vector<double> outstanding_lines(const Eigen::VectorXd& values, double sample_time,
-                                                    std::size_t count);
+  /// The frequencies of the strongest lines, Hz, strongest first.
+  [[nodiscard]] std::vector<double> strongest_lines(std::size_t count) const;
+  /// Those that stand at least twenty times above the median about them, highest first: what acts before an integrator
+  /// leaves a line that slow residuals outweigh a thousandfold.
+  [[nodiscard]] std::vector<double> outstanding_lines(std::size_t count) const;
+
+ private:
+  [[nodiscard]] double frequency_of(std::size_t peak) const;
+
+  std::vector<double> power_{};
+  std::vector<std::size_t> peaks_{};  ///< of them, by their bins
+  double bin_ = 0.0;                  ///< Hz
+};
 
 /// The step on which values lie, 0 where on none: the largest |Σ exp(2πi y/q)|/N over q from a third to 1/4096 of their
 /// range, if above 0.5, with N the narrow bins that hold a value. Values that are rounded by a sensor and then get

@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -83,7 +82,6 @@ VectorXd start_from(const Model& model, const Explanation& from) {
 /// what both have: without the right start all of them are bent.
 Explanation fitted_with(const Task& task, const Explanation& from, const Explanation& chosen) {
   Explanation result{.variant = from.variant};
-  result.fit.cost = std::numeric_limits<double>::infinity();
   Model model(task, *from.variant.program, from.variant.further);
   const VectorXd stands = start_from(model, from);
   VectorXd tuned = stands;

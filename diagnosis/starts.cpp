@@ -204,9 +204,10 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
     }
   }
   const Eigen::Index rows = std::min<Eigen::Index>(residuals.size(), std::ssize(task.records.front().time()));
-  hints.frequencies = outstanding_lines(residuals.head(rows), hints.sample_time, 3);
+  const Periodogram periodogram(residuals.head(rows), hints.sample_time);
+  hints.frequencies = periodogram.outstanding_lines(3);
   hints.outstanding = hints.frequencies.size();
-  for (const double one : strongest_lines(residuals.head(rows), hints.sample_time, 6)) {
+  for (const double one : periodogram.strongest_lines(6)) {
     if (std::ranges::find(hints.frequencies, one) == hints.frequencies.end()) {
       hints.frequencies.push_back(one);
     }

@@ -107,7 +107,7 @@ bool take_off_line(std::vector<Detrended>& stretches, std::size_t length) {
   }
   // The gaps between the stretches give each line neighbours that are nearly as high: all of them are tried.
   std::vector<std::pair<double, double>> peaks;  // gain, frequency
-  for (const double frequency : strongest_lines(gated, 1.0, candidates)) {
+  for (const double frequency : Periodogram(gated, 1.0).strongest_lines(candidates)) {
     peaks.emplace_back(line_at(stretches, frequency).gain, frequency);
   }
   std::ranges::sort(peaks, std::greater{});

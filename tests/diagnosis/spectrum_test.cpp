@@ -30,7 +30,7 @@ Eigen::VectorXd noise(double deviation) {
 
 TEST(StrongestLines, ALineBetweenBinsWithinATenthOfOne) {
   for (const double frequency : {3.0 * bin + 5.0, 17.33, 50.07, 80.0 + 0.5 * bin}) {
-    const auto lines = strongest_lines(sine(frequency, 1.0) + noise(0.3), sample_time, 1);
+    const auto lines = Periodogram(sine(frequency, 1.0) + noise(0.3), sample_time).strongest_lines(1);
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_NEAR(lines[0], frequency, 0.1 * bin);
   }
@@ -38,20 +38,21 @@ TEST(StrongestLines, ALineBetweenBinsWithinATenthOfOne) {
 
 TEST(StrongestLines, ComeStrongestFirst) {
   const Eigen::VectorXd both = sine(31.0, 0.5) + sine(12.7, 1.0) + noise(0.02);
-  const auto lines = strongest_lines(both, sample_time, 2);
+  const auto lines = Periodogram(both, sample_time).strongest_lines(2);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_NEAR(lines[0], 12.7, 0.1 * bin);
   EXPECT_NEAR(lines[1], 31.0, 0.1 * bin);
 }
 
 TEST(StrongestLines, AnOffsetIsNone) {
-  const auto lines = strongest_lines(Eigen::VectorXd::Constant(count, 100.0) + sine(20.0, 0.1), sample_time, 1);
+  const auto lines =
+      Periodogram(Eigen::VectorXd::Constant(count, 100.0) + sine(20.0, 0.1), sample_time).strongest_lines(1);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_NEAR(lines[0], 20.0, 0.1 * bin);
 }
 
 TEST(StrongestLines, TooFewSamplesHaveNone) {
-  EXPECT_TRUE(strongest_lines(Eigen::VectorXd::Ones(20), sample_time, 3).empty());
+  EXPECT_TRUE(Periodogram(Eigen::VectorXd::Ones(20), sample_time).strongest_lines(3).empty());
 }
 
 TEST(OutstandingLines, AreSeenBelowWhatIsSlowAndAThousandTimesAsStrong) {
@@ -62,15 +63,15 @@ TEST(OutstandingLines, AreSeenBelowWhatIsSlowAndAThousandTimesAsStrong) {
     slow[k] = sum += 0.01 * steps[k];
   }
   const Eigen::VectorXd values = 300.0 * slow + sine(31.0, 0.05 * 300.0 * 0.1);
-  const auto lines = outstanding_lines(values, sample_time, 3);
+  const auto lines = Periodogram(values, sample_time).outstanding_lines(3);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_NEAR(lines[0], 31.0, 0.2 * bin);
-  EXPECT_GT(std::abs(strongest_lines(values, sample_time, 1).front() - 31.0), 10.0);
+  EXPECT_GT(std::abs(Periodogram(values, sample_time).strongest_lines(1).front() - 31.0), 10.0);
 }
 
 TEST(OutstandingLines, NoiseHasNone) {
-  EXPECT_TRUE(outstanding_lines(noise(1.0), sample_time, 3).empty());
-  EXPECT_TRUE(outstanding_lines(Eigen::VectorXd::Ones(20), sample_time, 3).empty());
+  EXPECT_TRUE(Periodogram(noise(1.0), sample_time).outstanding_lines(3).empty());
+  EXPECT_TRUE(Periodogram(Eigen::VectorXd::Ones(20), sample_time).outstanding_lines(3).empty());
 }
 
 TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {

@@ -26,6 +26,7 @@
 #include "diagnosis/search.hpp"
 #include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
+#include "diagnosis/uneven_steps.hpp"
 #include "diagnosis/verdict.hpp"
 #include "diagnosis/where.hpp"
 
@@ -40,6 +41,8 @@ constexpr double far_above_fast_floor = 4.0;
 constexpr double sure_of_one_motion = 0.8;
 /// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
 constexpr double sure_of_missed_start = 0.5;
+/// Known parameters that a refit drives far off bend to what the named effect is not.
+constexpr double sure_of_another_machine = 0.6;
 
 using Clock = std::chrono::steady_clock;
 
@@ -151,6 +154,11 @@ class Run {
                              .held_out = held_out(task_, found.calibrated)};
       related_ = false;
     }
+    steps_ = uneven_steps(task_, *searched->judgement.chosen);
+    if (steps_) {
+      result_.warnings.push_back(steps_->remark);
+      drop_supersets(searched->judgement);
+    }
     const Judgement& judgement = searched->judgement;
     find_gap();
     decide(found, judgement);
@@ -161,6 +169,15 @@ class Run {
     describe(found, judgement, kept);
     result_.edges = where(task_, found, top, unused_, result_.effects, options_.threads);
     result_.maps = maps_of(task_, found.calibrated, kept, gap_output_);
+  }
+
+  /// What a further effect closes is what the uneven steps explain.
+  static void drop_supersets(Judgement& judgement) {
+    const std::vector<std::string> chosen = judgement.chosen->names();
+    std::erase_if(judgement.rivals, [&](const Weighed& one) {
+      const std::vector<std::string> names = one.explanation->names();
+      return names.size() > chosen.size() && std::ranges::includes(names, chosen);
+    });
   }
 
   [[nodiscard]] bool named() const {
@@ -260,14 +277,16 @@ class Run {
     const bool gap_calibrated =
         materiality_.is_left(found.calibrated.fit.residuals) ||
         (has_effect && materiality_.was_taken_for_noise(found.calibrated.fit.residuals, chosen.fit.residuals));
-    const bool gap_left = materiality_.is_left(chosen.fit.residuals);
+    const VectorXd& residuals = steps_ ? steps_->residuals : chosen.fit.residuals;
+    const bool gap_left = materiality_.is_left(residuals);
 
     const Model model(task_, *base_.program);
-    const Discrepancy left = discrepancy_of(model, chosen.fit.residuals);
-    const double size = chosen.fit.residuals.norm() / std::sqrt(static_cast<double>(chosen.fit.residuals.size()));
+    const Discrepancy left = discrepancy_of(model, residuals);
+    const double size = residuals.norm() / std::sqrt(static_cast<double>(residuals.size()));
     const bool predictable = left.share_low > 0.02 && left.rms > 0.25 * std::min(size, 4.0);
     predictable_ = gap_left ? std::max(left.share, 0.0) : 0.0;
-    const double open = open_share(found, chosen);
+    const double open = open_share(found, residuals);
+    unexplained_ = rms(residuals, gap_output_) / floors_[gap_output_].value;
     result_.unknown_score = std::pow(open, 0.25) * excess_of(size);
 
     if (!related_) {
@@ -304,9 +323,9 @@ class Run {
   }
 
   /// Of the gap that calibration leaves, what the verdict leaves open.
-  [[nodiscard]] double open_share(const Search& found, const Explanation& chosen) const {
+  [[nodiscard]] double open_share(const Search& found, const VectorXd& left) const {
     const double gap = found.calibrated.fit.cost - floor_cost_;
-    return gap > 0.0 ? std::clamp((chosen.fit.cost - floor_cost_) / gap, 0.0, 1.0) : 0.0;
+    return gap > 0.0 ? std::clamp((0.5 * left.squaredNorm() - floor_cost_) / gap, 0.0, 1.0) : 0.0;
   }
 
   [[nodiscard]] Discrepancy discrepancy_of(const Model& model, const VectorXd& residuals) const {
@@ -342,18 +361,22 @@ class Run {
                             .kept = kept,
                             .floor_cost = floor_cost_,
                             .gap_output = gap_output_,
-                            .predictable = predictable_};
+                            .predictable = predictable_,
+                            .unexplained = unexplained_};
     result_.calibration = calibration_findings(findings);
     result_.nominal = nominal_findings(task_);
     if (named()) {
       result_.effects = effect_findings(findings);
       result_.rivals = rival_findings(findings);
     }
-    if (result_.verdict != Verdict::Partial && result_.verdict != Verdict::Unknown) {  // they say it already
-      std::ranges::move(far_parameters(task_, kept), std::back_inserter(result_.warnings));
-    }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
+    if (result_.verdict != Verdict::Partial && result_.verdict != Verdict::Unknown) {  // they say it already
+      for (std::string& far : far_parameters(task_, kept)) {
+        result_.warnings.push_back(std::move(far));
+        result_.confidence = std::min(result_.confidence, sure_of_another_machine);
+      }
+    }
     const std::vector<Edge> edges = edges_of_text(input_.text, base_.program->graph.name);
     add_left_out(findings, edges);
     result_.split = split_of(result_.effects, edges, ports());
@@ -452,9 +475,11 @@ class Run {
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;  ///< see Findings
-  double predictable_ = 0.0;    ///< see Findings
-  bool one_motion_ = false;     ///< see RecordCheck
-  bool related_ = true;         ///< the calibrated diagram follows the record at least a little
+  std::optional<UnevenSteps> steps_{};
+  double predictable_ = 0.0;  ///< see Findings
+  double unexplained_ = 0.0;  ///< likewise
+  bool one_motion_ = false;   ///< see RecordCheck
+  bool related_ = true;       ///< the calibrated diagram follows the record at least a little
   Diagnosis result_{};
 };
 

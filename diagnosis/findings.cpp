@@ -144,6 +144,22 @@ double seen(const GapFinding& gap) {
   return 1.0 - wrong_at_noise * std::min(1.0, noise * noise / std::max(explained, 1e-300));
 }
 
+/// Of names beside which a set without one of them came within twelve nats, one of seven was another effect's, in those
+/// sets: no formula is quite the machine's, and how well each fits is in part chance.
+double unrivalled(const Judgement& judgement) {
+  constexpr double wrong_if_near = 0.15;
+  constexpr double near = 12.0;
+  const std::vector<std::string> chosen = judgement.chosen->names();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Weighed& one : judgement.fitted) {
+    const std::vector<std::string> names = one.explanation->names();
+    if (!std::ranges::includes(names, chosen)) {
+      nearest = std::min(nearest, -one.support);
+    }
+  }
+  return 1.0 - wrong_if_near * std::min(1.0, near / std::max(nearest, near));
+}
+
 std::string unit_behind(const GapFinding& gap) {
   return gap.unit.empty() ? "" : " " + gap.unit;
 }
@@ -268,11 +284,11 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
       // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
-      const double size = so_far.gap.improved / so_far.gap.floor.value;
-      const double explained =
-          std::min(1.0, std::min(hidden_noise, suspicious_from(so_far.gap.floor)) / std::max(size, 1e-9));
-      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap), 0.0,
-                        0.99);
+      const double explained = std::min(
+          1.0, std::min(hidden_noise, suspicious_from(so_far.gap.floor)) / std::max(findings.unexplained, 1e-9));
+      return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap) *
+                            unrivalled(findings.judgement),
+                        0.0, 0.99);
     }
     case Verdict::None:
       return no_effect;

@@ -17,6 +17,7 @@ struct Findings {
   double floor_cost = 0.0;
   std::size_t gap_output = 0;  ///< the output whose gap counts, by its place among the measured ones
   double predictable = 0.0;    ///< share of what is left that depends on what the machine did; 0 where nothing is left
+  double unexplained = 0.0;    ///< what is left of that output, in floors, but for what uneven steps explain
 };
 
 [[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);

@@ -248,7 +248,8 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     } else {
       grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
-        grid.lowest = 4.0 * hints.sample_time;  // what is over sooner is a gain, an offset or a lag
+        grid.lowest = 4.0 * hints.sample_time;                  // what is over sooner is a gain, an offset or a lag
+        grid.highest = std::min(grid.highest, hints.duration);  // a record shows no settling that takes longer
       }
       if (parameter.role == Role::Period) {
         // Twice at least, or it is no period; and not in peaks alone, or it is a limit with a bend.

@@ -147,13 +147,14 @@ class Judge {
         break;
       }
       best = own_near(*simplest_near(*best));
-      const bool better = support(*best) - support(*chosen) > least_significance;
+      // Two of three effects may gain nothing without the third: each that a set has more than the one that stands so
+      // far has to gain its part.
+      const auto more = static_cast<double>(size - chosen->variant.effects.size());
+      const bool better = support(*best) - support(*chosen) > more * least_significance;
       const bool notable =
-          chosen->fit.cost - best->fit.cost > least_gain(search_.calibrated.fit.cost, floor_cost_, size);
+          chosen->fit.cost - best->fit.cost > more * least_gain(search_.calibrated.fit.cost, floor_cost_, size);
       if (better && notable && holds_on_unseen(*chosen, *best)) {
         chosen = best;
-      } else if (size > 1) {
-        break;
       }
     }
     return chosen;

@@ -214,6 +214,9 @@ TEST(Diagnosis, UnevenStepsAreAQuantiserAndNoRipple) {
   ASSERT_FALSE(found.effects.empty()) << found.summary;
   EXPECT_EQ(found.effects.front().id, "quantization");
   EXPECT_NEAR(found.effects.front().parameters.at(0).value, quantum, 2e-3 * quantum);
+  EXPECT_NE(found.verdict, Verdict::Partial) << found.summary;
+  EXPECT_LT(found.unknown_score, 0.3);
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("unequal widths")));
 }
 
 TEST(Diagnosis, AWarmUpIsNotTakenForWhatFitsAGridBetter) {

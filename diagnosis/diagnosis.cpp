@@ -159,6 +159,7 @@ class Run {
       result_.warnings.push_back(steps_->remark);
       drop_supersets(searched->judgement);
     }
+    forget_explained(left_out_, task_, *searched->judgement.chosen);
     const Judgement& judgement = searched->judgement;
     find_gap();
     decide(found, judgement);

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <utility>
 
 #include "diagnosis/glitches.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/missed_samples.hpp"
+#include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -18,6 +20,23 @@ constexpr int rounds_with_model = 2;
 
 ParameterFinding counted(std::string name, double value, std::string unit = "1") {
   return {.name = std::move(name), .value = value, .low = value, .high = value, .unit = std::move(unit)};
+}
+
+std::string unit_of(const Program& program, const std::string& output) {
+  const Port* const port = find_port(program.graph.outputs, output);
+  return port == nullptr ? std::string() : port->unit;
+}
+
+LeftOut as_left_out(Glitches glitches, std::size_t output, const Task& task, const Program& program) {
+  return {.effect = "glitches",
+          .output = output,
+          .rms = glitches.rms,
+          .remark = fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they are left "
+                                "out of the fits.",
+                                glitches.rows.size(), task.outputs[output], glitches.largest),
+          .parameters = {counted("COUNT", static_cast<double>(glitches.rows.size())),
+                         counted("LARGEST", glitches.largest, unit_of(program, task.outputs[output]))},
+          .glitches = std::move(glitches.rows)};
 }
 
 class Finder {
@@ -43,7 +62,7 @@ class Finder {
     std::vector<LeftOut> found;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
       if (!glitches_[output].rows.empty()) {
-        found.push_back(described(glitches_[output], output));
+        found.push_back(as_left_out(glitches_[output], output, task_, program_));
       }
       if (!missed_[output].rows.empty()) {
         found.push_back(described(missed_[output], output));
@@ -103,18 +122,6 @@ class Finder {
     }
   }
 
-  [[nodiscard]] LeftOut described(const Glitches& glitches, std::size_t output) const {
-    return {
-        .effect = "glitches",
-        .output = output,
-        .rms = glitches.rms,
-        .remark = fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they are left "
-                              "out of the fits.",
-                              glitches.rows.size(), task_.outputs[output], glitches.largest),
-        .parameters = {counted("COUNT", static_cast<double>(glitches.rows.size())),
-                       counted("LARGEST", glitches.largest, unit_of(output))}};
-  }
-
   [[nodiscard]] LeftOut described(const MissedSamples& missed, std::size_t output) const {
     const double share = static_cast<double>(missed.rows.size()) / static_cast<double>(rows_);
     return {
@@ -125,11 +132,6 @@ class Finder {
                               "{} in a row: they were missed, and are left out of the fits.",
                               100.0 * share, task_.outputs[output], missed.longest),
         .parameters = {counted("MISSED", share), counted("LONGEST", static_cast<double>(missed.longest))}};
-  }
-
-  [[nodiscard]] std::string unit_of(std::size_t output) const {
-    const Port* const port = find_port(program_.graph.outputs, task_.outputs[output]);
-    return port == nullptr ? std::string() : port->unit;
   }
 
   Task& task_;
@@ -144,6 +146,39 @@ class Finder {
 
 std::vector<LeftOut> leave_out(Task& task, const Program& program) {
   return Finder(task, program).run();
+}
+
+void forget_explained(std::vector<LeftOut>& found, const Task& task, const Explanation& chosen) {
+  constexpr double least = 5.0;  // deviations of what is left elsewhere
+  Task whole = task;
+  whole.left_out.clear();
+  Model model(whole, *chosen.variant.program, chosen.variant.further);
+  VectorXd residuals;
+  if (!model.residuals(chosen.fit.x, residuals)) {
+    return;
+  }
+  const Index rows = residuals.size() / std::ssize(task.outputs);
+  for (LeftOut& one : found) {
+    if (one.glitches.empty()) {
+      continue;
+    }
+    const double scale = task.scales[one.output];
+    const double elsewhere = std::max(scale, rms_of(task, chosen.fit.residuals, one.output));
+    Glitches still;
+    for (const std::size_t row : one.glitches) {
+      const double off = scale * std::abs(residuals[static_cast<Index>(one.output) * rows + static_cast<Index>(row)]);
+      if (off > least * elsewhere) {
+        still.rows.push_back(row);
+        still.rms += off * off;
+        still.largest = std::max(still.largest, off);
+      }
+    }
+    still.rms = std::sqrt(still.rms / static_cast<double>(rows));
+    if (still.rows.size() < one.glitches.size()) {
+      one = as_left_out(std::move(still), one.output, task, *chosen.variant.program);
+    }
+  }
+  std::erase_if(found, [](const LeftOut& one) { return one.effect == "glitches" && one.glitches.empty(); });
 }
 
 }  // namespace hysteron::diagnosis

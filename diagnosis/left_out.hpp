@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
-#include "diagnosis/model.hpp"
+#include "diagnosis/fitting.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -18,9 +18,13 @@ struct LeftOut {
   double rms = 0.0;                            ///< √(Σe²/N) over all N samples, in the unit of the output
   std::string remark{};                        ///< for the user
   std::vector<ParameterFinding> parameters{};  ///< how many, and how large
+  std::vector<std::size_t> glitches{};         ///< their rows in the output
 };
 
 /// Finds them, the largest ones of an output first, and takes their rows out of the task. `task.scales` are set.
 [[nodiscard]] std::vector<LeftOut> leave_out(Task& task, const Program& program);
+
+/// Glitches that an explanation gives, as the answer to a single sample of the input, are none: it never saw them.
+void forget_explained(std::vector<LeftOut>& found, const Task& task, const Explanation& chosen);
 
 }  // namespace hysteron::diagnosis

@@ -112,6 +112,27 @@ class Controls(unittest.TestCase):
         case = judged(label, {"0": boast})[0]
         self.assertAlmostEqual(case.closed_true, 1 - (9 - 1) / (25 - 1))
 
+    def test_only_wrong_verdicts_near_the_machine_are_undecidable(self) -> None:
+        chosen = {name: label for name, label in KEYS.items() if label["stratum"] == "single" and label["ratio"] >= 5.5}
+        answers = {name: truth(label) for name, label in chosen.items()}
+        wrong = list(chosen)[:3]
+        answers |= {name: named(["no_such"]) for name in wrong}
+        cases = judged(chosen, answers)
+        for case in cases:
+            case.apart = 0.5 if case.name in wrong[:2] else 2.0
+        cases[-1].apart = 0.1  # right, whatever its distance
+        one = by_key(score(cases).figures)["single_r10"]
+        self.assertEqual(one.count, len(chosen))
+        self.assertAlmostEqual(one.value, (len(chosen) - 3) / len(chosen))
+        self.assertAlmostEqual(one.decidable, (len(chosen) - 3) / (len(chosen) - 2))
+        printed = whole(score(cases), "head")
+        self.assertIn("without the 2 wrong verdicts", printed)
+
+    def test_without_distances_nothing_is_said_of_what_is_decidable(self) -> None:
+        found = score(judged(KEYS, {name: named(["creep"]) for name in KEYS}))
+        self.assertTrue(all(f.decidable != f.decidable for f in found.figures))
+        self.assertNotIn("wrong verdicts whose", whole(found, "head"))
+
 
 class Output(unittest.TestCase):
     """Text, page and floors of a score."""

@@ -29,6 +29,8 @@ class Figure:
     """Whether more is better; for the coverage `band` holds instead."""
     band: tuple[float, float] | None = None
     unit: str = "%"
+    decidable: float = math.nan
+    """The value without the cases that no record decides; not a number where their distance was not taken."""
 
     @property
     def reached(self) -> bool | None:
@@ -189,11 +191,20 @@ def misses(cases: list[Judgement]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
+def with_decidable(cases: list[Judgement]) -> list[Figure]:
+    """The figures, each beside its value without the wrong verdicts that no record could mend."""
+    found = figures(cases)
+    if not all(math.isnan(c.apart) for c in cases):
+        for one, other in zip(found, figures([c for c in cases if not c.undecidable])):
+            one.decidable = other.value
+    return found
+
+
 def score(cases: list[Judgement]) -> Score:
     """All of it."""
     strata: dict[str, Counter[str]] = {}
     for c in cases:
         strata.setdefault(c.stratum, Counter())[c.verdict] += 1
     return Score(
-        figures(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())}, misses(cases)
+        with_decidable(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())}, misses(cases)
     )

@@ -94,6 +94,11 @@ class Judgement:
             return set(self.effects) == set(self.truth)
         return self.named_first
 
+    @property
+    def undecidable(self) -> bool:
+        """Not right, with a model that differs from the machine by less than the noise: to the record the two are the same."""
+        return not self.right and self.apart < 1.0
+
 
 def plain(name: str) -> str:
     """An edge's name without differences that mean nothing."""

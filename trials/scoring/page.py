@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from trials.scoring.figures import Score  # noqa: E402
-from trials.scoring.text import amount, goal, mark  # noqa: E402
+from trials.scoring.text import amount, decidable, goal, mark  # noqa: E402
 
 INK, GOOD, BAD = "#1f3a5f", "#2f855a", "#c05621"
 STYLE = """
@@ -89,7 +89,7 @@ def page(score: Score, head: str) -> str:
         word = mark(f)
         lines.append(
             f"<tr><td>{html.escape(f.title)}</td><td>{amount(f.value, f.unit)}</td><td>{amount(f.low, f.unit)} … {amount(f.high, f.unit)}</td>"
-            f'<td>{f.count}</td><td>{goal(f)}</td><td class="{word}">{word}</td></tr>'
+            f'<td>{f.count}</td><td>{goal(f)}</td><td class="{word}">{word}</td><td>{decidable(f)}</td></tr>'
         )
     worst = "".join(
         f"<tr><td>{m['case']}</td><td>{m['stratum']}</td><td>{m['plant']}</td><td>{m['ratio']}</td><td>{html.escape(', '.join(m['truth']))}</td>"
@@ -101,7 +101,8 @@ def page(score: Score, head: str) -> str:
 <h1>Blind trial of the diagnosis</h1>
 <pre>{html.escape(head)}</pre>
 <h2>Figures to reach</h2>
-<table><tr><th>figure</th><th>value</th><th>95 % interval</th><th>cases</th><th>goal</th><th></th></tr>{"".join(lines)}</table>
+<table><tr><th>figure</th><th>value</th><th>95 % interval</th><th>cases</th><th>goal</th><th></th><th>decidable</th></tr>{"".join(lines)}</table>
+<p>Decidable: without the wrong verdicts whose model is nearer to the machine than the noise; to any record the two are the same.</p>
 {intervals(score)}
 <h2>What is taken for what</h2>{confusion(score)}
 <h2>Stated confidence</h2>{reliability(score)}

@@ -30,12 +30,21 @@ def mark(figure: Figure) -> str:
     return {True: "reached", False: "missed", None: ""}[figure.reached]
 
 
+def decidable(figure: Figure) -> str:
+    """The value among the cases that a record decides, where it differs."""
+    same = math.isnan(figure.decidable) or figure.decidable == figure.value
+    return "" if same else amount(figure.decidable, figure.unit)
+
+
 def table(score: Score) -> str:
     """The figures in columns."""
-    lines = [f"{'figure':52s}{'value':>9s}   {'95 % interval':17s}{'cases':>6s}   {'goal':10s}", "-" * 108]
+    lines = [f"{'figure':52s}{'value':>9s}   {'95 % interval':17s}{'cases':>6s}   {'goal':10s} {'':9s}decidable", "-" * 116]
     for f in score.figures:
         interval = f"{amount(f.low, f.unit)} … {amount(f.high, f.unit)}"
-        lines.append(f"{f.title:52s}{amount(f.value, f.unit):>9s}   {interval:17s}{f.count:6d}   {goal(f):10s} {mark(f)}".rstrip())
+        lines.append(f"{f.title:52s}{amount(f.value, f.unit):>9s}   {interval:17s}{f.count:6d}   {goal(f):10s} {mark(f):7s}{decidable(f):>11s}".rstrip())
+    left = sum(m["apart"] < 1.0 for m in score.misses)
+    if any(not math.isnan(f.decidable) for f in score.figures):
+        lines.append(f"decidable: without the {left} wrong verdicts whose model is nearer to the machine than the noise, the same to any record")
     return "\n".join(lines)
 
 

@@ -64,10 +64,25 @@ struct Run {
   double size = 0.0;
 };
 
-std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<double>& differences, double step) {
+/// The step on which `measured` lies, without the samples that are far off: a few of these widen the range so much that
+/// all others lie on one step.
+double step_of(const std::vector<double>& measured, const std::vector<double>& differences, double bound) {
+  std::vector<double> usual;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (std::abs(differences[k]) <= bound) {
+      usual.push_back(measured[k]);
+    }
+  }
+  return common_step(usual);
+}
+
+/// In `values`, the measured ones or what a model leaves of them, with their differences from their neighbours.
+std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<double>& differences,
+                         const std::vector<double>& measured) {
   std::vector<Run> result;
+  const double by_noise = far * spread(differences);
   // A sensor that rounds flickers by a step, which is no glitch, however rarely.
-  const double bound = std::max(far * spread(differences), 1.5 * step);
+  const double bound = std::max(by_noise, 1.5 * step_of(measured, differences, by_noise));
   const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
   for (std::size_t k = reach; k + reach < values.size(); ++k) {
     if (!is_far(k)) {
@@ -134,7 +149,7 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     const std::vector<double> differences = off_neighbours(values);
-    sum.add(runs_of(values, differences, common_step(values)), differences);
+    sum.add(runs_of(values, differences, values), differences);
   }
   return std::move(sum).result();
 }
@@ -149,7 +164,7 @@ Glitches with_model(const Glitches& found, const std::vector<Experiment>& experi
     std::vector<double> left(values.size());
     std::ranges::transform(values, model, left.begin(), std::minus<>());
     const std::vector<double> differences = off_neighbours(left);
-    std::vector<Run> runs = runs_of(left, differences, common_step(values));
+    std::vector<Run> runs = runs_of(left, differences, values);
     std::erase_if(runs, [&](const Run& run) { return repeats(values, run); });  // a sample was missed
     const auto known = [&](const Run& run) {
       return std::ranges::binary_search(found.rows, offset + run.first) ||

@@ -38,6 +38,15 @@ TEST(Glitches, AreFoundWithTheirSize) {
   EXPECT_NEAR(found.rms, std::sqrt((25.0 + 64.0) / 2000.0), 0.02);
 }
 
+TEST(Glitches, LargeOnesHideNoSmallerOnes) {
+  auto values = test::Noise(1).white(2000, 0.05);
+  for (std::size_t k = 100; k < values.size(); k += 200) {
+    values[k] += 120.0;
+  }
+  values[555] += 40.0;
+  EXPECT_EQ(find_glitches(with(values), 0).rows.size(), 11U);
+}
+
 TEST(Glitches, ThatDieAwayWithinThreeSamplesAreTakenWhole) {
   auto values = smooth(4);
   for (std::size_t k = 0; k < 3; ++k) {

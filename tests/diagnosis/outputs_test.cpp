@@ -63,6 +63,32 @@ TEST(GlitchShare, IsTheWholeGapWhereNothingElseIs) {
   EXPECT_EQ(found.rivals.at(0).improved_rms, found.gap.improved);
 }
 
+TEST(GlitchShare, ASingleSampleOfTheInputIsNone) {
+  constexpr std::string_view plant =
+      "FUNCTION_BLOCK P (* @ts 5ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR G : HY_GAIN := (K "
+      ":= 2.0); {} END_VAR G(XIN := U); {} END_FUNCTION_BLOCK";
+  std::vector<double> pulsed = test::rich_voltage();
+  for (std::size_t k = 100; k < pulsed.size(); k += 170) {
+    pulsed[k] += 60.0;
+  }
+  const std::string machine =
+      fmt::format(fmt::runtime(plant), "D : HY_DRIFT := (RATE := 0.4);", "D(XIN := G.XOUT); Y := D.XOUT;");
+  const std::string model = fmt::format(fmt::runtime(plant), "", "Y := G.XOUT;");
+  records::Record record = test::measured(test::program_of(machine), test::record_of("U", pulsed), 0.05);
+  const auto diagnosed = [&] {
+    return diagnose(test::input_of(model, "[fit.G]\nK = {}\n", {record}), {.effects = {"drift", "glitches"}});
+  };
+  const Diagnosis answered = diagnosed();
+  ASSERT_EQ(answered.effects.size(), 1U) << answered.summary;
+  EXPECT_EQ(answered.effects[0].id, "drift");
+  EXPECT_THAT(answered.warnings, Not(Contains(HasSubstr("single samples"))));
+
+  add_glitches(record, 40.0);
+  const Diagnosis both = diagnosed();
+  ASSERT_EQ(both.effects.size(), 2U) << both.summary;
+  EXPECT_THAT(both.warnings, Contains(HasSubstr("6 single samples of Y")));
+}
+
 TEST(ImprovedRms, IsThatOfTheDiagramThatIsLeft) {
   const Diagnosis found = diagnose(test::input_of(test::stack(), test::stack_parameters, {drifting_stack(0.08)}),
                                    {.material = 2.0, .effects = {"drift", "offset"}});

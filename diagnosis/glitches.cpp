@@ -76,15 +76,15 @@ double step_of(const std::vector<double>& measured, const std::vector<double>& d
   return common_step(usual);
 }
 
-/// In `values`, the measured ones or what a model leaves of them, with their differences from their neighbours.
-std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<double>& differences,
+/// In `signal`, the measured one or what a model leaves of it, with the differences from its neighbours.
+std::vector<Run> runs_of(const std::vector<double>& signal, const std::vector<double>& differences,
                          const std::vector<double>& measured) {
   std::vector<Run> result;
   const double by_noise = far * spread(differences);
   // A sensor that rounds flickers by a step, which is no glitch, however rarely.
   const double bound = std::max(by_noise, 1.5 * step_of(measured, differences, by_noise));
   const auto is_far = [&](std::size_t k) { return bound > 0.0 && std::abs(differences[k]) > bound; };
-  for (std::size_t k = reach; k + reach < values.size(); ++k) {
+  for (std::size_t k = reach; k + reach < signal.size(); ++k) {
     if (!is_far(k)) {
       continue;
     }
@@ -93,7 +93,7 @@ std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<do
       run.last = k + 1;
       run.size = std::max(run.size, std::abs(differences[k + 1]));
     }
-    if (run.last + 1 - run.first <= longest && stands_alone(values, run.first, run.last, run.size)) {
+    if (run.last + 1 - run.first <= longest && stands_alone(signal, run.first, run.last, run.size)) {
       result.push_back(run);
     }
   }
@@ -161,10 +161,10 @@ Glitches with_model(const Glitches& found, const std::vector<Experiment>& experi
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     const std::span<const double> model = modelled.subspan(offset, values.size());
-    std::vector<double> left(values.size());
-    std::ranges::transform(values, model, left.begin(), std::minus<>());
-    const std::vector<double> differences = off_neighbours(left);
-    std::vector<Run> runs = runs_of(left, differences, values);
+    std::vector<double> unexplained(values.size());
+    std::ranges::transform(values, model, unexplained.begin(), std::minus<>());
+    const std::vector<double> differences = off_neighbours(unexplained);
+    std::vector<Run> runs = runs_of(unexplained, differences, values);
     std::erase_if(runs, [&](const Run& run) { return repeats(values, run); });  // a sample was missed
     const auto known = [&](const Run& run) {
       return std::ranges::binary_search(found.rows, offset + run.first) ||

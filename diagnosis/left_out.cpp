@@ -90,8 +90,7 @@ class Finder {
       add_rows(missed_[output].rows, output);
     }
     std::ranges::sort(task_.left_out);
-    const auto twice = std::ranges::unique(task_.left_out);
-    task_.left_out.erase(twice.begin(), twice.end());
+    task_.left_out.erase(std::unique(task_.left_out.begin(), task_.left_out.end()), task_.left_out.end());
   }
 
   /// An output as the model gives it, of all records one after the other; as measured where it gives none.

@@ -154,10 +154,9 @@ class Run {
                              .held_out = held_out(task_, found.calibrated)};
       related_ = false;
     }
-    steps_ = uneven_steps(task_, *searched->judgement.chosen);
+    steps_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (steps_) {
       result_.warnings.push_back(steps_->remark);
-      drop_supersets(searched->judgement);
     }
     forget_explained(left_out_, task_, *searched->judgement.chosen);
     const Judgement& judgement = searched->judgement;
@@ -170,15 +169,6 @@ class Run {
     describe(found, judgement, kept);
     result_.edges = where(task_, found, top, unused_, result_.effects, options_.threads);
     result_.maps = maps_of(task_, found.calibrated, kept, gap_output_);
-  }
-
-  /// What a further effect closes is what the uneven steps explain.
-  static void drop_supersets(Judgement& judgement) {
-    const std::vector<std::string> chosen = judgement.chosen->names();
-    std::erase_if(judgement.rivals, [&](const Weighed& one) {
-      const std::vector<std::string> names = one.explanation->names();
-      return names.size() > chosen.size() && std::ranges::includes(names, chosen);
-    });
   }
 
   [[nodiscard]] bool named() const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "diagnosis/held_out.hpp"
 #include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
@@ -156,6 +157,42 @@ std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& cho
     result.residuals = std::move(residuals);
   }
   return result.remark.empty() ? std::nullopt : std::optional(std::move(result));
+}
+
+std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
+                                             Judgement& judgement) {
+  std::optional<UnevenSteps> steps = uneven_steps(task, *judgement.chosen);
+  if (!steps) {
+    return steps;
+  }
+  const std::vector<std::string> whole = judgement.chosen->names();
+  const double unnamed = least_gain(search.calibrated.fit.cost, floor_cost, whole.size());
+  const double whole_cost = 0.5 * steps->residuals.squaredNorm();
+  const Explanation* smaller = nullptr;
+  for (const Explanation& one : search.explanations) {
+    const std::vector<std::string> names = one.names();
+    const bool better = smaller == nullptr || names.size() < smaller->names().size();
+    if (!better || names.size() >= whole.size() || !std::ranges::includes(whole, names)) {
+      continue;
+    }
+    std::optional<UnevenSteps> own = uneven_steps(task, one);
+    if (own && 0.5 * own->residuals.squaredNorm() - whole_cost < unnamed) {
+      smaller = &one;
+      steps = std::move(own);
+    }
+  }
+  if (smaller != nullptr) {
+    judgement.chosen = smaller;
+    judgement.held_out = held_out(task, *smaller);
+    judgement.same.clear();
+    judgement.rivals = {{.explanation = smaller, .support = 0.0}};
+  }
+  std::erase_if(judgement.rivals, [&](const Weighed& one) {
+    const std::vector<std::string> chosen = judgement.chosen->names();
+    const std::vector<std::string> names = one.explanation->names();
+    return names.size() > chosen.size() && std::ranges::includes(names, chosen);
+  });
+  return steps;
 }
 
 }  // namespace hysteron::diagnosis

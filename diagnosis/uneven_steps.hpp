@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/fitting.hpp"
+#include "diagnosis/verdict.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -31,5 +32,10 @@ struct UnevenSteps {
 
 /// Nothing where the explanation has no quantizer, or its steps are even as far as the record tells.
 [[nodiscard]] std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& chosen);
+
+/// Those of the chosen set. Of what they explain an effect beside the quantizer may have had its part: a smaller set
+/// that with its steps leaves nearly as little is then the chosen one, and sets that hold it are no rivals.
+[[nodiscard]] std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
+                                                           Judgement& judgement);
 
 }  // namespace hysteron::diagnosis

@@ -10,7 +10,7 @@
 #include "diagnosis/glitches.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/missed_samples.hpp"
-#include "diagnosis/task.hpp"
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -162,7 +162,10 @@ void forget_explained(std::vector<LeftOut>& found, const Task& task, const Expla
       continue;
     }
     const double scale = task.scales[one.output];
-    const double elsewhere = std::max(scale, rms_of(task, chosen.fit.residuals, one.output));
+    const VectorXd own = chosen.fit.residuals.segment(static_cast<Index>(one.output) * rows, rows).cwiseAbs();
+    // By the median: glitches that were not found at first are among them.
+    const double elsewhere =
+        scale * std::max(1.0, deviation_of_median * median(std::vector<double>(own.begin(), own.end())));
     Glitches still;
     for (const std::size_t row : one.glitches) {
       const double off = scale * std::abs(residuals[static_cast<Index>(one.output) * rows + static_cast<Index>(row)]);

@@ -148,6 +148,9 @@ std::vector<LeftOut> leave_out(Task& task, const Program& program) {
 }
 
 void forget_explained(std::vector<LeftOut>& found, const Task& task, const Explanation& chosen) {
+  if (std::ranges::all_of(found, [](const LeftOut& one) { return one.glitches.empty(); })) {
+    return;  // a run over the records is saved
+  }
   constexpr double least = 5.0;  // deviations of what is left elsewhere
   Task whole = task;
   whole.left_out.clear();

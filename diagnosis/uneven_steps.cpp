@@ -187,8 +187,8 @@ std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& sea
     judgement.same.clear();
     judgement.rivals = {{.explanation = smaller, .support = 0.0}};
   }
+  const std::vector<std::string> chosen = judgement.chosen->names();
   std::erase_if(judgement.rivals, [&](const Weighed& one) {
-    const std::vector<std::string> chosen = judgement.chosen->names();
     const std::vector<std::string> names = one.explanation->names();
     return names.size() > chosen.size() && std::ranges::includes(names, chosen);
   });

@@ -96,14 +96,12 @@ def play(x: np.ndarray, radius: float, turns: np.ndarray | None = None) -> np.nd
 
 
 def smooth_backlash(x: np.ndarray, radius: float, turns: np.ndarray | None = None) -> np.ndarray:
-    """Gap that closes smoothly: dy/dx = 1 - exp(-travel since the turn / radius), a Duhem model (B. D. Coleman,
-    M. L. Hodgdon, Int. J. Eng. Sci. 24 (1986) 897)."""
+    """Gap that closes smoothly: y' = a|x'|(x - y) + x'/2, a Duhem model (B. D. Coleman, M. L. Hodgdon, Int. J. Eng.
+    Sci. 24 (1986) 897) with a = 1/(2 radius): y comes to lie `radius` behind x, and stands still just after a turn."""
     turns = turning_points(x) if turns is None else turns
-    out = np.empty_like(x)
-    y = float(x[0])
+    behind = np.zeros_like(x)
     for first, last in zip(turns[:-1], turns[1:]):
         travel = x[first : last + 1] - x[first]
-        p = np.abs(travel)
-        out[first : last + 1] = y + np.sign(travel) * (p - radius * (1.0 - np.exp(-p / radius)))
-        y = float(out[last])
-    return out
+        full = radius * float(np.sign(travel[-1]))
+        behind[first : last + 1] = full + (behind[first] - full) * np.exp(-0.5 * np.abs(travel) / radius)
+    return x - behind

@@ -113,12 +113,28 @@ struct Creep {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const S crept = since_start(params.SINCE_START, state, sum<S>(params, in, rates(params, state, in, ts)));
-    return {.XOUT = with_term<S>(in.XIN, params.GAIN * crept)};
+    return crept<S>(params, state, in, rates(params, state, in, ts));
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
+    move_on<S>(params, state, in, rates(params, state, in, ts));
+  }
+  template <class S>
+  static Out<S> step(const Params<S>& params, State<S>& state, const In<S>& in, const S& ts) {
     const std::array<S, lags> now = rates(params, state, in, ts);
+    const Out<S> out = crept<S>(params, state, in, now);
+    move_on<S>(params, state, in, now);
+    return out;
+  }
+
+ private:
+  template <class S>
+  static Out<S> crept(const Params<S>& params, const State<S>& state, const In<S>& in, const std::array<S, lags>& now) {
+    const S whole = since_start(params.SINCE_START, state, sum<S>(params, in, now));
+    return {.XOUT = with_term<S>(in.XIN, params.GAIN * whole)};
+  }
+  template <class S>
+  static void move_on(const Params<S>& params, State<S>& state, const In<S>& in, const std::array<S, lags>& now) {
     state.FIRST = select(state.STARTED, state.FIRST, sum<S>(params, in, now));
     for (std::size_t i = 0; i < lags; ++i) {
       store(state.RATES, Int<S>(static_cast<std::int32_t>(i)), now[i]);

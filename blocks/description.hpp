@@ -202,4 +202,12 @@ concept FunctionBlock = requires(const typename B::template Params<double>& para
 template <class B>
 concept HasMemory = !std::is_empty_v<typename B::template State<double>>;
 
+/// A block may say output and update in one, where both start from the same costly values.
+template <class B>
+concept StepsAtOnce = requires(const typename B::template Params<double>& params,
+                               typename B::template State<double>& state, const typename B::template In<double>& in,
+                               const double& ts) {
+  B::template step<double>(params, state, in, ts);
+};
+
 }  // namespace hysteron

@@ -129,7 +129,7 @@ Fit fit(Model& model, const VectorXd& start, const FitOptions& options) {
         damping *= 8.0;
       }
     }
-    if (!model.residuals(best.x, best.residuals, &best.jacobian)) {
+    if (descended && !model.residuals(best.x, best.residuals, &best.jacobian)) {
       best.cost = infinity;
       return best;
     }

@@ -101,9 +101,13 @@ struct Code {
     const auto params = gather<Params>(at.pins + inputs);
     const auto in = gather<In>(at.pins);
     auto& out = *static_cast<Out*>(at.out);
-    out = B::output(params, state(at), in, *at.ts);
-    if constexpr (HasMemory<B>) {
-      B::update(params, *static_cast<State*>(at.state), in, out, *at.ts);
+    if constexpr (StepsAtOnce<B>) {
+      out = B::template step<S>(params, *static_cast<State*>(at.state), in, *at.ts);
+    } else {
+      out = B::output(params, state(at), in, *at.ts);
+      if constexpr (HasMemory<B>) {
+        B::update(params, *static_cast<State*>(at.state), in, out, *at.ts);
+      }
     }
   }
 

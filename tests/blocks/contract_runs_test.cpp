@@ -59,6 +59,25 @@ TEST(Contract, OutputLeavesTheStateAlone) {
   });
 }
 
+TEST(Contract, AStepAtOnceIsOutputAndUpdate) {
+  int count = 0;
+  for_each_run([&]<class B>(std::uint64_t seed, double ts) {
+    if constexpr (StepsAtOnce<B>) {
+      ++count;
+      RandomIo random(seed, ts);
+      Stepper<B> block(ts, random.make<DoubleParams<B>>());
+      auto state = block.state;
+      for (int k = 0; k < steps; ++k) {
+        const auto in = random.make<DoubleIn<B>>();
+        const auto out = B::template step<double>(block.params, state, in, ts);
+        ASSERT_EQ(bits(block(in)), bits(out)) << "step " << k;
+      }
+      EXPECT_EQ(bits(state), bits(block.state));
+    }
+  });
+  EXPECT_GT(count, 0);
+}
+
 TEST(Contract, AStepAllocatesNothing) {
   for_each_block([]<class B> {
     RandomIo random(1, 1e-3);

@@ -104,9 +104,8 @@ class Run {
     one_motion_ = checked.one_motion;
     if (!checked.left_out.empty()) {
       task_.left_out.insert(task_.left_out.end(), checked.left_out.begin(), checked.left_out.end());
-      Model spared(task_, *base_.program);
-      (void)spared.residuals(spared.start(), nominal_);
     }
+    spare_left_out();
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
         result_.warnings.push_back(fmt::format(
@@ -114,6 +113,12 @@ class Run {
             "count as a gap.",
             task_.outputs[output]));
       }
+    }
+  }
+
+  void spare_left_out() {
+    for (const Index row : task_.left_out) {
+      nominal_[row] = 0.0;
     }
     floor_cost_ = 0.5 * static_cast<double>(nominal_.size() - std::ssize(task_.left_out));
   }
@@ -132,12 +137,19 @@ class Run {
     const std::string top = base_.program->graph.name;
     auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
     result_.tried = searched->search.tried;
-    search_from_another_start(searched, [&] {
+    const auto again = [&] {
       // Half of the time once more: the search has its best sets to find again.
       begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
                                                  std::chrono::duration<double>(0.5 * options_.budget)));
-      return search(task_, base_, top, floor_cost_, searching);
-    });
+      auto next = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
+      result_.tried += next->search.tried;
+      return next;
+    };
+    search_from_another_start(searched, again);
+    if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {
+      spare_left_out();
+      searched = again();
+    }
     const Search& found = searched->search;
     if (cut) {
       result_.warnings.push_back(fmt::format(
@@ -193,8 +205,7 @@ class Run {
                         first.weighing_samples, searched->search.tried);
     };
     std::swap(task_, *free);
-    auto second = std::make_unique<Searched>(task_, again(), floor_cost_);
-    result_.tried += second->search.tried;
+    std::unique_ptr<Searched> second = again();
     if (support(*second->judgement.chosen, more) > support(*first.chosen, 0)) {
       result_.warnings.push_back(words_of_start(task_, *second->judgement.chosen));
       searched = std::move(second);

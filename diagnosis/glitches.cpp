@@ -12,13 +12,16 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr std::size_t reach = 3;    // samples to either side
-constexpr std::size_t longest = 3;  // samples in a row: the median of seven sees past them
-constexpr double far = 6.0;         // standard deviations
-constexpr double rare = 0.03;       // of all samples: more of them are no glitches but a signal
+constexpr std::size_t reach = 3;  // samples to either side
+constexpr double far = 6.0;       // standard deviations
+constexpr double rare = 0.03;     // of all samples: more of them are no glitches but a signal
 /// Beside a model: what a model late by a sample or three leaves at a leap of its signal is no larger than the leap.
 constexpr double beyond_travel = 1.2;
 constexpr std::size_t clear = 3;  // so many beyond it, and smaller ones are glitches as well
+/// What a glitch leaves behind it, in a sensor that has taken a disturbance up: each sample a part of the one before.
+constexpr double dying = 0.75;
+constexpr double over = 3.0;  // standard deviations
+constexpr std::size_t longest_tail = 12;
 
 double median_about(const std::vector<double>& values, std::size_t k) {
   std::array<double, 2 * reach + 1> window{};
@@ -62,6 +65,7 @@ struct Run {
   std::size_t first = 0;
   std::size_t last = 0;
   double size = 0.0;
+  std::size_t tail = 0;  ///< samples behind the last
 };
 
 /// The step on which `measured` lies, without the samples that are far off: a few of these widen the range so much that
@@ -76,9 +80,18 @@ double step_of(const std::vector<double>& measured, const std::vector<double>& d
   return common_step(usual);
 }
 
+/// How many far samples make a run, and how many others may lie between two of them.
+struct Shape {
+  std::size_t longest = 0;
+  std::size_t gap = 0;
+};
+constexpr Shape single{.longest = 3};  // the median of seven sees past them
+/// Of a sensor that is known to have glitches: one may come upon the next, or on its tail.
+constexpr Shape cluster{.longest = 12, .gap = reach};
+
 /// In `signal`, the measured one or what a model leaves of it, with the differences from its neighbours.
 std::vector<Run> runs_of(const std::vector<double>& signal, const std::vector<double>& differences,
-                         const std::vector<double>& measured) {
+                         const std::vector<double>& measured, const Shape& shape) {
   std::vector<Run> result;
   const double by_noise = far * spread(differences);
   // A sensor that rounds flickers by a step, which is no glitch, however rarely.
@@ -89,15 +102,36 @@ std::vector<Run> runs_of(const std::vector<double>& signal, const std::vector<do
       continue;
     }
     Run run{.first = k, .last = k, .size = std::abs(differences[k])};
-    for (; is_far(k + 1); ++k) {
-      run.last = k + 1;
-      run.size = std::max(run.size, std::abs(differences[k + 1]));
+    for (std::size_t next = k + 1; next <= run.last + 1 + shape.gap && next + reach < signal.size(); ++next) {
+      if (is_far(next)) {
+        run.last = next;
+        run.size = std::max(run.size, std::abs(differences[next]));
+      }
     }
-    if (run.last + 1 - run.first <= longest && stands_alone(signal, run.first, run.last, run.size)) {
+    k = run.last;
+    if (run.last + 1 - run.first <= shape.longest && stands_alone(signal, run.first, run.last, run.size)) {
       result.push_back(run);
     }
   }
   return result;
+}
+
+/// Takes the tail of each run into it, as far as it stands out of the noise.
+void add_tails(std::vector<Run>& runs, const std::vector<double>& signal, double deviation) {
+  for (Run& run : runs) {
+    const std::size_t before = std::min(run.first, 2 * reach + 1);
+    const auto first = signal.begin() + static_cast<std::ptrdiff_t>(run.first);
+    const double level = median({first - static_cast<std::ptrdiff_t>(before), first});
+    double last = signal[run.last] - level;
+    for (std::size_t k = run.last + 1; k < std::min(signal.size(), run.last + 1 + longest_tail); ++k) {
+      const double here = signal[k] - level;
+      if (here * last < 0.0 || std::abs(here) > dying * std::abs(last) || std::abs(here) < over * deviation) {
+        break;
+      }
+      run.tail = k - run.last;
+      last = here;
+    }
+  }
 }
 
 /// Of several records, one after the other.
@@ -105,17 +139,18 @@ class Sum {
  public:
   void add(const std::vector<Run>& runs, const std::vector<double>& differences) {
     for (const Run& run : runs) {
-      for (std::size_t row = run.first; row <= run.last; ++row) {
+      for (std::size_t row = run.first; row <= run.last + run.tail; ++row) {
         result_.rows.push_back(offset_ + row);
         squares_ += differences[row] * differences[row];
       }
+      struck_ += std::min(run.last + 1 - run.first, single.longest);
       result_.largest = std::max(result_.largest, run.size);
     }
     offset_ += differences.size();
   }
 
   [[nodiscard]] Glitches result() && {
-    if (static_cast<double>(result_.rows.size()) > rare * static_cast<double>(offset_)) {
+    if (static_cast<double>(struck_) > rare * static_cast<double>(offset_)) {
       return {};
     }
     result_.rms = offset_ > 0 ? std::sqrt(squares_ / static_cast<double>(offset_)) : 0.0;
@@ -124,6 +159,7 @@ class Sum {
 
  private:
   Glitches result_{};
+  std::size_t struck_ = 0;  ///< samples, without tails
   std::size_t offset_ = 0;
   double squares_ = 0.0;
 };
@@ -149,7 +185,7 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     const std::vector<double> differences = off_neighbours(values);
-    sum.add(runs_of(values, differences, values), differences);
+    sum.add(runs_of(values, differences, values, single), differences);
   }
   return std::move(sum).result();
 }
@@ -164,15 +200,22 @@ Glitches with_model(const Glitches& found, const std::vector<Experiment>& experi
     std::vector<double> unexplained(values.size());
     std::ranges::transform(values, model, unexplained.begin(), std::minus<>());
     const std::vector<double> differences = off_neighbours(unexplained);
-    std::vector<Run> runs = runs_of(unexplained, differences, values);
-    std::erase_if(runs, [&](const Run& run) { return repeats(values, run); });  // a sample was missed
+    const auto runs_of_shape = [&](const Shape& shape) {
+      std::vector<Run> seen = runs_of(unexplained, differences, values, shape);
+      std::erase_if(seen, [&](const Run& run) { return repeats(values, run); });  // a sample was missed
+      return seen;
+    };
+    std::vector<Run> runs = runs_of_shape(single);
     const auto known = [&](const Run& run) {
       return std::ranges::binary_search(found.rows, offset + run.first) ||
              run.size > beyond_travel * travel(model, run);
     };
     if (static_cast<std::size_t>(std::ranges::count_if(runs, known)) < clear) {
       std::erase_if(runs, std::not_fn(known));
+    } else {
+      runs = runs_of_shape(cluster);
     }
+    add_tails(runs, unexplained, spread(differences));
     sum.add(runs, differences);
     offset += values.size();
   }

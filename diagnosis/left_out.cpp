@@ -39,6 +39,38 @@ LeftOut as_left_out(Glitches glitches, std::size_t output, const Task& task, con
           .glitches = std::move(glitches.rows)};
 }
 
+/// An output as a model gives it, of all records one after the other; as measured where it gives none.
+std::vector<double> modelled(const Task& task, Model& model, const VectorXd& x, std::size_t output) {
+  std::vector<double> values;
+  for (const Experiment& experiment : model.problem().experiments) {
+    std::ranges::copy(experiment.measured[output], std::back_inserter(values));
+  }
+  VectorXd residuals;
+  if (model.residuals(x, residuals)) {
+    const VectorXd own = residuals.segment(static_cast<Index>(output) * std::ssize(values), std::ssize(values));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] += own[static_cast<Index>(k)] * task.scales[output];
+    }
+  }
+  return values;
+}
+
+/// Of an output whose first row is `first`; each row once, in order.
+void add_rows(std::vector<Index>& left_out, const std::vector<std::size_t>& rows, Index first) {
+  for (const std::size_t row : rows) {
+    left_out.push_back(first + static_cast<Index>(row));
+  }
+  std::ranges::sort(left_out);
+  left_out.erase(std::unique(left_out.begin(), left_out.end()), left_out.end());
+}
+
+/// Of an explanation, with what was left out of its fit.
+Model model_of_all_rows(const Task& task, const Explanation& one) {
+  Task whole = task;
+  whole.left_out.clear();
+  return {whole, *one.variant.program, one.variant.further};
+}
+
 class Finder {
  public:
   Finder(Task& task, const Program& program)
@@ -50,10 +82,14 @@ class Finder {
       missed_.push_back(find_missed_samples(experiments(), output));
     }
     take_out();
-    bool more = std::ranges::any_of(missed_, [](const MissedSamples& one) { return !one.rows.empty(); });
+    bool more = false;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const Glitches seen = with_model(glitches_[output], experiments(), output, modelled(model_.start(), output));
-      more = more || seen.rows.size() > glitches_[output].rows.size();
+      const std::vector<double> model = modelled(task_, model_, model_.start(), output);
+      if (missed_[output].rows.empty()) {
+        missed_[output] = find_missed_samples(experiments(), output, model, task_.scales[output]);
+      }
+      const Glitches seen = with_model(glitches_[output], experiments(), output, model);
+      more = more || !missed_[output].rows.empty() || seen.rows.size() > glitches_[output].rows.size();
     }
     for (int round = 0; more && round < rounds_with_model; ++round) {
       look_beside_model();
@@ -77,43 +113,20 @@ class Finder {
  private:
   [[nodiscard]] const std::vector<Experiment>& experiments() const { return model_.problem().experiments; }
 
-  void add_rows(const std::vector<std::size_t>& rows, std::size_t output) {
-    for (const std::size_t row : rows) {
-      task_.left_out.push_back(static_cast<Index>(output) * rows_ + static_cast<Index>(row));
-    }
-  }
-
   void take_out() {
     task_.left_out.clear();
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      add_rows(glitches_[output].rows, output);
-      add_rows(missed_[output].rows, output);
+      const Index first = static_cast<Index>(output) * rows_;
+      add_rows(task_.left_out, glitches_[output].rows, first);
+      add_rows(task_.left_out, missed_[output].rows, first);
     }
-    std::ranges::sort(task_.left_out);
-    task_.left_out.erase(std::unique(task_.left_out.begin(), task_.left_out.end()), task_.left_out.end());
-  }
-
-  /// An output as the model gives it, of all records one after the other; as measured where it gives none.
-  std::vector<double> modelled(const VectorXd& x, std::size_t output) {
-    std::vector<double> values;
-    for (const Experiment& experiment : experiments()) {
-      std::ranges::copy(experiment.measured[output], std::back_inserter(values));
-    }
-    VectorXd residuals;
-    if (model_.residuals(x, residuals)) {
-      const VectorXd own = residuals.segment(static_cast<Index>(output) * rows_, rows_);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        values[k] += own[static_cast<Index>(k)] * task_.scales[output];
-      }
-    }
-    return values;
   }
 
   void look_beside_model() {
     Model without(task_, program_);
     const VectorXd calibrated = fit(without, without.start()).x;
     for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const std::vector<double> model = modelled(calibrated, output);
+      const std::vector<double> model = modelled(task_, model_, calibrated, output);
       glitches_[output] = with_model(glitches_[output], experiments(), output, model);
       if (!missed_[output].rows.empty()) {
         missed_[output] = with_model(missed_[output], experiments(), output, model);
@@ -147,14 +160,38 @@ std::vector<LeftOut> leave_out(Task& task, const Program& program) {
   return Finder(task, program).run();
 }
 
+bool leave_out_beside(std::vector<LeftOut>& found, Task& task, const Explanation& chosen,
+                      const std::vector<NoiseFloor>& floors) {
+  Model model = model_of_all_rows(task, chosen);
+  const Index rows = model.rows() / std::ssize(task.outputs);
+  bool more = false;
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    const auto known = std::ranges::find_if(
+        found, [&](const LeftOut& one) { return one.output == output && one.effect == "glitches"; });
+    const Glitches before{.rows = known == found.end() ? std::vector<std::size_t>{} : known->glitches};
+    Glitches beside =
+        with_model(before, model.problem().experiments, output, modelled(task, model, chosen.fit.x, output));
+    if (beside.rows.size() == before.rows.size() || beside.rms < least_excess(floors[output])) {
+      continue;
+    }
+    more = true;
+    add_rows(task.left_out, beside.rows, static_cast<Index>(output) * rows);
+    LeftOut one = as_left_out(std::move(beside), output, task, *chosen.variant.program);
+    if (known == found.end()) {
+      found.push_back(std::move(one));
+    } else {
+      *known = std::move(one);
+    }
+  }
+  return more;
+}
+
 void forget_explained(std::vector<LeftOut>& found, const Task& task, const Explanation& chosen) {
   if (std::ranges::all_of(found, [](const LeftOut& one) { return one.glitches.empty(); })) {
     return;  // a run over the records is saved
   }
   constexpr double least = 5.0;  // deviations of what is left elsewhere
-  Task whole = task;
-  whole.left_out.clear();
-  Model model(whole, *chosen.variant.program, chosen.variant.further);
+  Model model = model_of_all_rows(task, chosen);
   VectorXd residuals;
   if (!model.residuals(chosen.fit.x, residuals)) {
     return;

@@ -8,6 +8,7 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/fitting.hpp"
+#include "diagnosis/noise_floor.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -23,6 +24,10 @@ struct LeftOut {
 
 /// Finds them, the largest ones of an output first, and takes their rows out of the task. `task.scales` are set.
 [[nodiscard]] std::vector<LeftOut> leave_out(Task& task, const Program& program);
+
+/// Takes out what only shows beside an explanation, where it is no small part of the noise: whether there was any.
+[[nodiscard]] bool leave_out_beside(std::vector<LeftOut>& found, Task& task, const Explanation& chosen,
+                                    const std::vector<NoiseFloor>& floors);
 
 /// Glitches that an explanation gives, as the answer to a single sample of the input, are none: it never saw them.
 void forget_explained(std::vector<LeftOut>& found, const Task& task, const Explanation& chosen);

@@ -16,6 +16,10 @@ constexpr double clear_evidence = 15.0;  // nats by which standing still explain
 constexpr double fair_evidence = 6.0;    // the same, once it is known that samples were missed
 constexpr double least_slope = 3.0;      // deviations of the noise a sample
 constexpr std::size_t fewest_runs = 12;
+constexpr std::size_t fewest_beside_model = 6;
+/// Of the way that a model goes meanwhile: it moves on and does not leap, as the measurement does at the end.
+constexpr double largest_step = 0.5;
+constexpr double least_leap = 0.6;
 constexpr double least_share = 0.002;  // runs of all samples
 
 /// The deviation of the noise, from how far samples lie off the cubic through their four neighbours; by the lower
@@ -46,8 +50,10 @@ double rounding(const std::vector<double>& values) {
 /// One record's runs.
 class Runs {
  public:
-  explicit Runs(const std::vector<double>& values)
-      : values_(values), noise_(std::hypot(noise_of(values), rounding(values))), held_(values.size()) {}
+  explicit Runs(const std::vector<double>& values, double least_noise = 0.0)
+      : values_(values),
+        noise_(std::max(least_noise, std::hypot(noise_of(values), rounding(values)))),
+        held_(values.size()) {}
 
   /// Those that the measurement alone shows; their number.
   std::size_t clear() {
@@ -65,6 +71,21 @@ class Runs {
 
   void held_already(std::span<const std::uint8_t> held) { std::ranges::copy(held, held_.begin()); }
 
+  /// Those that show clearly beside a model, and hardly in the measurement alone; their number.
+  std::size_t clear_beside(std::span<const double> modelled) {
+    std::size_t count = 0;
+    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
+      const std::size_t length = std::min(standing_after(k), values_.size() - k - 2);
+      if (length >= 1 && length < longest_run && moves_on(k, length, modelled) &&
+          differs_from_model(k, length, modelled, clear_evidence)) {
+        hold(k, length);
+        ++count;
+        k += length;
+      }
+    }
+    return count;
+  }
+
   /// Those that show beside the model.
   void beside(std::span<const double> modelled) {
     for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
@@ -72,7 +93,7 @@ class Runs {
         continue;
       }
       for (std::size_t length = std::min(standing_after(k), values_.size() - k - 2); length >= 1; --length) {
-        if (differs_from_model(k, length, modelled)) {
+        if (differs_from_model(k, length, modelled, fair_evidence)) {
           hold(k, length);
           k += length;
           break;
@@ -127,11 +148,23 @@ class Runs {
     return (matches(before) && (matches(after) || stands_behind)) || (matches(after) && steps_before);
   }
 
-  [[nodiscard]] bool differs_from_model(std::size_t k, std::size_t length, std::span<const double> modelled) const {
+  /// A model that leaps while the measurement stands is early, and one that is behind has no leap to make up for.
+  [[nodiscard]] bool moves_on(std::size_t k, std::size_t length, std::span<const double> modelled) const {
+    const double way = std::abs(modelled[k + length + 1] - modelled[k]);
+    double largest = 0.0;
+    for (std::size_t i = 0; i <= length; ++i) {
+      largest = std::max(largest, std::abs(modelled[k + i + 1] - modelled[k + i]));
+    }
+    return way >= least_slope * noise_ * static_cast<double>(length + 1) && largest <= largest_step * way &&
+           std::abs(values_[k + length + 1] - values_[k + length]) >= least_leap * way;
+  }
+
+  [[nodiscard]] bool differs_from_model(std::size_t k, std::size_t length, std::span<const double> modelled,
+                                        double least) const {
     const double step = values_[k + length + 1] - values_[k];
     const double wanted = modelled[k + length + 1] - modelled[k];
     return std::abs(step - wanted) <= alike * std::abs(step) + still * noise_ &&
-           evidence(k, length, [&](std::size_t i) { return modelled[k + i] - modelled[k]; }) > fair_evidence;
+           evidence(k, length, [&](std::size_t i) { return modelled[k + i] - modelled[k]; }) > least;
   }
 
   const std::vector<double>& values_;
@@ -187,6 +220,17 @@ MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, st
   });
   const bool enough = runs >= fewest_runs && static_cast<double>(runs) >= least_share * static_cast<double>(samples);
   return enough ? result : MissedSamples{};
+}
+
+MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output,
+                                  std::span<const double> modelled, double noise) {
+  std::size_t runs = 0;
+  MissedSamples result = collected(experiments, output, [&](const std::vector<double>& values, std::size_t offset) {
+    Runs one(values, noise);
+    runs += one.clear_beside(modelled.subspan(offset, values.size()));
+    return one.held();
+  });
+  return runs >= fewest_beside_model ? result : MissedSamples{};
 }
 
 MissedSamples with_model(const MissedSamples& found, const std::vector<Experiment>& experiments, std::size_t output,

@@ -24,7 +24,12 @@ struct MissedSamples {
 /// None where there are so few that chance, or another effect, makes them.
 [[nodiscard]] MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output);
 
-/// Those that the model shows too; `modelled` holds the output's values, record by record.
+/// Where those are too few, with a model that moves on meanwhile, by so much that a slow signal behind a quantizer is
+/// none. `modelled` holds the output's values, record by record, and `noise` is their noise floor.
+[[nodiscard]] MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output,
+                                                std::span<const double> modelled, double noise);
+
+/// Those that the model shows too.
 [[nodiscard]] MissedSamples with_model(const MissedSamples& found, const std::vector<Experiment>& experiments,
                                        std::size_t output, std::span<const double> modelled);
 

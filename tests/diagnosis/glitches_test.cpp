@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/diagnosis/simulated_machine.hpp"
@@ -10,8 +11,11 @@
 namespace hysteron::diagnosis {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
 
 std::vector<Experiment> with(std::vector<double> values) {
   Experiment one;
@@ -107,6 +111,34 @@ TEST(Glitches, OfAFastSignalShowBesideItsModel) {
   const Glitches alone = find_glitches(with(values), 0);
   EXPECT_LT(alone.rows.size(), 5U);
   EXPECT_THAT(with_model(alone, with(values), 0, model).rows, ElementsAre(428U, 700U, 999U, 1300U, 1570U));
+}
+
+/// A still signal with three clear glitches, beside which others count.
+std::vector<double> with_clear_ones() {
+  auto values = test::Noise(8).white(2000, 0.1);
+  for (const std::size_t row : {1200U, 1500U, 1800U}) {
+    values[row] += 9.0;
+  }
+  return values;
+}
+
+TEST(Glitches, BesideAModelTheirTailsAreTakenToo) {
+  std::vector<double> values = with_clear_ones();
+  for (std::size_t k = 0; k < 10; ++k) {
+    values[500 + k] += 9.0 * std::pow(0.55, static_cast<double>(k));
+  }
+  const Glitches found = with_model({}, with(values), 0, std::vector<double>(values.size(), 0.0));
+  EXPECT_THAT(found.rows, IsSupersetOf({500U, 501U, 502U, 503U, 504U}));
+  EXPECT_EQ(std::ranges::count_if(found.rows, [](std::size_t row) { return row > 510; }), 3) << "noise is no tail";
+}
+
+TEST(Glitches, BesideAModelOneMayComeUponAnother) {
+  std::vector<double> values = with_clear_ones();
+  values[500] += 9.0;
+  values[502] -= 9.0;
+  EXPECT_THAT(find_glitches(with(values), 0).rows, Not(Contains(500U)));
+  EXPECT_THAT(with_model({}, with(values), 0, std::vector<double>(values.size(), 0.0)).rows,
+              IsSupersetOf({500U, 501U, 502U}));
 }
 
 TEST(Glitches, AModelThatIsLateShowsNone) {

@@ -117,5 +117,51 @@ TEST(MissedSamples, NoiseStepsAndStandstillAreNone) {
   EXPECT_THAT(find_missed_samples(with(noisy(stick_slip, 0.01)), 0).rows, IsEmpty());
 }
 
+std::vector<double> rounded(std::vector<double> values, double quantum) {
+  for (double& value : values) {
+    value = quantum * std::round(value / quantum);
+  }
+  return values;
+}
+
+TEST(MissedSamples, AFewBehindARoundingShowBesideTheModel) {
+  const auto moved = motion();
+  auto values = moved;
+  std::vector<std::size_t> held;
+  for (std::size_t k = 50; k + 5 < count && held.size() < 40; ++k) {
+    if (std::abs(moved[k + 5] - moved[k]) > 3.0) {  // steep: ten of them, fewer than would show by themselves
+      for (std::size_t i = 1; i <= 4; ++i) {
+        values[k + i] = values[k];
+        held.push_back(k + i);
+      }
+      k += 150;
+    }
+  }
+  const auto experiments = with(rounded(values, 0.3));
+  EXPECT_THAT(find_missed_samples(experiments, 0).rows, IsEmpty());
+  const MissedSamples found = find_missed_samples(experiments, 0, moved, 0.1);
+  EXPECT_GE(found.rows.size(), held.size() / 2);
+  // The rounding may hide that the first of a run has moved, and nothing more.
+  EXPECT_LE(
+      std::ranges::count_if(found.rows, [&](std::size_t row) { return std::ranges::find(held, row) == held.end(); }),
+      static_cast<std::ptrdiff_t>(held.size() / 4));
+}
+
+TEST(MissedSamples, BesideAModelRoundingAndALateSensorAreNone) {
+  const auto moved = motion();
+  for (const double quantum : {0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0}) {
+    EXPECT_THAT(find_missed_samples(with(noisy(rounded(moved, quantum), 0.01)), 0, moved, 0.01).rows, IsEmpty())
+        << quantum;
+  }
+  std::vector<double> steps(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t tread = k / 40;
+    steps[k] = 10.0 * static_cast<double>(tread * 7 % 5);
+  }
+  std::vector<double> late(count, 0.0);
+  std::copy(steps.begin(), steps.end() - 3, late.begin() + 3);
+  EXPECT_THAT(find_missed_samples(with(noisy(late, 0.01)), 0, steps, 0.01).rows, IsEmpty());
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

@@ -63,6 +63,28 @@ TEST(GlitchShare, IsTheWholeGapWhereNothingElseIs) {
   EXPECT_EQ(found.rivals.at(0).improved_rms, found.gap.improved);
 }
 
+TEST(GlitchShare, ThoseThatALagHidesShowBesideIt) {
+  std::vector<double> force(2000);
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    const double t = 0.005 * static_cast<double>(k);
+    const double sines = std::sin(test::two_pi * 20.0 * t) + 0.7 * std::sin(test::two_pi * 13.0 * t);
+    force[k] = 40.0 * std::abs(std::sin(0.63 * t)) * sines;
+  }
+  records::Record record = test::measured(test::program_of(test::axis({"HY_LAG := (T1 := 0.01)", "SPEED.XOUT"})),
+                                          test::record_of("FORCE", std::move(force)), 0.001);
+  record = test::changed(record, "V", [](std::vector<double>& values) {
+    for (const std::size_t k : {250U, 420U, 700U, 985U, 997U, 1010U, 1300U, 1500U, 1700U}) {
+      values[k] += 0.05;
+    }
+  });
+  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {record}),
+                                   {.effects = {"lag", "resonance", "offset", "glitches"}});
+  ASSERT_EQ(found.effects.size(), 2U) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "lag");
+  EXPECT_EQ(found.effects[1].id, "glitches");
+  EXPECT_NEAR(sum_of(found) + found.split.open, 1.0, 1e-9);
+}
+
 TEST(GlitchShare, ASingleSampleOfTheInputIsNone) {
   constexpr std::string_view plant =
       "FUNCTION_BLOCK P (* @ts 5ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR G : HY_GAIN := (K "

@@ -168,7 +168,8 @@ std::string unit_behind(const GapFinding& gap) {
 
 Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed) {
   const Explanation& one = *weighed.explanation;
-  Rival rival{.improved_rms = rms_of(task, one.fit.residuals, gap_output),
+  Rival rival{.parameters = static_cast<std::size_t>(one.parameters()),
+              .improved_rms = rms_of(task, one.fit.residuals, gap_output),
               .support = weighed.support,
               .probability = std::exp(std::min(0.0, weighed.support))};
   std::vector<std::pair<std::string, std::string>> places;
@@ -245,6 +246,12 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
   const auto equal = std::ranges::find_if(
       result, [&](const EffectFinding& one) { return one.share < result.front().share - equal_share; });
   std::ranges::stable_sort(result.begin(), equal, {}, [](const EffectFinding& one) { return one.parameters.size(); });
+  // One that all rivals have goes before one that some can do without.
+  std::ranges::stable_partition(result, [&](const EffectFinding& one) {
+    return std::ranges::all_of(findings.judgement.rivals, [&](const Weighed& rival) {
+      return std::ranges::count(rival.explanation->names(), one.id) > 0;
+    });
+  });
   return result;
 }
 
@@ -337,15 +344,21 @@ std::vector<std::string> structural_reasons(const Diagnosis& so_far, double dura
           effect.id, effect.edge, fmt::join(effect.same_edges, ", ")));
     }
   }
-  if (so_far.rivals.size() > 1) {
-    std::vector<std::string> names;
-    for (const Rival& rival : so_far.rivals) {
-      names.push_back(fmt::format("{}", fmt::join(rival.effects, " + ")));
+  std::vector<std::string> equal;
+  for (const Rival& rival : so_far.rivals) {
+    const std::string names = fmt::format("{}", fmt::join(rival.effects, " + "));
+    if (rival.support > -rival_within) {
+      equal.push_back(names);
+    } else {
+      reasons.push_back(fmt::format(
+          "{} alone: what the other effect closes beside it is little, and may be what its formula misses.", names));
     }
+  }
+  if (equal.size() > 1) {
     reasons.push_back(
         fmt::format("{}: after a refit of the known parameters their outputs differ by less than this "
                     "record's noise can show.",
-                    fmt::join(names, " or ")));
+                    fmt::join(equal, " or ")));
   }
   if (duration > 0.0 && (so_far.verdict == Verdict::Unknown || so_far.verdict == Verdict::Partial)) {
     reasons.push_back(

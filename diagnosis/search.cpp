@@ -95,6 +95,7 @@ class Searcher {
         pair_up(bare, result, found);
         pair_with_line(bare, result, found);
         move_each(found, result);
+        exchange(found, result);
       }
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too
@@ -187,7 +188,7 @@ class Searcher {
     if (from.variant.effects.empty()) {
       singles_ = list;
     }
-    keep_best(list, fitted);
+    keep_best(list, fitted, from.variant.effects.empty() ? 2 : 1);
     std::vector<Explanation> fits(list.size());
     done = 0;
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
@@ -290,7 +291,7 @@ class Searcher {
     best.resize(std::min<std::size_t>(best.size(), 3));
     std::vector<Explanation> reduced;
     for (const Explanation* const one : best) {
-      for (std::size_t i = 0; i + 1 < one->variant.effects.size(); ++i) {
+      for (std::size_t i = 0; i < one->variant.effects.size() && one->variant.effects.size() > 1; ++i) {
         Explanation smaller = sets_.without(*one, i, result.calibrated.variant, 30);
         if (std::isfinite(smaller.fit.cost)) {
           reduced.push_back(std::move(smaller));
@@ -307,7 +308,8 @@ class Searcher {
     constexpr double range = 5.0;
     Model model(task_, *from.variant.program);
     const Background background(model, from.fit);
-    keep_best(singles_, std::min<std::size_t>(150, most_values / static_cast<std::size_t>(from.fit.residuals.size())));
+    keep_best(singles_, std::min<std::size_t>(150, most_values / static_cast<std::size_t>(from.fit.residuals.size())),
+              1);
     MatrixXd changes = MatrixXd::Zero(from.fit.residuals.size(), std::ssize(singles_));
     in_parallel(singles_.size(), options_.threads, [&](std::size_t i) {
       const Explanation one = placed(task_, singles_[i], singles_[i].starts.front(), from.fit.x);

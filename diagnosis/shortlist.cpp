@@ -32,7 +32,7 @@ std::vector<std::size_t> front_of(const std::vector<Screened>& list, const std::
   return front;
 }
 
-void keep_best(std::vector<Screened>& list, std::size_t count) {
+void keep_best(std::vector<Screened>& list, std::size_t count, int of_each) {
   std::map<std::string, int> taken;
   std::vector<Screened> kept;
   for (Screened& one : list) {
@@ -53,7 +53,7 @@ void keep_best(std::vector<Screened>& list, std::size_t count) {
     }
     int& times = taken[one.candidate.own().effect];
     const bool gap = std::ranges::any_of(one.starts, &Start::about_calibration);
-    if (times < most_edges && (kept.size() < count || times == 0 || (gap && times < 2))) {
+    if (times < most_edges && (kept.size() < count || times < of_each || (gap && times < 2))) {
       ++times;
       kept.push_back(std::move(one));
     }

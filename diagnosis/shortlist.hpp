@@ -12,7 +12,7 @@ namespace hysteron::diagnosis {
                                                 const std::vector<Candidate>& candidates, std::size_t count);
 
 /// Of a list sorted by gain the best ones, so many, but of no effect so many that others do not get their turn; each
-/// effect gets one: what a grid promises of a level says little of what a fit finds.
-void keep_best(std::vector<Screened>& list, std::size_t count);
+/// effect gets its best edges, `of_each` of them: what a grid promises of a level says little of what a fit finds.
+void keep_best(std::vector<Screened>& list, std::size_t count, int of_each);
 
 }  // namespace hysteron::diagnosis

@@ -326,6 +326,11 @@ Unknown unknown_of(const EffectParameter& parameter, const std::string& path, co
   }
   unknown.lower = std::max(unknown.lower, grid.lowest);
   unknown.upper = std::min(unknown.upper, grid.highest);
+  if (parameter.strength && std::isfinite(field.neutral) && field.neutral > 0.0) {
+    constexpr double another_unit = 10.0;  // what multiplies by more is no error of a gain
+    unknown.lower = std::max(unknown.lower, field.neutral / another_unit);
+    unknown.upper = std::min(unknown.upper, field.neutral * another_unit);
+  }
   unknown.start = std::clamp(unknown.start, std::min(unknown.lower, unknown.upper), unknown.upper);
   if (!(unknown.typical > 0.0)) {
     unknown.typical = 1.0;

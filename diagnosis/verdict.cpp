@@ -12,8 +12,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// Sets whose support lies within this of the best are not ruled out: odds of some 1 : 50.
-constexpr double rival_within = 4.0;
 /// Edges that the record cannot tell apart.
 constexpr double same_within = 3.0;
 /// What a set has to gain over calibration beyond its penalties, nats.
@@ -25,6 +23,13 @@ constexpr double fewest_samples = 60.0;
 
 /// And at most: the same physics in another discretisation leaves some thousandths of the noise, and so no evidence.
 constexpr double most_samples = 2000.0;
+
+/// Nor has a machine quite the formula of a textbook: by so much of what an effect does the two differ, in a line that
+/// bends a few times over a record. Sets that differ within that are no nearer to the truth for it.
+constexpr double formula_error = 0.03;
+constexpr double bends = 8.0;
+/// What an effect closes beside another one may be the error of that one's formula up to this share of the whole.
+constexpr double may_be_formula = 0.1;
 
 /// Nats between two ways to write one and the same effect.
 constexpr double same_to_the_last = 0.02;
@@ -53,7 +58,7 @@ class Judge {
     const double tau = correlation_time(best.fit.residuals);
     result.effective_samples =
         std::max(fewest_samples, static_cast<double>(best.fit.residuals.size()) / std::max(1.0, tau));
-    samples_ = std::min(result.effective_samples, most_samples);
+    samples_ = std::clamp(samples_by_formula(), fewest_samples, std::min(result.effective_samples, most_samples));
     result.weighing_samples = samples_;
     result.chosen = choose();
     result.held_out = unseen(*result.chosen);
@@ -79,6 +84,11 @@ class Judge {
         }
       }
     }
+    for (const Explanation& one : search_.explanations) {
+      if (may_be_whole(one, *result.chosen)) {
+        by_names.emplace(one.names(), Weighed{.explanation = &one, .support = support(one) - reference});
+      }
+    }
     by_names[result.chosen->names()] = {.explanation = result.chosen, .support = 0.0};
     for (const auto& [names, weighed] : by_names) {
       result.rivals.push_back(weighed);
@@ -93,6 +103,21 @@ class Judge {
  private:
   [[nodiscard]] double support(const Explanation& one) const {
     return support_of(one.fit.cost, one.parameters(), one.variant.effects.size(), samples_, search_.tried);
+  }
+
+  /// As many as tell two formulas apart that are equally near to the machine.
+  [[nodiscard]] double samples_by_formula() const {
+    const double gap = search_.calibrated.fit.cost - floor_cost_;
+    return gap > 0.0 ? bends / (formula_error * formula_error) * floor_cost_ / gap : most_samples;
+  }
+
+  /// Whether a set without one of the chosen effects may be all there is: what that one closes is little beside what
+  /// the others do, and may be what their formulas miss.
+  [[nodiscard]] bool may_be_whole(const Explanation& one, const Explanation& chosen) const {
+    const std::vector<std::string> names = one.names();
+    const std::vector<std::string> all = chosen.names();
+    return !names.empty() && names.size() + 1 == all.size() && std::ranges::includes(all, names) &&
+           one.fit.cost - chosen.fit.cost < may_be_formula * (search_.calibrated.fit.cost - chosen.fit.cost);
   }
 
   /// Whether each effect of a set closes enough beyond the best set with one effect fewer.

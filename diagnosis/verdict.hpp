@@ -20,6 +20,9 @@
 
 namespace hysteron::diagnosis {
 
+/// Sets whose support lies within this of the best are not ruled out: odds of some 1 : 50.
+inline constexpr double rival_within = 4.0;
+
 struct Weighed {
   const Explanation* explanation = nullptr;
   double support = 0.0;  ///< L(S) less that of the best

@@ -27,6 +27,7 @@ Json sets_of(const std::vector<Rival>& list) {
   for (const Rival& one : list) {
     result.push_back({{"effects", one.effects},
                       {"edges", one.edges},
+                      {"parameters", one.parameters},
                       {"improved_rms", number(one.improved_rms)},
                       {"support", number(one.support)},
                       {"probability", number(one.probability)}});

@@ -153,10 +153,10 @@ Diagnosis rich_diagnosis(std::size_t samples) {
                        {"PLANT.HYST.C2", 0.0104, 0.0099, 0.0109, "um/V^2"}};
   found.nominal = {{"PLANT.HYST.C1", 0.2, 0.19, 0.21, "um/V"}, {"PLANT.HYST.C2", 0.01, 0.009, 0.011, "um/V^2"}};
   found.rivals = {
-      {{"creep", "backlash", "delay"}, {"PLANT.HYST.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 0.0192, 0.0, 0.86},
-      {{"creep", "backlash", "lag"}, {"PLANT.HYST.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 0.0194, -2.3, 0.09},
-      {{"thermal_drift", "backlash", "delay"}, {"SENSOR.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 0.0201, -3.1, 0.04},
-      {{"relaxation", "coulomb_friction", "delay"}, {"PLANT.HYST.XOUT", "PLANT.BODY.XIN", "U"}, 0.0215, -4.4, 0.01}};
+      {{"creep", "backlash", "delay"}, {"PLANT.HYST.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 6, 0.0192, 0.0, 0.86},
+      {{"creep", "backlash", "lag"}, {"PLANT.HYST.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 6, 0.0194, -2.3, 0.09},
+      {{"thermal_drift", "backlash", "delay"}, {"SENSOR.XOUT", "PLANT.Y", "DRIVE.XOUT"}, 6, 0.0201, -3.1, 0.04},
+      {{"relaxation", "coulomb_friction", "delay"}, {"PLANT.HYST.XOUT", "PLANT.BODY.XIN", "U"}, 7, 0.0215, -4.4, 0.01}};
   found.confidence = 0.86;
   found.unknown_score = 0.02;
   found.gap = {.signal = "Y",

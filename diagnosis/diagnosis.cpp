@@ -138,9 +138,9 @@ class Run {
     auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
     result_.tried = searched->search.tried;
     const auto again = [&] {
-      // Half of the time once more: the search has its best sets to find again.
+      // A quarter of the time once more at least: the search has its best sets to find again.
       begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
-                                                 std::chrono::duration<double>(0.5 * options_.budget)));
+                                                 std::chrono::duration<double>(0.75 * options_.budget)));
       auto next = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
       result_.tried += next->search.tried;
       return next;

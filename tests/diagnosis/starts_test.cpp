@@ -56,5 +56,19 @@ TEST(Starts, NoPeriodIsSoughtOverAFewLevels) {
   EXPECT_EQ(highest_period(position), 0.0);
 }
 
+TEST(Starts, AGainThatMultipliesByMoreThanTenIsNoErrorOfOne) {
+  const std::string axis = test::axis();
+  const Variant base{.text = axis, .program = std::make_shared<const Program>(compile_text(axis, {.top = "AXIS"}))};
+  const std::vector<Candidate> list = candidates_of(base, "AXIS", {.effects = {"gain_error"}});
+  ASSERT_FALSE(list.empty());
+  const Applied& own = list.front().own();
+  const Extent extent = extent_of({{0.0, 1.0, -1.0, 0.5}}, 0.001);
+  const Grids grids = grids_of(list.front(), extent, nullptr, {.sample_time = 0.001, .duration = 1.0}, {});
+  const Unknown gain = unknown_of(own.parameters.front(), own.paths.front(), grids.parameters.front());
+  EXPECT_DOUBLE_EQ(gain.start, 1.0);
+  EXPECT_DOUBLE_EQ(gain.lower, 0.1);
+  EXPECT_DOUBLE_EQ(gain.upper, 10.0);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

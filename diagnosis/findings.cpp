@@ -160,6 +160,24 @@ double unrivalled(const Judgement& judgement) {
   return 1.0 - wrong_if_near * std::min(1.0, near / std::max(nearest, near));
 }
 
+/// The edge of the user's diagram that an edge lies on: beside the block of another effect there is only the edge where
+/// that one was put.
+std::string in_the_diagram(std::string edge, const std::vector<Applied>& effects) {
+  const auto of_block = [](const std::string& one, const Applied& effect) {
+    return one.starts_with(effect.instance + ".");
+  };
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Applied& other : effects) {
+      if (of_block(edge, other) && !of_block(other.edge, other)) {
+        edge = other.edge;
+        moved = true;
+      }
+    }
+  }
+  return edge;
+}
+
 std::string unit_behind(const GapFinding& gap) {
   return gap.unit.empty() ? "" : " " + gap.unit;
 }
@@ -174,7 +192,7 @@ Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed)
               .probability = std::exp(std::min(0.0, weighed.support))};
   std::vector<std::pair<std::string, std::string>> places;
   for (const Applied& applied : one.variant.effects) {
-    places.emplace_back(applied.effect, applied.edge);
+    places.emplace_back(applied.effect, in_the_diagram(applied.edge, one.variant.effects));
   }
   std::ranges::sort(places);  // the same set reads the same, whichever effect was found first
   for (auto& [effect, edge] : places) {
@@ -215,7 +233,8 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
   std::vector<EffectFinding> result;
   for (std::size_t i = 0; i < chosen.variant.effects.size(); ++i) {
     const Applied& applied = chosen.variant.effects[i];
-    EffectFinding finding{.id = applied.effect, .edge = applied.edge, .share = shares[i]};
+    EffectFinding finding{
+        .id = applied.effect, .edge = in_the_diagram(applied.edge, chosen.variant.effects), .share = shares[i]};
     for (std::size_t j = 0; j < chosen.variant.further.size(); ++j) {
       const Unknown& unknown = chosen.variant.further[j];
       const Index at = model.first_further() + static_cast<Index>(j);
@@ -229,14 +248,18 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
         widen_by_trial(model, chosen.fit, at, samples, finding.parameters.back());
       }
     }
-    std::set<std::string> same(applied.twins.begin(), applied.twins.end());
+    std::set<std::string> same;
+    for (const std::string& twin : applied.twins) {
+      same.insert(in_the_diagram(twin, chosen.variant.effects));
+    }
     for (const Weighed& other : findings.judgement.same) {
       for (const Applied& there : other.explanation->variant.effects) {
-        if (there.effect == applied.effect && there.edge != applied.edge) {
-          same.insert(there.edge);
+        if (there.effect == applied.effect) {
+          same.insert(in_the_diagram(there.edge, other.explanation->variant.effects));
         }
       }
     }
+    same.erase(finding.edge);
     finding.same_edges.assign(same.begin(), same.end());
     result.push_back(std::move(finding));
   }

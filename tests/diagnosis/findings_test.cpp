@@ -54,6 +54,17 @@ TEST(Rivals, EachEffectStandsBesideItsEdge) {
   EXPECT_EQ(rival.edges, (std::vector<std::string>{"HYST.XOUT", "U"}));
 }
 
+TEST(Rivals, AnEdgeBesideAnotherEffectIsTheDiagrams) {
+  const Task task{.outputs = {"Y"}, .scales = {1.0}};
+  Explanation set;
+  set.variant.effects = {{.effect = "load", .edge = "HYST.XOUT", .instance = "HYST_LOAD"},
+                         {.effect = "lag", .edge = "HYST_LOAD.XOUT", .instance = "HYST_LOAD_LAG"},
+                         {.effect = "offset", .edge = "HYST_LOAD_LAG.XIN", .instance = "HYST_LOAD_LAG_OFFSET"},
+                         {.effect = "asymmetry", .edge = "HYST.XOUT", .is_own = true, .instance = "HYST"}};
+  set.fit.residuals = VectorXd::Constant(4, 1.0);
+  EXPECT_EQ(rival_of(task, 0, {.explanation = &set}).edges, (std::vector<std::string>(4, "HYST.XOUT")));
+}
+
 TEST(Rivals, LeaveWhatTheyLeaveOfTheOutputWithTheGap) {
   const Task task{.outputs = {"A", "B"}, .scales = {1.0, 10.0}};
   Explanation set;

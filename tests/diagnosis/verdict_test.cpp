@@ -1,14 +1,16 @@
 // The verdict: sets are weighed as finely as the data are worth, and no finer than formulas are true.
 #include "diagnosis/verdict.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/task.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
@@ -25,40 +27,39 @@ std::vector<std::vector<std::string>> sets_of(const std::vector<Rival>& rivals) 
   return sets;
 }
 
-/// An axis with a dry friction, in twenty steps a sample: it stands where the force is too small, and the force goes
-/// straight from sample to sample.
-std::vector<double> speeds_in_fine_steps(const std::vector<double>& force, double friction) {
-  constexpr int fine = 20;
-  constexpr double step = 0.005 / fine;
-  std::vector<double> speeds{0.0};
-  double v = 0.0;
-  for (std::size_t k = 1; k < force.size(); ++k) {
-    for (int s = 0; s < fine; ++s) {
-      const double f = std::lerp(force[k - 1], force[k], (s + 0.5) / fine);
-      const double opposed = v != 0.0 ? v : f;
-      const bool stands = v == 0.0 && std::abs(f) <= friction;
-      const double next = stands ? 0.0 : v + 0.5 * step * (f - std::copysign(friction, opposed));
-      v = v * next < 0.0 ? 0.0 : next;
-    }
-    speeds.push_back(v);
-  }
-  return speeds;
+/// How many samples weigh sets that explain a constant force of this size, and how many there are.
+struct Weight {
+  double samples = 0.0;
+  double effective = 0.0;
+  double gap = 0.0;  ///< that calibration leaves, in energies of the noise
+};
+Weight weight_of(double force) {
+  const std::string effect = fmt::format("HY_OFFSET := (BIAS := {:.4f})", force);
+  const DiagnosisInput input = test::input_of(test::axis(), test::axis_parameters,
+                                              {test::measured(test::program_of(test::axis({effect, "FORCE"})),
+                                                              test::record_of("FORCE", test::rich_force()), 0.01)});
+  Task task = task_of(input);
+  task.scales = {0.01};
+  constexpr double floor_cost = 0.5 * 2000;
+  SearchOptions options{.threads = 1, .most_effects = 1};
+  options.candidates.effects = {"offset"};
+  const Search found = search(task, {.text = input.text, .program = std::make_shared<const Program>(input.program)},
+                              "AXIS", floor_cost, options);
+  const Judgement judgement = judge(task, found, floor_cost);
+  EXPECT_EQ(judgement.chosen->names(), std::vector<std::string>{"offset"});
+  return {.samples = judgement.weighing_samples,
+          .effective = judgement.effective_samples,
+          .gap = found.calibrated.fit.cost / floor_cost - 1.0};
 }
 
-TEST(Verdict, AnotherDiscretisationIsNoEvidence) {
-  // A falling part of 10 % or so brings the product's steps nearer to finer ones than a friction without.
-  const std::vector<double> force = test::rich_force();
-  std::vector<double> speeds = speeds_in_fine_steps(force, 0.6);
-  test::Noise noise(3);
-  for (double& speed : speeds) {
-    speed += 0.01 * noise();
-  }
-  records::Record record = test::record_of("FORCE", force);
-  record.add({.name = "V", .values = std::move(speeds)});
-  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {record}),
-                                   {.effects = {"coulomb_friction", "stribeck_friction", "viscous_friction"}});
-  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
-  EXPECT_EQ(found.effects[0].id, "coulomb_friction") << found.summary;
+TEST(Verdict, WeighsNoFinerThanFormulasAreTrue) {
+  const Weight small = weight_of(0.002);
+  EXPECT_GT(small.effective, 1000.0);
+  EXPECT_EQ(small.samples, std::min(small.effective, 2000.0)) << "noise hides what a formula misses";
+  const Weight large = weight_of(0.02);
+  EXPECT_GT(large.effective, 1000.0);
+  EXPECT_NEAR(large.samples * large.gap, 8.0 / (0.03 * 0.03), 1.0) << "eight values of 3 % of the effect";
+  EXPECT_EQ(weight_of(2.0).samples, 60.0) << "sixty at least";
 }
 
 TEST(Verdict, WhatClosesLittleBesideAnotherMayBeItsFormula) {

@@ -270,7 +270,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       result, [&](const EffectFinding& one) { return one.share < result.front().share - equal_share; });
   std::ranges::stable_sort(result.begin(), equal, {}, [](const EffectFinding& one) { return one.parameters.size(); });
   // One that all rivals have goes before one that some can do without.
-  std::ranges::stable_partition(result, [&](const EffectFinding& one) {
+  (void)std::stable_partition(result.begin(), result.end(), [&](const EffectFinding& one) {
     return std::ranges::all_of(findings.judgement.rivals, [&](const Weighed& rival) {
       return std::ranges::count(rival.explanation->names(), one.id) > 0;
     });

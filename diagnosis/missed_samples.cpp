@@ -57,33 +57,18 @@ class Runs {
 
   /// Those that the measurement alone shows; their number.
   std::size_t clear() {
-    std::size_t count = 0;
-    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
-      const std::size_t length = standing_after(k);
-      if (length >= 1 && length < longest_run && k + length + 2 < values_.size() && ends_like_missed(k, length)) {
-        hold(k, length);
-        ++count;
-        k += length;
-      }
-    }
-    return count;
+    return hold_where([&](std::size_t k, std::size_t length) {
+      return k + length + 2 < values_.size() && ends_like_missed(k, length);
+    });
   }
 
   void held_already(std::span<const std::uint8_t> held) { std::ranges::copy(held, held_.begin()); }
 
   /// Those that show clearly beside a model, and hardly in the measurement alone; their number.
   std::size_t clear_beside(std::span<const double> modelled) {
-    std::size_t count = 0;
-    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
-      const std::size_t length = std::min(standing_after(k), values_.size() - k - 2);
-      if (length >= 1 && length < longest_run && moves_on(k, length, modelled) &&
-          differs_from_model(k, length, modelled, clear_evidence)) {
-        hold(k, length);
-        ++count;
-        k += length;
-      }
-    }
-    return count;
+    return hold_where([&](std::size_t k, std::size_t length) {
+      return moves_on(k, length, modelled) && differs_from_model(k, length, modelled, clear_evidence);
+    });
   }
 
   /// Those that show beside the model.
@@ -113,6 +98,21 @@ class Runs {
       ++length;
     }
     return length;
+  }
+
+  /// Holds the runs that are missed samples by `are_missed(k, length)`; their number.
+  template <class AreMissed>
+  std::size_t hold_where(const AreMissed& are_missed) {
+    std::size_t count = 0;
+    for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
+      const std::size_t length = std::min(standing_after(k), values_.size() - k - 2);
+      if (length >= 1 && length < longest_run && are_missed(k, length)) {
+        hold(k, length);
+        ++count;
+        k += length;
+      }
+    }
+    return count;
   }
 
   void hold(std::size_t k, std::size_t length) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -30,6 +31,16 @@ Index block_of(Index row, Index rows) {
 double mean_square(const HeldOut& one) {
   const double count = std::accumulate(one.counts.begin(), one.counts.end(), 0.0);
   return count > 0.0 ? std::accumulate(one.squares.begin(), one.squares.end(), 0.0) / count : 0.0;
+}
+
+/// A noise whose ratio to the likely one is log-normal to each side, with 2.5 % of the draws below the range and as
+/// many above it.
+double drawn(const NoiseRange& noise, std::mt19937_64& random) {
+  constexpr double deviations = 1.96;
+  const auto uniform = [&] { return (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53; };
+  const double normal = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+  const double bound = normal < 0.0 ? noise.low : noise.high;
+  return noise.likely > 0.0 ? noise.likely * std::pow(bound / noise.likely, std::abs(normal) / deviations) : 0.0;
 }
 
 }  // namespace
@@ -75,10 +86,9 @@ Closure closure(const HeldOut& before, const HeldOut& after, double fitted, cons
     return gap > 0.0 ? std::clamp(1.0 - (second - variance) / gap, -1.0, most_closed) : 0.0;
   };
   Closure result{.closed = std::min(1.0, share(mean_square(before), mean_square(after), noise.floor))};
-  constexpr int draws = 600;
+  constexpr int draws = 2000;
   std::mt19937_64 random(seed);
-  std::vector<double> low;
-  std::vector<double> high;
+  std::vector<double> shares;
   const std::size_t count = before.squares.size();
   for (int draw = 0; draw < draws; ++draw) {
     HeldOut first{.squares = {0.0}, .counts = {0.0}};
@@ -90,14 +100,12 @@ Closure closure(const HeldOut& before, const HeldOut& after, double fitted, cons
       second.squares[0] += after.squares[block];
       second.counts[0] += after.counts[block];
     }
-    low.push_back(share(mean_square(first), mean_square(second), noise.low));
-    high.push_back(share(mean_square(first), mean_square(second), noise.high));
+    shares.push_back(share(mean_square(first), mean_square(second), drawn(noise, random)));
   }
-  std::ranges::sort(low);
-  std::ranges::sort(high);
-  result.low = std::min(result.closed, low[static_cast<std::size_t>(0.025 * draws)]);
+  std::ranges::sort(shares);
+  result.low = std::min(result.closed, shares[static_cast<std::size_t>(0.025 * draws)]);
   result.high = std::max(
-      {result.closed, high[static_cast<std::size_t>(0.975 * draws)], share(mean_square(before), fitted, noise.high)});
+      {result.closed, shares[static_cast<std::size_t>(0.975 * draws)], share(mean_square(before), fitted, noise.high)});
   return result;
 }
 

@@ -203,7 +203,9 @@ double suspicious_from(const NoiseFloor& floor) {
 
 NoiseRange noise_range(double left) {
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
-  return {.low = left < 1.0 ? 0.1 * left : 0.85, .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
+  return {.low = left < 1.0 ? left / 3.0 : 0.85,
+          .likely = std::min(left, 1.0),
+          .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
 }
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,

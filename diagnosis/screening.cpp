@@ -1,8 +1,8 @@
 #include "diagnosis/screening.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -372,11 +372,9 @@ class Screening {
   void try_grid(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
     const bool limits =
         list.size() > 1 && std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
-    std::size_t longest = 0;
     VectorXd each_at_its_best = shape;
     for (const Index j : list) {
       const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
-      longest = std::max(longest, grid.size());
       double best = 0.0;
       for (const double value : grid) {
         VectorXd values = shape;
@@ -396,13 +394,47 @@ class Screening {
       return;
     }
     try_point(each_at_its_best, starts);
-    for (std::size_t k = 0; k < longest; ++k) {
+    try_together(shape, list, starts);
+  }
+
+  /// Limits to both sides are alike as a rule, and one of them alone lets an integrator run away: both at once, from
+  /// point to point of the further one's grid in smaller steps, and by halves about the best of these.
+  void try_together(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
+    constexpr double smaller = 3.0;
+    const auto grid_of = [&](Index j) -> const std::vector<double>& {
+      return grids_.parameters[static_cast<std::size_t>(j)].values;
+    };
+    const Index further = *std::ranges::max_element(list, {}, [&](Index j) { return std::abs(grid_of(j).front()); });
+    const bool about_zero = std::ranges::any_of(list, [&](Index j) { return grid_of(j).front() < 0.0; }) &&
+                            std::ranges::any_of(list, [&](Index j) { return grid_of(j).front() > 0.0; });
+    const double last = static_cast<double>(grid_of(further).size()) - 1.0;
+    const auto gain_at = [&](double place) {
       VectorXd values = shape;
       for (const Index j : list) {
-        const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
-        values[j] = grid[std::min(k, grid.size() - 1)];
+        const std::vector<double>& grid = grid_of(about_zero ? further : j);
+        const double here = std::clamp(place, 0.0, static_cast<double>(grid.size()) - 1.0);
+        const auto below = static_cast<std::size_t>(here);
+        const std::size_t above = std::min(below + 1, grid.size() - 1);
+        const double value = std::lerp(grid[below], grid[above], here - static_cast<double>(below));
+        values[j] = about_zero ? std::copysign(value, grid_of(j).front()) : value;
       }
-      try_point(values, starts);
+      return try_point(values, starts);
+    };
+    double best = 0.0;
+    double gain = -std::numeric_limits<double>::infinity();
+    const auto consider = [&](double place) {
+      if (const double here = gain_at(place); here > gain) {
+        gain = here;
+        best = place;
+      }
+    };
+    for (double k = 0.0; k <= smaller * last; ++k) {
+      consider(k / smaller);
+    }
+    for (double step = 0.5 / smaller; gain > worth_narrowing * background_.unexplained() && step > 0.05; step *= 0.5) {
+      const double middle = best;
+      consider(middle - step);
+      consider(middle + step);
     }
   }
 
@@ -432,30 +464,6 @@ class Screening {
 };
 
 }  // namespace
-
-Background::Background(VectorXd residuals, Projection known)
-    : residuals_(std::move(residuals)), projection_(std::move(known)) {
-  unexplained_ = 0.5 * residuals_.dot(projected(residuals_));
-}
-
-Background::Background(const Model& model, const Fit& at)
-    : Background(at.residuals, Projection(at.jacobian, model.prior())) {}
-
-double Background::gain(const MatrixXd& changes, const VectorXd& low, const VectorXd& high, VectorXd& alpha) const {
-  MatrixXd projected_changes(changes.rows(), changes.cols());
-  for (Index k = 0; k < changes.cols(); ++k) {
-    projected_changes.col(k) = projected(changes.col(k));
-  }
-  MatrixXd matrix = changes.transpose() * projected_changes;
-  const VectorXd slope = projected_changes.transpose() * residuals_;
-  for (Index k = 0; k < matrix.rows(); ++k) {
-    matrix(k, k) = matrix(k, k) > 0.0 ? matrix(k, k) * (1.0 + 1e-9) : 1.0;
-  }
-  alpha = (-matrix.ldlt().solve(slope)).cwiseMax(low).cwiseMin(high);
-  const double gained = -(alpha.dot(slope) + 0.5 * alpha.dot(matrix * alpha));
-  // More than all there is comes of rounding alone, where a change that grows without bound is projected.
-  return gained <= 1.001 * unexplained_ ? gained : 0.0;
-}
 
 Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,
                   const Background& background, std::size_t keep) {

@@ -15,6 +15,7 @@
 
 #include "diagnosis/drivers.hpp"
 #include "diagnosis/line_start.hpp"
+#include "diagnosis/pairing.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/refusal.hpp"
 #include "diagnosis/sets.hpp"
@@ -94,8 +95,6 @@ class Searcher {
       if (round == 1) {
         pair_up(bare, result, found);
         pair_with_line(bare, result, found);
-        move_each(found, result);
-        exchange(found, result);
       }
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too
@@ -109,11 +108,18 @@ class Searcher {
         expand(one, any, round == 0 ? options_.fitted_first : options_.fitted_later, result, found);
         begin_ += width_;
       }
+      if (round == 0) {
+        on_other_edges(bare, found);
+      }
       if (round > 0) {
         without_each(found, result);
       }
       if (round == 1) {
+        move_each(found, result);
         exchange(found, result);
+        if (is_closed(found)) {
+          exchange_in_best(found, result);
+        }
         simplify(found, result);
       }
       beam = next_beam(found, result, round == 0 ? options_.beam : 1);
@@ -189,8 +195,13 @@ class Searcher {
       singles_ = list;
     }
     keep_best(list, fitted, from.variant.effects.empty() ? 2 : 1);
+    fit_and_finish(list, from, found);
+  }
+
+  /// Candidates as they were screened, fitted; those in front to the end.
+  void fit_and_finish(const std::vector<Screened>& list, const Explanation& from, std::vector<Explanation>& found) {
     std::vector<Explanation> fits(list.size());
-    done = 0;
+    std::atomic<std::size_t> done{0};
     in_parallel(list.size(), options_.threads, [&](std::size_t i) {
       if (must_stop()) {
         return;
@@ -278,6 +289,21 @@ class Searcher {
     });
   }
 
+  /// The effects in front after the first round on their other edges: beside others an effect is often screened best
+  /// where it is not.
+  void on_other_edges(const Explanation& bare, std::vector<Explanation>& found) {
+    std::ranges::stable_sort(found, {}, cost_of_fit);
+    std::set<std::string> front;
+    std::vector<Applied> fitted;
+    for (const Explanation& one : found) {
+      fitted.push_back(one.variant.effects.front());
+      if (front.size() < options_.beam) {
+        front.insert(fitted.back().effect);
+      }
+    }
+    fit_and_finish(on_untried_edges(singles_, front, fitted), bare, found);
+  }
+
   /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
   /// all that it was there for, and the other one by itself the better explanation.
   void without_each(std::vector<Explanation>& found, const Search& result) const {
@@ -305,28 +331,12 @@ class Searcher {
   /// the best by itself.
   void pair_up(const Explanation& from, const Search& result, std::vector<Explanation>& found) {
     constexpr std::size_t most_values = 20'000'000;
-    constexpr double range = 5.0;
     Model model(task_, *from.variant.program);
     const Background background(model, from.fit);
     keep_best(singles_, std::min<std::size_t>(150, most_values / static_cast<std::size_t>(from.fit.residuals.size())),
               1);
-    MatrixXd changes = MatrixXd::Zero(from.fit.residuals.size(), std::ssize(singles_));
-    in_parallel(singles_.size(), options_.threads, [&](std::size_t i) {
-      const Explanation one = placed(task_, singles_[i], singles_[i].starts.front(), from.fit.x);
-      Model alone(task_, *one.variant.program, one.variant.further);
-      VectorXd residuals;
-      if (alone.residuals(one.fit.x, residuals)) {
-        changes.col(static_cast<Index>(i)) = residuals - background.residuals();
-      }
-    });
-    std::vector<Superposition::Pair> pairs;
-    std::set<std::set<std::string>> taken;
-    for (const Superposition::Pair& one : Superposition(changes, background).pairs(range)) {
-      std::set<std::string> names{effect_of(one.first), effect_of(one.second)};
-      if (pairs.size() < options_.pairs && names.size() == 2 && taken.insert(std::move(names)).second) {
-        pairs.push_back(one);
-      }
-    }
+    const std::vector<Superposition::Pair> pairs =
+        pairs_that_add_up(task_, singles_, from.fit.x, background, options_.pairs, options_.threads);
     std::vector<Explanation> fits(pairs.size());
     in_parallel(pairs.size(), options_.threads, [&](std::size_t i) {
       fits[i] = sets_.together(singles_[static_cast<std::size_t>(pairs[i].first)],
@@ -353,9 +363,9 @@ class Searcher {
   /// itself it often did not.
   void move_each(std::vector<Explanation>& found, Search& result) {
     constexpr std::size_t edges = 4;
-    constexpr double far_behind = 5.0;
+    constexpr double far_behind = 3.0;
     std::set<std::vector<std::string>> moved;
-    for (const std::size_t most : std::array<std::size_t, 3>{6, 2, 2}) {
+    for (const std::size_t most : std::array<std::size_t, 3>{4, 2, 2}) {
       if (is_closed(found)) {
         return;
       }
@@ -380,10 +390,6 @@ class Searcher {
       }
     }
   }
-  [[nodiscard]] const std::string& effect_of(Index single) const {
-    return singles_[static_cast<std::size_t>(single)].candidate.own().effect;
-  }
-
   [[nodiscard]] bool is_closed(const std::vector<Explanation>& found) const {
     return std::ranges::any_of(found,
                                [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });

@@ -1,10 +1,12 @@
 // The search for the effects that close the gap: screening, fits, sets of several effects.
 //
 // 1. The known parameters alone are fitted: what that closes is calibration.
-// 2. Every candidate is screened against what is left; the best are fitted together with the known parameters.
-// 3. Pairs whose changes would add up to the residual are fitted, and their effects moved to other edges. Where one of
-//    them closes the gap, each of its effects gives its place to all others once, to see which close it, too.
-// 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap.
+// 2. Every candidate is screened against what is left; the best are fitted together with the known parameters, the
+//    effects in front on all their edges.
+// 3. Pairs whose changes would add up to the residual are fitted. Where one of them closes the gap, each of its effects
+//    gives its place to all others once, to see which close it, too.
+// 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap. The
+//    effects of the best pairs are moved to other edges, and give their places to all others while that helps.
 // Every set that was fitted is kept: the verdict weighs them against each other.
 #pragma once
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <string>
@@ -10,8 +11,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// Of one effect so many edges are fitted in a round.
-constexpr int most_edges = 5;
 /// Gains of one effect on two edges that differ by less, relatively, are of the same signal.
 constexpr double same_gain = 1e-5;
 
@@ -32,7 +31,7 @@ std::vector<std::size_t> front_of(const std::vector<Screened>& list, const std::
   return front;
 }
 
-void keep_best(std::vector<Screened>& list, std::size_t count, int of_each) {
+void keep_best(std::vector<Screened>& list, std::size_t count, int of_each, int most_edges) {
   std::map<std::string, int> taken;
   std::vector<Screened> kept;
   for (Screened& one : list) {
@@ -59,6 +58,24 @@ void keep_best(std::vector<Screened>& list, std::size_t count, int of_each) {
     }
   }
   list = std::move(kept);
+}
+
+std::vector<Screened> on_untried_edges(const std::vector<Screened>& list, const std::set<std::string>& effects,
+                                       const std::vector<Applied>& fitted) {
+  constexpr int most_edges = 8;
+  std::set<std::string> places;
+  for (const Applied& one : fitted) {
+    places.insert(one.place());
+    for (const std::string& twin : one.twins) {
+      places.insert(Applied{.effect = one.effect, .edge = twin}.place());
+    }
+  }
+  std::vector<Screened> result;
+  std::ranges::copy_if(list, std::back_inserter(result), [&](const Screened& one) {
+    return effects.contains(one.candidate.own().effect) && !places.contains(one.candidate.own().place());
+  });
+  keep_best(result, result.size(), 1, most_edges);
+  return result;
 }
 
 }  // namespace hysteron::diagnosis

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "diagnosis/screening.hpp"
+#include "diagnosis/background.hpp"
 
 namespace hysteron::diagnosis {
 

@@ -1,0 +1,17 @@
+// Which two effects may be a pair: those whose changes, each as it was screened alone, add up to the residual.
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/screening.hpp"
+#include "diagnosis/superposition.hpp"
+
+namespace hysteron::diagnosis {
+
+/// So many pairs of different effects that would explain most if what each of them does simply added up: neither need
+/// be among the best by itself. Places in `singles`; `known` are the known parameters and states of the bare diagram.
+[[nodiscard]] std::vector<Superposition::Pair> pairs_that_add_up(const Task& task, const std::vector<Screened>& singles,
+                                                                 const VectorXd& known, const Background& background,
+                                                                 std::size_t count, unsigned threads);
+
+}  // namespace hysteron::diagnosis

@@ -17,6 +17,7 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
+#include "diagnosis/jitter.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
@@ -131,7 +132,9 @@ class Run {
     std::atomic<bool> cut = false;  // the search asks from its threads, and only where it would go on
     searching.out_of_time = [&] {
       const bool over = std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
-      cut = cut || over;
+      if (over) {
+        cut = true;
+      }
       return over;
     };
     const std::string top = base_.program->graph.name;
@@ -166,9 +169,12 @@ class Run {
                              .held_out = held_out(task_, found.calibrated)};
       related_ = false;
     }
-    steps_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
-    if (steps_) {
-      result_.warnings.push_back(steps_->remark);
+    unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
+    if (!unrepeatable_) {
+      unrepeatable_ = with_jitter(task_, top, found, searched->judgement, options_.threads);
+    }
+    if (unrepeatable_) {
+      result_.warnings.push_back(unrepeatable_->remark);
     }
     forget_explained(left_out_, task_, *searched->judgement.chosen);
     const Judgement& judgement = searched->judgement;
@@ -279,7 +285,7 @@ class Run {
     const bool gap_calibrated =
         materiality_.is_left(found.calibrated.fit.residuals) ||
         (has_effect && materiality_.was_taken_for_noise(found.calibrated.fit.residuals, chosen.fit.residuals));
-    const VectorXd& residuals = steps_ ? steps_->residuals : chosen.fit.residuals;
+    const VectorXd& residuals = unrepeatable_ ? unrepeatable_->residuals : chosen.fit.residuals;
     const bool gap_left = materiality_.is_left(residuals);
 
     const Model model(task_, *base_.program);
@@ -477,7 +483,7 @@ class Run {
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;  ///< see Findings
-  std::optional<UnevenSteps> steps_{};
+  std::optional<Unrepeatable> unrepeatable_{};
   double predictable_ = 0.0;  ///< see Findings
   double unexplained_ = 0.0;  ///< likewise
   bool one_motion_ = false;   ///< see RecordCheck

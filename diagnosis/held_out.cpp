@@ -33,14 +33,19 @@ double mean_square(const HeldOut& one) {
   return count > 0.0 ? std::accumulate(one.squares.begin(), one.squares.end(), 0.0) / count : 0.0;
 }
 
-/// A noise whose ratio to the likely one is log-normal to each side, with 2.5 % of the draws below the range and as
-/// many above it.
+/// A noise whose ratio to the likely one is log-normal to each side, with 2.5 % of the draws at either end of its
+/// range: no noise is larger than what is left.
 double drawn(const NoiseRange& noise, std::mt19937_64& random) {
   constexpr double deviations = 1.96;
   const auto uniform = [&] { return (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53; };
-  const double normal = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+  const double size = std::sqrt(-2.0 * std::log(uniform()));
+  const double normal = size * std::cos(2.0 * std::numbers::pi * uniform());
   const double bound = normal < 0.0 ? noise.low : noise.high;
-  return noise.likely > 0.0 ? noise.likely * std::pow(bound / noise.likely, std::abs(normal) / deviations) : 0.0;
+  if (!(noise.likely > 0.0)) {
+    return normal < 0.0 ? noise.low : noise.high;  // of residuals that are 0
+  }
+  const double drawn = noise.likely * std::pow(bound / noise.likely, std::abs(normal) / deviations);
+  return std::clamp(drawn, noise.low, noise.high);
 }
 
 }  // namespace

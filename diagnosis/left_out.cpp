@@ -41,10 +41,7 @@ LeftOut as_left_out(Glitches glitches, std::size_t output, const Task& task, con
 
 /// An output as a model gives it, of all records one after the other; as measured where it gives none.
 std::vector<double> modelled(const Task& task, Model& model, const VectorXd& x, std::size_t output) {
-  std::vector<double> values;
-  for (const Experiment& experiment : model.problem().experiments) {
-    std::ranges::copy(experiment.measured[output], std::back_inserter(values));
-  }
+  std::vector<double> values = model.measured(output);
   VectorXd residuals;
   if (model.residuals(x, residuals)) {
     const VectorXd own = residuals.segment(static_cast<Index>(output) * std::ssize(values), std::ssize(values));

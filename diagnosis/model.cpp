@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace hysteron::diagnosis {
@@ -74,6 +75,14 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
       typical_[at] = std::max(std::abs(states[state]), 1e-3);
     }
   }
+}
+
+std::vector<double> Model::measured(std::size_t output) const {
+  std::vector<double> values;
+  for (const Experiment& experiment : problem_->experiments) {
+    std::ranges::copy(experiment.measured[output], std::back_inserter(values));
+  }
+  return values;
 }
 
 bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {

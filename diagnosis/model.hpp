@@ -69,6 +69,8 @@ class Model {
   [[nodiscard]] const VectorXd& prior() const { return prior_; }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const OutputErrorProblem& problem() const { return *problem_; }
+  /// An output as it was measured, of all records one after the other.
+  [[nodiscard]] std::vector<double> measured(std::size_t output) const;
 
   /// (model − measured)/scale, and its derivatives; false where one is not finite. Rounding hides from derivatives what
   /// lies before it; on average the rounded signal follows the signal. Derivatives are those of the diagram with its

@@ -203,7 +203,9 @@ double suspicious_from(const NoiseFloor& floor) {
 
 NoiseRange noise_range(double left) {
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
-  return {.low = left < 1.0 ? left / 3.0 : 0.85,
+  // Where less is left than the floor, that is too high, by an unknown factor; where as much is left, it is right.
+  const double trusted = std::clamp((left - 0.9) / 0.1, 0.0, 1.0);
+  return {.low = std::lerp(std::min(left, 1.0) / 3.0, 0.85, trusted),
           .likely = std::min(left, 1.0),
           .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
 }

@@ -51,7 +51,7 @@ struct NoiseFloor {
 /// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is
 /// no more than what is left; where less is left than the floor, this counted a fast effect as noise.
 struct NoiseRange {
-  double low = 1.0;     ///< with low and high a 95 % interval
+  double low = 1.0;     ///< with `high` a 95 % interval
   double likely = 1.0;  ///< the median
   double floor = 1.0;
   double high = 1.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -397,17 +398,25 @@ class Screening {
     try_together(shape, list, starts);
   }
 
-  /// Limits to both sides are alike as a rule, and one of them alone lets an integrator run away: both at once, from
-  /// point to point of the further one's grid in smaller steps, and by halves about the best of these.
+  /// Limits to both sides are alike as a rule, and one of them alone lets an integrator run away: both at once, at one
+  /// level from point to point of the further one's grid in smaller steps, and by halves about the best of these. Of a
+  /// signal that stays on one side of 0, each along its own grid.
   void try_together(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
     constexpr double smaller = 3.0;
+    constexpr double to_both_sides = 0.1;
     const auto grid_of = [&](Index j) -> const std::vector<double>& {
       return grids_.parameters[static_cast<std::size_t>(j)].values;
     };
-    const Index further = *std::ranges::max_element(list, {}, [&](Index j) { return std::abs(grid_of(j).front()); });
-    const bool about_zero = std::ranges::any_of(list, [&](Index j) { return grid_of(j).front() < 0.0; }) &&
-                            std::ranges::any_of(list, [&](Index j) { return grid_of(j).front() > 0.0; });
-    const double last = static_cast<double>(grid_of(further).size()) - 1.0;
+    const auto [low, high] = std::ranges::minmax(list, {}, [&](Index j) { return grid_of(j).front(); });
+    const double least = grid_of(low).front();
+    const double most = grid_of(high).front();
+    const Index further = -least > most ? low : high;
+    const bool about_zero = std::min(-least, most) > to_both_sides * std::max(-least, most);
+    std::size_t longest = 0;
+    for (const Index j : list) {
+      longest = std::max(longest, grid_of(j).size());
+    }
+    const double last = static_cast<double>(longest) - 1.0;
     const auto gain_at = [&](double place) {
       VectorXd values = shape;
       for (const Index j : list) {
@@ -433,8 +442,11 @@ class Screening {
     }
     for (double step = 0.5 / smaller; gain > worth_narrowing * background_.unexplained() && step > 0.05; step *= 0.5) {
       const double middle = best;
-      consider(middle - step);
-      consider(middle + step);
+      for (const double place : {middle - step, middle + step}) {
+        if (place > 0.0 && place < last) {
+          consider(place);
+        }
+      }
     }
   }
 

@@ -1,7 +1,5 @@
 #include "diagnosis/search.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "diagnosis/drivers.hpp"
 #include "diagnosis/line_start.hpp"
@@ -42,7 +41,7 @@ std::size_t starts_kept(const Applied& effect) {
 /// many.
 constexpr double more_than_chance = 10.0;
 
-/// A pair whose cost is below so many of the floor's is not tried with another effect in the place of one.
+/// A pair whose cost is below so many of the floor's closes the gap: no third effect is tried beside it.
 constexpr double well_closed = 1.3;
 /// An exchange has to bring the cost below this share of what it was for another one to follow.
 constexpr double worth_exchanging = 0.95;
@@ -109,6 +108,7 @@ class Searcher {
         begin_ += width_;
       }
       if (round == 0) {
+        can_stop_ = true;
         on_other_edges(bare, found);
       }
       if (round > 0) {
@@ -117,9 +117,6 @@ class Searcher {
       if (round == 1) {
         move_each(found, result);
         exchange(found, result);
-        if (is_closed(found)) {
-          exchange_in_best(found, result);
-        }
         simplify(found, result);
       }
       beam = next_beam(found, result, round == 0 ? options_.beam : 1);
@@ -293,6 +290,9 @@ class Searcher {
   /// where it is not.
   void on_other_edges(const Explanation& bare, std::vector<Explanation>& found) {
     std::ranges::stable_sort(found, {}, cost_of_fit);
+    if (found.empty() || !is_worth_following(bare.fit.cost, found.front().fit)) {
+      return;
+    }
     std::set<std::string> front;
     std::vector<Applied> fitted;
     for (const Explanation& one : found) {
@@ -327,8 +327,6 @@ class Searcher {
     std::ranges::move(reduced, std::back_inserter(found));
   }
 
-  /// Those pairs of effects that would explain most if what each of them does simply added up: neither need be among
-  /// the best by itself.
   void pair_up(const Explanation& from, const Search& result, std::vector<Explanation>& found) {
     constexpr std::size_t most_values = 20'000'000;
     Model model(task_, *from.variant.program);
@@ -390,6 +388,7 @@ class Searcher {
       }
     }
   }
+
   [[nodiscard]] bool is_closed(const std::vector<Explanation>& found) const {
     return std::ranges::any_of(found,
                                [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });
@@ -400,11 +399,14 @@ class Searcher {
   void exchange(std::vector<Explanation>& found, Search& result) {
     for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
       const double cost = best_of(found).fit.cost;
-      if (cost <= well_closed * floor_cost_ || cost > worth_exchanging * before) {
+      if (cost > worth_exchanging * before) {
         return;
       }
       before = cost;
       exchange_in_best(found, result);
+      if (cost <= well_closed * floor_cost_) {
+        return;  // which others close it, too, has been seen
+      }
     }
   }
   void exchange_in_best(std::vector<Explanation>& found, Search& result) {

@@ -1,8 +1,8 @@
 // The search for the effects that close the gap: screening, fits, sets of several effects.
 //
 // 1. The known parameters alone are fitted: what that closes is calibration.
-// 2. Every candidate is screened against what is left; the best are fitted together with the known parameters, the
-//    effects in front on all their edges.
+// 2. Every candidate is screened against what is left; the best are fitted together with the known parameters,
+//    those of the three effects in front on up to eight edges more.
 // 3. Pairs whose changes would add up to the residual are fitted. Where one of them closes the gap, each of its effects
 //    gives its place to all others once, to see which close it, too.
 // 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap. The

@@ -18,7 +18,8 @@ namespace hysteron::diagnosis {
 /// finds.
 void keep_best(std::vector<Screened>& list, std::size_t count, int of_each, int most_edges = 5);
 
-/// Of a list sorted by gain the best edges of these effects on which they have not been fitted.
+/// Of a list sorted by gain the best edges of these effects on which they have not been fitted, eight of
+/// each at most.
 [[nodiscard]] std::vector<Screened> on_untried_edges(const std::vector<Screened>& list,
                                                      const std::set<std::string>& effects,
                                                      const std::vector<Applied>& fitted);

@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "diagnosis/held_out.hpp"
 #include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
@@ -112,7 +111,7 @@ std::optional<MovedSteps> moved_steps(std::span<const double> smooth, std::span<
   return result;
 }
 
-std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& chosen) {
+std::optional<Unrepeatable> uneven_steps(const Task& task, const Explanation& chosen) {
   const std::vector<Unknown>& further = chosen.variant.further;
   const auto rounding = std::ranges::find(further, true, &Unknown::rounds);
   if (rounding == further.end()) {
@@ -127,14 +126,10 @@ std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& cho
   if (!(quantum > 0.0) || !model.residuals(even, smooth)) {
     return std::nullopt;
   }
-  UnevenSteps result{.residuals = chosen.fit.residuals};
+  Unrepeatable result{.residuals = chosen.fit.residuals};
   const Index rows = model.rows() / std::ssize(task.outputs);
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-    std::vector<double> measured;
-    for (const Experiment& experiment : model.problem().experiments) {
-      const Signal& values = experiment.measured[output];
-      measured.insert(measured.end(), values.begin(), values.end());
-    }
+    const std::vector<double> measured = model.measured(output);
     const Index first = static_cast<Index>(output) * rows;
     const Eigen::Map<const VectorXd> values(measured.data(), rows);
     const VectorXd given = smooth.segment(first, rows) * task.scales[output] + values;
@@ -159,9 +154,9 @@ std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& cho
   return result.remark.empty() ? std::nullopt : std::optional(std::move(result));
 }
 
-std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
-                                             Judgement& judgement) {
-  std::optional<UnevenSteps> steps = uneven_steps(task, *judgement.chosen);
+std::optional<Unrepeatable> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
+                                              Judgement& judgement) {
+  std::optional<Unrepeatable> steps = uneven_steps(task, *judgement.chosen);
   if (!steps) {
     return steps;
   }
@@ -175,17 +170,14 @@ std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& sea
     if (!better || names.size() >= whole.size() || !std::ranges::includes(whole, names)) {
       continue;
     }
-    std::optional<UnevenSteps> own = uneven_steps(task, one);
+    std::optional<Unrepeatable> own = uneven_steps(task, one);
     if (own && 0.5 * own->residuals.squaredNorm() - whole_cost < unnamed) {
       smaller = &one;
       steps = std::move(own);
     }
   }
   if (smaller != nullptr) {
-    judgement.chosen = smaller;
-    judgement.held_out = held_out(task, *smaller);
-    judgement.same.clear();
-    judgement.rivals = {{.explanation = smaller, .support = 0.0}};
+    choose_instead(task, *smaller, judgement);
   }
   const std::vector<std::string> chosen = judgement.chosen->names();
   std::erase_if(judgement.rivals, [&](const Weighed& one) {

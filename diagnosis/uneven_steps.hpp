@@ -25,17 +25,12 @@ struct MovedSteps {
                                                     double quantum);
 
 /// What a quantizer before an output leaves if its steps are uneven.
-struct UnevenSteps {
-  VectorXd residuals{};  ///< of all outputs; this one with its thresholds moved
-  std::string remark{};  ///< for the user
-};
-
 /// Nothing where the explanation has no quantizer, or its steps are even as far as the record tells.
-[[nodiscard]] std::optional<UnevenSteps> uneven_steps(const Task& task, const Explanation& chosen);
+[[nodiscard]] std::optional<Unrepeatable> uneven_steps(const Task& task, const Explanation& chosen);
 
 /// Those of the chosen set. Of what they explain an effect beside the quantizer may have had its part: a smaller set
 /// that with its steps leaves nearly as little is then the chosen one, and sets that hold it are no rivals.
-[[nodiscard]] std::optional<UnevenSteps> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
-                                                           Judgement& judgement);
+[[nodiscard]] std::optional<Unrepeatable> with_uneven_steps(const Task& task, const Search& search, double floor_cost,
+                                                            Judgement& judgement);
 
 }  // namespace hysteron::diagnosis

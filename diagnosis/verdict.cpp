@@ -250,6 +250,13 @@ std::string_view name_of(Verdict verdict) {
   return "unknown";
 }
 
+void choose_instead(const Task& task, const Explanation& one, Judgement& judgement) {
+  judgement.chosen = &one;
+  judgement.held_out = held_out(task, one);
+  judgement.same.clear();
+  judgement.rivals = {{.explanation = &one, .support = 0.0}};
+}
+
 double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried) {
   const double penalty = 0.5 * static_cast<double>(parameters) * std::log(std::max(2.0, samples)) +
                          static_cast<double>(effects) * std::log(static_cast<double>(std::max<std::size_t>(2, tried)));

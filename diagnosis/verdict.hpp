@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,15 @@ struct Judgement {
   VectorXd held_out{};            ///< residuals of the chosen set on what its fits have not seen
   double significance = 0.0;      ///< of the chosen set against the calibrated diagram, nats
 };
+
+/// What a machine does that no diagram repeats, counted as explained: steps of unequal widths, a delay that varies.
+struct Unrepeatable {
+  VectorXd residuals{};  ///< of all outputs, without it
+  std::string remark{};  ///< for the user
+};
+
+/// Another set than the weights chose, which has no rivals then.
+void choose_instead(const Task& task, const Explanation& one, Judgement& judgement);
 
 /// L(S) above, of a fit with so many parameters beside those of the calibrated diagram, after so many candidates.
 [[nodiscard]] double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried);

@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 
-#include "diagnosis/candidates.hpp"
-#include "diagnosis/insertion.hpp"
+#include "diagnosis/added_signal.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/screening.hpp"
 #include "diagnosis/signals.hpp"
@@ -91,24 +91,12 @@ Explained explain(const Task& task, const Explanation& calibrated, const std::st
                   const language::SourceFile& source, const Edge& edge, std::uint32_t block,
                   const std::vector<RecordSignals>& couplings, const Background& background) {
   Explained result{.edge = edge.name};
-  const std::string input = free_name(source.blocks[block], "ADDED_SIGNAL");
-  const std::string instance = free_name(source.blocks[block], "ADDED");
-  std::shared_ptr<const Program> program;
-  try {
-    program = compiled(
-        with_effect(
-            source, edge,
-            {.block = "HY_SUM", .instance = instance, .input = "IN1", .wires = {{"IN2", input}}, .new_input = input}),
-        top, {});
-  } catch (const InputError&) {
-    return result;
-  }
-  const auto node = std::ranges::find_if(program->graph.nodes, [&](const Node& one) { return one.path == instance; });
-  if (node == program->graph.nodes.end()) {
+  const std::optional<AddedSignal> added = with_added_signal(source, edge, block, top, {});
+  if (!added) {
     return result;
   }
   const VectorXd known = calibrated.fit.x.head(std::ssize(task.known));
-  const RecordSignals signal = wire_signals(task, *program, {program->graph.wire(*node, 0)}, known).front();
+  const RecordSignals signal = wire_signals(task, *added->program, {added->before}, known).front();
   const double sample_time = task.records.front().sample_time();
   const Extent extent = extent_of(signal, sample_time);
   const double size = 1e-3 * (extent.range() > 0.0 ? extent.range() : 1.0);
@@ -116,17 +104,14 @@ Explained explain(const Task& task, const Explanation& calibrated, const std::st
   probes.insert(probes.end(), couplings.begin(), couplings.end());
   MatrixXd changes(background.residuals().size(), std::ssize(probes));
   for (std::size_t j = 0; j < probes.size(); ++j) {
-    Task driven = task;
-    for (std::size_t e = 0; e < driven.records.size(); ++e) {
-      std::vector<double> values = probes[j][e];
+    RecordSignals scaled = probes[j];
+    for (Signal& values : scaled) {
       for (double& v : values) {
         v *= size;
       }
-      driven.records[e].add({.name = input, .values = std::move(values)});
     }
-    Model model(driven, *program);
-    VectorXd residuals;
-    if (!model.residuals(calibrated.fit.x, residuals)) {
+    const VectorXd residuals = residuals_with(task, *added, scaled, {}, calibrated.fit.x);
+    if (residuals.size() == 0) {
       return result;
     }
     changes.col(static_cast<Index>(j)) = residuals - background.residuals();

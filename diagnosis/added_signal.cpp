@@ -1,0 +1,44 @@
+#include "diagnosis/added_signal.hpp"
+
+#include <algorithm>
+
+#include "diagnosis/insertion.hpp"
+
+namespace hysteron::diagnosis {
+
+std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge, std::uint32_t index,
+                                             const std::string& top, const std::vector<Applied>& effects) {
+  AddedSignal added{.input = free_name(source.blocks[index], "ADDED_SIGNAL")};
+  const std::string instance = free_name(source.blocks[index], "ADDED");
+  try {
+    added.program = compiled(with_effect(source, edge,
+                                         {.block = "HY_SUM",
+                                          .instance = instance,
+                                          .input = "IN1",
+                                          .wires = {{"IN2", added.input}},
+                                          .new_input = added.input}),
+                             top, effects);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  const Graph& graph = added.program->graph;
+  const auto node = std::ranges::find_if(graph.nodes, [&](const Node& one) { return one.path == instance; });
+  if (node == graph.nodes.end()) {
+    return std::nullopt;
+  }
+  added.before = graph.wire(*node, 0);
+  return added;
+}
+
+VectorXd residuals_with(const Task& task, const AddedSignal& added, const RecordSignals& signal,
+                        std::span<const Unknown> further, const VectorXd& x) {
+  Task driven = task;
+  for (std::size_t e = 0; e < driven.records.size(); ++e) {
+    driven.records[e].add({.name = added.input, .values = signal[e]});
+  }
+  Model model(driven, *added.program, further);
+  VectorXd residuals;
+  return model.residuals(x, residuals) ? residuals : VectorXd();
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,107 @@
+// A delay that varies about its mean.
+#include "diagnosis/jitter.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/task.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double sample_time = 0.005;
+constexpr double mean_delay = 0.03;
+constexpr double noise = 0.002;
+
+/// A signal, late by the mean and by a part that is drawn anew every eight samples, straight between the draws.
+std::vector<double> late(const std::vector<double>& signal, double deviation) {
+  test::Noise random(7);
+  std::vector<double> draws(signal.size() / 8 + 2);
+  std::ranges::generate(draws, [&] { return deviation * random(); });
+  std::vector<double> result;
+  for (std::size_t k = 0; k < signal.size(); ++k) {
+    const double part = static_cast<double>(k % 8) / 8.0;
+    const double delay = mean_delay + std::lerp(draws[k / 8], draws[k / 8 + 1], part);
+    const double at = std::max(0.0, static_cast<double>(k) - std::max(0.0, delay) / sample_time);
+    const auto below = static_cast<std::size_t>(at);
+    result.push_back(
+        std::lerp(signal[below], signal[std::min(below + 1, signal.size() - 1)], at - static_cast<double>(below)));
+  }
+  return result;
+}
+
+/// A record of the axis whose force comes late.
+records::Record late_axis(double deviation, const test::Effect& effect = {}) {
+  const std::vector<double> force = test::rich_force();
+  const records::Record driven =
+      test::measured(test::program_of(test::axis(effect)), test::record_of("FORCE", late(force, deviation)), noise);
+  records::Record record = test::record_of("FORCE", force);
+  record.add(driven.column("V"));
+  return record;
+}
+
+/// The axis with a delay of its force, fitted.
+struct Fitted {
+  explicit Fitted(const records::Record& record) : task(task_of(test::input_of(test::axis(), "", {record}))) {
+    task.scales = {noise};
+    const std::string text = test::axis();
+    const Variant bare{.text = text, .program = std::make_shared<const Program>(test::program_of(text))};
+    std::vector<Candidate> list = candidates_of(bare, "AXIS", {.effects = {"delay"}});
+    std::erase_if(list, [](const Candidate& one) { return one.own().edge != "FORCE"; });
+    one.variant = list.front().variant;
+    one.variant.further = {{.path = one.variant.effects.back().paths.front(),
+                            .start = 0.02,
+                            .lower = 0.0,
+                            .upper = 1.0,
+                            .typical = 0.01,
+                            .deviation = std::numeric_limits<double>::infinity()}};
+    Model model(task, *one.variant.program, one.variant.further);
+    one.fit = fit(model, model.start(), {.iterations = 40});
+  }
+  Task task{};
+  Explanation one{};
+};
+
+TEST(Jitter, OfKnownSize) {
+  for (const double deviation : {0.004, 0.008}) {
+    const Fitted fitted(late_axis(deviation));
+    const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->left, 2.0);
+    // Knots six samples apart stand for draws eight apart, which move the speed more.
+    EXPECT_GT(found->deviation, deviation);
+    EXPECT_LT(found->deviation, 1.7 * deviation);
+    EXPECT_LT(found->unexplained, 0.5 * found->left) << "of " << found->left;
+    EXPECT_GT(found->unexplained, 1.0) << "each knot that is estimated is paid for";
+  }
+}
+
+TEST(Jitter, NoneWhereTheDelayIsConstant) {
+  const Fitted fitted(late_axis(0.0));
+  const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->deviation, 0.001);
+  EXPECT_NEAR(found->unexplained, found->left, 0.02);
+}
+
+TEST(Jitter, IsNotWhatInputsForetell) {
+  const DiagnosisOptions options{.effects = {"delay"}};
+  const DiagnosisInput constant = test::input_of(
+      test::axis(), test::axis_parameters,
+      {late_axis(0.0, {"HY_COULOMB_FRICTION := (LEVEL := 0.4, PRESLIDE := 0.001)", "FORCE", ", V := LATE.XOUT"})});
+  EXPECT_THAT(diagnose(constant, options).warnings, testing::Not(testing::Contains(testing::HasSubstr("varies by"))));
+  const Diagnosis jittered = diagnose(test::input_of(test::axis(), test::axis_parameters, {late_axis(0.008)}), options);
+  EXPECT_THAT(jittered.warnings, testing::Contains(testing::HasSubstr("The delay at FORCE varies by")));
+  EXPECT_NE(jittered.verdict, Verdict::Partial) << jittered.summary;
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

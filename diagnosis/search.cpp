@@ -307,18 +307,12 @@ class Searcher {
   /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
   /// all that it was there for, and the other one by itself the better explanation.
   void without_each(std::vector<Explanation>& found, const Search& result) const {
-    std::vector<const Explanation*> best;
-    best.reserve(found.size());
-    for (const Explanation& one : found) {
-      best.push_back(&one);
-    }
-    std::ranges::stable_sort(best,
-                             [](const Explanation* a, const Explanation* b) { return a->fit.cost < b->fit.cost; });
-    best.resize(std::min<std::size_t>(best.size(), 3));
+    std::ranges::stable_sort(found, {}, cost_of_fit);
     std::vector<Explanation> reduced;
-    for (const Explanation* const one : best) {
-      for (std::size_t i = 0; i < one->variant.effects.size() && one->variant.effects.size() > 1; ++i) {
-        Explanation smaller = sets_.without(*one, i, result.calibrated.variant, 30);
+    for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 3); ++k) {
+      const Explanation& one = found[k];
+      for (std::size_t i = 0; i < one.variant.effects.size() && one.variant.effects.size() > 1; ++i) {
+        Explanation smaller = sets_.without(one, i, result.calibrated.variant, 30);
         if (std::isfinite(smaller.fit.cost)) {
           reduced.push_back(std::move(smaller));
         }

@@ -55,7 +55,7 @@ struct Fitted {
     const std::string text = test::axis();
     const Variant bare{.text = text, .program = std::make_shared<const Program>(test::program_of(text))};
     std::vector<Candidate> list = candidates_of(bare, "AXIS", {.effects = {"delay"}});
-    std::erase_if(list, [](const Candidate& one) { return one.own().edge != "FORCE"; });
+    std::erase_if(list, [](const Candidate& other) { return other.own().edge != "FORCE"; });
     one.variant = list.front().variant;
     one.variant.further = {{.path = one.variant.effects.back().paths.front(),
                             .start = 0.02,

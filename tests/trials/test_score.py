@@ -92,6 +92,15 @@ class Controls(unittest.TestCase):
             answer = named([effect]) | {"effects": [{"id": effect, "edge": edge}]}
             self.assertEqual(judged(label, {"0": answer})[0].right_edge, right)
 
+    def test_the_edges_that_a_verdict_cannot_tell_apart(self) -> None:
+        label = {"0": next(label for label in KEYS.values() if label["stratum"] == "single")}
+        effect = label["0"]["effects"][0]["id"]
+        for same, right, count in ((["D"], False, 2), (["b ", "D"], True, 3), ([], False, 1), (["C"], False, 1)):
+            answer = named([effect]) | {"effects": [{"id": effect, "edge": "C", "same_edges": same}]}
+            case = judged(label, {"0": answer})[0]
+            self.assertEqual((case.right_edge, case.listed_edge, case.listed_edges), (False, right, count))
+        self.assertIsNone(judged(label, {"0": named(["nothing"])})[0].listed_edge)
+
     def test_the_same_output_by_another_name(self) -> None:
         effect = {"id": "offset", "edge": "U", "edges": ["U"], "realisation": "offset", "same_as": {"drift": ["VEL.XOUT"]}}
         label = {"0": dict(next(iter(KEYS.values())), stratum="single", ratio=10.0, effects=[effect])}

@@ -66,6 +66,12 @@ def _bucket(ratio: float) -> float:
     return 10.0 if ratio >= 5.5 else (3.0 if ratio >= 1.75 else 1.0)
 
 
+def _mean(key: str, title: str, values: list[int], goal: float | None, at_least: bool = True) -> Figure:
+    mean = float(np.mean(values)) if values else math.nan
+    spread = 1.96 * float(np.std(values)) / math.sqrt(len(values)) if values else math.nan
+    return Figure(key, title, mean, mean - spread, mean + spread, len(values), goal, at_least, unit="")
+
+
 def _quantile(key: str, title: str, values: list[float], q: float, goal: float | None, at_least: bool = True, unit: str = "") -> Figure:
     value, low, high = quantile_interval(values, q)
     return Figure(key, title, value, low, high, len(values), goal, at_least, unit=unit)
@@ -88,10 +94,7 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     chosen = of("single", "cousin", where=lambda c: _bucket(c.ratio) >= 3.0)
     out.append(_proportion("named_r3", "  single effects by either formula, R ≥ 3", share([c.named_first for c in chosen]), None))
     out.append(_proportion("rivals", "truth in the rival set, R ≥ 3", share([c.in_rivals for c in chosen]), 0.95))
-    sizes = [float(len(c.rivals)) for c in chosen if c.rivals]
-    mean = float(np.mean(sizes)) if sizes else math.nan
-    spread = 1.96 * float(np.std(sizes)) / math.sqrt(len(sizes)) if sizes else math.nan
-    out.append(Figure("rival_size", "  mean size of the rival set", mean, mean - spread, mean + spread, len(sizes), 1.5, False, unit=""))
+    out.append(_mean("rival_size", "  mean size of the rival set", [len(c.rivals) for c in chosen if c.rivals], 1.5, False))
     chosen = of("none", "calibration")
     out.append(_proportion("false_alarm", "false alarms: no effect, or calibration only", share([c.verdict in ACCUSES for c in chosen]), 0.01, False))
     chosen = of("calibration", where=lambda c: c.ratio >= 2.0)
@@ -124,8 +127,11 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     covered = [c for c in chosen if not math.isnan(c.closed_interval[0]) and not math.isnan(c.closed_true)]
     hits = [c.closed_interval[0] - 1e-9 <= c.closed_true <= c.closed_interval[1] + 1e-9 for c in covered]
     out.append(_proportion("coverage", "coverage of the 95 % closure interval", share(hits), 0.92, band=(0.92, 0.98)))
-    edges = [c.right_edge for c in of(*IN_LIBRARY, where=lambda c: c.ratio >= 2.0) if c.right_edge is not None]
-    out.append(_proportion("edge", "edge right up to its group, R ≥ 3", share(edges), 0.95))
+    chosen = of(*IN_LIBRARY, where=lambda c: c.ratio >= 2.0 and c.right_edge is not None)
+    out.append(_proportion("edge", "edge right up to its group, R ≥ 3", share([c.right_edge for c in chosen]), 0.95))
+    listed = share([c.listed_edge for c in chosen])
+    out.append(_proportion("listed_edge", "  or one that the verdict cannot tell from it", listed, None))
+    out.append(_mean("listed_edges", "  mean number of these", [c.listed_edges for c in chosen], None))
     seconds = [c.seconds for c in cases if not math.isnan(c.seconds)]
     out.append(_quantile("seconds", "seconds a case, median", seconds, 0.5, None, False, "s"))
     out.append(_quantile("seconds_max", "  slowest", seconds, 1.0, 60.0, False, "s"))

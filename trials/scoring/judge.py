@@ -36,6 +36,10 @@ class Judgement:
     cannot_tell: bool
     seconds: float
     right_edge: bool | None
+    listed_edge: bool | None
+    """Whether a right one is among the edges that the verdict says it cannot tell apart, its own with them."""
+    listed_edges: int
+    """How many these are."""
     closed: float
     """As the verdict claims it."""
     closed_interval: tuple[float, float]
@@ -122,11 +126,16 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
     same = {name: e["id"] for e in label["effects"] for name in e.get("same_as", {}) if name not in truth}
     effects = [e for e in v.get("effects", []) if str(e.get("id")) not in CALIBRATION_NAMES]
     named = tuple(same.get(str(e.get("id")), str(e.get("id"))) for e in effects)
-    right_edge = None
+    right_edge = listed_edge = None
+    listed: set[str] = set()
     if named and named[0] in truth:
         true = label["effects"][truth.index(named[0])]
         allowed = true.get("same_as", {}).get(effects[0]["id"], true["edges"])
-        right_edge = plain(effects[0].get("edge", "")) in {plain(edge) for edge in allowed}
+        stated = plain(effects[0].get("edge", ""))
+        right = {plain(edge) for edge in allowed}
+        listed = {stated, *(plain(edge) for edge in effects[0].get("same_edges", []))}
+        right_edge = stated in right
+        listed_edge = not listed.isdisjoint(right)
     gap = v.get("gap") or {}
     output = 1 if len(label["noise_rms"]) > 1 and str(gap.get("signal", "")).upper() == "U" else 0
     floor2 = float(label["noise_rms"][output]) ** 2
@@ -148,6 +157,8 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         cannot_tell=bool(v.get("cannot_tell")),
         seconds=number(run.get("seconds")),
         right_edge=right_edge,
+        listed_edge=listed_edge,
+        listed_edges=len(listed),
         closed=number(gap.get("closed")),
         closed_interval=(number(gap.get("closed_low")), number(gap.get("closed_high"))),
         closed_true=closed_true,

@@ -1,15 +1,14 @@
 #include "diagnosis/added_signal.hpp"
 
-#include <algorithm>
-
 #include "diagnosis/insertion.hpp"
 
 namespace hysteron::diagnosis {
 
-std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge, std::uint32_t index,
+std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge,
                                              const std::string& top, const std::vector<Applied>& effects) {
-  AddedSignal added{.input = free_name(source.blocks[index], "ADDED_SIGNAL")};
-  const std::string instance = free_name(source.blocks[index], "ADDED");
+  const language::FunctionBlock& block = source.blocks[edge.definition];
+  AddedSignal added{.input = free_name(block, "ADDED_SIGNAL")};
+  const std::string instance = free_name(block, "ADDED");
   try {
     added.program = compiled(with_effect(source, edge,
                                          {.block = "HY_SUM",
@@ -22,8 +21,8 @@ std::optional<AddedSignal> with_added_signal(const language::SourceFile& source,
     return std::nullopt;
   }
   const Graph& graph = added.program->graph;
-  const auto node = std::ranges::find_if(graph.nodes, [&](const Node& one) { return one.path == instance; });
-  if (node == graph.nodes.end()) {
+  const Node* const node = find_node(graph, instance);
+  if (node == nullptr) {
     return std::nullopt;
   }
   added.before = graph.wire(*node, 0);

@@ -1,7 +1,6 @@
 // A diagram with a signal added on one of its edges, from a column of its own: what its outputs make of it.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,10 +18,9 @@ struct AddedSignal {
   Wire before{};        ///< the signal that it is added to
 };
 
-/// Nothing where the diagram refuses it. `edge` lies in the block `top`, by its place in the file `index`.
+/// Nothing where the diagram refuses it. `edge` lies in the block `top` itself.
 [[nodiscard]] std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge,
-                                                           std::uint32_t index, const std::string& top,
-                                                           const std::vector<Applied>& effects);
+                                                           const std::string& top, const std::vector<Applied>& effects);
 
 /// The residuals at x with this signal added; empty where they have no value.
 [[nodiscard]] VectorXd residuals_with(const Task& task, const AddedSignal& added, const RecordSignals& signal,

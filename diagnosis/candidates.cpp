@@ -14,12 +14,6 @@
 namespace hysteron::diagnosis {
 namespace {
 
-const Node* find_node(const Graph& graph, std::string_view path) {
-  const auto found = std::ranges::find_if(
-      graph.nodes, [&](const Node& node) { return node.block != nullptr && language::same_name(node.path, path); });
-  return found == graph.nodes.end() ? nullptr : &*found;
-}
-
 Wire wire_of(const Graph& graph, const Node& node, std::string_view pin) {
   for (std::size_t i = 0; i < node.block->inputs.size(); ++i) {
     if (node.block->inputs[i].name == pin) {
@@ -369,6 +363,28 @@ class Enumeration {
 };
 
 }  // namespace
+
+const Node* find_node(const Graph& graph, std::string_view path) {
+  const auto found = std::ranges::find_if(
+      graph.nodes, [&](const Node& node) { return node.block != nullptr && language::same_name(node.path, path); });
+  return found == graph.nodes.end() ? nullptr : &*found;
+}
+
+std::string in_the_diagram(std::string edge, const std::vector<Applied>& effects) {
+  const auto of_block = [](const std::string& one, const Applied& effect) {
+    return one.starts_with(effect.instance + ".");
+  };
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Applied& other : effects) {
+      if (of_block(edge, other) && !of_block(other.edge, other)) {
+        edge = other.edge;
+        moved = true;
+      }
+    }
+  }
+  return edge;
+}
 
 void set_parameter(Graph& graph, std::string_view path, double value) {
   if (const std::int64_t found = find_parameter(graph, path); found >= 0) {

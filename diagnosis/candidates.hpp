@@ -36,6 +36,10 @@ struct Applied {
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
 };
 
+/// The edge of the user's diagram that an edge lies on: beside the block of another effect there is only the edge where
+/// that one was put.
+[[nodiscard]] std::string in_the_diagram(std::string edge, const std::vector<Applied>& effects);
+
 /// A diagram with the effects added so far.
 struct Variant {
   std::string text{};
@@ -66,6 +70,9 @@ struct CandidateOptions {
 /// `base` compiles; candidates that do not are left out.
 [[nodiscard]] std::vector<Candidate> candidates_of(const Variant& base, const std::string& top,
                                                    const CandidateOptions& options);
+
+/// The block of a path, without regard to case; null where there is none.
+[[nodiscard]] const Node* find_node(const Graph& graph, std::string_view path);
 
 /// Sets the first element of a parameter by its path; nothing where there is none of that name.
 void set_parameter(Graph& graph, std::string_view path, double value);

@@ -160,24 +160,6 @@ double unrivalled(const Judgement& judgement) {
   return 1.0 - wrong_if_near * std::min(1.0, near / std::max(nearest, near));
 }
 
-/// The edge of the user's diagram that an edge lies on: beside the block of another effect there is only the edge where
-/// that one was put.
-std::string in_the_diagram(std::string edge, const std::vector<Applied>& effects) {
-  const auto of_block = [](const std::string& one, const Applied& effect) {
-    return one.starts_with(effect.instance + ".");
-  };
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const Applied& other : effects) {
-      if (of_block(edge, other) && !of_block(other.edge, other)) {
-        edge = other.edge;
-        moved = true;
-      }
-    }
-  }
-  return edge;
-}
-
 std::string unit_behind(const GapFinding& gap) {
   return gap.unit.empty() ? "" : " " + gap.unit;
 }

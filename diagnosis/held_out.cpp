@@ -42,10 +42,10 @@ double drawn(const NoiseRange& noise, std::mt19937_64& random) {
   const double normal = size * std::cos(2.0 * std::numbers::pi * uniform());
   const double bound = normal < 0.0 ? noise.low : noise.high;
   if (!(noise.likely > 0.0)) {
-    return normal < 0.0 ? noise.low : noise.high;  // of residuals that are 0
+    return bound;  // of residuals that are 0
   }
-  const double drawn = noise.likely * std::pow(bound / noise.likely, std::abs(normal) / deviations);
-  return std::clamp(drawn, noise.low, noise.high);
+  const double ratio = std::pow(bound / noise.likely, std::abs(normal) / deviations);
+  return std::clamp(noise.likely * ratio, noise.low, noise.high);
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct Closure {
 };
 
 /// 1 − (MSE − floor²)/(MSE₀ − floor²) with its 95 % interval: a bootstrap of blocks, each draw with a noise from its
-/// range. The upper bound is at least the share that the whole record's fit
-/// closes, `fitted` being its mean square. It may lie above 1 where the floor may be higher than what is left.
+/// range. The upper bound is at least the share that the whole record's fit closes, `fitted` being its mean square. It
+/// may lie above 1 where the floor may be higher than what is left.
 [[nodiscard]] Closure closure(const HeldOut& before, const HeldOut& after, double fitted, const NoiseRange& noise,
                               std::uint64_t seed);
 

@@ -189,15 +189,12 @@ std::optional<Jitter> jitter_of(const Task& task, const std::string& top, const 
   if (edge == nullptr || edge->definition != index) {
     return std::nullopt;
   }
-  const std::optional<AddedSignal> added = with_added_signal(*source, *edge, index, top, one.variant.effects);
+  const std::optional<AddedSignal> added = with_added_signal(*source, *edge, top, one.variant.effects);
   if (!added) {
     return std::nullopt;
   }
   const RecordSignals rates = rates_behind(task, *added, one);
-  const VectorXd as_it_is = residuals_with(task, *added, peak_at({}, 1, rates, 0.0), one.variant.further, one.fit.x);
-  if (as_it_is.size() == 0) {
-    return std::nullopt;
-  }
+  const VectorXd& as_it_is = one.fit.residuals;
   const double size = 0.1 * task.records.front().sample_time();
   const std::size_t reach = samples_between_knots(rates);
   const std::vector<Knot> knots = knots_over(rates, reach);
@@ -263,9 +260,8 @@ std::optional<Unrepeatable> with_jitter(const Task& task, const std::string& top
   }
   result.remark = fmt::format(
       "The delay at {} varies by {:.3g} s RMS about its mean: of the {:.2g} floors that a constant one leaves, {:.2g} "
-      "are "
-      "no consequence of that.",
-      delay_of(*best)->edge, jitter.deviation, jitter.left, jitter.unexplained);
+      "are no consequence of that.",
+      in_the_diagram(delay_of(*best)->edge, best->variant.effects), jitter.deviation, jitter.left, jitter.unexplained);
   return result;
 }
 

@@ -27,7 +27,9 @@ std::vector<Superposition::Pair> pairs_that_add_up(const Task& task, const std::
       changes.col(static_cast<Index>(i)) = residuals - background.residuals();
     }
   });
-  const auto effect_of = [&](Index single) { return singles[static_cast<std::size_t>(single)].candidate.own().effect; };
+  const auto effect_of = [&](Index single) -> const std::string& {
+    return singles[static_cast<std::size_t>(single)].candidate.own().effect;
+  };
   std::vector<Superposition::Pair> pairs;
   std::set<std::set<std::string>> taken;
   for (const Superposition::Pair& one : Superposition(changes, background).pairs(range)) {

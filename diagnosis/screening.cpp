@@ -117,7 +117,7 @@ class Screening {
   /// best.
   void narrow(std::vector<Start>& starts) {
     for (Index j = 0; j < parameters_ && !starts.empty(); ++j) {
-      const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
+      const std::vector<double>& grid = points(j);
       Start best = *std::ranges::max_element(starts, {}, &Start::gain);
       if (!is_narrowed(j) || grid.size() < 3 || best.gain < worth_narrowing * background_.unexplained()) {
         continue;
@@ -203,6 +203,9 @@ class Screening {
     }
   }
 
+  [[nodiscard]] const std::vector<double>& points(Index j) const {
+    return grids_.parameters[static_cast<std::size_t>(j)].values;
+  }
   [[nodiscard]] const EffectParameter& parameter(Index j) const {
     return screened_.candidate.own().parameters[static_cast<std::size_t>(j)];
   }
@@ -229,7 +232,7 @@ class Screening {
   [[nodiscard]] std::vector<Index> strengths() const {
     std::vector<Index> list;
     for (Index j = 0; j < parameters_; ++j) {
-      if (parameter(j).strength && !grids_.parameters[static_cast<std::size_t>(j)].values.empty()) {
+      if (parameter(j).strength && !points(j).empty()) {
         list.push_back(j);
       }
     }
@@ -253,7 +256,7 @@ class Screening {
     for (Index k = std::ssize(linear_); k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
       VectorXd values = shape;
-      values[j] = grids_.parameters[static_cast<std::size_t>(j)].values.front();
+      values[j] = points(j).front();
       const VectorXd change = change_at(values);
       linear_.push_back(change.size() > 0 && is_linear(j, values, change));
     }
@@ -272,7 +275,7 @@ class Screening {
     VectorXd small = shape;
     for (Index k = 0; k < std::ssize(list); ++k) {
       const Index j = list[static_cast<std::size_t>(k)];
-      const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
+      const std::vector<double>& grid = points(j);
       VectorXd values = shape;
       values[j] = linear ? grid.front() : grid[grid.size() / 2];
       small[j] = values[j];
@@ -296,9 +299,9 @@ class Screening {
     const Index begin = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && !is_end(j); });
     const Index end = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && is_end(j); });
     const Index strength = strengths().front();
-    const std::vector<double>& instants = grids_.parameters[static_cast<std::size_t>(begin)].values;
-    const double never = grids_.parameters[static_cast<std::size_t>(end)].values.back();
-    const double small = grids_.parameters[static_cast<std::size_t>(strength)].values.front();
+    const std::vector<double>& instants = points(begin);
+    const double never = points(end).back();
+    const double small = points(strength).front();
     VectorXd values = neutral_;
     values[end] = never;
     values[strength] = small;
@@ -375,7 +378,7 @@ class Screening {
         list.size() > 1 && std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
     VectorXd each_at_its_best = shape;
     for (const Index j : list) {
-      const std::vector<double>& grid = grids_.parameters[static_cast<std::size_t>(j)].values;
+      const std::vector<double>& grid = points(j);
       double best = 0.0;
       for (const double value : grid) {
         VectorXd values = shape;
@@ -404,28 +407,25 @@ class Screening {
   void try_together(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
     constexpr double smaller = 3.0;
     constexpr double to_both_sides = 0.1;
-    const auto grid_of = [&](Index j) -> const std::vector<double>& {
-      return grids_.parameters[static_cast<std::size_t>(j)].values;
-    };
-    const auto [low, high] = std::ranges::minmax(list, {}, [&](Index j) { return grid_of(j).front(); });
-    const double least = grid_of(low).front();
-    const double most = grid_of(high).front();
+    const auto [low, high] = std::ranges::minmax(list, {}, [&](Index j) { return points(j).front(); });
+    const double least = points(low).front();
+    const double most = points(high).front();
     const Index further = -least > most ? low : high;
     const bool about_zero = std::min(-least, most) > to_both_sides * std::max(-least, most);
     std::size_t longest = 0;
     for (const Index j : list) {
-      longest = std::max(longest, grid_of(j).size());
+      longest = std::max(longest, points(j).size());
     }
     const double last = static_cast<double>(longest) - 1.0;
     const auto gain_at = [&](double place) {
       VectorXd values = shape;
       for (const Index j : list) {
-        const std::vector<double>& grid = grid_of(about_zero ? further : j);
+        const std::vector<double>& grid = points(about_zero ? further : j);
         const double here = std::clamp(place, 0.0, static_cast<double>(grid.size()) - 1.0);
         const auto below = static_cast<std::size_t>(here);
         const std::size_t above = std::min(below + 1, grid.size() - 1);
         const double value = std::lerp(grid[below], grid[above], here - static_cast<double>(below));
-        values[j] = about_zero ? std::copysign(value, grid_of(j).front()) : value;
+        values[j] = about_zero ? std::copysign(value, points(j).front()) : value;
       }
       return try_point(values, starts);
     };

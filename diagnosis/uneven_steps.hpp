@@ -24,8 +24,8 @@ struct MovedSteps {
 [[nodiscard]] std::optional<MovedSteps> moved_steps(std::span<const double> smooth, std::span<const double> measured,
                                                     double quantum);
 
-/// What a quantizer before an output leaves if its steps are uneven.
-/// Nothing where the explanation has no quantizer, or its steps are even as far as the record tells.
+/// What a quantizer before an output leaves if its steps are uneven: its thresholds moved. Nothing where the
+/// explanation has no quantizer, or its steps are even as far as the record tells.
 [[nodiscard]] std::optional<Unrepeatable> uneven_steps(const Task& task, const Explanation& chosen);
 
 /// Those of the chosen set. Of what they explain an effect beside the quantizer may have had its part: a smaller set

@@ -88,10 +88,10 @@ struct Explained {
 };
 
 Explained explain(const Task& task, const Explanation& calibrated, const std::string& top,
-                  const language::SourceFile& source, const Edge& edge, std::uint32_t block,
-                  const std::vector<RecordSignals>& couplings, const Background& background) {
+                  const language::SourceFile& source, const Edge& edge, const std::vector<RecordSignals>& couplings,
+                  const Background& background) {
   Explained result{.edge = edge.name};
-  const std::optional<AddedSignal> added = with_added_signal(source, edge, block, top, {});
+  const std::optional<AddedSignal> added = with_added_signal(source, edge, top, {});
   if (!added) {
     return result;
   }
@@ -169,7 +169,7 @@ std::vector<EdgeFinding> where(const Task& task, const Search& found, const std:
   const Background background(model, calibrated.fit);
   std::vector<Explained> list(edges.size());
   in_parallel(edges.size(), threads, [&](std::size_t i) {
-    list[i] = explain(task, calibrated, top, *source, edges[i], index, couplings, background);
+    list[i] = explain(task, calibrated, top, *source, edges[i], couplings, background);
   });
   std::map<std::string, double> closed = closed_alone(found);
   for (const EffectFinding& effect : effects) {

@@ -134,7 +134,8 @@ class Enumeration {
   /// Whether the effect is there already: twice the same one on two edges is a search for a better fit, not for a
   /// cause.
   [[nodiscard]] bool present(const std::string& effect) const {
-    return std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.effect == effect; });
+    return !options_.again &&
+           std::ranges::any_of(base_.effects, [&](const Applied& applied) { return applied.effect == effect; });
   }
 
   /// Whether an instance is an effect that was added, or carries one: no motion of the machine.

@@ -64,6 +64,7 @@ struct Candidate {
 struct CandidateOptions {
   std::vector<std::string> effects{};  ///< identifiers; empty: all
   std::vector<std::string> columns{};  ///< of the records that the diagram does not use, for cross-coupling
+  bool again = false;                  ///< effects that the variant has are tried beside themselves, too
 };
 
 /// Every effect on every edge, every richer block, every parameter that switches an effect on.

@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "codegen/parameters/apply.hpp"
-#include "diagnosis/discrepancy.hpp"
 #include "diagnosis/findings.hpp"
+#include "diagnosis/harmonics.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
@@ -24,7 +24,9 @@
 #include "diagnosis/outlook.hpp"
 #include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
+#include "diagnosis/remainder.hpp"
 #include "diagnosis/search.hpp"
+#include "diagnosis/shares.hpp"
 #include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
 #include "diagnosis/uneven_steps.hpp"
@@ -34,10 +36,8 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// A residual of this many floors is no noise, whether or not anything predicts it; of more where the floor
-/// is that of the fast part alone.
-constexpr double far_above_floor = 3.0;
-constexpr double far_above_fast_floor = 4.0;
+/// A residual of this many times what may be noise is none, whether or not anything predicts it.
+constexpr double far_above = 3.0;
 /// The confidence of a verdict on a record that holds one motion only is no higher.
 constexpr double sure_of_one_motion = 0.8;
 /// Nor where the begin of the record is not explained: what is named may stand for another state at the start.
@@ -169,6 +169,10 @@ class Run {
                              .held_out = held_out(task_, found.calibrated)};
       related_ = false;
     }
+    harmonics_ = with_harmonics(task_, top, *searched->judgement.chosen, searched->judgement.weighing_samples);
+    if (harmonics_) {
+      choose_instead(task_, *harmonics_, searched->judgement);
+    }
     unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (!unrepeatable_) {
       unrepeatable_ = with_jitter(task_, top, found, searched->judgement, options_.threads);
@@ -288,26 +292,33 @@ class Run {
     const VectorXd& residuals = unrepeatable_ ? unrepeatable_->residuals : chosen.fit.residuals;
     const bool gap_left = materiality_.is_left(residuals);
 
-    const Model model(task_, *base_.program);
-    const Discrepancy left = discrepancy_of(model, residuals);
-    const double size = residuals.norm() / std::sqrt(static_cast<double>(residuals.size()));
-    const bool predictable = left.share_low > 0.02 && left.rms > 0.25 * std::min(size, 4.0);
-    predictable_ = gap_left ? std::max(left.share, 0.0) : 0.0;
-    const double open = open_share(found, residuals);
-    unexplained_ = rms(residuals, gap_output_) / floors_[gap_output_].value;
-    result_.unknown_score = std::pow(open, 0.25) * excess_of(size);
+    std::vector<std::size_t> samples;
+    for (const records::Record& record : task_.records) {
+      samples.push_back(record.time().size());
+    }
+    const Index rows = residuals.size() / std::ssize(task_.outputs);
+    for (std::size_t output = 0; output < floors_.size(); ++output) {
+      const auto own = chosen.fit.residuals.segment(static_cast<Index>(output) * rows, rows);
+      noise_.push_back(possible_noise(floors_[output], own, samples));
+    }
+    const Remainder left =
+        remainder_of(Model(task_, *base_.program), found.calibrated.fit.residuals, residuals, noise_);
+    predictable_ = gap_left ? left.share : 0.0;
+    unexplained_ = rms(residuals, gap_output_) / (floors_[gap_output_].value * noise_[gap_output_]);
+    result_.unknown_score = std::pow(left.open, 0.25) * left.excess;
 
     if (!related_) {
       result_.verdict = Verdict::Unknown;
       result_.unknown_score = 1.0;
     } else if (has_effect && gap_calibrated) {
-      const bool much_left = (open > 0.5 && predictable) || (open > 0.1 && size > 2.0) || size > far_above();
+      const bool much_left =
+          (left.open > 0.5 && left.is_predictable) || (left.open > 0.1 && left.size > 2.0) || left.size > far_above;
       if (gap_left && much_left) {
         result_.verdict = Verdict::Partial;
       } else {
         result_.verdict = judgement.rivals.size() > 1 ? Verdict::Group : Verdict::Named;
       }
-    } else if (gap_calibrated && size > least_above() && (predictable || size > far_above())) {
+    } else if (gap_calibrated && left.size > least_above() && (left.is_predictable || left.size > far_above)) {
       result_.verdict = Verdict::Unknown;
     } else if (gap_before && calibration_matters(found.calibrated)) {
       result_.verdict = Verdict::Calibration;
@@ -316,37 +327,9 @@ class Run {
     }
   }
 
-  /// Of what is left, as a multiple of the floor, the share of its energy that is beyond the noise.
-  [[nodiscard]] double excess_of(double size) const {
-    const double noise = suspicious_from(floors_[gap_output_]);
-    return 1.0 - std::pow(noise / std::max(size, noise), 2);
-  }
-  /// Less above the floor is no claim that something is unknown.
+  /// Less above the noise is no claim that something is unknown.
   [[nodiscard]] double least_above() const {
-    const double noise = suspicious_from(floors_[gap_output_]);
-    return floors_[gap_output_].evidence == "repeats" ? noise : std::max(hidden_noise, noise);
-  }
-  [[nodiscard]] double far_above() const {
-    return floors_[gap_output_].evidence == "differences" ? far_above_fast_floor : far_above_floor;
-  }
-
-  /// Of the gap that calibration leaves, what the verdict leaves open.
-  [[nodiscard]] double open_share(const Search& found, const VectorXd& left) const {
-    const double gap = found.calibrated.fit.cost - floor_cost_;
-    return gap > 0.0 ? std::clamp((0.5 * left.squaredNorm() - floor_cost_) / gap, 0.0, 1.0) : 0.0;
-  }
-
-  [[nodiscard]] Discrepancy discrepancy_of(const Model& model, const VectorXd& residuals) const {
-    const Index rows = residuals.size() / std::ssize(task_.outputs);
-    Discrepancy largest;
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const Discrepancy here =
-          discrepancy(model.problem().experiments, residuals.segment(static_cast<Index>(output) * rows, rows));
-      if (here.rms > largest.rms) {
-        largest = here;
-      }
-    }
-    return largest;
+    return floors_[gap_output_].evidence == "repeats" ? suspicious_from : hidden_noise;
   }
 
   /// Whether the refit closed something material.
@@ -460,7 +443,8 @@ class Run {
                            .edges = {result_.effects.back().edge},
                            .improved_rms = result_.gap.improved,
                            .probability = 1.0}};
-        result_.unknown_score = excess_of(result_.gaps[one.output].improved / floors_[one.output].value);
+        result_.unknown_score =
+            excess_of(result_.gaps[one.output].improved / (floors_[one.output].value * noise_[one.output]));
         result_.confidence = 0.9 * (1.0 - result_.unknown_score);
       }
     }
@@ -478,11 +462,13 @@ class Run {
   Variant base_{};
   std::vector<std::string> unused_{};  ///< columns that the diagram does not name
   std::vector<NoiseFloor> floors_{};
+  std::vector<double> noise_{};  ///< of each output what may be noise, in floors
   Materiality materiality_{task_, floors_, options_.material};
   std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
   double floor_cost_ = 0.0;
-  std::size_t gap_output_ = 0;  ///< see Findings
+  std::size_t gap_output_ = 0;              ///< see Findings
+  std::optional<Explanation> harmonics_{};  ///< the chosen set, where its line has some
   std::optional<Unrepeatable> unrepeatable_{};
   double predictable_ = 0.0;  ///< see Findings
   double unexplained_ = 0.0;  ///< likewise

@@ -10,7 +10,8 @@
 #include <set>
 
 #include "diagnosis/improved.hpp"
-#include "diagnosis/noise_floor.hpp"
+#include "diagnosis/remainder.hpp"
+#include "diagnosis/shares.hpp"
 #include "diagnosis/task.hpp"
 #include "support/diagnostic.hpp"
 
@@ -84,58 +85,6 @@ std::string leaf(const std::string& path) {
   return path.substr(path.rfind('.') + 1);
 }
 
-/// ½Σr² of the best set with exactly these identifiers; NaN where none was fitted.
-double cost_of_names(const Search& search, std::vector<std::string> names) {
-  std::ranges::sort(names);
-  if (names.empty()) {
-    return search.calibrated.fit.cost;
-  }
-  for (const Explanation& one : search.explanations) {  // best first
-    if (one.names() == names) {
-      return one.fit.cost;
-    }
-  }
-  return std::nan("");
-}
-
-/// Shapley shares of the effects of a set in what the set closes, from the sets that were fitted.
-std::vector<double> shares_of(const Findings& findings, const Explanation& chosen) {
-  const Search& search = findings.search;
-  const std::size_t count = chosen.variant.effects.size();
-  std::vector<std::string> names;
-  for (const Applied& applied : chosen.variant.effects) {
-    names.push_back(applied.effect);
-  }
-  std::vector<double> shares(count, 0.0);
-  std::vector<std::size_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    order[i] = i;
-  }
-  double orders = 0.0;
-  do {
-    std::vector<std::string> set;
-    double before = search.calibrated.fit.cost;
-    for (const std::size_t i : order) {
-      set.push_back(names[i]);
-      const double fitted = set.size() == count ? chosen.fit.cost : cost_of_names(search, set);
-      const double after = std::isnan(fitted) ? before : std::min(before, fitted);
-      shares[i] += before - after;
-      before = after;
-    }
-    orders += 1.0;
-  } while (std::ranges::next_permutation(order).found);
-  const double gap = std::max(1e-300, gap_energy(findings));
-  double total = 0.0;
-  for (double& share : shares) {
-    share = std::clamp(share / orders / gap, 0.0, 1.0);
-    total += share;
-  }
-  for (double& share : shares) {
-    share /= std::max(1.0, total);  // a smaller set whose fit went further
-  }
-  return shares;
-}
-
 /// In a gap of the noise's size one of seven names was another effect's, in the sealed sets of the blind trial.
 double seen(const GapFinding& gap) {
   constexpr double wrong_at_noise = 0.15;
@@ -158,6 +107,20 @@ double unrivalled(const Judgement& judgement) {
     }
   }
   return 1.0 - wrong_if_near * std::min(1.0, near / std::max(nearest, near));
+}
+
+/// `id at edge`, the lines of one disturbance together.
+std::vector<std::string> named_once(const std::vector<EffectFinding>& effects) {
+  std::vector<std::string> names;
+  for (const EffectFinding& effect : effects) {
+    const auto is_same = [&](const EffectFinding& other) { return other.id == effect.id && other.edge == effect.edge; };
+    if (&*std::ranges::find_if(effects, is_same) == &effect) {
+      const auto lines = std::ranges::count_if(effects, is_same);
+      names.push_back(fmt::format("{} at {}{}", effect.id, effect.edge,
+                                  lines > 1 ? fmt::format(" ({} lines)", lines) : std::string()));
+    }
+  }
+  return names;
 }
 
 std::string unit_behind(const GapFinding& gap) {
@@ -295,9 +258,8 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double strength = 1.0 - std::exp(-0.2 * std::max(0.0, findings.judgement.significance));
       const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
-      // What is left beyond any noise that the floor does not see was explained by nothing: the name is not the whole.
-      const double explained = std::min(
-          1.0, std::min(hidden_noise, suspicious_from(so_far.gap.floor)) / std::max(findings.unexplained, 1e-9));
+      // What is left beyond any noise was explained by nothing: the name is not the whole.
+      const double explained = std::min(1.0, suspicious_from / std::max(findings.unexplained, 1e-9));
       return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap) *
                             unrivalled(findings.judgement),
                         0.0, 0.99);
@@ -377,42 +339,6 @@ std::vector<std::string> structural_reasons(const Diagnosis& so_far, double dura
   return reasons;
 }
 
-double gap_energy(const Findings& findings) {
-  const double calibrated = findings.search.calibrated.fit.cost;
-  return std::max(0.0, calibrated - std::min(findings.floor_cost, findings.kept.fit.cost));
-}
-
-double add_share(std::vector<EffectFinding>& effects, double gap, EffectFinding more, double energy) {
-  const double whole = gap + energy;
-  for (EffectFinding& effect : effects) {
-    effect.share *= gap / whole;
-  }
-  more.share = energy / whole;
-  effects.push_back(std::move(more));
-  return whole;
-}
-
-GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
-                  const std::vector<std::string>& ports) {
-  static const std::set<std::string, std::less<>> of_wires{"delay", "clock", "quantization", "glitches"};
-  std::set<std::string> wires;
-  for (const std::string& port : ports) {
-    if (const Edge* const edge = find_edge(edges, port)) {
-      wires.insert(edge->name);
-    }
-  }
-  GapSplit split{.open = 1.0};
-  for (const EffectFinding& effect : effects) {
-    const bool at_port =
-        wires.contains(effect.edge) ||
-        std::ranges::any_of(effect.same_edges, [&](const std::string& same) { return wires.contains(same); });
-    (at_port && of_wires.contains(effect.id) ? split.input_output : split.plant) += effect.share;
-    split.open -= effect.share;
-  }
-  split.open = std::max(0.0, split.open);
-  return split;
-}
-
 std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& gaps, const VectorXd& nominal,
                              const VectorXd& calibrated, const VectorXd& improved) {
   std::vector<Trace> traces;
@@ -442,10 +368,7 @@ std::string summary_of(const Diagnosis& found, bool below_material) {
   std::string gap =
       fmt::format("{} {:.3g} → {:.3g} → {:.3g}{} RMS, floor {:.3g}", found.gap.signal, found.gap.nominal,
                   found.gap.calibrated, found.gap.improved, unit_behind(found.gap), found.gap.floor.value);
-  std::vector<std::string> effects;
-  for (const EffectFinding& effect : found.effects) {
-    effects.push_back(fmt::format("{} at {}", effect.id, effect.edge));
-  }
+  const std::vector<std::string> effects = named_once(found.effects);
   switch (found.verdict) {
     case Verdict::None:
       return fmt::format("No material gap: {} ({}).",

@@ -17,7 +17,7 @@ struct Findings {
   double floor_cost = 0.0;
   std::size_t gap_output = 0;  ///< the output whose gap counts, by its place among the measured ones
   double predictable = 0.0;    ///< share of what is left that depends on what the machine did; 0 where nothing is left
-  double unexplained = 0.0;    ///< what is left of that output, in floors, but for what uneven steps explain
+  double unexplained = 0.0;  ///< what is left of that output over what may be noise, but for what uneven steps explain
 };
 
 [[nodiscard]] std::vector<ParameterFinding> nominal_findings(const Task& task);
@@ -41,17 +41,6 @@ struct Findings {
 /// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict. `duration`: of the
 /// longest record, where a periodic disturbance was tried; else 0.
 [[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration);
-
-/// What the effects could close of what calibration leaves, ½Σr² in deviations of the noise.
-[[nodiscard]] double gap_energy(const Findings& findings);
-
-/// An effect more, of so much energy that is not in the gap yet, to others whose shares are of it: all shares become
-/// those of the gap with it, which is returned.
-[[nodiscard]] double add_share(std::vector<EffectFinding>& effects, double gap, EffectFinding more, double energy);
-
-/// `edges` are those of the diagram as given, `ports` its inputs and outputs.
-[[nodiscard]] GapSplit split_of(const std::vector<EffectFinding>& effects, const std::vector<Edge>& edges,
-                                const std::vector<std::string>& ports);
 
 /// `gaps` are those of the outputs, and name their units: a column of a record may have none.
 [[nodiscard]] std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& gaps,

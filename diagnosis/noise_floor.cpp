@@ -195,12 +195,6 @@ double least_excess(const NoiseFloor& floor) {
   return (floor.evidence == "repeats" ? of_repeats : of_others) * floor.value;
 }
 
-double suspicious_from(const NoiseFloor& floor) {
-  constexpr double of_differences = 2.0;
-  constexpr double of_others = 1.2;
-  return floor.evidence == "differences" ? of_differences : of_others;
-}
-
 NoiseRange noise_range(double left) {
   constexpr double own_error = 0.01;  // of an RMS over thousands of samples
   // Where less is left than the floor, that is too high, by an unknown factor; where as much is left, it is right.

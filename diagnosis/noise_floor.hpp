@@ -44,10 +44,6 @@ struct NoiseFloor {
 /// the floor does not come from repeats: what else there is may have missed slow noise.
 [[nodiscard]] double least_excess(const NoiseFloor& floor);
 
-/// From so many floors on a residual grows suspicious: the floor of slow noise is off by a tenth, even from repeats.
-/// Differences see fast noise only, and in one trial of twenty are below 0.61 of the noise.
-[[nodiscard]] double suspicious_from(const NoiseFloor& floor);
-
 /// What the noise may be, in units of the floor. Slow noise hides from the floor, by a half as a rule at most, and is
 /// no more than what is left; where less is left than the floor, this counted a fast effect as noise.
 struct NoiseRange {

@@ -403,9 +403,10 @@ class Screening {
 
   /// Limits to both sides are alike as a rule, and one of them alone lets an integrator run away: both at once, at one
   /// level from point to point of the further one's grid in smaller steps, and by halves about the best of these. Of a
-  /// signal that stays on one side of 0, each along its own grid.
+  /// signal that stays on one side of 0, each along its own grid; rates in ratios, as a tenth more or less may hide
+  /// one.
   void try_together(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
-    constexpr double smaller = 3.0;
+    constexpr double narrow_ratio = 1.12;
     constexpr double to_both_sides = 0.1;
     const auto [low, high] = std::ranges::minmax(list, {}, [&](Index j) { return points(j).front(); });
     const double least = points(low).front();
@@ -417,6 +418,9 @@ class Screening {
       longest = std::max(longest, points(j).size());
     }
     const double last = static_cast<double>(longest) - 1.0;
+    const bool rates = std::ranges::all_of(list, [&](Index j) { return parameter(j).role == Role::Rate; });
+    const double ratio = rates ? points(further).front() / points(further).back() : 1.0;
+    const double smaller = std::max(3.0, std::ceil(std::abs(std::log(ratio)) / (last * std::log(narrow_ratio))));
     const auto gain_at = [&](double place) {
       VectorXd values = shape;
       for (const Index j : list) {
@@ -424,7 +428,9 @@ class Screening {
         const double here = std::clamp(place, 0.0, static_cast<double>(grid.size()) - 1.0);
         const auto below = static_cast<std::size_t>(here);
         const std::size_t above = std::min(below + 1, grid.size() - 1);
-        const double value = std::lerp(grid[below], grid[above], here - static_cast<double>(below));
+        const double share = here - static_cast<double>(below);
+        const double value = rates ? grid[below] * std::pow(grid[above] / grid[below], share)
+                                   : std::lerp(grid[below], grid[above], share);
         values[j] = about_zero ? std::copysign(value, points(j).front()) : value;
       }
       return try_point(values, starts);

@@ -66,7 +66,7 @@ std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, 
     case Role::Quantum:
       return geometric(0.003 * range, 0.4 * range, 1.07);
     case Role::Rate:
-      return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2})
+      return std::isinf(field.neutral) ? scaled(fastest, {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2, 0.1, 0.05, 0.025})
                                        : scaled(range / hints.duration, {0.05});
     case Role::Duration:
       if (rings && !hints.frequencies.empty()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/shares.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {

@@ -49,8 +49,8 @@ records::Record late_axis(double deviation, const test::Effect& effect = {}) {
 }
 
 /// The axis with a delay of its force, fitted.
-struct Fitted {
-  explicit Fitted(const records::Record& record) : task(task_of(test::input_of(test::axis(), "", {record}))) {
+struct DelayedAxis {
+  explicit DelayedAxis(const records::Record& record) : task(task_of(test::input_of(test::axis(), "", {record}))) {
     task.scales = {noise};
     const std::string text = test::axis();
     const Variant bare{.text = text, .program = std::make_shared<const Program>(test::program_of(text))};
@@ -72,7 +72,7 @@ struct Fitted {
 
 TEST(Jitter, OfKnownSize) {
   for (const double deviation : {0.004, 0.008}) {
-    const Fitted fitted(late_axis(deviation));
+    const DelayedAxis fitted(late_axis(deviation));
     const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
     ASSERT_TRUE(found);
     EXPECT_GT(found->left, 2.0);
@@ -85,7 +85,7 @@ TEST(Jitter, OfKnownSize) {
 }
 
 TEST(Jitter, NoneWhereTheDelayIsConstant) {
-  const Fitted fitted(late_axis(0.0));
+  const DelayedAxis fitted(late_axis(0.0));
   const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
   ASSERT_TRUE(found);
   EXPECT_LT(found->deviation, 0.001);

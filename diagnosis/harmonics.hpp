@@ -1,0 +1,19 @@
+// Harmonics of a periodic disturbance: mains hum and spindles have them, at frequencies that the line in front tells.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "diagnosis/fitting.hpp"
+#include "diagnosis/verdict.hpp"
+
+namespace hysteron::diagnosis {
+
+/// A set whose periodic disturbance has lines at 2 to 5 times its frequency beside it, on the same edge, each as an
+/// effect of the same name. A line is added while it gains three nats beyond its penalty on `samples` samples; nothing
+/// where none does. The search itself takes no effect twice, as with two lines at any frequencies it would fit what is
+/// no disturbance.
+[[nodiscard]] std::optional<Explanation> with_harmonics(const Task& task, const std::string& top,
+                                                        const Explanation& one, double samples);
+
+}  // namespace hysteron::diagnosis

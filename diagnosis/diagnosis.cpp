@@ -292,17 +292,9 @@ class Run {
     const VectorXd& residuals = unrepeatable_ ? unrepeatable_->residuals : chosen.fit.residuals;
     const bool gap_left = materiality_.is_left(residuals);
 
-    std::vector<std::size_t> samples;
-    for (const records::Record& record : task_.records) {
-      samples.push_back(record.time().size());
-    }
-    const Index rows = residuals.size() / std::ssize(task_.outputs);
-    for (std::size_t output = 0; output < floors_.size(); ++output) {
-      const auto own = chosen.fit.residuals.segment(static_cast<Index>(output) * rows, rows);
-      noise_.push_back(possible_noise(floors_[output], own, samples));
-    }
-    const Remainder left =
-        remainder_of(Model(task_, *base_.program), found.calibrated.fit.residuals, residuals, noise_);
+    const Model model(task_, *base_.program);
+    noise_ = possible_noise(model, floors_, chosen.fit.residuals);
+    const Remainder left = remainder_of(model, found.calibrated.fit.residuals, residuals, noise_);
     predictable_ = gap_left ? left.share : 0.0;
     unexplained_ = rms(residuals, gap_output_) / (floors_[gap_output_].value * noise_[gap_output_]);
     result_.unknown_score = std::pow(left.open, 0.25) * left.excess;

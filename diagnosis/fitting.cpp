@@ -99,6 +99,13 @@ std::vector<std::string> Explanation::places() const {
   return places;
 }
 
+std::optional<Index> place_in_fit(const Task& task, const Explanation& one, const std::string& path) {
+  const auto found = std::ranges::find(one.variant.further, path, &Unknown::path);
+  return found == one.variant.further.end()
+             ? std::nullopt
+             : std::optional(std::ssize(task.known) + (found - one.variant.further.begin()));
+}
+
 Explanation placed(const Task& task, const Screened& one, const Start& start, const VectorXd& known) {
   Explanation result{.variant = one.candidate.variant};
   std::vector<Unknown>& further = result.variant.further;

@@ -1,6 +1,7 @@
 // The fit of one candidate: from the starts that the screening has found, first a few steps, then to the end.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Explanation {
   [[nodiscard]] std::vector<std::string> places() const;  ///< identifiers with their edges, sorted
   [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
 };
+
+/// Where in the fit's x a parameter of its effects stands; nothing where it was not fitted.
+[[nodiscard]] std::optional<Index> place_in_fit(const Task& task, const Explanation& one, const std::string& path);
 
 /// Where the known parameters of the bare diagram may stand when a fit begins.
 struct KnownStarts {

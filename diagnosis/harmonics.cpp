@@ -31,17 +31,15 @@ struct Line {
 std::optional<Line> line_of(const Task& task, const Explanation& one) {
   for (const Applied& applied : one.variant.effects) {
     Line line{.effect = applied.effect, .edge = in_the_diagram(applied.edge, one.variant.effects)};
-    for (std::size_t j = 0; j < one.variant.further.size(); ++j) {
-      const std::string& path = one.variant.further[j].path;
-      if (std::ranges::find(applied.paths, path) == applied.paths.end()) {
+    for (const std::string& path : applied.paths) {
+      const std::optional<Index> at = place_in_fit(task, one, path);
+      if (!at) {
         continue;
       }
-      const double value = one.fit.x[std::ssize(task.known) + static_cast<Index>(j)];
-      const EffectParameter& parameter = applied.parameter(path);
-      if (parameter.role == Role::Frequency) {
-        line.frequency = value;
-      } else if (parameter.strength) {
-        line.size = std::hypot(line.size, value);
+      if (applied.parameter(path).role == Role::Frequency) {
+        line.frequency = one.fit.x[*at];
+      } else if (applied.parameter(path).strength) {
+        line.size = std::hypot(line.size, one.fit.x[*at]);
       }
     }
     if (line.frequency > 0.0 && !applied.has(Role::Duration)) {
@@ -71,13 +69,13 @@ std::optional<Explanation> with_line_at(const Task& task, const std::string& top
       start.values[static_cast<Index>(j)] = value;
     }
     screened.candidate = std::move(candidate);
-    Explanation result = placed(task, screened, start, one.fit.x);
-    finish(task, result, false);
-    const Model model(task, *result.variant.program, result.variant.further);
-    for (std::size_t j = 0; j < result.variant.further.size(); ++j) {
-      result.variant.further[j].unit = model.problem().parameters[task.known.size() + j].unit;
+    screened.starts = {std::move(start)};
+    Explanation result = begun_from(task, screened, one, {});
+    if (!std::isfinite(result.fit.cost)) {
+      return std::nullopt;
     }
-    return std::isfinite(result.fit.cost) ? std::optional(std::move(result)) : std::nullopt;
+    finish(task, result, false);
+    return result;
   }
   return std::nullopt;
 }

@@ -164,13 +164,8 @@ std::vector<const Explanation*> sets_with_delay(const Search& search, const Expl
 
 /// The dead time of the delay at the fit; 0 where it is none of its parameters.
 double mean_delay(const Task& task, const Explanation& one) {
-  const std::string path = delay_of(one)->instance + ".DEAD_TIME";
-  for (std::size_t j = 0; j < one.variant.further.size(); ++j) {
-    if (one.variant.further[j].path == path) {
-      return one.fit.x[std::ssize(task.known) + static_cast<Index>(j)];
-    }
-  }
-  return 0.0;
+  const std::optional<Index> at = place_in_fit(task, one, delay_of(one)->instance + ".DEAD_TIME");
+  return at ? one.fit.x[*at] : 0.0;
 }
 
 }  // namespace

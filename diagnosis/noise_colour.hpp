@@ -18,7 +18,8 @@
 namespace hysteron::diagnosis {
 
 /// σ, in the unit of the residuals, which lie one record behind the other with so many samples each; 0 where a record
-/// of 256 samples is missing. Of white noise right to a few hundredths, of coloured to a sixth of itself.
+/// of 256 samples is missing. Of white noise right to a few hundredths; of coloured, up to a pole of 0.7, to an
+/// eighth in the mean and to a third of itself in one record, above that rather too much.
 [[nodiscard]] double noise_by_fast_part(const Eigen::VectorXd& residuals, const std::vector<std::size_t>& samples);
 
 }  // namespace hysteron::diagnosis

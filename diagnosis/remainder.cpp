@@ -46,6 +46,21 @@ double possible_noise(const NoiseFloor& floor, const VectorXd& residuals, const 
   return std::clamp(fast, 1.0 / slow_over_fast, most_noise(floor));
 }
 
+std::vector<double> possible_noise(const Model& model, const std::vector<NoiseFloor>& floors,
+                                   const VectorXd& residuals) {
+  std::vector<std::size_t> samples;
+  for (const Experiment& experiment : model.problem().experiments) {
+    samples.push_back(experiment.drive.steps);
+  }
+  const Index rows = residuals.size() / std::ssize(floors);
+  std::vector<double> noise;
+  for (Index output = 0; output < std::ssize(floors); ++output) {
+    const NoiseFloor& floor = floors[static_cast<std::size_t>(output)];
+    noise.push_back(possible_noise(floor, residuals.segment(output * rows, rows), samples));
+  }
+  return noise;
+}
+
 double excess_of(double size) {
   return 1.0 - std::pow(suspicious_from / std::max(size, suspicious_from), 2);
 }
@@ -68,7 +83,7 @@ Remainder remainder_of(const Model& model, const VectorXd& calibrated, const Vec
   const Discrepancy foretold = largest_discrepancy(model, left, noise.size());
   constexpr double notable_share = 0.02;
   constexpr double notable_size = 0.25;  // of what is left, or of four units
-  result.share = std::max(foretold.share, 0.0);
+  result.share = foretold.share;
   result.is_predictable =
       foretold.share_low > notable_share && foretold.rms > notable_size * std::min(result.size, 4.0);
   return result;

@@ -25,6 +25,10 @@ inline constexpr double suspicious_from = 1.2;
 [[nodiscard]] double possible_noise(const NoiseFloor& floor, const VectorXd& residuals,
                                     const std::vector<std::size_t>& samples);
 
+/// n of each output, of residuals of all outputs.
+[[nodiscard]] std::vector<double> possible_noise(const Model& model, const std::vector<NoiseFloor>& floors,
+                                                 const VectorXd& residuals);
+
 /// Of so much left, in units of what may be noise, the share of energy beyond `suspicious_from`.
 [[nodiscard]] double excess_of(double size);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "diagnosis/task.hpp"
@@ -24,11 +25,25 @@ double cost_of_names(const Search& search, std::vector<std::string> names) {
   return std::nan("");
 }
 
+/// What it costs to leave one effect out of a set, all else as it was fitted.
+double cost_without(const Task& task, const Explanation& chosen, const Applied& effect) {
+  Model model(task, *chosen.variant.program, chosen.variant.further);
+  VectorXd x = chosen.fit.x;
+  for (std::size_t j = 0; j < effect.paths.size(); ++j) {
+    const std::optional<Index> at = place_in_fit(task, chosen, effect.paths[j]);
+    if (at && effect.parameters[j].strength) {
+      x[*at] = effect.parameters[j].field.neutral;
+    }
+  }
+  VectorXd residuals;
+  (void)model.residuals(x, residuals);
+  return std::max(0.0, 0.5 * residuals.squaredNorm() - 0.5 * chosen.fit.residuals.squaredNorm());
+}
+
 /// Lines of one disturbance have the same name, and so no sets that would tell them apart: what they close together
 /// goes to each by what leaving it out costs.
 void share_among_lines(const Task& task, const Explanation& chosen, std::vector<double>& shares) {
   const std::vector<Applied>& effects = chosen.variant.effects;
-  Model model(task, *chosen.variant.program, chosen.variant.further);
   std::map<std::string, std::vector<std::size_t>> by_name;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     by_name[effects[i].effect].push_back(i);
@@ -41,17 +56,7 @@ void share_among_lines(const Task& task, const Explanation& chosen, std::vector<
     double costs = 0.0;
     std::vector<double> cost(effects.size(), 0.0);
     for (const std::size_t i : lines) {
-      VectorXd x = chosen.fit.x;
-      for (std::size_t j = 0; j < chosen.variant.further.size(); ++j) {
-        const auto path = std::ranges::find(effects[i].paths, chosen.variant.further[j].path);
-        const auto at = static_cast<std::size_t>(path - effects[i].paths.begin());
-        if (path != effects[i].paths.end() && effects[i].parameters[at].strength) {
-          x[model.first_further() + static_cast<Index>(j)] = effects[i].parameters[at].field.neutral;
-        }
-      }
-      VectorXd residuals;
-      (void)model.residuals(x, residuals);
-      cost[i] = std::max(0.0, 0.5 * residuals.squaredNorm() - 0.5 * chosen.fit.residuals.squaredNorm());
+      cost[i] = cost_without(task, chosen, effects[i]);
       costs += cost[i];
       together += shares[i];
     }

@@ -89,12 +89,9 @@ Explanation fitted_with(const Task& task, const Explanation& from, const Explana
   VectorXd shared = stands;
   shared.head(model.first_further()) = chosen.fit.x.head(model.first_further());
   for (std::size_t i = 0; i < from.variant.further.size(); ++i) {
-    for (std::size_t j = 0; j < chosen.variant.further.size(); ++j) {
-      if (from.variant.further[i].path == chosen.variant.further[j].path) {
-        const double value = chosen.fit.x[model.first_further() + static_cast<Index>(j)];
-        shared[model.first_further() + static_cast<Index>(i)] = value;
-        tuned[model.first_further() + static_cast<Index>(i)] = value;
-      }
+    if (const std::optional<Index> at = place_in_fit(task, chosen, from.variant.further[i].path)) {
+      shared[model.first_further() + static_cast<Index>(i)] = chosen.fit.x[*at];
+      tuned[model.first_further() + static_cast<Index>(i)] = chosen.fit.x[*at];
     }
   }
   for (const VectorXd& start : {stands, tuned, shared}) {

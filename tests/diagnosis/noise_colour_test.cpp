@@ -43,7 +43,7 @@ TEST(NoiseByFastPart, ColouredNoiseIsSeenWhole) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       mean += noise_by_fast_part(coloured(seed, pole), {whole}) / 8.0;
     }
-    EXPECT_NEAR(mean, 1.0, 0.2) << pole;
+    EXPECT_NEAR(mean, 1.0, 0.12) << pole;
   }
 }
 

@@ -32,7 +32,7 @@ struct DiagnosisOptions {
   double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; noise_floor.hpp says the least
   std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
   int most_effects = 3;
-  double budget = 45.0;  ///< seconds after which no further effect is added
+  double budget = 40.0;  ///< seconds after which no further effect is added
   std::uint64_t seed = 1;
   unsigned threads = 2;
   std::function<void(double fraction, std::string_view text)> progress{};

@@ -144,20 +144,31 @@ bool is_foretold(const Task& task, const Explanation& one) {
   return false;
 }
 
-/// The chosen set where it has a delay, else those that have one and no more effects, the smallest first.
+/// The chosen set and the same with its delay on other edges, since a constant delay commutes with much that its
+/// variation does not. Where it has none, those that have one and no more effects, the smallest first.
 std::vector<const Explanation*> sets_with_delay(const Search& search, const Explanation& chosen) {
-  if (delay_of(chosen) != nullptr) {
-    return {&chosen};
-  }
   std::vector<const Explanation*> list;
-  std::set<std::vector<std::string>> taken;
-  for (std::size_t effects = 1; effects <= chosen.variant.effects.size(); ++effects) {
+  const auto add_each = [&](const auto& is_wanted, const auto& kind_of) {
+    std::set<decltype(kind_of(chosen))> taken;
+    for (const Explanation* const one : list) {
+      taken.insert(kind_of(*one));
+    }
     for (const Explanation& one : search.explanations) {
-      if (one.variant.effects.size() == effects && list.size() < most_sets && delay_of(one) != nullptr &&
-          one.fit.cost < far_behind * chosen.fit.cost && taken.insert(one.names()).second) {
+      if (list.size() < most_sets && delay_of(one) != nullptr && one.fit.cost < far_behind * chosen.fit.cost &&
+          is_wanted(one) && taken.insert(kind_of(one)).second) {
         list.push_back(&one);
       }
     }
+  };
+  if (delay_of(chosen) != nullptr) {
+    list.push_back(&chosen);
+    add_each([&](const Explanation& one) { return one.names() == chosen.names(); },
+             [](const Explanation& one) { return delay_of(one)->edge; });
+    return list;
+  }
+  for (std::size_t effects = 1; effects <= chosen.variant.effects.size(); ++effects) {
+    add_each([&](const Explanation& one) { return one.variant.effects.size() == effects; },
+             [](const Explanation& one) { return one.names(); });
   }
   return list;
 }

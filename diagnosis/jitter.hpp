@@ -29,11 +29,11 @@ struct Jitter {
 [[nodiscard]] std::optional<Jitter> jitter_of(const Task& task, const std::string& top, const Explanation& one,
                                               unsigned threads);
 
-/// Of the chosen set, or where it has no delay of another one that has, with no more effects: what its jitter leaves
-/// has less than half of the energy that the chosen set leaves, a larger set's less than half of a smaller one's.
-/// Another one is then the chosen one. A delay that varies by more than 0.7 of its mean is something else, and what
-/// inputs and outputs foretell of a residual is no jitter. The residuals are those of the set, on each output that the
-/// delay moves as large as what is still a surprise.
+/// Of the chosen set, or the same with its delay on another edge, or where it has no delay of another one that has,
+/// with no more effects: what its jitter leaves has less than half of the energy that the chosen set leaves, a larger
+/// set's less than half of a smaller one's. The one that leaves least is then the chosen one. A delay that varies by
+/// more than 0.7 of its mean is something else, and what inputs and outputs foretell of a residual is no jitter. The
+/// residuals are those of the set, on each output that the delay moves as large as what is still a surprise.
 [[nodiscard]] std::optional<Unrepeatable> with_jitter(const Task& task, const std::string& top, const Search& search,
                                                       Judgement& judgement, unsigned threads);
 

@@ -1,8 +1,10 @@
 #include "diagnosis/missed_samples.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 #include "diagnosis/spectrum.hpp"
 
@@ -172,9 +174,16 @@ class Runs {
   std::vector<std::uint8_t> held_;
 };
 
-/// Adds a record's runs, whose first row is `offset`, and the squares of what they hide.
+/// A run that was held.
+struct Held {
+  std::size_t first = 0;   ///< row of the output
+  std::size_t length = 0;  ///< samples
+  double step = 0.0;       ///< at its end
+};
+
+/// The runs of a record whose first row is `offset`.
 void add(const std::vector<double>& values, const std::vector<std::uint8_t>& held, std::size_t offset,
-         MissedSamples& result, double& squares) {
+         std::vector<Held>& runs) {
   for (std::size_t k = 1; k < values.size(); ++k) {
     if (held[k] == 0) {
       continue;
@@ -183,25 +192,52 @@ void add(const std::vector<double>& values, const std::vector<std::uint8_t>& hel
     while (k + 1 < values.size() && held[k + 1] != 0) {
       ++k;
     }
-    const std::size_t length = k + 1 - first;
-    result.longest = std::max(result.longest, length);
-    const double step = k + 1 < values.size() ? values[k + 1] - values[first - 1] : 0.0;
-    for (std::size_t i = 0; i < length; ++i) {
-      result.rows.push_back(offset + first + i);
-      squares += std::pow(step * static_cast<double>(i + 1) / static_cast<double>(length + 1), 2);
+    runs.push_back({.first = offset + first,
+                    .length = k + 1 - first,
+                    .step = k + 1 < values.size() ? values[k + 1] - values[first - 1] : 0.0});
+  }
+}
+
+double variance(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::ArrayXd> all(values.data(), std::ssize(values));
+  return (all - all.mean()).square().mean();
+}
+
+/// A link loses samples whatever the signal does: log|step| = log|slope| + log(length + 1) varies by more than the
+/// slope. Stairs take the same step whatever the slope: they stand long where it is small.
+bool are_stairs(const std::vector<Held>& runs) {
+  std::vector<double> steps;
+  std::vector<double> slopes;
+  for (const Held& run : runs) {
+    if (run.step != 0.0) {
+      steps.push_back(std::log(std::abs(run.step)));
+      slopes.push_back(steps.back() - std::log(static_cast<double>(run.length + 1)));
     }
   }
+  constexpr double of_stairs = 0.5;
+  return steps.size() >= fewest_runs && variance(steps) < of_stairs * variance(slopes);
 }
 
 template <class Find>
 MissedSamples collected(const std::vector<Experiment>& experiments, std::size_t output, const Find& find) {
-  MissedSamples result;
+  std::vector<Held> runs;
   std::size_t offset = 0;
-  double squares = 0.0;
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
-    add(values, find(values, offset), offset, result, squares);
+    add(values, find(values, offset), offset, runs);
     offset += values.size();
+  }
+  MissedSamples result;
+  if (are_stairs(runs)) {
+    return result;
+  }
+  double squares = 0.0;
+  for (const Held& run : runs) {
+    result.longest = std::max(result.longest, run.length);
+    for (std::size_t i = 0; i < run.length; ++i) {
+      result.rows.push_back(run.first + i);
+      squares += std::pow(run.step * static_cast<double>(i + 1) / static_cast<double>(run.length + 1), 2);
+    }
   }
   result.rms = offset > 0 ? std::sqrt(squares / static_cast<double>(offset)) : 0.0;
   return result;

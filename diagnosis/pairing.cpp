@@ -1,5 +1,6 @@
 #include "diagnosis/pairing.hpp"
 
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,6 +13,8 @@ namespace {
 
 /// Strengths up to so many times those that were screened.
 constexpr double range = 5.0;
+/// What goes with one that is best by itself is seen when it gets a second effect: here are those that hide.
+constexpr int most_times = 3;
 
 }  // namespace
 
@@ -27,14 +30,25 @@ std::vector<Superposition::Pair> pairs_that_add_up(const Task& task, const std::
       changes.col(static_cast<Index>(i)) = residuals - background.residuals();
     }
   });
-  const auto effect_of = [&](Index single) -> const std::string& {
-    return singles[static_cast<std::size_t>(single)].candidate.own().effect;
-  };
+  std::vector<std::string> effects;
+  for (const Screened& single : singles) {
+    effects.push_back(single.candidate.own().effect);
+  }
+  return different_pairs(Superposition(changes, background).pairs(range), effects, count);
+}
+
+std::vector<Superposition::Pair> different_pairs(const std::vector<Superposition::Pair>& ranked,
+                                                 const std::vector<std::string>& effects, std::size_t count) {
   std::vector<Superposition::Pair> pairs;
   std::set<std::set<std::string>> taken;
-  for (const Superposition::Pair& one : Superposition(changes, background).pairs(range)) {
-    std::set<std::string> names{effect_of(one.first), effect_of(one.second)};
-    if (pairs.size() < count && names.size() == 2 && taken.insert(std::move(names)).second) {
+  std::map<Index, int> times;
+  for (const Superposition::Pair& one : ranked) {
+    std::set<std::string> names{effects[static_cast<std::size_t>(one.first)],
+                                effects[static_cast<std::size_t>(one.second)]};
+    if (pairs.size() < count && names.size() == 2 && times[one.first] < most_times && times[one.second] < most_times &&
+        taken.insert(std::move(names)).second) {
+      ++times[one.first];
+      ++times[one.second];
       pairs.push_back(one);
     }
   }

@@ -43,8 +43,6 @@ constexpr double more_than_chance = 10.0;
 
 /// A pair whose cost is below so many of the floor's closes the gap: no third effect is tried beside it.
 constexpr double well_closed = 1.3;
-/// An exchange has to bring the cost below this share of what it was for another one to follow.
-constexpr double worth_exchanging = 0.95;
 
 /// Costs above this many of the floor's are a gap, however little one effect alone gains on it.
 constexpr double surely_a_gap = 2.0;
@@ -98,7 +96,7 @@ class Searcher {
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too
         simplify(found, result);
-        exchange_in_best(found, result);
+        exchange_in(best_of(found), found, result);
       }
       for (const Explanation& one : beam) {
         if (must_stop()) {
@@ -115,6 +113,7 @@ class Searcher {
         without_each(found, result);
       }
       if (round == 1) {
+        exchange(found, result);
         move_each(found, result);
         exchange(found, result);
         simplify(found, result);
@@ -388,30 +387,38 @@ class Searcher {
                                [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });
   }
 
-  /// Each effect of the best pair in turn gives its place to any other: what was found first may have stood in for two,
-  /// and is not what fits best beside the other one. It goes on while that helps.
+  /// Each effect of the best pairs in turn gives its place to any other: what was found first may have stood in for
+  /// two, and is not what fits best beside the other one.
   void exchange(std::vector<Explanation>& found, Search& result) {
-    for (double before = std::numeric_limits<double>::infinity(); !found.empty() && !must_stop();) {
-      const double cost = best_of(found).fit.cost;
-      if (cost > worth_exchanging * before) {
+    constexpr std::size_t most = 3;
+    constexpr double far_behind = 3.0;
+    std::set<std::vector<std::string>> done;
+    while (done.size() < most && !found.empty() && !is_closed(found) && !must_stop()) {
+      std::ranges::stable_sort(found, {}, cost_of_fit);
+      const auto next = std::ranges::find_if(
+          found, [&](const Explanation& one) { return one.variant.effects.size() > 1 && !done.contains(one.names()); });
+      if (next == found.end() || next->fit.cost > far_behind * found.front().fit.cost) {
         return;
       }
-      before = cost;
-      exchange_in_best(found, result);
-      if (cost <= well_closed * floor_cost_) {
-        return;  // which others close it, too, has been seen
-      }
+      done.insert(next->names());
+      exchange_in(*next, found, result);
+    }
+    if (is_closed(found)) {
+      exchange_in(best_of(found), found, result);  // which others close it, too
     }
   }
-  void exchange_in_best(std::vector<Explanation>& found, Search& result) {
-    replace_in_best(found, result, exchanged_, [](const Applied&, const Applied&) { return true; });
+  void exchange_in(Explanation one, std::vector<Explanation>& found, Search& result) {
+    replace_in(std::move(one), found, result, exchanged_, [](const Applied&, const Applied&) { return true; });
   }
 
   /// Each effect of the best pair in turn gives its place to those with fewer parameters on its edge: the first part of
   /// a warm-up is a drift, and by itself the drift may have been the worse one beside an effect that was still missing.
   /// Also where the other effect had been expanded: it may have been with other settings.
   void simplify(std::vector<Explanation>& found, Search& result) {
-    replace_in_best(found, result, simplified_, [](const Applied& richer, const Applied& one) {
+    if (found.empty()) {
+      return;
+    }
+    replace_in(best_of(found), found, result, simplified_, [](const Applied& richer, const Applied& one) {
       return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
     });
   }
@@ -419,20 +426,17 @@ class Searcher {
   /// What stayed, and beside what it stood.
   using Replaced = std::set<std::pair<std::vector<std::string>, std::string>>;
 
-  /// Each effect of the best pair in turn gives its place to those that `suits` lets have it, once.
+  /// Each effect of a set in turn gives its place to those that `suits` lets have it, once. By value: `found` grows.
   template <class Suits>
-  void replace_in_best(std::vector<Explanation>& found, Search& result, Replaced& replaced, const Suits& suits) {
-    if (found.empty()) {
-      return;
-    }
-    const Explanation best = best_of(found);
-    for (std::size_t i = 0; i < best.variant.effects.size() && best.variant.effects.size() > 1 && !must_stop(); ++i) {
-      const Applied& gone = best.variant.effects[i];
-      const Explanation rest = sets_.rest_of(best, i, result.calibrated.variant, tuned_);
+  void replace_in(Explanation one, std::vector<Explanation>& found, Search& result, Replaced& replaced,
+                  const Suits& suits) {
+    for (std::size_t i = 0; i < one.variant.effects.size() && one.variant.effects.size() > 1 && !must_stop(); ++i) {
+      const Applied& gone = one.variant.effects[i];
+      const Explanation rest = sets_.rest_of(one, i, result.calibrated.variant, tuned_);
       const bool is_new = replaced.emplace(rest.places(), gone.place()).second;
       if (std::isfinite(rest.fit.cost) && is_new) {
         expand(
-            rest, [&](const Applied& one) { return suits(gone, one); }, options_.fitted_later, result, found);
+            rest, [&](const Applied& other) { return suits(gone, other); }, options_.fitted_later, result, found);
       }
     }
   }

@@ -163,5 +163,26 @@ TEST(MissedSamples, BesideAModelRoundingAndALateSensorAreNone) {
   EXPECT_THAT(find_missed_samples(with(noisy(late, 0.01)), 0, steps, 0.01).rows, IsEmpty());
 }
 
+/// To levels that lie unevenly, as a converter's do.
+std::vector<double> rounded_unevenly(std::vector<double> values, double quantum) {
+  for (double& value : values) {
+    const double level = std::floor(value / quantum);
+    value = quantum * (level + 0.5 + 0.4 * std::sin(2.4 * level * level));
+  }
+  return values;
+}
+
+TEST(MissedSamples, StairsOfUnevenWidthsAreNone) {
+  const auto moved = motion();
+  const auto measured = [&](double quantum) { return with(noisy(rounded_unevenly(moved, quantum), 0.01)); };
+  for (const double quantum : {0.5, 1.0, 2.0, 4.0}) {
+    EXPECT_THAT(find_missed_samples(measured(quantum), 0).rows, IsEmpty()) << quantum;
+  }
+  // Where the signal takes a level in one sample or two, as at 1.0, a tread beside a model looks like a missed sample.
+  for (const double quantum : {2.0, 4.0}) {
+    EXPECT_THAT(find_missed_samples(measured(quantum), 0, moved, 0.01).rows, IsEmpty()) << quantum;
+  }
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "diagnosis/pairing.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
@@ -94,6 +98,23 @@ TEST(Superposition, OneChangeTwiceIsNoPair) {
   changes << wave(5.0, 0.0), 2.0 * wave(5.0, 0.0);
   const Background background(wave(5.0, 0.0), Projection(wave(1.0, 0.0)));
   EXPECT_TRUE(Superposition(changes, background).pairs(5.0).empty());
+}
+
+TEST(Pairs, AreNotAllWithTheOneThatIsBestByItself) {
+  const std::vector<std::string> effects{"backlash", "lag", "load", "creep", "delay", "load"};
+  std::vector<Superposition::Pair> ranked;
+  for (Index other = 1; other < 6; ++other) {
+    ranked.push_back({.first = 0, .second = other, .gain = 20.0 - static_cast<double>(other)});
+  }
+  ranked.push_back({.first = 2, .second = 5, .gain = 3.0});  // a load and a load
+  ranked.push_back({.first = 1, .second = 2, .gain = 2.0});
+  ranked.push_back({.first = 1, .second = 5, .gain = 1.0});  // a lag and a load again
+  std::vector<std::pair<Index, Index>> places;
+  for (const Superposition::Pair& one : different_pairs(ranked, effects, 10)) {
+    places.emplace_back(one.first, one.second);
+  }
+  EXPECT_EQ(places, (std::vector<std::pair<Index, Index>>{{0, 1}, {0, 2}, {0, 3}, {1, 2}}));
+  EXPECT_EQ(different_pairs(ranked, effects, 2).size(), 2U);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 // 3. Pairs whose changes would add up to the residual are fitted. Where one of them closes the gap, each of its effects
 //    gives its place to all others once, to see which close it, too.
 // 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap. The
-//    effects of the best pairs are moved to other edges, and give their places to all others while that helps.
+//    effects of the best pairs give their places to all others, are moved to other edges, and give their places again.
 // Every set that was fitted is kept: the verdict weighs them against each other.
 #pragma once
 

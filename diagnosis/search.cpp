@@ -113,9 +113,9 @@ class Searcher {
         without_each(found, result);
       }
       if (round == 1) {
-        exchange(found, result);
+        exchange(3, found, result);
         move_each(found, result);
-        exchange(found, result);
+        exchange(1, found, result);
         simplify(found, result);
       }
       beam = next_beam(found, result, round == 0 ? options_.beam : 1);
@@ -387,10 +387,9 @@ class Searcher {
                                [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });
   }
 
-  /// Each effect of the best pairs in turn gives its place to any other: what was found first may have stood in for
-  /// two, and is not what fits best beside the other one.
-  void exchange(std::vector<Explanation>& found, Search& result) {
-    constexpr std::size_t most = 3;
+  /// Each effect of so many of the best pairs in turn gives its place to any other: what was found first may have stood
+  /// in for two, and is not what fits best beside the other one.
+  void exchange(std::size_t most, std::vector<Explanation>& found, Search& result) {
     constexpr double far_behind = 3.0;
     std::set<std::vector<std::string>> done;
     while (done.size() < most && !found.empty() && !is_closed(found) && !must_stop()) {

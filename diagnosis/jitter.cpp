@@ -148,27 +148,26 @@ bool is_foretold(const Task& task, const Explanation& one) {
 /// variation does not. Where it has none, those that have one and no more effects, the smallest first.
 std::vector<const Explanation*> sets_with_delay(const Search& search, const Explanation& chosen) {
   std::vector<const Explanation*> list;
-  const auto add_each = [&](const auto& is_wanted, const auto& kind_of) {
-    std::set<decltype(kind_of(chosen))> taken;
-    for (const Explanation* const one : list) {
-      taken.insert(kind_of(*one));
-    }
-    for (const Explanation& one : search.explanations) {
-      if (list.size() < most_sets && delay_of(one) != nullptr && one.fit.cost < far_behind * chosen.fit.cost &&
-          is_wanted(one) && taken.insert(kind_of(one)).second) {
-        list.push_back(&one);
-      }
-    }
+  const auto has_place = [&](const Explanation& one) {
+    return list.size() < most_sets && delay_of(one) != nullptr && one.fit.cost < far_behind * chosen.fit.cost;
   };
   if (delay_of(chosen) != nullptr) {
     list.push_back(&chosen);
-    add_each([&](const Explanation& one) { return one.names() == chosen.names(); },
-             [](const Explanation& one) { return delay_of(one)->edge; });
+    std::set<std::string> edges{delay_of(chosen)->edge};
+    for (const Explanation& one : search.explanations) {
+      if (has_place(one) && one.names() == chosen.names() && edges.insert(delay_of(one)->edge).second) {
+        list.push_back(&one);
+      }
+    }
     return list;
   }
+  std::set<std::vector<std::string>> taken;
   for (std::size_t effects = 1; effects <= chosen.variant.effects.size(); ++effects) {
-    add_each([&](const Explanation& one) { return one.variant.effects.size() == effects; },
-             [](const Explanation& one) { return one.names(); });
+    for (const Explanation& one : search.explanations) {
+      if (one.variant.effects.size() == effects && has_place(one) && taken.insert(one.names()).second) {
+        list.push_back(&one);
+      }
+    }
   }
   return list;
 }

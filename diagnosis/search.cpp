@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -44,6 +43,8 @@ constexpr double more_than_chance = 10.0;
 /// A pair whose cost is below so many of the floor's closes the gap: no third effect is tried beside it.
 constexpr double well_closed = 1.3;
 
+/// One whose cost is above so many of the best one's is not followed.
+constexpr double pair_far_behind = 3.0;
 /// Costs above this many of the floor's are a gap, however little one effect alone gains on it.
 constexpr double surely_a_gap = 2.0;
 
@@ -354,7 +355,6 @@ class Searcher {
   /// itself it often did not.
   void move_each(std::vector<Explanation>& found, Search& result) {
     constexpr std::size_t edges = 4;
-    constexpr double far_behind = 3.0;
     std::set<std::vector<std::string>> moved;
     for (const std::size_t most : std::array<std::size_t, 3>{4, 2, 2}) {
       if (is_closed(found)) {
@@ -364,7 +364,7 @@ class Searcher {
       std::vector<Explanation> best;
       std::set<std::vector<std::string>> taken;
       for (const Explanation& one : found) {
-        if (best.size() < most && one.fit.cost < far_behind * found.front().fit.cost &&
+        if (best.size() < most && one.fit.cost < pair_far_behind * found.front().fit.cost &&
             taken.insert(one.names()).second && moved.insert(one.places()).second) {
           best.push_back(one);
         }
@@ -390,13 +390,12 @@ class Searcher {
   /// Each effect of so many of the best pairs in turn gives its place to any other: what was found first may have stood
   /// in for two, and is not what fits best beside the other one.
   void exchange(std::size_t most, std::vector<Explanation>& found, Search& result) {
-    constexpr double far_behind = 3.0;
     std::set<std::vector<std::string>> done;
     while (done.size() < most && !found.empty() && !is_closed(found) && !must_stop()) {
       std::ranges::stable_sort(found, {}, cost_of_fit);
       const auto next = std::ranges::find_if(
           found, [&](const Explanation& one) { return one.variant.effects.size() > 1 && !done.contains(one.names()); });
-      if (next == found.end() || next->fit.cost > far_behind * found.front().fit.cost) {
+      if (next == found.end() || next->fit.cost > pair_far_behind * found.front().fit.cost) {
         return;
       }
       done.insert(next->names());
@@ -406,8 +405,8 @@ class Searcher {
       exchange_in(best_of(found), found, result);  // which others close it, too
     }
   }
-  void exchange_in(Explanation one, std::vector<Explanation>& found, Search& result) {
-    replace_in(std::move(one), found, result, exchanged_, [](const Applied&, const Applied&) { return true; });
+  void exchange_in(const Explanation& one, std::vector<Explanation>& found, Search& result) {
+    replace_in(one, found, result, exchanged_, [](const Applied&, const Applied&) { return true; });
   }
 
   /// Each effect of the best pair in turn gives its place to those with fewer parameters on its edge: the first part of
@@ -425,10 +424,11 @@ class Searcher {
   /// What stayed, and beside what it stood.
   using Replaced = std::set<std::pair<std::vector<std::string>, std::string>>;
 
-  /// Each effect of a set in turn gives its place to those that `suits` lets have it, once. By value: `found` grows.
+  /// Each effect of a set in turn gives its place to those that `suits` lets have it, once.
   template <class Suits>
-  void replace_in(Explanation one, std::vector<Explanation>& found, Search& result, Replaced& replaced,
+  void replace_in(const Explanation& of_found, std::vector<Explanation>& found, Search& result, Replaced& replaced,
                   const Suits& suits) {
+    const Explanation one = of_found;  // `found` grows
     for (std::size_t i = 0; i < one.variant.effects.size() && one.variant.effects.size() > 1 && !must_stop(); ++i) {
       const Applied& gone = one.variant.effects[i];
       const Explanation rest = sets_.rest_of(one, i, result.calibrated.variant, tuned_);

@@ -31,6 +31,7 @@ std::vector<Superposition::Pair> pairs_that_add_up(const Task& task, const std::
     }
   });
   std::vector<std::string> effects;
+  effects.reserve(singles.size());
   for (const Screened& single : singles) {
     effects.push_back(single.candidate.own().effect);
   }

@@ -416,8 +416,8 @@ class Searcher {
     if (found.empty()) {
       return;
     }
-    replace_in(best_of(found), found, result, simplified_, [](const Applied& richer, const Applied& one) {
-      return one.paths.size() < richer.paths.size() && Sets::same_root(one.edge, richer.edge);
+    replace_in(best_of(found), found, result, simplified_, [](const Applied& gone, const Applied& other) {
+      return other.paths.size() < gone.paths.size() && Sets::same_root(other.edge, gone.edge);
     });
   }
 

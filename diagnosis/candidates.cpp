@@ -49,8 +49,33 @@ bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, cons
                              [&](const Wire& wire) { return wire.from == source.from && wire.index == source.index; });
 }
 
-/// +1 for a block that integrates its input, −1 for one that gives its rate of change: by the units of its description.
-int integrals_of(const Node& node) {
+/// Whether a block is a linear one that gives the rate of its output beside it, of which of its outputs that is, and of
+/// how many states it is: 1 for a lag, 2 for a mass on a spring. The input one sample ago is no state of its own.
+struct Smoothing {
+  int order = 0;
+  std::size_t rate = 0;
+};
+Smoothing smoothing_of(const Node& node) {
+  if (node.block == nullptr || node.block->about.group != Group::Dynamics) {
+    return {};
+  }
+  const auto& outputs = node.block->outputs;
+  const auto rate = std::ranges::find(outputs, std::string_view("RATE"), &Field::name);
+  if (rate == outputs.end()) {
+    return {};
+  }
+  const auto order = std::ranges::count_if(
+      node.block->states, [](const Field& state) { return state.type == Type::Real && state.name != "X1"; });
+  return {.order = static_cast<int>(order), .rate = static_cast<std::size_t>(rate - outputs.begin())};
+}
+
+/// How often a block integrates its input on the way to one of its outputs: +1 for an integrator and for a lag, whose
+/// output follows its input as a speed follows a force, 2 for a mass on a spring, one less for the rates of these; −1
+/// for a block that gives the rate of change of its input, by the units of its description.
+int integrals_of(const Node& node, std::size_t output = 0) {
+  if (const Smoothing smoothing = smoothing_of(node); smoothing.order > 0) {
+    return output == smoothing.rate ? smoothing.order - 1 : smoothing.order;
+  }
   if (node.block == nullptr || node.block->inputs.empty() || node.block->inputs.front().unit != "'x") {
     return 0;
   }
@@ -61,32 +86,54 @@ int integrals_of(const Node& node) {
 /// The fewest integrals on a way from a node's output to a signal that depends on it, rates taken off.
 int integrals_between(const Graph& graph, std::uint32_t node, const Wire& signal) {
   constexpr int far = 1000;
-  std::vector<int> count(graph.nodes.size(), far);
-  count[node] = 0;
+  std::vector<int> before(graph.nodes.size(), far);  // what drives a node: the fewest on a way to it
+  const auto behind = [&](const Wire& wire) {
+    if (wire.from != Wire::From::Node) {
+      return far;
+    }
+    if (wire.index == node) {
+      return 0;
+    }
+    return before[wire.index] == far
+               ? far
+               : std::max(0, before[wire.index] + integrals_of(graph.nodes[wire.index], wire.port));
+  };
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
       for (std::size_t pin = 0; i != node && pin < graph.nodes[i].wire_count; ++pin) {
-        const Wire& wire = graph.wire(graph.nodes[i], pin);
-        const int before = wire.from == Wire::From::Node ? count[wire.index] : far;
-        const int here = std::max(0, before + integrals_of(graph.nodes[i]));
-        if (before < far && here < count[i]) {
-          count[i] = here;
+        const int here = behind(graph.wire(graph.nodes[i], pin));
+        if (here < before[i]) {
+          before[i] = here;
           changed = true;
         }
       }
     }
   }
-  return count[signal.index];
+  return behind(signal);
 }
 
-/// Whether a unit is known and is none of a velocity: a length, an angle with its mark, a force.
-bool is_no_rate(std::string_view text) {
+/// Whether a unit is known and is none of a velocity: a position, a force, a voltage, a power.
+bool is_no_velocity(std::string_view text) {
+  constexpr std::size_t metres = 0;
   constexpr std::size_t seconds = 2;
   std::string reason;
   const auto unit = text.empty() ? std::nullopt : units::parse_unit(text, reason);
-  return unit && unit->powers[seconds].over >= 0 &&
-         std::ranges::any_of(unit->powers, [](const units::Fraction& power) { return !power.zero(); });
+  if (!unit || std::ranges::all_of(unit->powers, &units::Fraction::zero)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < units::dimensions; ++i) {
+    if (i != metres && i != seconds && !unit->powers[i].zero()) {
+      return true;
+    }
+  }
+  const units::Fraction length = unit->powers[metres];
+  return unit->powers[seconds].number() != -1.0 || (!length.zero() && length.number() != 1.0);
+}
+
+/// Whether an output of a block may be a velocity at all: its main one, or the rate that it gives beside it.
+bool may_be_velocity(const Node* node, std::size_t output) {
+  return node == nullptr || output == 0 || (smoothing_of(*node).order > 1 && output == smoothing_of(*node).rate);
 }
 
 class Enumeration {
@@ -179,7 +226,9 @@ class Enumeration {
       const std::string instance = language::upper(declared.field.name);
       for (std::size_t i = 0; i < declared.block->outputs.size(); ++i) {
         const Field& output = declared.block->outputs[i];
-        const bool fits = !kind.by_velocity || !is_no_rate(unit_of(edge.prefix + instance, i));
+        const std::string path = edge.prefix + instance;
+        const bool fits = !kind.by_velocity || (may_be_velocity(find_node(base_.program->graph, path), i) &&
+                                                !is_no_velocity(unit_of(path, i)));
         if (output.type == Type::Real && fits) {
           result.push_back(instance + "." + std::string(output.name));
         }

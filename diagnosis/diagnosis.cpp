@@ -21,6 +21,7 @@
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
+#include "diagnosis/noise_floors.hpp"
 #include "diagnosis/outlook.hpp"
 #include "diagnosis/plausibility.hpp"
 #include "diagnosis/record_check.hpp"
@@ -79,8 +80,6 @@ class Run {
     if (!result_.refusals.empty()) {
       return;
     }
-    Model model(task_, *base_.program);
-    floors_.clear();
     unused_ = unused_columns(task_, *base_.program);
     std::vector<std::vector<Signal>> others;
     for (const records::Record& record : task_.records) {
@@ -89,10 +88,9 @@ class Run {
         others.back().push_back(record.column(name).values);
       }
     }
-    for (std::size_t output = 0; output < model.problem().outputs.size(); ++output) {
-      floors_.push_back(noise_floor(model.problem().experiments, output, others));
-      task_.scales.push_back(floors_.back().value);
-    }
+    floors_ = noise_floors(task_, *base_.program, others);
+    task_.scales.clear();
+    std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
     left_out_ = leave_out(task_, *base_.program);
     Model scaled(task_, *base_.program);
     if (!scaled.residuals(scaled.start(), nominal_)) {

@@ -20,52 +20,67 @@ constexpr double off = 0.01;
 /// Of the line in front, where the size of a harmonic begins.
 constexpr double of_first = 0.1;
 
-/// A line of a set: sines of the clock that are added, whatever the machine does.
+/// A line of a set: sines of the clock that are added, whatever the machine does, or of a position.
 struct Line {
-  std::string effect{};
-  std::string edge{};  ///< of the user's diagram
-  double frequency = 0.0;
+  const Applied* applied = nullptr;
+  std::string edge{};           ///< of the user's diagram
+  Role role = Role::Frequency;  ///< Frequency, or Period
+  double turns = 0.0;           ///< a second, or a unit of the position
   double size = 0.0;
+
+  [[nodiscard]] double in_its_role(double multiple) const {
+    return role == Role::Period ? 1.0 / (multiple * turns) : multiple * turns;
+  }
 };
 
 std::optional<Line> line_of(const Task& task, const Explanation& one) {
   for (const Applied& applied : one.variant.effects) {
-    Line line{.effect = applied.effect, .edge = in_the_diagram(applied.edge, one.variant.effects)};
+    Line line{.applied = &applied, .edge = in_the_diagram(applied.edge, one.variant.effects)};
     for (const std::string& path : applied.paths) {
       const std::optional<Index> at = place_in_fit(task, one, path);
       if (!at) {
         continue;
       }
-      if (applied.parameter(path).role == Role::Frequency) {
-        line.frequency = one.fit.x[*at];
-      } else if (applied.parameter(path).strength) {
-        line.size = std::hypot(line.size, one.fit.x[*at]);
+      const double value = one.fit.x[*at];
+      const EffectParameter& parameter = applied.parameter(path);
+      if (parameter.role == Role::Frequency || parameter.role == Role::Period) {
+        line.role = parameter.role;
+        line.turns = parameter.role == Role::Period ? 1.0 / value : value;
+      } else if (parameter.strength) {
+        line.size = std::hypot(line.size, value);
       }
     }
-    if (line.frequency > 0.0 && !applied.has(Role::Duration)) {
+    if (line.turns > 0.0 && std::isfinite(line.turns) && !applied.has(Role::Duration)) {
       return line;
     }
   }
   return std::nullopt;
 }
 
-/// With a line more at this frequency, fitted; nothing where the diagram has no value there.
-std::optional<Explanation> with_line_at(const Task& task, const std::string& top, const Explanation& one,
-                                        const Line& line, double frequency) {
-  for (Candidate& candidate : candidates_of(one.variant, top, {.effects = {line.effect}, .again = true})) {
-    if (in_the_diagram(candidate.own().edge, candidate.variant.effects) != line.edge) {
+/// Whether an effect is another line of the same: in the same block, over the same position.
+bool is_of_the_same(const Applied& own, const Line& line) {
+  return own.block == line.applied->block && own.delay.empty() == line.applied->delay.empty() &&
+         (!own.delay.empty() || own.wires == line.applied->wires);
+}
+
+/// With a line more at this multiple, fitted; nothing where the diagram has no value there.
+std::optional<Explanation> with_multiple(const Task& task, const std::string& top, const Explanation& one,
+                                         const Line& line, int order) {
+  for (Candidate& candidate : candidates_of(one.variant, top, {.effects = {line.applied->effect}, .again = true})) {
+    if (in_the_diagram(candidate.own().edge, candidate.variant.effects) != line.edge ||
+        !is_of_the_same(candidate.own(), line)) {
       continue;
     }
     const Applied& own = candidate.own();
     Screened screened;
     Start start{.values = VectorXd::Zero(std::ssize(own.parameters))};
     for (std::size_t j = 0; j < own.parameters.size(); ++j) {
-      const bool is_frequency = own.parameters[j].role == Role::Frequency;
-      const double value = is_frequency ? frequency : of_first * line.size;
+      const bool is_multiple = own.parameters[j].role == line.role;
+      const double value = is_multiple ? line.in_its_role(order) : of_first * line.size;
       screened.unknowns.push_back(unknown_of(own.parameters[j], own.paths[j],
                                              {.values = {value},
-                                              .lowest = is_frequency ? (1.0 - off) * value : Grid{}.lowest,
-                                              .highest = is_frequency ? (1.0 + off) * value : Grid{}.highest}));
+                                              .lowest = is_multiple ? (1.0 - off) * value : Grid{}.lowest,
+                                              .highest = is_multiple ? (1.0 + off) * value : Grid{}.highest}));
       start.values[static_cast<Index>(j)] = value;
     }
     screened.candidate = std::move(candidate);
@@ -93,12 +108,11 @@ std::optional<Explanation> with_harmonics(const Task& task, const std::string& t
   };
   std::optional<Explanation> best;
   for (int order = 2; order <= highest; ++order) {
-    const double frequency = order * line->frequency;
-    if (frequency * task.records.front().sample_time() > most_of_rate) {
+    if (line->role == Role::Frequency && order * line->turns * task.records.front().sample_time() > most_of_rate) {
       break;
     }
     const Explanation& so_far = best ? *best : one;
-    std::optional<Explanation> more = with_line_at(task, top, so_far, *line, frequency);
+    std::optional<Explanation> more = with_multiple(task, top, so_far, *line, order);
     if (more && support(*more) > support(so_far) + worth_a_line) {
       best = std::move(more);
     }

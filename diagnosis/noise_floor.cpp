@@ -80,14 +80,24 @@ std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experimen
 }
 
 double noise_by_dwells(const std::vector<Experiment>& experiments, std::size_t output,
-                       const std::vector<std::vector<Signal>>& others) {
+                       const std::vector<std::vector<Signal>>& others, const std::vector<Signal>& unmodelled) {
   const auto rests = rests_of(experiments, others);
-  std::vector<StretchNoise> all;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    const auto here = noise_of_stretches(experiments[e].measured[output], rests[e], 3);
-    all.insert(all.end(), here.begin(), here.end());
+  const auto noise_of = [&](const auto& values_of) {
+    std::vector<StretchNoise> all;
+    for (std::size_t e = 0; e < experiments.size(); ++e) {
+      const auto here = noise_of_stretches(values_of(e), rests[e], 3);
+      all.insert(all.end(), here.begin(), here.end());
+    }
+    return lower_deviation(all, fewest);
+  };
+  const double measured = noise_of([&](std::size_t e) -> const Signal& { return experiments[e].measured[output]; });
+  if (unmodelled.empty()) {
+    return measured;
   }
-  return lower_deviation(all, fewest);
+  // Both are as large as the noise at least; of two equal ones the smaller would be so by chance.
+  constexpr double notably = 0.85;
+  const double rest = noise_of([&](std::size_t e) -> const Signal& { return unmodelled[e]; });
+  return rest > 0.0 && rest < notably * measured ? rest : measured;
 }
 
 double noise_by_repeats(const std::vector<Experiment>& experiments, std::size_t output) {
@@ -205,7 +215,7 @@ NoiseRange noise_range(double left) {
 }
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
-                       const std::vector<std::vector<Signal>>& others) {
+                       const std::vector<std::vector<Signal>>& others, const std::vector<Signal>& unmodelled) {
   NoiseFloor floor;
   double range = 0.0;
   std::vector<double> quanta;
@@ -227,7 +237,7 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   }
   floor.off_steps = on_steps && count > 0.0 ? std::sqrt(off_steps / count) : 0.0;
   floor.differences = count > 0.0 ? std::sqrt(sum / count) : 0.0;
-  floor.dwells = noise_by_dwells(experiments, output, others);
+  floor.dwells = noise_by_dwells(experiments, output, others, unmodelled);
   floor.repeats = noise_by_repeats(experiments, output);
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
   const double rounding = quanta.empty() ? 0.0 : *std::ranges::min_element(quanta) / std::sqrt(12.0);

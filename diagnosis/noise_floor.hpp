@@ -5,7 +5,8 @@
 // - differences: the n-th difference of a slow signal is that of its noise, σ² = E(∆ⁿy)²/C(2n, n); by the median, over
 //   several orders, the smallest. It sees what is fast only: too little where noise is coloured, too much where the
 //   signal itself is fast.
-// - dwells: while all that was logged stands still, what is left of y after a slow course is taken off.
+// - dwells: while all that was logged stands still, what is left of y after a slow course is taken off; or of what a
+//   model leaves of y, where the machine still moves as the model does.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
 // - steps: where a sensor rounds and noise follows, what lies off the steps. The others count leaps between two steps,
 //   too, so this one goes before differences and dwells.
@@ -37,8 +38,11 @@ struct NoiseFloor {
 [[nodiscard]] double noise_off_steps(const std::vector<double>& values);
 
 /// For one measured output over all records. `others`: by record, what else was logged, and moves the machine perhaps.
+/// `unmodelled`: by record, what a model leaves of the output. A machine that still rings where its inputs rest rings
+/// less in that, and dwells take the smaller one.
 [[nodiscard]] NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
-                                     const std::vector<std::vector<Signal>>& others = {});
+                                     const std::vector<std::vector<Signal>>& others = {},
+                                     const std::vector<Signal>& unmodelled = {});
 
 /// The RMS by which a gap stands out of the floor at least, as √(rms² − floor²), in the unit of the output. More where
 /// the floor does not come from repeats: what else there is may have missed slow noise.

@@ -201,6 +201,30 @@ TEST(Candidates, ALengthIsNoVelocityWhateverItComesFrom) {
   EXPECT_FALSE(candidates(fmt::format(fmt::runtime(slide), "(* @unit mm/s *)"), "SLIDE", friction).empty());
 }
 
+TEST(Candidates, OfAMassOnASpringTheRateIsTheVelocity) {
+  const std::string stage =
+      "FUNCTION_BLOCK STAGE (* @ts 1ms *) VAR_INPUT U : LREAL; (* @unit V *) END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR "
+      "COIL : HY_LAG := (T1 := 0.002); FORCE : HY_GAIN := (K := 0.2); FLEX : HY_SECOND_ORDER := (T := 0.01, ZETA := "
+      "0.1); END_VAR COIL(XIN := U); FORCE(XIN := COIL.XOUT); FLEX(XIN := FORCE.XOUT); Y := FLEX.XOUT; "
+      "END_FUNCTION_BLOCK";
+  const auto list = candidates(stage, "STAGE", {.effects = {"viscous_friction"}});
+  // Not the position, nor what the spring lacks to its rest; the coil's current is a voltage by its unit.
+  EXPECT_THAT(velocities_at(list, "FORCE.XOUT"), ElementsAre("FLEX.RATE"));
+  EXPECT_THAT(velocities_at(list, "U"), ElementsAre());
+}
+
+TEST(Candidates, ALagIsAVelocityWhereItsUnitIsOne) {
+  const std::string room =
+      "FUNCTION_BLOCK ROOM (* @ts 30s *) VAR_INPUT P : LREAL; {} END_VAR VAR_OUTPUT T : LREAL; END_VAR VAR RADIATOR : "
+      "HY_LAG := (T1 := 600.0); END_VAR RADIATOR(XIN := P); T := RADIATOR.XOUT; END_FUNCTION_BLOCK";
+  const CandidateOptions friction{.effects = {"viscous_friction"}};
+  EXPECT_TRUE(candidates(fmt::format(fmt::runtime(room), "(* @unit kW *)"), "ROOM", friction).empty());
+  for (const Candidate& one : candidates(fmt::format(fmt::runtime(room), ""), "ROOM", friction)) {
+    EXPECT_EQ(one.own().wires.at(0).second, "RADIATOR.XOUT") << "its rate is what drives it, less itself";
+  }
+  EXPECT_FALSE(candidates(fmt::format(fmt::runtime(room), "(* @unit m/s *)"), "ROOM", friction).empty());
+}
+
 TEST(Candidates, AnotherInputOrColumnMayCouple) {
   const auto inputs = candidates(whole_machine, "MACHINE", {.effects = {"cross_coupling"}});
   std::set<std::string> drivers;

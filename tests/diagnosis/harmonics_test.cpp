@@ -68,6 +68,37 @@ TEST(Harmonics, OtherLinesAreNone) {
   EXPECT_GT(found.gap.improved, 3.0 * noise_of_speed);
 }
 
+/// An axis whose position is measured, in units of the motor's turn, with what cogs.
+std::string turning(const std::string& declared, const std::string& called, const std::string& force) {
+  return "FUNCTION_BLOCK AXIS (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT X : LREAL; END_VAR VAR SPEED : "
+         "HY_INTEGRAL_FORWARD; POS : HY_INTEGRAL_FORWARD; DRAG : HY_GAIN := (K := 1.0); " +
+         declared + " END_VAR DRAG(XIN := SPEED.XOUT); " + called + " SPEED(XIN := " + force +
+         " - DRAG.XOUT); POS(XIN := SPEED.XOUT); X := POS.XOUT; END_FUNCTION_BLOCK";
+}
+
+TEST(Harmonics, OfACoggingAreOverItsPosition) {
+  constexpr double noise = 0.0005;
+  const std::string machine = turning(
+      "FIRST : HY_COGGING := (SINE := 0.3, PITCH := 0.2); SECOND : HY_COGGING := (COSINE := 0.1, PITCH := 0.1);",
+      "FIRST(XIN := FORCE, POS := POS.XOUT); SECOND(XIN := FIRST.XOUT, POS := POS.XOUT);", "SECOND.XOUT");
+  const records::Record record =
+      test::measured(test::program_of(machine), test::record_of("FORCE", test::rich_force()), noise);
+  const DiagnosisOptions cogging{.effects = {"cogging"}};
+  const Diagnosis found =
+      diagnose(test::input_of(turning("", "", "FORCE"), "[parameters.DRAG]\nK = 1.0\n", {record}), cogging);
+  std::vector<double> pitches;
+  for (const EffectFinding& effect : found.effects) {
+    EXPECT_EQ(effect.id, "cogging");
+    for (const ParameterFinding& parameter : effect.parameters) {
+      if (parameter.name == "PITCH") {
+        pitches.push_back(parameter.value);
+      }
+    }
+  }
+  EXPECT_THAT(pitches, testing::ElementsAre(testing::DoubleNear(0.2, 0.002), testing::DoubleNear(0.1, 0.001)));
+  EXPECT_NEAR(found.gap.improved, noise, 0.1 * noise);
+}
+
 TEST(Harmonics, NotOfASetWithoutALine) {
   const DiagnosisInput input = humming({{first_line, 0.08}});
   Task task = task_of(input);

@@ -133,7 +133,11 @@ bool is_no_velocity(std::string_view text) {
 
 /// Whether an output of a block may be a velocity at all: its main one, or the rate that it gives beside it.
 bool may_be_velocity(const Node* node, std::size_t output) {
-  return node == nullptr || output == 0 || (smoothing_of(*node).order > 1 && output == smoothing_of(*node).rate);
+  if (node == nullptr || output == 0) {
+    return true;
+  }
+  const Smoothing smoothing = smoothing_of(*node);
+  return smoothing.order > 1 && output == smoothing.rate;
 }
 
 class Enumeration {
@@ -224,11 +228,10 @@ class Enumeration {
         continue;
       }
       const std::string instance = language::upper(declared.field.name);
+      const Node* const node = find_node(base_.program->graph, edge.prefix + instance);
       for (std::size_t i = 0; i < declared.block->outputs.size(); ++i) {
         const Field& output = declared.block->outputs[i];
-        const std::string path = edge.prefix + instance;
-        const bool fits = !kind.by_velocity || (may_be_velocity(find_node(base_.program->graph, path), i) &&
-                                                !is_no_velocity(unit_of(path, i)));
+        const bool fits = !kind.by_velocity || (may_be_velocity(node, i) && !is_no_velocity(unit_of(node, i)));
         if (output.type == Type::Real && fits) {
           result.push_back(instance + "." + std::string(output.name));
         }
@@ -238,10 +241,9 @@ class Enumeration {
   }
 
   /// Of an output of a block, where the diagram says enough; else empty.
-  [[nodiscard]] std::string_view unit_of(const std::string& path, std::size_t output) const {
-    const Graph& graph = base_.program->graph;
-    const Node* const node = find_node(graph, path);
-    return node == nullptr ? std::string_view() : units_[static_cast<std::size_t>(node - graph.nodes.data())][output];
+  [[nodiscard]] std::string_view unit_of(const Node* node, std::size_t output) const {
+    return node == nullptr ? std::string_view()
+                           : units_[static_cast<std::size_t>(node - base_.program->graph.nodes.data())][output];
   }
 
   void insert(const EffectKind& kind, const Edge& edge) {

@@ -89,7 +89,6 @@ class Run {
       }
     }
     floors_ = noise_floors(task_, *base_.program, others);
-    task_.scales.clear();
     std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
     left_out_ = leave_out(task_, *base_.program);
     Model scaled(task_, *base_.program);

@@ -30,17 +30,21 @@ DiagnosisInput humming(const std::vector<std::pair<double, double>>& lines) {
   return test::input_of(test::axis(), test::axis_parameters, {record});
 }
 
-std::vector<double> frequencies_of(const Diagnosis& found) {
+/// A parameter of each effect that was named, all of which are this one.
+std::vector<double> values_of(const Diagnosis& found, std::string_view id, std::string_view name) {
   std::vector<double> result;
   for (const EffectFinding& effect : found.effects) {
-    EXPECT_EQ(effect.id, "periodic_disturbance");
+    EXPECT_EQ(effect.id, id);
     for (const ParameterFinding& parameter : effect.parameters) {
-      if (parameter.name == "FREQUENCY") {
+      if (parameter.name == name) {
         result.push_back(parameter.value);
       }
     }
   }
   return result;
+}
+std::vector<double> frequencies_of(const Diagnosis& found) {
+  return values_of(found, "periodic_disturbance", "FREQUENCY");
 }
 
 const DiagnosisOptions lines_alone{.effects = {"periodic_disturbance"}};
@@ -68,7 +72,7 @@ TEST(Harmonics, OtherLinesAreNone) {
   EXPECT_GT(found.gap.improved, 3.0 * noise_of_speed);
 }
 
-/// An axis whose position is measured, in units of the motor's turn, with what cogs.
+/// An axis whose position is measured, with what cogs.
 std::string turning(const std::string& declared, const std::string& called, const std::string& force) {
   return "FUNCTION_BLOCK AXIS (* @ts 5ms *) VAR_INPUT FORCE : LREAL; END_VAR VAR_OUTPUT X : LREAL; END_VAR VAR SPEED : "
          "HY_INTEGRAL_FORWARD; POS : HY_INTEGRAL_FORWARD; DRAG : HY_GAIN := (K := 1.0); " +
@@ -86,16 +90,8 @@ TEST(Harmonics, OfACoggingAreOverItsPosition) {
   const DiagnosisOptions cogging{.effects = {"cogging"}};
   const Diagnosis found =
       diagnose(test::input_of(turning("", "", "FORCE"), "[parameters.DRAG]\nK = 1.0\n", {record}), cogging);
-  std::vector<double> pitches;
-  for (const EffectFinding& effect : found.effects) {
-    EXPECT_EQ(effect.id, "cogging");
-    for (const ParameterFinding& parameter : effect.parameters) {
-      if (parameter.name == "PITCH") {
-        pitches.push_back(parameter.value);
-      }
-    }
-  }
-  EXPECT_THAT(pitches, testing::ElementsAre(testing::DoubleNear(0.2, 0.002), testing::DoubleNear(0.1, 0.001)));
+  EXPECT_THAT(values_of(found, "cogging", "PITCH"),
+              testing::ElementsAre(testing::DoubleNear(0.2, 0.002), testing::DoubleNear(0.1, 0.001)));
   EXPECT_NEAR(found.gap.improved, noise, 0.1 * noise);
 }
 

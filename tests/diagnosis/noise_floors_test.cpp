@@ -19,9 +19,9 @@ constexpr double noise = 0.01;
 std::string stage(double damping, double backlash = 0.0) {
   return fmt::format(
       "FUNCTION_BLOCK STAGE (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR GAP : "
-      "HY_BACKLASH := (WIDTH := {:.3f}); FLEX : HY_SECOND_ORDER := (T := 0.008, ZETA := {:.3f}); END_VAR GAP(XIN := U); "
-      "FLEX(XIN "
-      ":= GAP.XOUT); Y := FLEX.XOUT; END_FUNCTION_BLOCK",
+      "HY_BACKLASH := (WIDTH := {:.3f}); FLEX : HY_SECOND_ORDER := (T := 0.008, ZETA := {:.3f}); END_VAR GAP(XIN := "
+      "U); "
+      "FLEX(XIN := GAP.XOUT); Y := FLEX.XOUT; END_FUNCTION_BLOCK",
       backlash, damping);
 }
 

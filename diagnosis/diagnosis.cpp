@@ -17,7 +17,6 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
-#include "diagnosis/jitter.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
@@ -31,6 +30,7 @@
 #include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
 #include "diagnosis/uneven_steps.hpp"
+#include "diagnosis/varying_delay.hpp"
 #include "diagnosis/verdict.hpp"
 #include "diagnosis/where.hpp"
 
@@ -137,10 +137,12 @@ class Run {
     const std::string top = base_.program->graph.name;
     auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
     result_.tried = searched->search.tried;
-    const auto again = [&] {
-      // A quarter of the time once more at least: the search has its best sets to find again.
+    const auto at_least = [&](double share) {  // of the budget, from now on
       begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
-                                                 std::chrono::duration<double>(0.75 * options_.budget)));
+                                                 std::chrono::duration<double>((1.0 - share) * options_.budget)));
+    };
+    const auto again = [&] {
+      at_least(0.25);  // the search has its best sets to find again
       auto next = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
       result_.tried += next->search.tried;
       return next;
@@ -172,7 +174,8 @@ class Run {
     }
     unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (!unrepeatable_) {
-      unrepeatable_ = with_jitter(task_, top, found, searched->judgement, options_.threads);
+      at_least(0.2);
+      unrepeatable_ = with_varying_delay(task_, top, found, floor_cost_, searching, searched->judgement);
     }
     if (unrepeatable_) {
       result_.warnings.push_back(unrepeatable_->remark);

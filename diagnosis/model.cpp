@@ -24,7 +24,7 @@ parameters::FitSetting fit_of(const Unknown& unknown) {
 }  // namespace
 
 Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
-    : left_out_(task.left_out), first_further_(std::ssize(task.known)) {
+    : left_out_(task.left_out), whitening_(task.whitening), first_further_(std::ssize(task.known)) {
   parameters::ParameterFile file{.file = task.file.file, .values = task.file.values, .initial = task.file.initial};
   for (const Unknown& unknown : task.known) {
     file.fits.push_back(fit_of(unknown));
@@ -100,6 +100,12 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
     residuals[row] = 0.0;
     if (jacobian != nullptr) {
       jacobian->row(row).setZero();
+    }
+  }
+  if (whitening_) {
+    whitening_->apply(residuals);
+    if (jacobian != nullptr) {
+      whitening_->apply(*jacobian);
     }
   }
   return true;

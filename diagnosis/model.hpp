@@ -14,6 +14,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
+#include "diagnosis/whitening.hpp"
 #include "records/record.hpp"
 #include "tuning/output_error.hpp"
 #include "tuning/rollout.hpp"
@@ -43,8 +44,9 @@ struct Task {
   std::vector<std::string> outputs{};  ///< the measured ones, by name
   std::vector<Unknown> known{};        ///< calibration parameters
   std::vector<std::string> initial_states{};
-  std::vector<double> scales{};   ///< of the residuals, by output
-  std::vector<Index> left_out{};  ///< rows that do not count: glitches
+  std::vector<double> scales{};                  ///< of the residuals, by output
+  std::vector<Index> left_out{};                 ///< rows that do not count: glitches
+  std::shared_ptr<const Whitening> whitening{};  ///< of the residuals; null: their rows are independent
 };
 
 class Model {
@@ -72,9 +74,10 @@ class Model {
   /// An output as it was measured, of all records one after the other.
   [[nodiscard]] std::vector<double> measured(std::size_t output) const;
 
-  /// (model − measured)/scale, and its derivatives; false where one is not finite. Rounding hides from derivatives what
-  /// lies before it; on average the rounded signal follows the signal. Derivatives are those of the diagram with its
-  /// quanta off, and 0 for a quantum itself: what its error gains by shrinking says nothing of where it lies.
+  /// (model − measured)/scale, whitened where the task asks for it, and its derivatives; false where one is not finite.
+  /// Rounding hides from derivatives what lies before it; on average the rounded signal follows the signal. Derivatives
+  /// are those of the diagram with its quanta off, and 0 for a quantum itself: what its error gains by shrinking says
+  /// nothing of where it lies.
   bool residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian = nullptr);
 
  private:
@@ -89,6 +92,7 @@ class Model {
   VectorXd prior_{};
   std::vector<std::string> names_{};
   std::vector<Index> left_out_{};
+  std::shared_ptr<const Whitening> whitening_{};
   std::vector<Index> quanta_{};  ///< the unknowns that round
   Index first_further_ = 0;
 };

@@ -10,26 +10,13 @@
 // Every set that was fitted is kept: the verdict weighs them against each other.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "diagnosis/fitting.hpp"
+#include "diagnosis/search_options.hpp"
 
 namespace hysteron::diagnosis {
-
-struct SearchOptions {
-  CandidateOptions candidates{};
-  unsigned threads = 2;
-  int most_effects = 3;
-  std::size_t fitted_first = 18;  ///< candidates that are fitted after the first screening
-  std::size_t fitted_later = 10;  ///< and after each further one
-  std::size_t beam = 3;    ///< sets that a second effect is added to; a further one is added to the best set alone
-  std::size_t pairs = 10;  ///< pairs that are fitted because their changes would add up to the residual
-  std::function<void(double fraction, std::string_view text)> progress{};
-  std::function<bool()> out_of_time{};
-};
 
 struct Search {
   Explanation calibrated{};                 ///< no effect, known parameters fitted

@@ -43,6 +43,35 @@ Explanation Sets::without(const Explanation& whole, std::size_t dropped, const V
   return unless_refused([&] { return rebuilt(whole, dropped, bare, iterations); });
 }
 
+void Sets::take_on(Explanation& result, VectorXd& start, Candidate candidate, const Explanation& whole,
+                   const Applied& wanted) const {
+  Variant& variant = candidate.variant;
+  Applied& own = variant.effects.back();
+  take_settings(own, wanted);
+  for (std::size_t j = 0; j < own.paths.size(); ++j) {
+    for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
+      const Unknown& unknown = whole.variant.further[k];
+      if (unknown.path == wanted.paths[j]) {
+        variant.further.push_back(unknown);
+        variant.further.back().path = own.paths[j];
+        start.conservativeResize(start.size() + 1);
+        start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
+      }
+    }
+  }
+  result.variant = std::move(variant);
+  result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
+}
+
+void Sets::fit_from(Explanation& result, VectorXd start, const Explanation& whole, int iterations) const {
+  Model model(task_, *result.variant.program, result.variant.further);
+  const Index states = model.unknowns() - start.size();
+  start.conservativeResize(model.unknowns());
+  start.tail(states) = whole.fit.x.tail(states);
+  result.fit = fit(model, start, {.iterations = iterations});
+  keep_starts(result, model);
+}
+
 Explanation Sets::rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare, int iterations) const {
   Explanation result{.variant = bare};
   VectorXd start = whole.fit.x.head(std::ssize(task_.known));
@@ -55,30 +84,36 @@ Explanation Sets::rebuilt(const Explanation& whole, std::size_t dropped, const V
     if (list.empty()) {
       return result;
     }
-    Variant& variant = list.front().variant;
-    Applied& own = variant.effects.back();
-    take_settings(own, wanted);
-    for (std::size_t j = 0; j < own.paths.size(); ++j) {
-      for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
-        const Unknown& unknown = whole.variant.further[k];
-        if (unknown.path == wanted.paths[j]) {
-          variant.further.push_back(unknown);
-          variant.further.back().path = own.paths[j];
-          start.conservativeResize(start.size() + 1);
-          start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
-        }
-      }
-    }
-    result.variant = std::move(variant);
-    result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
+    take_on(result, start, std::move(list.front()), whole, wanted);
   }
-  Model model(task_, *result.variant.program, result.variant.further);
-  const Index states = model.unknowns() - start.size();
-  start.conservativeResize(model.unknowns());
-  start.tail(states) = whole.fit.x.tail(states);
-  result.fit = fit(model, start, {.iterations = iterations});
-  keep_starts(result, model);
+  fit_from(result, std::move(start), whole, iterations);
   return result;
+}
+
+std::vector<Explanation> Sets::on_each_edge(const Explanation& whole, std::size_t moved, const Variant& bare,
+                                            int iterations) const {
+  std::vector<Explanation> list;
+  const Explanation rest = without(whole, moved, bare, 0);
+  if (!std::isfinite(rest.fit.cost)) {
+    return list;
+  }
+  const Applied& wanted = whole.variant.effects[moved];
+  for (Candidate& candidate : candidates_of(rest.variant, top_, {.effects = {wanted.effect}})) {
+    if (candidate.own().block != wanted.block || !same_formula(candidate.own(), wanted)) {
+      continue;
+    }
+    Explanation one = unless_refused([&] {
+      Explanation result{};
+      VectorXd start = rest.fit.x.head(std::ssize(task_.known) + std::ssize(rest.variant.further));
+      take_on(result, start, std::move(candidate), whole, wanted);
+      fit_from(result, std::move(start), whole, iterations);
+      return result;
+    });
+    if (std::isfinite(one.fit.cost)) {
+      list.push_back(std::move(one));
+    }
+  }
+  return list;
 }
 
 Explanation Sets::rest_of(const Explanation& whole, std::size_t dropped, const Variant& bare,

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "diagnosis/fitting.hpp"
 
@@ -24,6 +25,11 @@ class Sets {
   [[nodiscard]] Explanation rest_of(const Explanation& whole, std::size_t dropped, const Variant& bare,
                                     const VectorXd& tuned) const;
 
+  /// A set with one of its effects on each edge in turn that has a place for it, the others where they are, fitted in
+  /// so many steps from where the set stood.
+  [[nodiscard]] std::vector<Explanation> on_each_edge(const Explanation& whole, std::size_t moved, const Variant& bare,
+                                                      int iterations) const;
+
   /// Two effects as they were screened, with the known parameters and states `known`, after a few steps of a fit; on
   /// one edge in the better order. The cost is ∞ where the second one has no place beside the first.
   [[nodiscard]] Explanation together(const Screened& first, const Screened& second, const VectorXd& known) const;
@@ -34,6 +40,11 @@ class Sets {
  private:
   [[nodiscard]] Explanation rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare,
                                     int iterations) const;
+  /// A candidate for `wanted` with that one's settings, and its parameters at the end of `start`.
+  void take_on(Explanation& result, VectorXd& start, Candidate candidate, const Explanation& whole,
+               const Applied& wanted) const;
+  /// With the states at the start as in `whole`.
+  void fit_from(Explanation& result, VectorXd start, const Explanation& whole, int iterations) const;
   /// The effect on that edge of another variant, in the same formula, or else about it.
   [[nodiscard]] std::vector<Candidate> in_place_of(const Variant& base, const Applied& wanted) const;
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,8 +43,9 @@ struct Judgement {
 
 /// What a machine does that no diagram repeats, counted as explained: steps of unequal widths, a delay that varies.
 struct Unrepeatable {
-  VectorXd residuals{};  ///< of all outputs, without it
-  std::string remark{};  ///< for the user
+  VectorXd residuals{};                      ///< of all outputs, without it
+  std::string remark{};                      ///< for the user
+  std::shared_ptr<const Explanation> set{};  ///< what was chosen for it, where the search had it not
 };
 
 /// Another set than the weights chose, which has no rivals then.

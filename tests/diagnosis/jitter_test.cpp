@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,10 @@ struct DelayedAxis {
     Model model(task, *one.variant.program, one.variant.further);
     one.fit = fit(model, model.start(), {.iterations = 40});
   }
+  [[nodiscard]] std::optional<Jitter> jitter() const {
+    const std::optional<JitterResponse> response = response_to_jitter(task, "AXIS", one, 2);
+    return response ? std::optional(jitter_of(task, *response, one.fit.residuals)) : std::nullopt;
+  }
   Task task{};
   Explanation one{};
 };
@@ -73,7 +78,7 @@ struct DelayedAxis {
 TEST(Jitter, OfKnownSize) {
   for (const double deviation : {0.004, 0.008}) {
     const DelayedAxis fitted(late_axis(deviation));
-    const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
+    const std::optional<Jitter> found = fitted.jitter();
     ASSERT_TRUE(found);
     EXPECT_GT(found->left, 2.0);
     // Knots six samples apart stand for draws eight apart, which move the speed more.
@@ -81,12 +86,14 @@ TEST(Jitter, OfKnownSize) {
     EXPECT_LT(found->deviation, 1.7 * deviation);
     EXPECT_LT(found->unexplained, 0.5 * found->left) << "of " << found->left;
     EXPECT_GT(found->unexplained, 1.0) << "each knot that is estimated is paid for";
+    EXPECT_GT(found->evenness, 0.4);
+    EXPECT_LT(found->evenness, 2.5);
   }
 }
 
 TEST(Jitter, NoneWhereTheDelayIsConstant) {
   const DelayedAxis fitted(late_axis(0.0));
-  const auto found = jitter_of(fitted.task, "AXIS", fitted.one, 2);
+  const std::optional<Jitter> found = fitted.jitter();
   ASSERT_TRUE(found);
   EXPECT_LT(found->deviation, 0.001);
   EXPECT_NEAR(found->unexplained, found->left, 0.02);
@@ -101,6 +108,19 @@ TEST(Jitter, IsNotWhatInputsForetell) {
   const Diagnosis jittered = diagnose(test::input_of(test::axis(), test::axis_parameters, {late_axis(0.008)}), options);
   EXPECT_THAT(jittered.warnings, testing::Contains(testing::HasSubstr("The delay at FORCE varies by")));
   EXPECT_NE(jittered.verdict, Verdict::Partial) << jittered.summary;
+}
+
+/// Behind the integrator what the variation leaves is a random walk, which a fit of constant delays bends a cube after.
+TEST(Jitter, HidesNoEffectBesideIt) {
+  const DiagnosisInput both = test::input_of(test::axis(), test::axis_parameters,
+                                             {late_axis(0.012, {"HY_ODD_NONLINEARITY := (SIZE := -0.3, REFERENCE := 3.0)", "FORCE"})});
+  const Diagnosis found = diagnose(both, {.effects = {"delay", "odd_nonlinearity", "lag", "dead_zone", "saturation"}});
+  std::vector<std::string> names;
+  for (const EffectFinding& one : found.effects) {
+    names.push_back(one.id);
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("delay", "odd_nonlinearity")) << found.summary;
+  EXPECT_THAT(found.warnings, testing::Contains(testing::HasSubstr("varies by")));
 }
 
 }  // namespace

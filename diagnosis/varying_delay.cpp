@@ -1,0 +1,262 @@
+#include "diagnosis/varying_delay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/discrepancy.hpp"
+#include "diagnosis/expansion.hpp"
+#include "diagnosis/jitter.hpp"
+#include "diagnosis/sets.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// Of the energy that the chosen set leaves, what its delay's variation may leave, and what that of another set may,
+/// whose constant delay leaves more.
+constexpr double most_left = 0.6;
+constexpr double most_left_by_another = 0.25;
+/// A residual of which this share is foretold by inputs and outputs has another cause.
+constexpr double foretold = 0.2;
+/// Residuals of so many floors' energy are no gap.
+constexpr double is_noise = 1.3;
+/// Of the mean, what a delay varies by at most: one that varies more is something else.
+constexpr double most_varied = 0.7;
+/// The evenness of a variation, or one over it, at least.
+constexpr double least_even = 0.3;
+/// Of sets with a delay so many are tried, none that leaves more than so many times what the chosen one leaves.
+constexpr std::size_t most_sets = 4;
+constexpr double far_behind = 4.0;
+/// On another edge a constant delay does nearly the same; one that leaves more than so many times has no place there.
+constexpr double misplaced = 1.5;
+/// Of what a variation at the set's own edge leaves, what one elsewhere may leave: behind a gain it is the same one.
+constexpr double elsewhere = 0.95;
+constexpr int steps_when_moved = 8;
+/// A usual variation, by which the residuals are whitened before its size is known, of the mean.
+constexpr double usual = 0.2;
+constexpr Index most_directions = 64;
+/// So many edges for a delay, each with hundreds of rollouts, and so many sets beside it on each.
+constexpr std::size_t most_edges = 3;
+constexpr std::size_t kept = 3;
+
+double mean_square(const VectorXd& residuals) {
+  return residuals.squaredNorm() / static_cast<double>(std::max<Index>(1, residuals.size()));
+}
+
+/// Whether inputs and outputs foretell the residual of an output.
+bool is_foretold(const Task& task, const Explanation& one) {
+  const Model model(task, *one.variant.program, one.variant.further);
+  const Index rows = model.rows() / std::ssize(task.outputs);
+  for (Index output = 0; output < std::ssize(task.outputs); ++output) {
+    const VectorXd own = one.fit.residuals.segment(output * rows, rows);
+    if (mean_square(own) > is_noise && discrepancy(model.problem().experiments, own).share_low > foretold) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A set with a delay, once its variation is known.
+struct Varying {
+  Explanation set{};
+  Jitter jitter{};
+  std::vector<bool> moves{};
+};
+
+class VaryingDelay {
+ public:
+  VaryingDelay(const Task& task, const std::string& top, const Search& search, double floor_cost,
+               const SearchOptions& options, const Explanation& chosen)
+      : task_(task),
+        top_(top),
+        search_(search),
+        floor_cost_(floor_cost),
+        options_(options),
+        sets_(task, top, options.candidates),
+        chosen_(chosen),
+        chosen_left_(std::sqrt(mean_square(chosen.fit.residuals))) {}
+
+  /// Null where no set has a delay that varies.
+  std::shared_ptr<const Varying> find() {
+    for (const Explanation* const one : sets_with_delay()) {
+      if (one == &chosen_) {
+        try_on_each_edge(*one);
+      } else {
+        try_fitted(*one, most_left_by_another);
+      }
+    }
+    if (!best_ || best_->jitter.unexplained * best_->jitter.unexplained > is_noise) {
+      try_beside();
+    }
+    return best_;
+  }
+
+ private:
+  /// The chosen set where it has a delay. Else those that have one and no more effects, the smallest first.
+  [[nodiscard]] std::vector<const Explanation*> sets_with_delay() const {
+    if (delay_of(chosen_) != nullptr) {
+      return {&chosen_};
+    }
+    std::vector<const Explanation*> list;
+    std::set<std::vector<std::string>> taken;
+    for (std::size_t effects = 1; effects <= chosen_.variant.effects.size(); ++effects) {
+      for (const Explanation& one : search_.explanations) {
+        if (list.size() < most_sets && one.variant.effects.size() == effects && delay_of(one) != nullptr &&
+            one.fit.cost < far_behind * chosen_.fit.cost && taken.insert(one.names()).second) {
+          list.push_back(&one);
+        }
+      }
+    }
+    return list;
+  }
+
+  /// The set with its delay elsewhere, the best first, since a constant delay commutes with much that its variation
+  /// does not.
+  [[nodiscard]] std::vector<Explanation> on_other_edges(const Explanation& one) const {
+    const auto at = static_cast<std::size_t>(delay_of(one) - one.variant.effects.data());
+    std::vector<Explanation> list = sets_.on_each_edge(one, at, search_.calibrated.variant, steps_when_moved);
+    std::erase_if(list, [&](const Explanation& moved) {
+      return moved.places() == one.places() || !(moved.fit.cost < misplaced * one.fit.cost);
+    });
+    std::ranges::stable_sort(list, {}, cost_of_fit);
+    list.resize(std::min(list.size(), most_edges - 1));
+    return list;
+  }
+
+  void try_on_each_edge(const Explanation& one) {
+    try_fitted(one, most_left);
+    for (const Explanation& moved : on_other_edges(one)) {
+      try_fitted(moved, most_left, elsewhere);
+    }
+  }
+
+  void try_fitted(const Explanation& one, double of_chosen, double of_best = 1.0) {
+    if (!is_foretold(task_, one)) {
+      try_set(one, of_chosen, of_best);
+    }
+  }
+
+  /// It becomes the best where it leaves less than `of_chosen` of the chosen set's energy, or less than `of_best` of
+  /// what the best so far leaves.
+  void try_set(const Explanation& one, double of_chosen, double of_best = 1.0) {
+    const std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads);
+    if (!response) {
+      return;
+    }
+    const Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
+    const bool larger = best_ && one.variant.effects.size() > best_->set.variant.effects.size();
+    const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.unexplained
+                               : std::sqrt(of_chosen) * chosen_left_;
+    if (jitter.unexplained < limit && jitter.deviation < most_varied * mean_delay(task_, one) &&
+        jitter.evenness > least_even && jitter.evenness * least_even < 1.0) {
+      best_ = std::make_shared<const Varying>(one, jitter, response->moves);
+    }
+  }
+
+  /// The delay by itself, with the residuals whitened of a usual variation, and each effect beside it.
+  void try_beside() {
+    const auto alone = std::ranges::find_if(search_.explanations, [&](const Explanation& one) {
+      return one.variant.effects.size() == 1 && delay_of(one) != nullptr;
+    });
+    if (alone == search_.explanations.end() || options_.most_effects < 2) {
+      return;
+    }
+    for (const Place& place : places_of(*alone)) {
+      if (options_.out_of_time && options_.out_of_time()) {
+        return;
+      }
+      Task whitened = task_;
+      whitened.whitening = std::make_shared<const Whitening>(
+          usual * mean_delay(task_, place.set) * place.response.columns, most_directions);
+      std::vector<Explanation> found = one_more(whitened, place.set);
+      found.resize(std::min(found.size(), kept));
+      for (Explanation& one : found) {
+        Model plain(task_, *one.variant.program, one.variant.further);
+        if (plain.residuals(one.fit.x, one.fit.residuals, &one.fit.jacobian)) {
+          one.fit.cost = cost_of(plain, one.fit.x, one.fit.residuals, nullptr);
+          try_set(one, most_left_by_another);
+        }
+      }
+    }
+  }
+
+  /// Sets of one effect more, the best first.
+  [[nodiscard]] std::vector<Explanation> one_more(const Task& whitened, Explanation from) const {
+    Model model(whitened, *from.variant.program, from.variant.further);
+    from.fit = fit(model, from.fit.x);
+    const Footing footing{.calibrated = from};
+    Expansion expansion(whitened, top_, footing, floor_cost_, options_);
+    expansion.may_stop();
+    std::vector<Explanation> found = expansion.of(from, any_effect, options_.fitted_later);
+    std::ranges::stable_sort(found, {}, cost_of_fit);
+    return found;
+  }
+
+  struct Place {
+    Explanation set{};
+    JitterResponse response{};
+    double unexplained = 0.0;
+  };
+
+  /// The edges for a delay by itself, first the one where its variation leaves least.
+  [[nodiscard]] std::vector<Place> places_of(const Explanation& alone) const {
+    std::vector<Explanation> sets = on_other_edges(alone);
+    sets.insert(sets.begin(), alone);
+    std::vector<Place> places;
+    for (const Explanation& one : sets) {
+      if (std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads)) {
+        const double own = places.empty() ? 1.0 : 1.0 / elsewhere;
+        const double unexplained = own * jitter_of(task_, *response, one.fit.residuals).unexplained;
+        places.push_back({.set = one, .response = std::move(*response), .unexplained = unexplained});
+      }
+    }
+    std::ranges::stable_sort(places, {}, &Place::unexplained);
+    return places;
+  }
+
+  const Task& task_;
+  const std::string& top_;
+  const Search& search_;
+  double floor_cost_;
+  const SearchOptions& options_;
+  Sets sets_;
+  const Explanation& chosen_;
+  double chosen_left_;
+  std::shared_ptr<const Varying> best_{};
+};
+
+}  // namespace
+
+std::optional<Unrepeatable> with_varying_delay(const Task& task, const std::string& top, const Search& search,
+                                               double floor_cost, const SearchOptions& options, Judgement& judgement) {
+  const Explanation& chosen = *judgement.chosen;
+  if (chosen.variant.effects.empty() || mean_square(chosen.fit.residuals) < is_noise) {
+    return std::nullopt;
+  }
+  const std::shared_ptr<const Varying> best = VaryingDelay(task, top, search, floor_cost, options, chosen).find();
+  if (!best) {
+    return std::nullopt;
+  }
+  const Explanation& set = best->set;
+  const Jitter& jitter = best->jitter;
+  choose_instead(task, set, judgement);
+  Unrepeatable result{.residuals = set.fit.residuals, .set = {best, &set}};
+  const Index rows = result.residuals.size() / std::ssize(task.outputs);
+  for (Index output = 0; output < std::ssize(task.outputs); ++output) {
+    if (best->moves[static_cast<std::size_t>(output)]) {
+      result.residuals.segment(output * rows, rows) *= jitter.unexplained / jitter.left;
+    }
+  }
+  result.remark = fmt::format(
+      "The delay at {} varies by {:.3g} s RMS about its mean: of the {:.2g} floors that a constant one leaves, {:.2g} "
+      "are no consequence of that.",
+      in_the_diagram(delay_of(set)->edge, set.variant.effects), jitter.deviation, jitter.left, jitter.unexplained);
+  return result;
+}
+
+}  // namespace hysteron::diagnosis

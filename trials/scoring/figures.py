@@ -130,7 +130,7 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     chosen = of(*IN_LIBRARY, where=lambda c: c.ratio >= 2.0 and c.right_edge is not None)
     out.append(_proportion("edge", "edge right up to its group, R ≥ 3", share([c.right_edge for c in chosen]), 0.95))
     listed = share([c.listed_edge for c in chosen])
-    out.append(_proportion("listed_edge", "  or one that the verdict cannot tell from it", listed, None))
+    out.append(_proportion("listed_edge", "  or one that the verdict cannot tell from it", listed, 0.95))
     out.append(_mean("listed_edges", "  mean number of these", [c.listed_edges for c in chosen], None))
     seconds = [c.seconds for c in cases if not math.isnan(c.seconds)]
     out.append(_quantile("seconds", "seconds a case, median", seconds, 0.5, None, False, "s"))

@@ -17,6 +17,7 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
+#include "diagnosis/jitter.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
@@ -174,7 +175,9 @@ class Run {
     }
     unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (!unrepeatable_) {
-      at_least(0.2);
+      if (delay_of(*searched->judgement.chosen) != nullptr) {
+        at_least(0.2);  // its variation may be all that is left
+      }
       unrepeatable_ = with_varying_delay(task_, top, found, floor_cost_, searching, searched->judgement);
     }
     if (unrepeatable_) {
@@ -374,7 +377,8 @@ class Run {
       result_.warnings.push_back(std::move(reason));
       result_.confidence = std::min(result_.confidence, sure_of_missed_start);
     }
-    for (std::string& reason : structural_reasons(result_, is_tried("periodic_disturbance") ? duration : 0.0)) {
+    for (std::string& reason : structural_reasons(result_, base_.program->graph.sample_time(),
+                                                  is_tried("periodic_disturbance") ? duration : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
     result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);

@@ -54,6 +54,13 @@ struct ParameterFinding {
   std::string unit{};
 };
 
+/// What an effect was given and no fit moved: the distance at which a nonlinearity has its size, a stride.
+struct SettingFinding {
+  std::string name{};
+  double value = 0.0;
+  std::string unit{};
+};
+
 /// Whether a feedforward can take an effect back.
 enum class Inverse : std::uint8_t { Exact, Avoidable, None };
 
@@ -64,6 +71,7 @@ struct EffectFinding {
   double share = 0.0;                     ///< of the gap that calibration leaves, with the glitches in it
   Inverse inverse = Inverse::None;
   std::vector<ParameterFinding> parameters{};
+  std::vector<SettingFinding> settings{};
 };
 
 /// A set of effects that the data do not rule out.

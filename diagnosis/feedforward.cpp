@@ -32,7 +32,7 @@ class Inverter {
       const Node& node = graph_.nodes[wire.index];
       const std::size_t pin = open_pin(node);
       if (wire.port != 0 || !(node.rate == Rate{})) {
-        throw NoInverse(fmt::format("{} is not a plain step of a chain", node.path));
+        throw NoInverse(fmt::format("{} is not a plain step of a chain", node.owner()));
       }
       const std::string wish = node.block != nullptr ? node.path : std::string("V");
       wanted = text_.signal(fmt::format("{}_OUT", wish), wanted);
@@ -79,8 +79,8 @@ class Inverter {
       }
     }
     if (open.size() != 1) {
-      throw NoInverse(open.empty() ? fmt::format("{} does not depend on {}", node.path, graph_.inputs[input_].name)
-                                   : fmt::format("{} takes {} signals that depend on {}: no series chain", node.path,
+      throw NoInverse(open.empty() ? fmt::format("{} does not depend on {}", node.owner(), graph_.inputs[input_].name)
+                                   : fmt::format("{} takes {} signals that depend on {}: no series chain", node.owner(),
                                                  open.size(), graph_.inputs[input_].name));
     }
     return open.front();
@@ -148,7 +148,7 @@ class Inverter {
     const bool infix =
         node.op == Op::Add || node.op == Op::Subtract || node.op == Op::Multiply || node.op == Op::Divide;
     if (!infix && node.op != Op::Negate) {
-      throw NoInverse(fmt::format("{} is computed by {}, which is not copied", node.path, operation.name));
+      throw NoInverse(fmt::format("{} is computed by {}, which is not copied", node.owner(), operation.name));
     }
     const std::string left = operand(graph_.wire(node, 0));
     const std::string text =
@@ -199,7 +199,8 @@ class Inverter {
       case Op::Negate:
         return fmt::format("-{}", wanted);
       default:
-        throw NoInverse(fmt::format("{} is computed by {}, which has no inverse here", node.path, info(node.op).name));
+        throw NoInverse(
+            fmt::format("{} is computed by {}, which has no inverse here", node.owner(), info(node.op).name));
     }
   }
 

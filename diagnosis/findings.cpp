@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "codegen/graph/units.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/remainder.hpp"
 #include "diagnosis/shares.hpp"
@@ -127,6 +128,13 @@ std::string unit_behind(const GapFinding& gap) {
   return gap.unit.empty() ? "" : " " + gap.unit;
 }
 
+/// A delay that a model's own steps may be.
+bool is_within_a_sample(const EffectFinding& effect, double sample_time) {
+  return effect.id == "delay" && std::ranges::any_of(effect.parameters, [&](const ParameterFinding& one) {
+           return one.name == "DEAD_TIME" && one.low <= sample_time;
+         });
+}
+
 }  // namespace
 
 Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed) {
@@ -175,6 +183,8 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
   const double samples = findings.judgement.effective_samples;
   const VectorXd errors = standard_errors(model, chosen.fit, samples);
   const std::vector<double> shares = shares_of(findings, chosen);
+  const Program& program = *chosen.variant.program;
+  const std::vector<std::string> units = units::Solution(program.graph, program.schedule).parameters();
   std::vector<EffectFinding> result;
   for (std::size_t i = 0; i < chosen.variant.effects.size(); ++i) {
     const Applied& applied = chosen.variant.effects[i];
@@ -191,6 +201,12 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
                                               model.lower()[at], model.upper()[at]));
       if (errors[at] > undetermined * std::abs(chosen.fit.x[at]) || !has_influence(chosen.fit, at, unknown.typical)) {
         widen_by_trial(model, chosen.fit, at, samples, finding.parameters.back());
+      }
+    }
+    for (const auto& [path, value] : applied.settings) {
+      const std::int64_t at = find_parameter(program.graph, path);
+      if (at >= 0 && program.graph.parameters[static_cast<std::size_t>(at)].field.type != Type::Bool) {
+        finding.settings.push_back({.name = leaf(path), .value = value, .unit = units[static_cast<std::size_t>(at)]});
       }
     }
     std::set<std::string> same;
@@ -302,13 +318,19 @@ std::string warning_of_floor(const GapFinding& gap) {
       gap.signal, gap.floor.value, unit, gap.floor.evidence, gap.improved, unit);
 }
 
-std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration) {
+std::vector<std::string> structural_reasons(const Diagnosis& so_far, double sample_time, double duration) {
   std::vector<std::string> reasons;
   for (const EffectFinding& effect : so_far.effects) {
     if (!effect.same_edges.empty()) {
       reasons.push_back(fmt::format(
           "{} at {} or at {}: the measured outputs are the same but for the noise. Measure a signal between them.",
           effect.id, effect.edge, fmt::join(effect.same_edges, ", ")));
+    }
+    if (is_within_a_sample(effect, sample_time)) {
+      reasons.push_back(fmt::format(
+          "{} at {}: it may be no more than a sample, {:.3g} s, and a model in steps makes such a one by itself. Its "
+          "HY_INTEGRAL is half a sample ahead, HY_INTEGRAL_FORWARD half a sample behind.",
+          effect.id, effect.edge, sample_time));
     }
   }
   std::vector<std::string> equal;

@@ -40,7 +40,7 @@ struct Findings {
 
 /// Why some things cannot be told apart from inputs and outputs, as far as it concerns this verdict. `duration`: of the
 /// longest record, where a periodic disturbance was tried; else 0.
-[[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far, double duration);
+[[nodiscard]] std::vector<std::string> structural_reasons(const Diagnosis& so_far, double sample_time, double duration);
 
 /// `gaps` are those of the outputs, and name their units: a column of a record may have none.
 [[nodiscard]] std::vector<Trace> traces_of(const Task& task, const std::vector<GapFinding>& gaps,

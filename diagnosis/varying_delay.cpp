@@ -86,7 +86,7 @@ class VaryingDelay {
     for (const Explanation* const one : sets_with_delay()) {
       if (one == &chosen_) {
         try_on_each_edge(*one);
-      } else {
+      } else if (!is_over()) {
         try_fitted(*one, most_left_by_another);
       }
     }
@@ -97,6 +97,8 @@ class VaryingDelay {
   }
 
  private:
+  [[nodiscard]] bool is_over() const { return options_.out_of_time && options_.out_of_time(); }
+
   /// The chosen set where it has a delay. Else those that have one and no more effects, the smallest first.
   [[nodiscard]] std::vector<const Explanation*> sets_with_delay() const {
     if (delay_of(chosen_) != nullptr) {
@@ -163,11 +165,11 @@ class VaryingDelay {
     const auto alone = std::ranges::find_if(search_.explanations, [&](const Explanation& one) {
       return one.variant.effects.size() == 1 && delay_of(one) != nullptr;
     });
-    if (alone == search_.explanations.end() || options_.most_effects < 2) {
+    if (alone == search_.explanations.end() || options_.most_effects < 2 || is_over()) {
       return;
     }
     for (const Place& place : places_of(*alone)) {
-      if (options_.out_of_time && options_.out_of_time()) {
+      if (is_over()) {
         return;
       }
       Task whitened = task_;

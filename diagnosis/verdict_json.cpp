@@ -22,6 +22,14 @@ Json parameters_of(const std::vector<ParameterFinding>& list) {
   return result;
 }
 
+Json settings_of(const std::vector<SettingFinding>& list) {
+  Json result = Json::object();
+  for (const SettingFinding& one : list) {
+    result[one.name] = {{"value", number(one.value)}, {"unit", one.unit}};
+  }
+  return result;
+}
+
 Json sets_of(const std::vector<Rival>& list) {
   Json result = Json::array();
   for (const Rival& one : list) {
@@ -101,7 +109,8 @@ std::string verdict_json(const Diagnosis& found) {
                        {"same_edges", effect.same_edges},
                        {"share", number(effect.share)},
                        {"invertible", effect.inverse == Inverse::Exact},
-                       {"parameters", parameters_of(effect.parameters)}});
+                       {"parameters", parameters_of(effect.parameters)},
+                       {"settings", settings_of(effect.settings)}});
   }
   Json rivals = Json::array();
   for (const Rival& rival : found.rivals) {

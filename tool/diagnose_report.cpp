@@ -144,6 +144,9 @@ std::string diagnosis_text(const Diagnosis& found) {
     for (const ParameterFinding& one : effect.parameters) {
       text += line_of(one);
     }
+    for (const diagnosis::SettingFinding& one : effect.settings) {
+      text += fmt::format("    {:<24} {}   (chosen, not fitted)\n", one.name, with_unit(one.value, one.unit));
+    }
   }
   if (!found.effects.empty()) {
     text += fmt::format("  of the gap: inputs and outputs {:.0f} %, plant {:.0f} %, open {:.0f} %\n",

@@ -418,14 +418,8 @@ class CppHeader {
   }
 
   std::string_view name_of(const Statement& definition) {
-    return locals_.make({owner(definition.target), definition.field, definition.what});
+    return locals_.make({graph_.nodes[definition.target].owner(), definition.field, definition.what});
   }
-  /// The block, or the pin that an operation feeds.
-  [[nodiscard]] std::string_view owner(std::uint32_t node) const {
-    const std::string_view path = graph_.nodes[node].path;
-    return path.substr(0, path.find('#'));
-  }
-
   /// Defines every value below a root that is used more than once.
   void write_shared(ValueId root, bool with_root, std::string& text) {
     struct Visit {
@@ -443,7 +437,9 @@ class CppHeader {
       if (entered) {
         const std::uint32_t own = own_definition_[id];
         if ((routine_.uses[id] > 1 || own != none) && (with_root || id != root)) {
-          write_definition(id, own != none ? name_of(routine_.step[own]) : locals_.make({owner(section_), "t"}), text);
+          write_definition(
+              id, own != none ? name_of(routine_.step[own]) : locals_.make({graph_.nodes[section_].owner(), "t"}),
+              text);
         }
         continue;
       }

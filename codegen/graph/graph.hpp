@@ -74,6 +74,8 @@ struct Node {
   std::uint32_t wire_count = 0;
   std::string path{};  ///< PLANT.HYST; for an operation, the pin that it feeds: INV.R1#0
   language::Span span{};
+  /// What the text calls it: the block, or the pin that an operation feeds, INV.R1.
+  [[nodiscard]] std::string_view owner() const { return std::string_view(path).substr(0, path.find('#')); }
 };
 
 /// A variable of the text, an input, or a port of a nested block, and what drives it: RATE, PLANT.RATE, PLANT.Y.

@@ -276,7 +276,8 @@ class Scheduler {
         const Wire& wire = graph_.wire(node, pin);
         const Node& from = graph_.nodes[wire.index];
         const std::uint32_t place = node.first_wire + pin;
-        path += (path.empty() ? "" : " → ") + display(from);
+        path += path.empty() ? "" : " → ";
+        path += from.owner();
         cuts.push_back({places_.empty() ? OuterPlace{0, graph_.wire_spans[place]} : places_[place],
                         fmt::format("wire {} → {}: a HY_DELAY here would cut the loop", output_name(from, wire.port),
                                     input_name(node, pin))});
@@ -303,14 +304,13 @@ class Scheduler {
         std::move(notes));
   }
 
-  static std::string display(const Node& node) { return node.path.substr(0, node.path.find('#')); }
   static std::string output_name(const Node& node, std::size_t port) {
     return node.block != nullptr ? fmt::format("{}.{}", node.path, node.block->outputs[port].name)
-                                 : fmt::format("the expression of {}", display(node));
+                                 : fmt::format("the expression of {}", node.owner());
   }
   static std::string input_name(const Node& node, std::size_t pin) {
     return node.block != nullptr ? fmt::format("{}.{}", node.path, node.block->pin(pin).name)
-                                 : fmt::format("the expression of {}", display(node));
+                                 : fmt::format("the expression of {}", node.owner());
   }
 
   // --- the order: depth first from the outputs, so that what is needed stands just before its use ---

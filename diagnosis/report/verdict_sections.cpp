@@ -51,8 +51,9 @@ std::string interval_of(const ParameterFinding& parameter) {
   return fmt::format("{} … {}", figure(parameter.low, 4), figure(parameter.high, 4));
 }
 
-std::string parameter_table(const std::vector<ParameterFinding>& parameters) {
-  if (parameters.empty()) {
+std::string parameter_table(const std::vector<ParameterFinding>& parameters,
+                            const std::vector<SettingFinding>& settings = {}) {
+  if (parameters.empty() && settings.empty()) {
     return {};
   }
   std::string html =
@@ -62,6 +63,11 @@ std::string parameter_table(const std::vector<ParameterFinding>& parameters) {
     html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
                         escaped(parameter.name), is_determined(parameter) ? figure(parameter.value, 4) : "–",
                         interval_of(parameter), escaped(parameter.unit));
+  }
+  for (const SettingFinding& setting : settings) {
+    html += fmt::format(
+        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">chosen, not fitted</td><td>{}</td></tr>\n",
+        escaped(setting.name), figure(setting.value, 4), escaped(setting.unit));
   }
   return html + "</tbody></table>\n";
 }
@@ -83,7 +89,7 @@ std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis)
       html += fmt::format("<p class=\"note\">No feedforward was written all the same: {}.</p>\n", escaped(reason));
     }
   }
-  return html + parameter_table(effect.parameters) + "</article>\n";
+  return html + parameter_table(effect.parameters, effect.settings) + "</article>\n";
 }
 
 struct Bar {

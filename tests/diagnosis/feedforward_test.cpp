@@ -226,7 +226,7 @@ TEST(Feedforward, SaysWhyThereIsNone) {
   };
   EXPECT_EQ(reason("FUNCTION_BLOCK PLANT (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
                    "VAR D : LREAL; END_VAR D := U - 1.0; Y := D + D * D; END_FUNCTION_BLOCK"),
-            "Y#1 takes 2 signals that depend on U: no series chain");
+            "Y takes 2 signals that depend on U: no series chain");
   EXPECT_EQ(reason(with_block("HY_ABS")), "EFFECT is a HY_ABS, which has no inverse here");
   EXPECT_EQ(reason(with_block("HY_GAIN := (K := 0.0)")), "EFFECT has the gain 0");
 }

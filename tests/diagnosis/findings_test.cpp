@@ -86,12 +86,43 @@ TEST(Shares, WithAnEffectOutsideOfTheGapTheyAreOfBoth) {
 
 TEST(Reasons, ASlowPeriodIsNamedWhereSomethingStaysOpen) {
   const auto reasons = [](Verdict verdict, double duration) {
-    return structural_reasons({.verdict = verdict}, duration);
+    return structural_reasons({.verdict = verdict}, 0.01, duration);
   };
   ASSERT_EQ(reasons(Verdict::Unknown, 60.0).size(), 1U);
   EXPECT_NE(reasons(Verdict::Partial, 60.0).front().find("slower than some 30 s"), std::string::npos);
   EXPECT_TRUE(reasons(Verdict::Named, 60.0).empty());
   EXPECT_TRUE(reasons(Verdict::Unknown, 0.0).empty()) << "it was not tried";
+}
+
+TEST(Reasons, ADelayWithinASampleMayBeTheModelsOwn) {
+  const auto reasons = [](std::string effect, double low) {
+    const Diagnosis found{.effects = {{.id = std::move(effect),
+                                       .edge = "BELT.XIN",
+                                       .parameters = {{.name = "DEAD_TIME", .value = low, .low = low, .unit = "s"}}}}};
+    return structural_reasons(found, 0.01, 0.0);
+  };
+  ASSERT_EQ(reasons("delay", 0.005).size(), 1U);
+  EXPECT_NE(reasons("delay", 0.005).front().find("delay at BELT.XIN: it may be no more than a sample, 0.01 s"),
+            std::string::npos);
+  EXPECT_TRUE(reasons("delay", 0.02).empty());
+  EXPECT_TRUE(reasons("hold", 0.005).empty());
+}
+
+TEST(Findings, ASizeStandsBesideTheDistanceAtWhichItIs) {
+  const std::string machine = test::axis({"HY_ODD_NONLINEARITY := (SIZE := -0.5, REFERENCE := 3.0)", "FORCE"});
+  const Diagnosis found = diagnose(
+      test::input_of(test::axis(), test::axis_parameters,
+                     {test::measured(test::program_of(machine), test::record_of("FORCE", test::rich_force()), 0.001)}),
+      {.effects = {"odd_nonlinearity"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  const EffectFinding& effect = found.effects.front();
+  ASSERT_EQ(effect.settings.size(), 2U);
+  EXPECT_EQ(effect.settings[0].name, "CENTRE");
+  EXPECT_EQ(effect.settings[1].name, "REFERENCE");
+  EXPECT_EQ(effect.settings[1].unit, "N");
+  ASSERT_EQ(effect.parameters.size(), 1U);
+  const double reference = effect.settings[1].value;
+  EXPECT_NEAR(effect.parameters[0].value / (reference * reference * reference), -0.5 / 27.0, 0.002);
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ Diagnosis full() {
                     .same_edges = {"Y"},
                     .share = 0.93,
                     .inverse = Inverse::Exact,
-                    .parameters = {{.name = "GAIN", .value = 0.1, .low = 0.09, .high = 0.11, .unit = "1"}}},
+                    .parameters = {{.name = "GAIN", .value = 0.1, .low = 0.09, .high = 0.11, .unit = "1"}},
+                    .settings = {{.name = "T_ONSET", .value = 0.01, .unit = "s"}}},
                    {.id = "rate_limit", .edge = "U", .share = 0.05, .inverse = Inverse::Avoidable}};
   found.rivals = {{.effects = {"creep"}, .edges = {"HYST.XOUT"}, .improved_rms = 0.2, .probability = 0.9},
                   {.effects = {"drift", "relaxation"}, .edges = {"U", "Y"}, .improved_rms = 0.3, .probability = 0.1}};
@@ -58,7 +59,8 @@ Diagnosis full() {
 TEST(VerdictJson, HasTheKeysAndTypesOfVersion1) {
   const json schema = json::parse(R"({"schema":"hysteron-verdict/1","verdict":"named",
     "effects":[{"id":"creep","edge":"HYST.XOUT","share":0.93,"invertible":true,
-                "parameters":{"GAIN":{"value":0.1,"low":0.09,"high":0.11,"unit":"1"}}}],
+                "parameters":{"GAIN":{"value":0.1,"low":0.09,"high":0.11,"unit":"1"}},
+                "settings":{"T_ONSET":{"value":0.01,"unit":"s"}}}],
     "rivals":[["creep"],["drift","relaxation"]],"confidence":0.97,"unknown_score":0.02,
     "gap":{"signal":"Y","unit":"um","nominal_rms":1.0,"calibrated_rms":0.8,"improved_rms":0.2,"floor_rms":0.19,
            "closed":0.99,"closed_low":0.98,"closed_high":1.0},

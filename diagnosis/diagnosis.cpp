@@ -17,7 +17,6 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
-#include "diagnosis/jitter.hpp"
 #include "diagnosis/left_out.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
@@ -175,9 +174,7 @@ class Run {
     }
     unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (!unrepeatable_) {
-      if (delay_of(*searched->judgement.chosen) != nullptr) {
-        at_least(0.2);  // its variation may be all that is left
-      }
+      at_least(0.2);  // what hides beside a delay takes a search of its own
       unrepeatable_ = with_varying_delay(task_, top, found, floor_cost_, searching, searched->judgement);
     }
     if (unrepeatable_) {

@@ -11,6 +11,7 @@
 #include "diagnosis/refusal.hpp"
 #include "diagnosis/shortlist.hpp"
 #include "diagnosis/spectrum.hpp"
+#include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -32,6 +33,12 @@ constexpr double more_than_chance = 10.0;
 
 /// Costs above this many of the floor's are a gap, however little one effect alone gains on it.
 constexpr double surely_a_gap = 2.0;
+
+/// What a fit gains in log likelihood with the noise left open, on as many samples as its residuals are worth.
+double nats_gained(double cost_before, const Fit& fit) {
+  const double samples = static_cast<double>(fit.residuals.size()) / std::max(1.0, correlation_time(fit.residuals));
+  return 0.5 * samples * std::log(cost_before / std::max(fit.cost, 1e-300));
+}
 
 }  // namespace
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tuning/covariance.hpp"
-
 namespace hysteron::diagnosis {
 namespace {
 
@@ -99,11 +97,6 @@ std::vector<std::string> Explanation::places() const {
   }
   std::ranges::sort(places);
   return places;
-}
-
-double nats_gained(double cost_before, const Fit& fit) {
-  const double samples = static_cast<double>(fit.residuals.size()) / std::max(1.0, correlation_time(fit.residuals));
-  return 0.5 * samples * std::log(cost_before / std::max(fit.cost, 1e-300));
 }
 
 double cost_of_fit(const Explanation& one) {

@@ -20,9 +20,6 @@ struct Explanation {
   [[nodiscard]] Index parameters() const { return std::ssize(variant.further); }
 };
 
-/// What a fit gains in log likelihood with the noise left open, on as many samples as its residuals are worth.
-[[nodiscard]] double nats_gained(double cost_before, const Fit& fit);
-
 [[nodiscard]] double cost_of_fit(const Explanation& one);
 
 /// Where in the fit's x a parameter of its effects stands; nothing where it was not fitted.

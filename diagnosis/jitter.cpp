@@ -121,7 +121,6 @@ Jitter likeliest(const VectorXd& eigenvalues, const VectorXd& projections, doubl
     if (unexplained < best.unexplained) {
       best.unexplained = unexplained;
       best.deviation = std::sqrt(lambda * variance);
-      best.strength = std::sqrt(lambda);
       best.evenness = evenness_of(eigenvalues, projections, lambda, variance);
     }
   }

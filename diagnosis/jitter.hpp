@@ -28,7 +28,6 @@ struct JitterResponse {
 /// the geometric mean of the variances of one sample after the other, each given those before it.
 struct Jitter {
   double deviation = 0.0;    ///< of the delay about its mean, s
-  double strength = 0.0;     ///< √λ, s for residuals of the size σ
   double unexplained = 0.0;  ///< u, in units of the residuals
   double left = 0.0;         ///< RMS of the residuals themselves
   /// What the residual has along the strongest quarter of the directions that the variation rules, over what it has

@@ -84,7 +84,7 @@ class Searcher {
         simplify(found);
       }
       beam = next_beam(found, round == 0 ? options_.beam : 1);
-      std::ranges::move(found, std::back_inserter(result.explanations));
+      append(std::move(found), result.explanations);
     }
     std::ranges::stable_sort(result.explanations, {}, cost_of_fit);
     result.tried = expansion_.tried();
@@ -128,7 +128,7 @@ class Searcher {
         }
       }
     }
-    std::ranges::move(reduced, std::back_inserter(found));
+    append(std::move(reduced), found);
   }
 
   void pair_up(const Explanation& from, std::vector<Screened>& singles, std::vector<Explanation>& found) {
@@ -146,7 +146,7 @@ class Searcher {
     });
     std::erase_if(fits, [](const Explanation& one) { return !std::isfinite(one.fit.cost); });
     expansion_.finish_front(fits, footing_.calibrated.fit.cost);
-    std::ranges::move(fits, std::back_inserter(found));
+    append(std::move(fits), found);
   }
 
   /// A line that stands out of the spectrum, beside any other effect: by itself it took on what that one does.

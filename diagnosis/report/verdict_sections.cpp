@@ -51,20 +51,19 @@ std::string interval_of(const ParameterFinding& parameter) {
   return fmt::format("{} … {}", figure(parameter.low, 4), figure(parameter.high, 4));
 }
 
-std::string parameter_table(const std::vector<ParameterFinding>& parameters,
-                            const std::vector<SettingFinding>& settings = {}) {
-  if (parameters.empty() && settings.empty()) {
+std::string parameter_table(const EffectFinding& effect) {
+  if (effect.parameters.empty() && effect.settings.empty()) {
     return {};
   }
   std::string html =
       "<table><thead><tr><th>parameter</th><th class=\"number\">value</th><th class=\"number\">95 % interval</th>"
       "<th>unit</th></tr></thead><tbody>\n";
-  for (const ParameterFinding& parameter : parameters) {
+  for (const ParameterFinding& parameter : effect.parameters) {
     html += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
                         escaped(parameter.name), is_determined(parameter) ? figure(parameter.value, 4) : "–",
                         interval_of(parameter), escaped(parameter.unit));
   }
-  for (const SettingFinding& setting : settings) {
+  for (const SettingFinding& setting : effect.settings) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">chosen, not fitted</td><td>{}</td></tr>\n",
         escaped(setting.name), figure(setting.value, 4), escaped(setting.unit));
@@ -89,7 +88,7 @@ std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis)
       html += fmt::format("<p class=\"note\">No feedforward was written all the same: {}.</p>\n", escaped(reason));
     }
   }
-  return html + parameter_table(effect.parameters, effect.settings) + "</article>\n";
+  return html + parameter_table(effect) + "</article>\n";
 }
 
 struct Bar {

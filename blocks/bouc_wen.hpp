@@ -31,11 +31,15 @@ BoucWenPlace<S> bouc_wen(const BoucWenLaw<S>& law, const S& z, const S& change, 
   const S behind = min(w, S(0.0));
   const S to_zero = log(S(1.0) - far_rate * behind) / far_rate;
   const Bool<S> stays_behind = distance < to_zero;
-  const S still_behind = behind + (S(1.0) / far_rate - behind) * (S(1.0) - exp(-far_rate * distance));
-  const S ahead = max(w, S(0.0));
-  const S beyond = max(distance - to_zero, S(0.0)) / law.travel;
-  const S before = ahead + (law.travel - ahead) * (S(1.0) - exp(-beyond));
-  const S now = select(stays_behind, still_behind, before);
+  const auto still_behind = [&] {
+    return behind + (S(1.0) / far_rate - behind) * (S(1.0) - exp(-far_rate * distance));
+  };
+  const auto before = [&] {
+    const S ahead = max(w, S(0.0));
+    const S beyond = max(distance - to_zero, S(0.0)) / law.travel;
+    return ahead + (law.travel - ahead) * (S(1.0) - exp(-beyond));
+  };
+  const S now = either<S>(stays_behind, still_behind, before);
   return {.z = way * now, .slope = S(1.0) - now * select(stays_behind, far_rate, S(1.0) / law.travel)};
 }
 

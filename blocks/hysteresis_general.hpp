@@ -149,7 +149,24 @@ struct HysteresisGeneral {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const Sample<S> sample = find(params, held(params, state, in), in, ts);
+    return placed(params, find(params, held(params, state, in), in, ts));
+  }
+  template <class S>
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
+    const State<S> before = held(params, state, in);
+    move_on(state, before, find(params, before, in, ts), in);
+  }
+  template <class S>
+  static Out<S> step(const Params<S>& params, State<S>& state, const In<S>& in, const S& ts) {
+    const State<S> before = held(params, state, in);
+    const Sample<S> sample = find(params, before, in, ts);
+    move_on(state, before, sample, in);
+    return placed(params, sample);
+  }
+
+ private:
+  template <class S>
+  static Out<S> placed(const Params<S>& params, const Sample<S>& sample) {
     const S part = params.BOUC_WEN * params.C1;
     const S loops = with_term<S>(sample.last.y, params.RETURN_POINT * (sample.returns.y - sample.last.y));
     return {.XOUT = with_term<S>(loops, part * sample.parallel.z),
@@ -158,9 +175,7 @@ struct HysteresisGeneral {
             .Q = sample.branch.course.turned};
   }
   template <class S>
-  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    const State<S> before = held(params, state, in);
-    const Sample<S> sample = find(params, before, in, ts);
+  static void move_on(State<S>& state, const State<S>& before, const Sample<S>& sample, const In<S>& in) {
     const ResumedBranch<S>& resumed = sample.resumed;
     // The start of an interrupted branch goes on the stack at a reversal; a ninth replaces the innermost loop.
     const Int<S> place = before.STARTS;
@@ -185,8 +200,6 @@ struct HysteresisGeneral {
     state.MOVING = Bool<S>(true);
     state.BOUC_WEN_Z = sample.parallel.z;
   }
-
- private:
   /// Sets all but the starts on the stack, which count for nothing while STARTS is 0.
   template <class S>
   static void begin(const Params<S>& params, State<S>& state) {
@@ -206,6 +219,11 @@ struct HysteresisGeneral {
   /// What is remembered before the present sample.
   template <class S>
   static State<S> held(const Params<S>& params, const State<S>& state, const In<S>& in) {
+    if constexpr (std::is_same_v<Bool<S>, bool>) {
+      if (!in.R1) {
+        return state;  // as below, without a dozen choices
+      }
+    }
     State<S> fresh = state;
     begin(params, fresh);
     State<S> result = state;
@@ -240,10 +258,13 @@ struct HysteresisGeneral {
     const S momentum = abs(distance) * twice;
     const S travelled = from - x;
     const RichRise<S> here = rich_rise<S>(loop, effects, x, distance, momentum, distance < S(0.0));
-    const RichRise<S> there = rich_rise<S>(loop, effects, x, travelled, abs(travelled) * twice, travelled < S(0.0));
-    const S by_rate = rate_part + share * (here.growth - there.growth);
+    const S by_rate = rate_part + unless_zero(share, S(0.0), [&] {
+                        const RichGrowth<S> there =
+                            rich_growth<S>(loop, effects, x, travelled, abs(travelled) * twice, travelled < S(0.0));
+                        return share * (here.growth - there.whole());
+                      });
     return {.y = with_term<S>(y + here.plain, here.excess + by_rate),
-            .slope = with_term<S>(loop_slopes(loop, momentum).tangent, here.slope + share * here.growth_slope),
+            .slope = with_term<S>(here.plain_slope, here.slope + share * here.growth_slope),
             .momentum = momentum,
             .rate_part = by_rate};
   }

@@ -146,55 +146,102 @@ struct RichParams : Enriched {
   }
 };
 
+/// The growth of a branch, as asymmetry and its exponent change it.
+template <class S>
+struct RichGrowth {
+  LoopSlopes<S> slopes;  ///< of the paper's loop
+  S plain;               ///< G(d) without asymmetry
+  S plain_slope;         ///< C2·p^C3
+  S changed;             ///< by what G(d) is multiplied
+  S changed_slope;       ///< and by what its slope
+  S middle;              ///< b·m
+
+  [[nodiscard]] S skewed() const { return plain * changed; }
+  [[nodiscard]] S whole() const { return skewed() * (S(1.0) + middle); }
+};
+
+template <class S>
+RichGrowth<S> rich_growth(const LoopConstants<S>& loop, const LoopEffects<S>& effects, const S& start,
+                          const S& distance, const S& momentum, const Bool<S>& downwards) {
+  const LoopSlopes<S> slopes = loop_slopes(loop, momentum);
+  const S m_growth = slopes.tangent - loop.c1;
+  const S one_way = select(downwards, S(-1.0), S(1.0));
+  const S tilt = one_way * effects.exponent;
+  // A falling exponent makes the slope infinite where a branch begins, and it is left so soon that nothing is lost.
+  constexpr double soon = 1e-9;
+  const S steeper = unless_zero(tilt, S(1.0), [&] { return power(max(momentum / effects.reach, S(soon)), tilt); });
+  const S order = unless_zero(tilt, S(1.0), [&] { return (loop.c3 + S(1.0)) / (loop.c3 + tilt + S(1.0)); });
+  const S tilted = steeper * (S(1.0) + one_way * effects.asymmetry);
+  return {.slopes = slopes,
+          .plain = distance * (m_growth / (loop.c3 + S(1.0))),
+          .plain_slope = m_growth,
+          .changed = tilted * order,
+          .changed_slope = tilted,
+          .middle = effects.bias * (start + S(0.5) * distance - effects.origin)};
+}
+
 /// What the effects add on a branch: 0 where they are neutral.
 template <class S>
 struct RichRise {
   S plain;         ///< C1·d + G(d), as the paper has it, one branch from its start
-  S excess;        ///< what asymmetry, bias of either form and shape add to that
+  S plain_slope;   ///< M(p)
+  S excess;        ///< what asymmetry, bias of either form and shape add to the rise
   S growth;        ///< the part that grows with rate
   S slope;         ///< what they add to M
   S growth_slope;  ///< the derivative of `growth`
 };
 
+/// A term of a rise and its derivative.
+template <class S>
+struct RiseTerm {
+  S rise;
+  S slope;
+};
+
 template <class S>
 RichRise<S> rich_rise(const LoopConstants<S>& loop, const LoopEffects<S>& effects, const S& start, const S& distance,
                       const S& momentum, const Bool<S>& downwards) {
-  const LoopSlopes<S> slopes = loop_slopes(loop, momentum);
-  const S m_growth = slopes.tangent - loop.c1;
-  const S growth = distance * (m_growth / (loop.c3 + S(1.0)));
-  const S z = momentum / effects.depth;
-  const S bell = effects.shape * loop.c1 * z * exp(S(2.0) * (S(1.0) - z));
-  const S bend = distance * bell;
-  const S m_bend = S(2.0) * (S(1.0) - z) * bell;
-  const S one_way = select(downwards, S(-1.0), S(1.0));
-  const S skew = one_way * effects.asymmetry;
-  const S tilt = one_way * effects.exponent;
-  const S middle = effects.bias * (start + S(0.5) * distance - effects.origin);
-  // A falling exponent makes the slope infinite where a branch begins, and it is left so soon that nothing is lost.
-  constexpr double soon = 1e-9;
-  const S tilted = power(max(momentum / effects.reach, S(soon)), tilt) * (S(1.0) + skew);
-  const S m_skewed = m_growth * tilted;
-  const S changed = tilted * ((loop.c3 + S(1.0)) / (loop.c3 + tilt + S(1.0)));
-  const S skewed = growth * changed;
-  const S whole = loop.c1 * distance + skewed + bend;
+  const RichGrowth<S> growth = rich_growth<S>(loop, effects, start, distance, momentum, downwards);
+  const S m_growth = growth.plain_slope;
+  const S skewed = growth.skewed();
+  const S m_skewed = m_growth * growth.changed_slope;
+  const RiseTerm<S> none{.rise = S(0.0), .slope = S(0.0)};
+  const RiseTerm<S> bend = unless_zero(effects.shape, none, [&] {
+    const S z = momentum / effects.depth;
+    const S bell = effects.shape * loop.c1 * z * exp(S(2.0) * (S(1.0) - z));
+    return RiseTerm<S>{.rise = distance * bell, .slope = S(2.0) * (S(1.0) - z) * bell};
+  });
   const S half = S(0.5) * effects.bias;
+  const RiseTerm<S> biased = unless_zero(effects.bias, none, [&] {
+    const S whole = loop.c1 * distance + skewed + bend.rise;
+    return RiseTerm<S>{.rise = whole * growth.middle,
+                       .slope = (loop.c1 + m_skewed + bend.slope) * growth.middle + whole * half};
+  });
   const S from = start - effects.origin;
   const S square = distance * distance;
-  const S hardened = from * growth + square * (m_growth / (loop.c3 + S(2.0)));
-  const S wander =
-      effects.duhem * (hardened + loop.c1 * (from * distance + S(0.5) * square)) + effects.hardening * hardened;
-  return {.plain = distance * slopes.chord,
-          .excess = growth * (changed - S(1.0)) + bend + whole * middle + wander,
-          .growth = skewed * (S(1.0) + middle),
-          .slope = m_growth * (tilted - S(1.0)) + m_bend + (loop.c1 + m_skewed + m_bend) * middle + whole * half +
-                   (from + distance) * (effects.duhem * slopes.tangent + effects.hardening * m_growth),
-          .growth_slope = m_skewed * (S(1.0) + middle) + skewed * half};
+  const auto hardened = [&] { return from * growth.plain + square * (m_growth / (loop.c3 + S(2.0))); };
+  const RiseTerm<S> duhem = unless_zero(effects.duhem, none, [&] {
+    return RiseTerm<S>{.rise = effects.duhem * (hardened() + loop.c1 * (from * distance + S(0.5) * square)),
+                       .slope = (from + distance) * (effects.duhem * growth.slopes.tangent)};
+  });
+  const RiseTerm<S> hardening = unless_zero(effects.hardening, none, [&] {
+    return RiseTerm<S>{.rise = effects.hardening * hardened(),
+                       .slope = (from + distance) * (effects.hardening * m_growth)};
+  });
+  return {
+      .plain = distance * growth.slopes.chord,
+      .plain_slope = growth.slopes.tangent,
+      .excess = growth.plain * (growth.changed - S(1.0)) + bend.rise + biased.rise + duhem.rise + hardening.rise,
+      .growth = growth.whole(),
+      .slope = m_growth * (growth.changed_slope - S(1.0)) + bend.slope + biased.slope + duhem.slope + hardening.slope,
+      .growth_slope = m_skewed * (S(1.0) + growth.middle) + skewed * half};
 }
 
 /// R·log10(1 + |rate|/reference): by what share the growth is faster.
 template <class S>
 S rate_share(const S& per_decade, const S& rate, const S& reference) {
-  return per_decade * (log(S(1.0) + abs(rate) / reference) * S(0.4342944819032518));
+  return unless_zero(per_decade, S(0.0),
+                     [&] { return per_decade * (log(S(1.0) + abs(rate) / reference) * S(0.4342944819032518)); });
 }
 
 }  // namespace hysteron

@@ -136,6 +136,24 @@ S either(const Bool<S>& condition, const First& a, const Second& b) {
   }
 }
 
+/// Whether a number is 0 and stays 0, as a parameter that is not used does: a dual one with a derivative does not.
+template <MachineReal S>
+bool vanishes(S x) {
+  return x == S(0);
+}
+
+/// A value that costs much and is `at_zero` where `factor` is 0: of numbers it is worked out only where that does not
+/// vanish, of traced scalars always.
+template <class T, class S, class Value>
+T unless_zero(const S& factor, const T& at_zero, const Value& value) {
+  if constexpr (std::is_same_v<Bool<S>, bool>) {
+    if (vanishes(factor)) {
+      return at_zero;
+    }
+  }
+  return value();
+}
+
 /// Towards zero, as IEC 61131-3 TRUNC; saturates at the ends of DINT, and 0 for not-a-number, so that no input is
 /// undefined.
 template <MachineReal S>

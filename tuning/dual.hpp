@@ -151,6 +151,7 @@ class Dual {
   friend Dual max(const Dual& a, const Dual& b) { return b.value() > a.value() ? b : a; }
 
   friend std::int32_t to_int(const Dual& x) { return to_int(x.value()); }
+  friend bool vanishes(const Dual& x) { return x.value() == 0.0 && x.is_constant(); }
   friend double value_of(const Dual& x) { return x.value(); }
 
  private:

@@ -135,17 +135,34 @@ class Run {
       return over;
     };
     const std::string top = base_.program->graph.name;
-    auto searched = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
-    result_.tried = searched->search.tried;
+    const auto find = [&] {
+      Search found = search(task_, base_, top, floor_cost_, searching);
+      result_.tried += found.tried;
+      return found;
+    };
     const auto at_least = [&](double share) {  // of the budget, from now on
       begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
                                                  std::chrono::duration<double>((1.0 - share) * options_.budget)));
     };
+    std::optional<Task> cleaned;  // without what one effect shows already: a search for more would be done twice
+    searching.ends_with_singles = [&](const Explanation& best) {
+      Task without = task_;
+      if (leave_out_beside(left_out_, without, best, floors_)) {
+        cleaned = std::move(without);
+      }
+      return cleaned.has_value();
+    };
+    Search first = find();
+    searching.ends_with_singles = nullptr;
+    if (cleaned) {
+      task_ = std::move(*cleaned);
+      spare_left_out();
+      first = find();
+    }
+    auto searched = std::make_unique<Searched>(task_, std::move(first), floor_cost_);
     const auto again = [&] {
       at_least(0.25);  // the search has its best sets to find again
-      auto next = std::make_unique<Searched>(task_, search(task_, base_, top, floor_cost_, searching), floor_cost_);
-      result_.tried += next->search.tried;
-      return next;
+      return std::make_unique<Searched>(task_, find(), floor_cost_);
     };
     search_from_another_start(searched, again);
     if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {

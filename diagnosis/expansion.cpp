@@ -154,7 +154,7 @@ void Expansion::finish_front(std::vector<Explanation>& fits, double cost_before)
     const bool in_front =
         decides && !must_stop() && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
     if (i < finished_always || in_front) {
-      finish(task_, fits[i], i < finished_always);
+      finish(task_, fits[i], {.thoroughly = i < finished_always, .stop = [&] { return must_stop(); }});
     }
     say(0.9 + 0.1 * static_cast<double>(++done) / static_cast<double>(fits.size()), "last steps of the fits");
   });

@@ -155,7 +155,7 @@ Explanation begun_from(const Task& task, const Screened& one, const Explanation&
   return best;
 }
 
-void finish(const Task& task, Explanation& one, bool thoroughly) {
+void finish(const Task& task, Explanation& one, const FinishOptions& options) {
   Model model(task, *one.variant.program, one.variant.further);
   const Applied& own = one.variant.effects.back();
   const Index count = std::ranges::count_if(own.paths, [&](const std::string& path) {
@@ -165,11 +165,14 @@ void finish(const Task& task, Explanation& one, bool thoroughly) {
   if (own.has_gap()) {
     scan(model, one.fit, first, count);
   }
-  one.fit = fit(model, one.fit.x, {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5});
-  if (own.has_gap()) {
+  const bool thoroughly = options.thoroughly;
+  one.fit = fit(model, one.fit.x,
+                {.iterations = thoroughly ? 60 : 20, .tolerance = thoroughly ? 1e-6 : 1e-5, .stop = options.stop});
+  const bool is_cut = options.stop && options.stop();  // single steps take as long again
+  if (own.has_gap() && !is_cut) {
     // A hundred steps from 0, a quantum that is off by a thousandth is off by a tenth of itself.
     pattern_search(model, one.fit, 0, first + count, thoroughly && own.has(Role::Quantum) ? 1e-4 : 0.003);
-  } else if (thoroughly) {
+  } else if (thoroughly && !is_cut) {
     pattern_search(model, one.fit, first, count, 0.003);
   }
   keep_starts(one, model);

@@ -1,6 +1,7 @@
 // The fit of one candidate: from the starts that the screening has found, first a few steps, then to the end.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,8 +40,13 @@ struct KnownStarts {
 [[nodiscard]] Explanation begun_from(const Task& task, const Screened& one, const Explanation& from,
                                      const KnownStarts& known);
 
-/// To the end, where it stands. `thoroughly`: with single steps by trial where a derivative may not see the way.
-void finish(const Task& task, Explanation& one, bool thoroughly);
+struct FinishOptions {
+  bool thoroughly = false;       ///< with single steps by trial where a derivative may not see the way
+  std::function<bool()> stop{};  ///< asked between steps: the fit ends where it stands
+};
+
+/// To the end, where it stands.
+void finish(const Task& task, Explanation& one, const FinishOptions& options = {});
 
 /// What the effects were fitted to is where their next fit begins.
 void keep_starts(Explanation& one, const Model& model);

@@ -134,14 +134,18 @@ void add_tails(std::vector<Run>& runs, const std::vector<double>& signal, double
   }
 }
 
-/// Of several records, one after the other.
+/// Of several records, one after the other. `known` rows are no new ones.
 class Sum {
  public:
+  explicit Sum(std::span<const std::size_t> known) : known_(known) {}
+
   void add(const std::vector<Run>& runs, const std::vector<double>& differences) {
     for (const Run& run : runs) {
       for (std::size_t row = run.first; row <= run.last + run.tail; ++row) {
         result_.rows.push_back(offset_ + row);
-        squares_ += differences[row] * differences[row];
+        const double square = differences[row] * differences[row];
+        squares_ += square;
+        new_squares_ += std::ranges::binary_search(known_, offset_ + row) ? 0.0 : square;
       }
       struck_ += std::min(run.last + 1 - run.first, single.longest);
       result_.largest = std::max(result_.largest, run.size);
@@ -153,15 +157,19 @@ class Sum {
     if (static_cast<double>(struck_) > rare * static_cast<double>(offset_)) {
       return {};
     }
-    result_.rms = offset_ > 0 ? std::sqrt(squares_ / static_cast<double>(offset_)) : 0.0;
+    const double samples = std::max(1.0, static_cast<double>(offset_));
+    result_.rms = std::sqrt(squares_ / samples);
+    result_.new_rms = std::sqrt(new_squares_ / samples);
     return std::move(result_);
   }
 
  private:
+  std::span<const std::size_t> known_;
   Glitches result_{};
   std::size_t struck_ = 0;  ///< samples, without tails
   std::size_t offset_ = 0;
   double squares_ = 0.0;
+  double new_squares_ = 0.0;
 };
 
 /// How far a signal goes about a run.
@@ -181,7 +189,7 @@ bool repeats(const std::vector<double>& values, const Run& run) {
 }  // namespace
 
 Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output) {
-  Sum sum;
+  Sum sum({});
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];
     const std::vector<double> differences = off_neighbours(values);
@@ -192,7 +200,7 @@ Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t o
 
 Glitches with_model(const Glitches& found, const std::vector<Experiment>& experiments, std::size_t output,
                     std::span<const double> modelled) {
-  Sum sum;
+  Sum sum(found.rows);
   std::size_t offset = 0;
   for (const Experiment& experiment : experiments) {
     const std::vector<double>& values = experiment.measured[output];

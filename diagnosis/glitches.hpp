@@ -17,6 +17,7 @@ namespace hysteron::diagnosis {
 struct Glitches {
   std::vector<std::size_t> rows{};  ///< of one output, record by record
   double rms = 0.0;                 ///< √(Σe²/N) over all N samples, in the unit of the output
+  double new_rms = 0.0;             ///< likewise, of those samples that were not known before
   double largest = 0.0;
 };
 

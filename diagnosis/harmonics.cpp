@@ -89,7 +89,7 @@ std::optional<Explanation> with_multiple(const Task& task, const std::string& to
     if (!std::isfinite(result.fit.cost)) {
       return std::nullopt;
     }
-    finish(task, result, false);
+    finish(task, result);
     return result;
   }
   return std::nullopt;

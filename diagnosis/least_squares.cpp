@@ -113,6 +113,9 @@ Fit fit(Model& model, const VectorXd& start, const FitOptions& options) {
   int without_gain = 0;
   VectorXd residuals;
   for (int iteration = 0; iteration < options.iterations && best.x.size() > 0; ++iteration) {
+    if (options.stop && options.stop()) {
+      break;
+    }
     const Normal normal = normal_equations(model, best, options.weights);
     bool descended = false;
     for (int attempt = 0; attempt < 6 && !descended; ++attempt) {

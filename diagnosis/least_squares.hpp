@@ -3,8 +3,7 @@
 //   minimise  ½ Σ wᵢ rᵢ(x)² + ½ Σ ((xⱼ − x⁰ⱼ)/sⱼ)²
 //
 // Hundreds of candidates are fitted, from starts that a grid has found, to the few digits that a ranking needs: Ipopt
-// takes some ten times as long from there and gives the same. It has the last word on the fit that is reported
-// (polish.hpp).
+// takes some ten times as long from there and gives the same.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,6 +26,7 @@ struct FitOptions {
   int iterations = 25;
   double tolerance = 1e-5;            ///< of the relative decrease of the cost
   const VectorXd* weights = nullptr;  ///< of the rows; null: 1
+  std::function<bool()> stop{};       ///< asked before each step: the fit ends where it stands
 };
 
 /// From `start`, which is brought within the bounds. The prior is about the model's own start.

@@ -168,7 +168,7 @@ bool leave_out_beside(std::vector<LeftOut>& found, Task& task, const Explanation
     const Glitches before{.rows = known == found.end() ? std::vector<std::size_t>{} : known->glitches};
     Glitches beside =
         with_model(before, model.problem().experiments, output, modelled(task, model, chosen.fit.x, output));
-    if (beside.rows.size() == before.rows.size() || beside.rms < least_excess(floors[output])) {
+    if (beside.rows.size() == before.rows.size() || beside.new_rms < least_excess(floors[output])) {
       continue;
     }
     more = true;

@@ -83,7 +83,9 @@ class Searcher {
         exchange(1, found);
         simplify(found);
       }
-      beam = next_beam(found, round == 0 ? options_.beam : 1);
+      const bool ends =
+          round == 0 && !found.empty() && options_.ends_with_singles && options_.ends_with_singles(best_of(found));
+      beam = ends ? std::vector<Explanation>{} : next_beam(found, round == 0 ? options_.beam : 1);
       append(std::move(found), result.explanations);
     }
     std::ranges::stable_sort(result.explanations, {}, cost_of_fit);
@@ -141,6 +143,9 @@ class Searcher {
         pairs_that_add_up(task_, singles, from.fit.x, background, options_.pairs, options_.threads);
     std::vector<Explanation> fits(pairs.size());
     in_parallel(pairs.size(), options_.threads, [&](std::size_t i) {
+      if (expansion_.must_stop()) {
+        return;
+      }
       fits[i] = sets_.together(singles[static_cast<std::size_t>(pairs[i].first)],
                                singles[static_cast<std::size_t>(pairs[i].second)], from.fit.x);
     });

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "diagnosis/candidates.hpp"
+#include "diagnosis/fitting.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -18,6 +19,9 @@ struct SearchOptions {
   std::size_t pairs = 10;  ///< pairs that are fitted because their changes would add up to the residual
   std::function<void(double fraction, std::string_view text)> progress{};
   std::function<bool()> out_of_time{};
+  /// Asked with the best of the single effects: whether the record shows something beside it that has to be mended
+  /// first. The search then ends there.
+  std::function<bool(const Explanation& best)> ends_with_singles{};
 };
 
 }  // namespace hysteron::diagnosis

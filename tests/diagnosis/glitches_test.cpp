@@ -132,6 +132,18 @@ TEST(Glitches, BesideAModelTheirTailsAreTakenToo) {
   EXPECT_EQ(std::ranges::count_if(found.rows, [](std::size_t row) { return row > 510; }), 3) << "noise is no tail";
 }
 
+TEST(Glitches, NewOnesAreMeasuredByThemselves) {
+  std::vector<double> values = with_clear_ones();
+  const std::vector<double> still(values.size(), 0.0);
+  const Glitches first = with_model({}, with(values), 0, still);
+  EXPECT_EQ(first.new_rms, first.rms);
+  values[500] += 5.0;
+  const Glitches second = with_model(first, with(values), 0, still);
+  EXPECT_EQ(second.rows.size(), first.rows.size() + 1);
+  EXPECT_NEAR(second.new_rms, 5.0 / std::sqrt(2000.0), 0.01);
+  EXPECT_GT(second.rms, 2.0 * second.new_rms);
+}
+
 TEST(Glitches, BesideAModelOneMayComeUponAnother) {
   std::vector<double> values = with_clear_ones();
   values[500] += 9.0;

@@ -103,6 +103,21 @@ TEST(LeastSquares, WeightsOfZeroTakeRowsOut) {
   EXPECT_EQ(found.residuals.size(), samples);  // of all rows, for those held out
 }
 
+TEST(LeastSquares, ToldToStopItStandsWhereItIs) {
+  const Task task = line_task();
+  Model model(task, compile_text(line));
+  const VectorXd start = VectorXd::Constant(2, 3.0);
+  const Fit at_once = fit(model, start, {.stop = [] { return true; }});
+  EXPECT_EQ(at_once.x, start);
+  EXPECT_EQ(at_once.residuals.size(), samples);
+  EXPECT_FALSE(at_once.converged);
+  int asked = 0;
+  const Fit after_one = fit(model, start, {.stop = [&] { return ++asked > 1; }});
+  EXPECT_EQ(asked, 2);
+  EXPECT_LT(after_one.cost, at_once.cost);
+  EXPECT_EQ(after_one.cost, cost_of(model, after_one.x, after_one.residuals, nullptr));
+}
+
 TEST(LeastSquares, ABoundHoldsAndTheOthersMeetTheRest) {
   Task task = line_task();
   task.known[0].start = -4.0;

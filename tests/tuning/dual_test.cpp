@@ -171,6 +171,21 @@ TEST(Dual, MinMaxAndSelectTakeTheDerivativeOfTheSideWhoseValueTheyReturn) {
   EXPECT_EQ(select(a > c, nothing, c).derivative(1), 1.0);
 }
 
+TEST(Dual, ATermIsLeftOutOnlyWhereItsFactorStaysZero) {
+  int worked_out = 0;
+  const auto term_of = [&](const Dual<2>& factor) {
+    return unless_zero(factor, Dual<2>(0.0), [&] {
+      ++worked_out;
+      return factor * Dual<2>(3.0);
+    });
+  };
+  EXPECT_EQ(term_of(Dual<2>(0.0)).value(), 0.0);
+  EXPECT_EQ(worked_out, 0);
+  EXPECT_EQ(term_of(Dual<2>::variable(0.0, 1)).derivative(1), 3.0);
+  EXPECT_EQ(term_of(Dual<2>(2.0)).value(), 6.0);
+  EXPECT_EQ(worked_out, 2);
+}
+
 TEST(Dual, ComparesAndConvertsByValue) {
   const auto a = Dual<1>::variable(2.75, 0);
   EXPECT_TRUE(a == Dual<1>(2.75));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -12,6 +11,7 @@
 #include <optional>
 
 #include "codegen/parameters/apply.hpp"
+#include "diagnosis/budget.hpp"
 #include "diagnosis/findings.hpp"
 #include "diagnosis/harmonics.hpp"
 #include "diagnosis/held_out.hpp"
@@ -57,7 +57,7 @@ class Run {
     const auto begun = Clock::now();
     prepare();
     if (result_.refusals.empty()) {
-      investigate(begun);
+      investigate();
     } else {
       result_.verdict = Verdict::Unknown;
       result_.unknown_score = 1.0;
@@ -121,78 +121,18 @@ class Run {
     floor_cost_ = 0.5 * static_cast<double>(nominal_.size() - std::ssize(task_.left_out));
   }
 
-  void investigate(Clock::time_point begun) {
-    SearchOptions searching{.threads = options_.threads, .most_effects = options_.most_effects};
-    searching.candidates.effects = options_.effects;
-    searching.candidates.columns = unused_;
-    searching.progress = options_.progress;
-    std::atomic<bool> cut = false;  // the search asks from its threads, and only where it would go on
-    searching.out_of_time = [&] {
-      const bool over = std::chrono::duration<double>(Clock::now() - begun).count() > options_.budget;
-      if (over) {
-        cut = true;
-      }
-      return over;
-    };
-    const std::string top = base_.program->graph.name;
-    const auto find = [&] {
-      Search found = search(task_, base_, top, floor_cost_, searching);
-      result_.tried += found.tried;
-      return found;
-    };
-    const auto at_least = [&](double share) {  // of the budget, from now on
-      begun = std::max(begun, Clock::now() - std::chrono::duration_cast<Clock::duration>(
-                                                 std::chrono::duration<double>((1.0 - share) * options_.budget)));
-    };
-    std::optional<Task> cleaned;  // without what one effect shows already: a search for more would be done twice
-    searching.ends_with_singles = [&](const Explanation& best) {
-      Task without = task_;
-      if (leave_out_beside(left_out_, without, best, floors_)) {
-        cleaned = std::move(without);
-      }
-      return cleaned.has_value();
-    };
-    Search first = find();
-    searching.ends_with_singles = nullptr;
-    if (cleaned) {
-      task_ = std::move(*cleaned);
-      spare_left_out();
-      first = find();
-    }
-    auto searched = std::make_unique<Searched>(task_, std::move(first), floor_cost_);
-    const auto again = [&] {
-      at_least(0.25);  // the search has its best sets to find again
-      return std::make_unique<Searched>(task_, find(), floor_cost_);
-    };
-    search_from_another_start(searched, again);
-    if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {
-      spare_left_out();
-      searched = again();
-    }
+  void investigate() {
+    const std::unique_ptr<Searched> searched = searched_record();
     const Search& found = searched->search;
-    if (cut) {
-      result_.warnings.push_back(fmt::format(
-          "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every "
-          "set of several. The verdict may change with more time, --budget.",
-          options_.budget, found.tried));
-    }
-    if (std::string reason =
-            unrelated(task_, found.calibrated, *searched->judgement.chosen, searched->judgement.effective_samples);
-        !reason.empty()) {
-      result_.warnings.push_back(std::move(reason));
-      searched->judgement = {.chosen = &found.calibrated,
-                             .effective_samples = searched->judgement.effective_samples,
-                             .held_out = held_out(task_, found.calibrated)};
-      related_ = false;
-    }
-    harmonics_ = with_harmonics(task_, top, *searched->judgement.chosen, searched->judgement.weighing_samples);
+    judge_related(*searched);
+    harmonics_ = with_harmonics(task_, result_.top, *searched->judgement.chosen, searched->judgement.weighing_samples);
     if (harmonics_) {
       choose_instead(task_, *harmonics_, searched->judgement);
     }
     unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
     if (!unrepeatable_) {
-      at_least(0.2);  // what hides beside a delay takes a search of its own
-      unrepeatable_ = with_varying_delay(task_, top, found, floor_cost_, searching, searched->judgement);
+      budget_.at_least(0.2);  // what hides beside a delay takes a search of its own
+      unrepeatable_ = with_varying_delay(task_, result_.top, found, floor_cost_, search_options(), searched->judgement);
     }
     if (unrepeatable_) {
       result_.warnings.push_back(unrepeatable_->remark);
@@ -206,8 +146,73 @@ class Run {
     describe_gap(found.calibrated, kept, judgement);
     describe_cuts();
     describe(found, judgement, kept);
-    result_.edges = where(task_, found, top, unused_, result_.effects, options_.threads);
+    result_.edges = where(task_, found, result_.top, unused_, result_.effects, options_.threads);
     result_.maps = maps_of(task_, found.calibrated, kept, gap_output_);
+  }
+
+  [[nodiscard]] SearchOptions search_options() {
+    return {.candidates = {.effects = options_.effects, .columns = unused_},
+            .threads = options_.threads,
+            .most_effects = options_.most_effects,
+            .progress = options_.progress,
+            .out_of_time = [this] { return budget_.is_over(); }};
+  }
+
+  Search search_with(const SearchOptions& options) {
+    Search found = search(task_, base_, result_.top, floor_cost_, options);
+    result_.tried += found.tried;
+    return found;
+  }
+
+  std::unique_ptr<Searched> searched_record() {
+    auto searched = std::make_unique<Searched>(task_, search_without_glitches(), floor_cost_);
+    const auto again = [&] {
+      budget_.at_least(0.25);  // the search has its best sets to find again
+      return std::make_unique<Searched>(task_, search_with(search_options()), floor_cost_);
+    };
+    search_from_another_start(searched, again);
+    if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {
+      spare_left_out();
+      searched = again();
+    }
+    if (budget_.has_cut()) {
+      result_.warnings.push_back(warning_of_cut(budget_.seconds(), searched->search.tried));
+    }
+    return searched;
+  }
+
+  /// Glitches that show beside one effect already are left out before a search for more, which would be done twice.
+  Search search_without_glitches() {
+    SearchOptions options = search_options();
+    std::optional<Task> cleaned;
+    options.ends_with_singles = [&](const Explanation& best) {
+      Task without = task_;
+      if (leave_out_beside(left_out_, without, best, floors_)) {
+        cleaned = std::move(without);
+      }
+      return cleaned.has_value();
+    };
+    Search found = search_with(options);
+    if (cleaned) {
+      task_ = std::move(*cleaned);
+      spare_left_out();
+      found = search_with(search_options());
+    }
+    return found;
+  }
+
+  /// Where the record has next to nothing to do with the diagram, no effect is chosen.
+  void judge_related(Searched& searched) {
+    Judgement& judgement = searched.judgement;
+    const Explanation& calibrated = searched.search.calibrated;
+    std::string reason = unrelated(task_, calibrated, *judgement.chosen, judgement.effective_samples);
+    if (!reason.empty()) {
+      result_.warnings.push_back(std::move(reason));
+      judgement = {.chosen = &calibrated,
+                   .effective_samples = judgement.effective_samples,
+                   .held_out = held_out(task_, calibrated)};
+      related_ = false;
+    }
   }
 
   [[nodiscard]] bool named() const {
@@ -383,16 +388,12 @@ class Run {
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
     }
-    double duration = 0.0;
-    for (const records::Record& record : task_.records) {
-      duration = std::max(duration, record.time().back() - record.time().front());
-    }
     if (std::string reason = unexplained_start(task_, *judgement.chosen); !reason.empty() && related_) {
       result_.warnings.push_back(std::move(reason));
       result_.confidence = std::min(result_.confidence, sure_of_missed_start);
     }
     for (std::string& reason : structural_reasons(result_, base_.program->graph.sample_time(),
-                                                  is_tried("periodic_disturbance") ? duration : 0.0)) {
+                                                  is_tried("periodic_disturbance") ? longest_duration(task_) : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
     result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);
@@ -468,6 +469,7 @@ class Run {
   std::vector<std::string> inner_{};      ///< outputs that are inner signals of the user's diagram
   DiagnosisInput input_;
   const DiagnosisOptions& options_;
+  Budget budget_{options_.budget};
   Task task_{};
   Variant base_{};
   std::vector<std::string> unused_{};  ///< columns that the diagram does not name

@@ -311,6 +311,13 @@ std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
                      effects ? fmt::format("; with the effects {:.3g}{} stay", gap.improved, unit) : std::string());
 }
 
+std::string warning_of_cut(double budget, std::size_t candidates) {
+  return fmt::format(
+      "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every set of "
+      "several. The verdict may change with more time, --budget.",
+      budget, candidates);
+}
+
 std::string warning_of_floor(const GapFinding& gap) {
   const std::string unit = unit_behind(gap);
   return fmt::format(

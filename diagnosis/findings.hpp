@@ -35,6 +35,9 @@ struct Findings {
 /// That the refit of the known parameters gives up an output for the others, or the effects do, with both numbers.
 [[nodiscard]] std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects);
 
+/// That the search ended before its time, with what it had tried.
+[[nodiscard]] std::string warning_of_cut(double budget, std::size_t candidates);
+
 /// What is said where effects leave less than a floor that took a part of them for noise.
 [[nodiscard]] std::string warning_of_floor(const GapFinding& gap);
 

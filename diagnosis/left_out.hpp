@@ -25,8 +25,8 @@ struct LeftOut {
 /// Finds them, the largest ones of an output first, and takes their rows out of the task. `task.scales` are set.
 [[nodiscard]] std::vector<LeftOut> leave_out(Task& task, const Program& program);
 
-/// Takes out what only shows beside an explanation, where what is new of it is no small part of the noise: whether there
-/// was any.
+/// Takes out what only shows beside an explanation, where what is new of it is no small part of the noise: whether
+/// there was any.
 [[nodiscard]] bool leave_out_beside(std::vector<LeftOut>& found, Task& task, const Explanation& chosen,
                                     const std::vector<NoiseFloor>& floors);
 

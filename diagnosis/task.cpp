@@ -117,6 +117,14 @@ InputError error_of_start(const DiagnosisInput& input) {
           "run it with hysteron run to see where it leaves its range, and correct the parameters."};
 }
 
+double longest_duration(const Task& task) {
+  double longest = 0.0;
+  for (const records::Record& record : task.records) {
+    longest = std::max(longest, record.time().back() - record.time().front());
+  }
+  return longest;
+}
+
 double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
   const Index rows = residuals.size() / std::ssize(task.outputs);
   const Index first = static_cast<Index>(output) * rows;

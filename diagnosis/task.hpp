@@ -23,6 +23,9 @@ namespace hysteron::diagnosis {
 /// HY711: the diagram has no finite value with the parameters as given.
 [[nodiscard]] InputError error_of_start(const DiagnosisInput& input);
 
+/// Of the longest record, in s.
+[[nodiscard]] double longest_duration(const Task& task);
+
 /// The RMS of one output's residuals over the samples that count, in its unit.
 [[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
 

@@ -85,7 +85,7 @@ TEST(Glitches, NoiseAndCornersAreNone) {
 std::vector<double> fast() {
   std::vector<double> values(2000);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double t = static_cast<double>(k);
+    const auto t = static_cast<double>(k);
     values[k] = std::sin(0.63 * t) * (1.0 + std::sin(0.011 * t));
   }
   return values;

@@ -382,7 +382,7 @@ class Run {
         result_.confidence = std::min(result_.confidence, sure_of_another_machine);
       }
     }
-    const std::vector<Edge> edges = edges_of_text(input_.text, base_.program->graph.name);
+    const std::vector<Edge> edges = edges_of_text(input_.text, result_.top);
     add_left_out(findings, edges);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {

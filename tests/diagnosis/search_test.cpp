@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::Field;
 using testing::SizeIs;
 
-/// An axis with two effects, one at a time no explanation of both.
+/// An axis with two effects, of which neither explains the other.
 class SearchOfTwo : public testing::Test {
  protected:
   SearchOfTwo() {
@@ -62,14 +62,12 @@ TEST_F(SearchOfTwo, EndsWithTheSinglesWhereTheRecordIsToBeMendedFirst) {
 }
 
 TEST_F(SearchOfTwo, TriesEverySingleEffectWithNoTimeAtAll) {
-  const std::size_t all = [&] {
-    options_.ends_with_singles = [](const Explanation& /*best*/) { return true; };
-    return search_all().tried;
-  }();
+  options_.ends_with_singles = [](const Explanation& /*best*/) { return true; };
+  const std::size_t singles = search_all().tried;
   options_.ends_with_singles = nullptr;
   options_.out_of_time = [] { return true; };
   const Search found = search_all();
-  EXPECT_EQ(found.tried, all);
+  EXPECT_EQ(found.tried, singles);
   EXPECT_THAT(found.explanations, Each(Field(&Explanation::variant, Field(&Variant::effects, SizeIs(1)))));
 }
 

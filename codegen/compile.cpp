@@ -44,7 +44,8 @@ struct Checked {
   std::vector<Program> programs;  ///< beside definitions.list
 };
 
-Checked check_all(std::shared_ptr<const language::SourceFile> source, bool keep_names, Diagnostics& diagnostics) {
+Checked check_all(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
+                  Diagnostics& diagnostics) {
   Checked result{.definitions = define(std::move(source), diagnostics), .programs = {}};
   Definitions& definitions = result.definitions;
   result.programs.resize(definitions.list.size());
@@ -54,7 +55,11 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, bool keep_
     Diagnostics own;
     if (definition.usable) {
       OuterPlaces places;
-      program.graph = elaborate(definitions, index, own, keep_names, &places);
+      ElaborateOptions elaboration{.keep_names = options.keep_names};
+      if (language::same_name(definition.block->name.text, options.top)) {
+        elaboration.noisy_outputs = options.noisy_outputs;
+      }
+      program.graph = elaborate(definitions, index, own, elaboration, &places);
       if (!own.has_errors() && !blocks_work(diagnostics)) {
         program.schedule = schedule(program.graph, places, own);
       }
@@ -136,7 +141,7 @@ std::int64_t find_top(const Definitions& definitions, const std::string& wanted,
 
 void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
   Diagnostics found;
-  const Checked checked = check_all(std::move(source), false, found);
+  const Checked checked = check_all(std::move(source), {}, found);
   const std::vector<bool> contained = find_contained(checked.definitions);
   for (std::size_t i = 0; i < contained.size(); ++i) {
     if (!contained[i]) {
@@ -149,7 +154,7 @@ void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diag
 Program compile(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
                 Diagnostics& diagnostics) {
   Diagnostics found;
-  Checked checked = check_all(std::move(source), options.keep_names, found);
+  Checked checked = check_all(std::move(source), options, found);
   const std::int64_t top = find_top(checked.definitions, options.top, found);
   if (top >= 0) {
     warn_of_time(checked.definitions, static_cast<std::size_t>(top), found);
@@ -197,7 +202,7 @@ std::string format_text(std::string path, std::string text, Diagnostics& diagnos
   }
   const auto source = std::make_shared<const language::SourceFile>(std::move(parsed));
   Diagnostics found;
-  const Checked checked = check_all(source, false, found);
+  const Checked checked = check_all(source, {}, found);
   language::StatementOrders orders(source->blocks.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (!blocks_work(found)) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "codegen/graph/elaborate.hpp"
 #include "codegen/graph/graph.hpp"
 #include "codegen/graph/schedule.hpp"
 #include "codegen/language/syntax.hpp"
@@ -19,9 +20,10 @@ struct Program {
 };
 
 struct CompileOptions {
-  std::string top{};        ///< which FUNCTION_BLOCK; empty: the only one that no other contains
-  bool any_order = false;   ///< statements may stand in any order: HY402 becomes a warning
-  bool keep_names = false;  ///< Graph::named is filled, which costs time and memory
+  std::string top{};                         ///< which FUNCTION_BLOCK; empty: the only one that no other contains
+  bool any_order = false;                    ///< statements may stand in any order: HY402 becomes a warning
+  bool keep_names = false;                   ///< Graph::named is filled, which costs time and memory
+  std::vector<NoisyOutput> noisy_outputs{};  ///< of the block that `top` names
 };
 
 /// Checks every block of a file. All diagnostics, sorted by place, each once.

@@ -5,18 +5,18 @@
 namespace hysteron::diagnosis {
 
 std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge,
-                                             const std::string& top, const std::vector<Applied>& effects) {
+                                             const std::string& top, Variant variant) {
   const language::FunctionBlock& block = source.blocks[edge.definition];
   AddedSignal added{.input = free_name(block, "ADDED_SIGNAL")};
   const std::string instance = free_name(block, "ADDED");
   try {
-    added.program = compiled(with_effect(source, edge,
-                                         {.block = "HY_SUM",
-                                          .instance = instance,
-                                          .input = "IN1",
-                                          .wires = {{"IN2", added.input}},
-                                          .new_input = added.input}),
-                             top, effects);
+    variant.text = with_effect(source, edge,
+                               {.block = "HY_SUM",
+                                .instance = instance,
+                                .input = "IN1",
+                                .wires = {{"IN2", added.input}},
+                                .new_input = added.input});
+    added.program = compiled(variant, top);
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -18,9 +18,10 @@ struct AddedSignal {
   Wire before{};        ///< the signal that it is added to
 };
 
-/// Nothing where the diagram refuses it. `edge` lies in the block `top` itself.
+/// Nothing where the diagram refuses it. `source` is the text of the variant, and `edge` lies in the block `top`
+/// itself.
 [[nodiscard]] std::optional<AddedSignal> with_added_signal(const language::SourceFile& source, const Edge& edge,
-                                                           const std::string& top, const std::vector<Applied>& effects);
+                                                           const std::string& top, Variant variant);
 
 /// The residuals at x with this signal added; empty where they have no value.
 [[nodiscard]] VectorXd residuals_with(const Task& task, const AddedSignal& added, const RecordSignals& signal,

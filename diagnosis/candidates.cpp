@@ -353,7 +353,7 @@ class Enumeration {
     const std::string instance = applied.instance;
     candidate.variant.effects.push_back(std::move(applied));
     try {
-      candidate.variant.program = compiled(candidate.variant.text, top_, candidate.variant.effects);
+      candidate.variant.program = compiled(candidate.variant, top_);
     } catch (const InputError&) {
       return false;
     }
@@ -444,10 +444,10 @@ void set_parameter(Graph& graph, std::string_view path, double value) {
   }
 }
 
-std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,
-                                        const std::vector<Applied>& effects) {
-  auto program = std::make_shared<Program>(compile_text(text, {.top = top, .any_order = true}));
-  for (const Applied& applied : effects) {
+std::shared_ptr<const Program> compiled(const Variant& variant, const std::string& top) {
+  auto program = std::make_shared<Program>(
+      compile_text(variant.text, {.top = top, .any_order = true, .noisy_outputs = variant.noisy_outputs}));
+  for (const Applied& applied : variant.effects) {
     for (const auto& [path, value] : applied.settings) {
       set_parameter(program->graph, path, value);
     }

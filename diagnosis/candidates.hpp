@@ -45,7 +45,8 @@ struct Variant {
   std::string text{};
   std::shared_ptr<const Program> program{};
   std::vector<Applied> effects{};
-  std::vector<Unknown> further{};  ///< the parameters of the effects, in their order
+  std::vector<Unknown> further{};            ///< the parameters of the effects, in their order
+  std::vector<NoisyOutput> noisy_outputs{};  ///< whose noise goes around in a loop, from columns of the records
 };
 
 /// A variant and the candidate's own part of it: the last effect.
@@ -78,8 +79,7 @@ struct CandidateOptions {
 /// Sets the first element of a parameter by its path; nothing where there is none of that name.
 void set_parameter(Graph& graph, std::string_view path, double value);
 
-/// The program of a text, statements in any order, with the settings of its effects.
-[[nodiscard]] std::shared_ptr<const Program> compiled(const std::string& text, const std::string& top,
-                                                      const std::vector<Applied>& effects);
+/// The program of a variant's text, statements in any order, with the settings of its effects.
+[[nodiscard]] std::shared_ptr<const Program> compiled(const Variant& variant, const std::string& top);
 
 }  // namespace hysteron::diagnosis

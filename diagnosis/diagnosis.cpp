@@ -18,6 +18,7 @@
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
 #include "diagnosis/left_out.hpp"
+#include "diagnosis/loop_noise.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
 #include "diagnosis/noise_floors.hpp"
@@ -75,12 +76,13 @@ class Run {
     // With the file's values: an effect that it switches on is there already.
     auto program = std::make_shared<Program>(input_.program);
     parameters::apply(task_.file, program->graph);
-    base_ = {.text = input_.text, .program = std::move(program)};
-    result_.refusals = absurd_samples(task_, base_.program->graph);
+    given_ = std::move(program);
+    base_ = {.text = input_.text, .program = given_};
+    result_.refusals = absurd_samples(task_, given_->graph);
     if (!result_.refusals.empty()) {
       return;
     }
-    unused_ = unused_columns(task_, *base_.program);
+    unused_ = unused_columns(task_, *given_);
     std::vector<std::vector<Signal>> others;
     for (const records::Record& record : task_.records) {
       others.emplace_back();
@@ -88,10 +90,10 @@ class Run {
         others.back().push_back(record.column(name).values);
       }
     }
-    floors_ = noise_floors(task_, *base_.program, others);
+    floors_ = noise_floors(task_, *given_, others);
     std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
-    left_out_ = leave_out(task_, *base_.program);
-    Model scaled(task_, *base_.program);
+    left_out_ = leave_out(task_, *given_);
+    Model scaled(task_, *given_);
     if (!scaled.residuals(scaled.start(), nominal_)) {
       throw InputError(error_of_start(input_));
     }
@@ -102,6 +104,10 @@ class Run {
     one_motion_ = checked.one_motion;
     if (!checked.left_out.empty()) {
       task_.left_out.insert(task_.left_out.end(), checked.left_out.begin(), checked.left_out.end());
+    }
+    if (LoopNoise noise = with_loop_noise(task_, base_, result_.top); !noise.remark.empty()) {
+      base_ = std::move(noise.base);
+      result_.warnings.push_back(std::move(noise.remark));
     }
     spare_left_out();
     for (std::size_t output = 0; output < floors_.size(); ++output) {
@@ -115,6 +121,8 @@ class Run {
   }
 
   void spare_left_out() {
+    Model model(task_, *base_.program);
+    (void)model.residuals(model.start(), nominal_);  // finite before
     for (const Index row : task_.left_out) {
       nominal_[row] = 0.0;
     }
@@ -144,10 +152,11 @@ class Run {
     // What the user gets as improved.st: effects that the verdict does not name are not in it.
     const Explanation& kept = named() ? *judgement.chosen : found.calibrated;
     describe_gap(found.calibrated, kept, judgement);
-    describe_cuts();
+    result_.cuts = cuts_at(inner_, task_, *base_.program, materiality_);
     describe(found, judgement, kept);
     result_.edges = where(task_, found, result_.top, unused_, result_.effects, options_.threads);
-    result_.maps = maps_of(task_, found.calibrated, kept, gap_output_);
+    result_.maps =
+        maps_of(task_, without_noise(found.calibrated, result_.top), without_noise(kept, result_.top), gap_output_);
   }
 
   [[nodiscard]] SearchOptions search_options() {
@@ -187,7 +196,8 @@ class Run {
     std::optional<Task> cleaned;
     options.ends_with_singles = [&](const Explanation& best) {
       Task without = task_;
-      if (leave_out_beside(left_out_, without, best, floors_)) {
+      const bool renewed = renew_loop_noise(without, best);
+      if (leave_out_beside(left_out_, without, best, floors_) || renewed) {
         cleaned = std::move(without);
       }
       return cleaned.has_value();
@@ -288,22 +298,6 @@ class Run {
     }
   }
 
-  /// A cut agrees where the diagram before it, with its parameters refitted to this signal alone, explains it.
-  void describe_cuts() {
-    Model model(task_, *base_.program);
-    const Index rows = model.rows() / std::ssize(task_.outputs);
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      if (std::ranges::find(inner_, task_.outputs[output]) == inner_.end()) {
-        continue;
-      }
-      VectorXd weights = VectorXd::Zero(model.rows());
-      weights.segment(static_cast<Index>(output) * rows, rows).setOnes();
-      const Fit alone = fit(model, model.start(), {.iterations = 20, .weights = &weights});
-      result_.cuts.push_back({.signal = task_.outputs[output],
-                              .agrees = std::isfinite(alone.cost) && !materiality_.is_left(alone.residuals, output)});
-    }
-  }
-
   void decide(const Search& found, const Judgement& judgement) {
     const Explanation& chosen = *judgement.chosen;
     const bool has_effect = !chosen.variant.effects.empty();
@@ -314,7 +308,7 @@ class Run {
     const VectorXd& residuals = unrepeatable_ ? unrepeatable_->residuals : chosen.fit.residuals;
     const bool gap_left = materiality_.is_left(residuals);
 
-    const Model model(task_, *base_.program);
+    const Model model(task_, *given_);
     noise_ = possible_noise(model, floors_, chosen.fit.residuals);
     const Remainder left = remainder_of(model, found.calibrated.fit.residuals, residuals, noise_);
     predictable_ = gap_left ? left.share : 0.0;
@@ -360,14 +354,16 @@ class Run {
   }
 
   void describe(const Search& found, const Judgement& judgement, const Explanation& kept) {
-    const Findings findings{.task = task_,
-                            .search = found,
-                            .judgement = judgement,
-                            .kept = kept,
-                            .floor_cost = floor_cost_,
-                            .gap_output = gap_output_,
-                            .predictable = predictable_,
-                            .unexplained = unexplained_};
+    const Findings findings{
+        .task = task_,
+        .search = found,
+        .judgement = judgement,
+        .kept = kept,
+        .floor_cost = floor_cost_,
+        .chosen_cost = unrepeatable_ ? 0.5 * unrepeatable_->residuals.squaredNorm() : judgement.chosen->fit.cost,
+        .gap_output = gap_output_,
+        .predictable = predictable_,
+        .unexplained = unexplained_};
     result_.calibration = calibration_findings(findings);
     result_.nominal = nominal_findings(task_);
     if (named()) {
@@ -392,7 +388,7 @@ class Run {
       result_.warnings.push_back(std::move(reason));
       result_.confidence = std::min(result_.confidence, sure_of_missed_start);
     }
-    for (std::string& reason : structural_reasons(result_, base_.program->graph.sample_time(),
+    for (std::string& reason : structural_reasons(result_, given_->graph.sample_time(),
                                                   is_tried("periodic_disturbance") ? longest_duration(task_) : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
@@ -405,7 +401,8 @@ class Run {
     }
     result_.improved_file = improved_file(task_, input_.file, kept);
     add_outlook({.task = task_,
-                 .nominal = *base_.program,
+                 .nominal = *given_,
+                 .top = result_.top,
                  .search = found,
                  .judgement = judgement,
                  .kept = kept,
@@ -471,8 +468,9 @@ class Run {
   const DiagnosisOptions& options_;
   Budget budget_{options_.budget};
   Task task_{};
-  Variant base_{};
-  std::vector<std::string> unused_{};  ///< columns that the diagram does not name
+  std::shared_ptr<const Program> given_{};  ///< with the values of the parameter file
+  Variant base_{};                          ///< the same with the noise of its sensors in its loops
+  std::vector<std::string> unused_{};       ///< columns that the diagram does not name
   std::vector<NoiseFloor> floors_{};
   std::vector<double> noise_{};  ///< of each output what may be noise, in floors
   Materiality materiality_{task_, floors_, options_.material};

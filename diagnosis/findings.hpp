@@ -15,6 +15,7 @@ struct Findings {
   const Judgement& judgement;
   const Explanation& kept;  ///< what improved.st holds: the chosen set where the verdict names it, else calibration
   double floor_cost = 0.0;
+  double chosen_cost = 0.0;    ///< ½Σr² that the chosen set leaves, without what no diagram repeats
   std::size_t gap_output = 0;  ///< the output whose gap counts, by its place among the measured ones
   double predictable = 0.0;    ///< share of what is left that depends on what the machine did; 0 where nothing is left
   double unexplained = 0.0;  ///< what is left of that output over what may be noise, but for what uneven steps explain

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "diagnosis/edges.hpp"
 #include "diagnosis/insertion.hpp"
+#include "diagnosis/least_squares.hpp"
 #include "support/names.hpp"
 
 namespace hysteron::diagnosis {
@@ -75,6 +77,24 @@ DiagnosisInput with_inner_signals(const DiagnosisInput& input, std::vector<std::
     result.program = compile_text(result.text, {.top = graph.name, .any_order = true});
   }
   return result;
+}
+
+std::vector<CutFinding> cuts_at(const std::vector<std::string>& signals, const Task& task, const Program& program,
+                                const Materiality& materiality) {
+  std::vector<CutFinding> cuts;
+  Model model(task, program);
+  const Index rows = model.rows() / std::ssize(task.outputs);
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    if (std::ranges::find(signals, task.outputs[output]) == signals.end()) {
+      continue;
+    }
+    VectorXd weights = VectorXd::Zero(model.rows());
+    weights.segment(static_cast<Index>(output) * rows, rows).setOnes();
+    const Fit alone = fit(model, model.start(), {.iterations = 20, .weights = &weights});
+    cuts.push_back({.signal = task.outputs[output],
+                    .agrees = std::isfinite(alone.cost) && !materiality.is_left(alone.residuals, output)});
+  }
+  return cuts;
 }
 
 std::vector<std::string> unmatched_columns(const DiagnosisInput& input) {

@@ -154,7 +154,7 @@ std::optional<JitterResponse> response_to_jitter(const Task& task, const std::st
   if (edge == nullptr || edge->definition != index) {
     return std::nullopt;
   }
-  const std::optional<AddedSignal> added = with_added_signal(*source, *edge, top, one.variant.effects);
+  const std::optional<AddedSignal> added = with_added_signal(*source, *edge, top, one.variant);
   if (!added) {
     return std::nullopt;
   }

@@ -9,6 +9,7 @@
 
 #include "diagnosis/feedforward.hpp"
 #include "diagnosis/inverse.hpp"
+#include "diagnosis/loop_noise.hpp"
 #include "diagnosis/next_experiment.hpp"
 
 namespace hysteron::diagnosis {
@@ -17,11 +18,11 @@ namespace {
 void plan(const Outlook& outlook, Diagnosis& found) {
   std::vector<Explanation> rivals;
   for (const Weighed& weighed : outlook.judgement.rivals) {
-    rivals.push_back(*weighed.explanation);
+    rivals.push_back(without_noise(*weighed.explanation, outlook.top));
   }
   const bool unknown = found.verdict == Verdict::Unknown;
   if (unknown && rivals.empty() && !outlook.search.explanations.empty()) {
-    rivals.push_back(outlook.search.explanations.front());
+    rivals.push_back(without_noise(outlook.search.explanations.front(), outlook.top));
   }
   if (found.verdict != Verdict::None && found.verdict != Verdict::Calibration && !rivals.empty()) {
     found.next = next_experiment(outlook.task, rivals, outlook.options.limits, outlook.floor);
@@ -45,7 +46,7 @@ void invert(const Outlook& outlook, Diagnosis& found) {
   if (moving.empty()) {
     return;
   }
-  const Program improved = fitted_program(outlook.task, outlook.kept);
+  const Program improved = fitted_program(outlook.task, without_noise(outlook.kept, outlook.top));
   const Feedforward feedforward = feedforward_of(improved, moving.front(), found.gap.signal, record.sample_time());
   found.feedforward_text = feedforward.text;
   found.feedforward_notes = feedforward.notes;

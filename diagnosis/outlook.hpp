@@ -12,6 +12,7 @@ namespace hysteron::diagnosis {
 struct Outlook {
   const Task& task;
   const Program& nominal;  ///< the diagram as given, with the values of the parameter file
+  const std::string& top;  ///< its name
   const Search& search;
   const Judgement& judgement;
   const Explanation& kept;  ///< what the user gets as improved.st

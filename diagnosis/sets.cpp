@@ -60,7 +60,7 @@ void Sets::take_on(Explanation& result, VectorXd& start, Candidate candidate, co
     }
   }
   result.variant = std::move(variant);
-  result.variant.program = compiled(result.variant.text, top_, result.variant.effects);
+  result.variant.program = compiled(result.variant, top_);
 }
 
 void Sets::fit_from(Explanation& result, VectorXd start, const Explanation& whole, int iterations) const {
@@ -138,7 +138,7 @@ Explanation Sets::together(const Screened& first, const Screened& second, const 
     }
     Applied& own = candidate.variant.effects.back();
     take_settings(own, wanted);
-    candidate.variant.program = compiled(candidate.variant.text, top_, candidate.variant.effects);
+    candidate.variant.program = compiled(candidate.variant, top_);
     Screened there{.candidate = std::move(candidate), .unknowns = second.unknowns, .starts = second.starts};
     for (Unknown& unknown : there.unknowns) {
       unknown.path = there.candidate.own().instance + unknown.path.substr(wanted.instance.size());

@@ -86,7 +86,7 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
     double before = search.calibrated.fit.cost;
     for (const std::size_t i : order) {
       set.push_back(names[i]);
-      const double fitted = set.size() == count ? chosen.fit.cost : cost_of_names(search, set);
+      const double fitted = set.size() == count ? findings.chosen_cost : cost_of_names(search, set);
       const double after = std::isnan(fitted) ? before : std::min(before, fitted);
       shares[i] += before - after;
       before = after;
@@ -108,7 +108,8 @@ std::vector<double> shares_of(const Findings& findings, const Explanation& chose
 
 double gap_energy(const Findings& findings) {
   const double calibrated = findings.search.calibrated.fit.cost;
-  return std::max(0.0, calibrated - std::min(findings.floor_cost, findings.kept.fit.cost));
+  const double kept = &findings.kept == findings.judgement.chosen ? findings.chosen_cost : findings.kept.fit.cost;
+  return std::max(0.0, calibrated - std::min(findings.floor_cost, kept));
 }
 
 double add_share(std::vector<EffectFinding>& effects, double gap, EffectFinding more, double energy) {

@@ -12,6 +12,7 @@
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/expansion.hpp"
 #include "diagnosis/jitter.hpp"
+#include "diagnosis/loop_noise.hpp"
 #include "diagnosis/sets.hpp"
 
 namespace hysteron::diagnosis {
@@ -43,14 +44,17 @@ constexpr Index most_directions = 64;
 /// So many edges for a delay, each with hundreds of rollouts, and so many sets beside it on each.
 constexpr std::size_t most_edges = 3;
 constexpr std::size_t kept = 3;
+/// For a delay and nothing else, and how often its variation and its mean are fitted in turn.
+constexpr std::size_t most_edges_alone = 6;
+constexpr int rounds_alone = 2;
 
 double mean_square(const VectorXd& residuals) {
   return residuals.squaredNorm() / static_cast<double>(std::max<Index>(1, residuals.size()));
 }
 
 /// Whether inputs and outputs foretell the residual of an output.
-bool is_foretold(const Task& task, const Explanation& one) {
-  const Model model(task, *one.variant.program, one.variant.further);
+bool is_foretold(const Task& task, const std::string& top, const Explanation& one) {
+  const Model model(task, *without_noise(one, top).variant.program, one.variant.further);
   const Index rows = model.rows() / std::ssize(task.outputs);
   for (Index output = 0; output < std::ssize(task.outputs); ++output) {
     const VectorXd own = one.fit.residuals.segment(output * rows, rows);
@@ -83,6 +87,12 @@ class VaryingDelay {
 
   /// Null where no set has a delay that varies.
   std::shared_ptr<const Varying> find() {
+    if (chosen_.variant.effects.size() > 1 || delay_of(chosen_) == nullptr) {
+      try_alone();  // what one effect explains needs no second
+    }
+    if (explains_all()) {
+      return best_;
+    }
     for (const Explanation* const one : sets_with_delay()) {
       if (one == &chosen_) {
         try_on_each_edge(*one);
@@ -90,7 +100,7 @@ class VaryingDelay {
         try_fitted(*one, most_left_by_another);
       }
     }
-    if (!best_ || best_->jitter.unexplained * best_->jitter.unexplained > is_noise) {
+    if (!explains_all()) {
       try_beside();
     }
     return best_;
@@ -98,6 +108,18 @@ class VaryingDelay {
 
  private:
   [[nodiscard]] bool is_over() const { return options_.out_of_time && options_.out_of_time(); }
+
+  [[nodiscard]] bool explains_all() const {
+    return best_ && best_->jitter.unexplained * best_->jitter.unexplained < is_noise;
+  }
+
+  /// The best set that is a delay and nothing else; null where none was fitted.
+  [[nodiscard]] const Explanation* delay_alone() const {
+    const auto alone = std::ranges::find_if(search_.explanations, [](const Explanation& one) {
+      return one.variant.effects.size() == 1 && delay_of(one) != nullptr;
+    });
+    return alone == search_.explanations.end() ? nullptr : &*alone;
+  }
 
   /// The chosen set where it has a delay. Else those that have one and no more effects, the smallest first.
   [[nodiscard]] std::vector<const Explanation*> sets_with_delay() const {
@@ -138,7 +160,7 @@ class VaryingDelay {
   }
 
   void try_fitted(const Explanation& one, double of_chosen, double of_best = 1.0) {
-    if (!is_foretold(task_, one)) {
+    if (!is_foretold(task_, top_, one)) {
       try_set(one, of_chosen, of_best);
     }
   }
@@ -154,18 +176,84 @@ class VaryingDelay {
     const bool larger = best_ && one.variant.effects.size() > best_->set.variant.effects.size();
     const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.unexplained
                                : std::sqrt(of_chosen) * chosen_left_;
-    if (jitter.unexplained < limit && jitter.deviation < most_varied * mean_delay(task_, one) &&
-        jitter.evenness > least_even && jitter.evenness * least_even < 1.0) {
+    if (jitter.unexplained < limit && is_random(one, jitter)) {
       best_ = std::make_shared<const Varying>(one, jitter, response->moves);
     }
   }
 
+  [[nodiscard]] bool is_random(const Explanation& one, const Jitter& jitter) const {
+    return jitter.deviation < most_varied * mean_delay(task_, one) && jitter.evenness > least_even &&
+           jitter.evenness * least_even < 1.0;
+  }
+
+  /// The delay and nothing else, on each of its edges, fitted to residuals that are whitened of its own variation: that
+  /// adds up behind integrators, and a plain fit bends the mean and the known parameters after where it has led.
+  void try_alone() {
+    const Explanation* const alone = delay_alone();
+    if (alone == nullptr || is_over()) {
+      return;
+    }
+    std::vector<Explanation> list = sets_.on_each_edge(*alone, 0, search_.calibrated.variant, steps_when_moved);
+    std::ranges::stable_sort(list, {}, cost_of_fit);
+    list.resize(std::min(list.size(), most_edges_alone));
+    for (Explanation& one : list) {
+      double deviation = usual * mean_delay(task_, one);
+      for (int round = 0; round < rounds_alone && deviation > 0.0 && !is_over(); ++round) {
+        const std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads);
+        if (!response || !fit_whitened(one, *response, deviation)) {
+          break;
+        }
+        deviation = jitter_of(task_, *response, one.fit.residuals).deviation;
+      }
+      consider_alone(std::move(one));
+    }
+  }
+
+  /// Fits a set to residuals whitened of a variation; its own residuals stay those of the record.
+  [[nodiscard]] bool fit_whitened(Explanation& one, const JitterResponse& response, double deviation) const {
+    Task whitened = task_;
+    whitened.whitening = std::make_shared<const Whitening>(deviation * response.columns, most_directions);
+    Model model(whitened, *one.variant.program, one.variant.further);
+    one.fit = fit(model, one.fit.x);
+    return std::isfinite(one.fit.cost) && set_plain(one);
+  }
+
+  /// Residuals and cost as the record has them, at the parameters of a whitened fit.
+  [[nodiscard]] bool set_plain(Explanation& one) const {
+    Model plain(task_, *one.variant.program, one.variant.further);
+    if (!plain.residuals(one.fit.x, one.fit.residuals, &one.fit.jacobian)) {
+      return false;
+    }
+    one.fit.cost = cost_of(plain, one.fit.x, one.fit.residuals, nullptr);
+    return true;
+  }
+
+  /// It has to leave no more than noise. What the user gets has the known parameters that leave least beside that mean.
+  void consider_alone(Explanation one) {
+    const std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads);
+    if (!response) {
+      return;
+    }
+    Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
+    const double limit = best_ ? best_->jitter.unexplained : std::sqrt(most_left_by_another) * chosen_left_;
+    if (!(jitter.unexplained * jitter.unexplained < is_noise) || !(jitter.unexplained < limit) ||
+        !is_random(one, jitter)) {
+      return;
+    }
+    std::vector<Unknown> held = one.variant.further;
+    for (std::size_t j = 0; j < held.size(); ++j) {
+      held[j].start = held[j].lower = held[j].upper = one.fit.x[std::ssize(task_.known) + static_cast<Index>(j)];
+    }
+    Model model(task_, *one.variant.program, held);
+    one.fit = fit(model, one.fit.x);
+    jitter.left = jitter_of(task_, *response, one.fit.residuals).left;
+    best_ = std::make_shared<const Varying>(std::move(one), jitter, response->moves);
+  }
+
   /// The delay by itself, with the residuals whitened of a usual variation, and each effect beside it.
   void try_beside() {
-    const auto alone = std::ranges::find_if(search_.explanations, [&](const Explanation& one) {
-      return one.variant.effects.size() == 1 && delay_of(one) != nullptr;
-    });
-    if (alone == search_.explanations.end() || options_.most_effects < 2 || is_over()) {
+    const Explanation* const alone = delay_alone();
+    if (alone == nullptr || options_.most_effects < 2 || is_over()) {
       return;
     }
     for (const Place& place : places_of(*alone)) {
@@ -178,9 +266,7 @@ class VaryingDelay {
       std::vector<Explanation> found = one_more(whitened, place.set);
       found.resize(std::min(found.size(), kept));
       for (Explanation& one : found) {
-        Model plain(task_, *one.variant.program, one.variant.further);
-        if (plain.residuals(one.fit.x, one.fit.residuals, &one.fit.jacobian)) {
-          one.fit.cost = cost_of(plain, one.fit.x, one.fit.residuals, nullptr);
+        if (set_plain(one)) {
           try_set(one, most_left_by_another);
         }
       }

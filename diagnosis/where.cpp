@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "diagnosis/added_signal.hpp"
+#include "diagnosis/loop_noise.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/screening.hpp"
 #include "diagnosis/signals.hpp"
@@ -91,7 +92,7 @@ Explained explain(const Task& task, const Explanation& calibrated, const std::st
                   const language::SourceFile& source, const Edge& edge, const std::vector<RecordSignals>& couplings,
                   const Background& background) {
   Explained result{.edge = edge.name};
-  const std::optional<AddedSignal> added = with_added_signal(source, edge, top, {});
+  const std::optional<AddedSignal> added = with_added_signal(source, edge, top, calibrated.variant);
   if (!added) {
     return result;
   }
@@ -159,7 +160,8 @@ std::vector<EdgeFinding> where(const Task& task, const Search& found, const std:
   std::erase_if(edges, [&](const Edge& edge) { return edge.definition != index; });
   std::vector<RecordSignals> couplings;
   std::vector<std::string> names = columns;
-  for (const Port& input : calibrated.variant.program->graph.inputs) {
+  const Explanation given = without_noise(calibrated, top);
+  for (const Port& input : given.variant.program->graph.inputs) {
     names.push_back(input.name);
   }
   for (const std::string& name : names) {

@@ -77,6 +77,13 @@ void Record::add(Column column) {
   columns_.push_back(std::move(column));
 }
 
+void Record::replace(std::string_view name, std::vector<double> values) {
+  if (values.size() != size()) {
+    throw std::invalid_argument(fmt::format("column {} has {} values for {} rows", name, values.size(), size()));
+  }
+  columns_[static_cast<std::size_t>(&column(name) - columns_.data())].values = std::move(values);
+}
+
 Record Record::slice(RowRange rows) const {
   if (rows.first > rows.last || rows.last > size()) {
     throw std::out_of_range(fmt::format("rows {} to {} of {}", rows.first, rows.last, size()));

@@ -60,6 +60,10 @@ class Record {
   /// and on a name that is empty, taken or `t`.
   void add(Column column);
 
+  /// Replaces the values of a column. Throws InputError HY502 where there is none, std::invalid_argument on another
+  /// number of values.
+  void replace(std::string_view name, std::vector<double> values);
+
   /// The rows of a range, with their times as they are.
   [[nodiscard]] Record slice(RowRange rows) const;
 

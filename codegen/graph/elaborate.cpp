@@ -20,6 +20,9 @@ Graph Elaborator::run(std::uint32_t top, OuterPlaces& places) {
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     declare_top(instance, i);
   }
+  for (const NoisyOutput& noisy : options_.noisy_outputs) {
+    declare_noise(instance, noisy);
+  }
   elaborate(instance);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {
     const Declared& declared = definition.variables[i];
@@ -69,6 +72,25 @@ void Elaborator::declare_top(const Instance& instance, std::size_t variable) {
   }
 }
 
+void Elaborator::declare_noise(const Instance& instance, const NoisyOutput& noisy) {
+  const auto found = instance.definition->by_name.find(upper(noisy.output));
+  if (found == instance.definition->by_name.end()) {
+    return;
+  }
+  const Declared& declared = instance.definition->variables[found->second];
+  if (declared.kind != Declared::Kind::Output || declared.field.type != Type::Real) {
+    return;
+  }
+  Port port = port_of(declared);
+  port.name = noisy.input;
+  port.preset = 0.0;
+  graph_.inputs.push_back(std::move(port));
+  const Wire noise{Wire::From::Input, Type::Real, 0, static_cast<std::uint32_t>(graph_.inputs.size() - 1)};
+  const std::uint32_t slot = instance.first_slot + found->second;
+  noisy_[slot] =
+      builder_.operation(Op::Add, {alias(slot, Type::Real), noise}, upper(noisy.input), declared.variable->name.span);
+}
+
 Wire Elaborator::open_parameter(const std::string& path, const Declared& declared, double value) {
   open_parameters_.push_back({.path = path + upper(declared.field.name),
                               .field = declared.field,
@@ -114,7 +136,7 @@ void Elaborator::note_unit(const Instance& instance, std::size_t variable) {
 void Elaborator::note_name(const Instance& instance, std::size_t variable) {
   const Declared& declared = instance.definition->variables[variable];
   const bool nested_output = declared.kind == Declared::Kind::Output && !instance.top;
-  if (keep_names_ &&
+  if (options_.keep_names &&
       (declared.kind == Declared::Kind::Input || declared.kind == Declared::Kind::Local || nested_output)) {
     graph_.named.push_back(
         {.path = instance.path + std::string(declared.field.name),
@@ -321,7 +343,8 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
             fmt::format("Name one of its outputs: {}.", fmt::join(pin_names(declared, false), ", ")));
       return {};
     }
-    return alias(instance.first_slot + found->second, declared.field.type);
+    const auto noisy = noisy_.find(instance.first_slot + found->second);
+    return noisy != noisy_.end() ? noisy->second : alias(instance.first_slot + found->second, declared.field.type);
   }
   if (!is_instance) {
     error(error::unknown_pin, reference.pin.span,
@@ -415,10 +438,10 @@ void Elaborator::check_called(const Declared& declared, const Part& part) {
   }
 }
 
-Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics, bool keep_names,
-                OuterPlaces* places) {
+Graph elaborate(const Definitions& definitions, std::uint32_t top, Diagnostics& diagnostics,
+                const ElaborateOptions& options, OuterPlaces* places) {
   OuterPlaces unasked;
-  return Elaborator(definitions, diagnostics, keep_names).run(top, places != nullptr ? *places : unasked);
+  return Elaborator(definitions, diagnostics, options).run(top, places != nullptr ? *places : unasked);
 }
 
 }  // namespace hysteron

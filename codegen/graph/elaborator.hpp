@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codegen/graph/definition.hpp"
+#include "codegen/graph/elaborate.hpp"
 #include "codegen/graph/finish.hpp"
 #include "codegen/graph/lowering.hpp"
 #include "codegen/graph/names.hpp"
@@ -46,10 +47,10 @@ struct Pin {
 
 class Elaborator {
  public:
-  Elaborator(const Definitions& definitions, Diagnostics& diagnostics, bool keep_names)
+  Elaborator(const Definitions& definitions, Diagnostics& diagnostics, const ElaborateOptions& options)
       : definitions_(definitions),
         source_(*definitions.source),
-        keep_names_(keep_names),
+        options_(options),
         diagnostics_(diagnostics),
         builder_(graph_) {
     graph_.source = definitions.source;
@@ -62,6 +63,7 @@ class Elaborator {
   std::uint32_t add_slots(const Definition& definition);
   static Port port_of(const Declared& declared);
   void declare_top(const Instance& instance, std::size_t variable);
+  void declare_noise(const Instance& instance, const NoisyOutput& noisy);
   /// A parameter that nothing in the text drives: it may be set from outside.
   Wire open_parameter(const std::string& path, const Declared& declared, double value);
   void elaborate(const Instance& instance);
@@ -98,13 +100,14 @@ class Elaborator {
 
   const Definitions& definitions_;
   const language::SourceFile& source_;
-  bool keep_names_;
+  const ElaborateOptions& options_;
   Diagnostics& diagnostics_;
   Graph graph_;
   GraphBuilder builder_;
   std::vector<Slot> slots_;
   std::vector<Parameter> open_parameters_;
   std::vector<std::uint32_t> levels_;                   ///< beside the nodes: in how many blocks each is written
+  std::unordered_map<std::uint32_t, Wire> noisy_;       ///< by the slot of an output: what its readers get
   std::unordered_map<std::string, std::size_t> given_;  ///< by path: how many numbers the text gives a parameter
 };
 

@@ -112,14 +112,42 @@ TEST(Jitter, IsNotWhatInputsForetell) {
 
 /// Behind the integrator what the variation leaves is a random walk, which a fit of constant delays bends a cube after.
 TEST(Jitter, HidesNoEffectBesideIt) {
-  const DiagnosisInput both = test::input_of(test::axis(), test::axis_parameters,
-                                             {late_axis(0.012, {"HY_ODD_NONLINEARITY := (SIZE := -0.3, REFERENCE := 3.0)", "FORCE"})});
+  const DiagnosisInput both =
+      test::input_of(test::axis(), test::axis_parameters,
+                     {late_axis(0.012, {"HY_ODD_NONLINEARITY := (SIZE := -0.3, REFERENCE := 3.0)", "FORCE"})});
   const Diagnosis found = diagnose(both, {.effects = {"delay", "odd_nonlinearity", "lag", "dead_zone", "saturation"}});
   std::vector<std::string> names;
   for (const EffectFinding& one : found.effects) {
     names.push_back(one.id);
   }
   EXPECT_THAT(names, testing::UnorderedElementsAre("delay", "odd_nonlinearity")) << found.summary;
+  EXPECT_THAT(found.warnings, testing::Contains(testing::HasSubstr("varies by")));
+}
+
+/// A position: the axis with another integrator behind its speed.
+std::string position_axis() {
+  std::string text = test::axis();
+  const auto put = [&text](std::string_view old, std::string_view with) {
+    text.replace(text.find(old), old.size(), with);
+  };
+  put("(* @unit m/s *)", "(* @unit m *)");
+  put("SPEED : HY_INTEGRAL;", "SPEED : HY_INTEGRAL;\n    POS : HY_INTEGRAL;");
+  put("V := SPEED.XOUT;", "POS(XIN := SPEED.XOUT);\n  V := POS.XOUT;");
+  return text;
+}
+
+/// What varies adds up behind two integrators, further than any constant delay comes near; nothing else is there.
+TEST(Jitter, IsADelayAloneWhereItAddsUp) {
+  records::Record record = test::record_of("FORCE", test::rich_force());
+  record.add(
+      test::measured(test::program_of(position_axis()), test::record_of("FORCE", late(test::rich_force(), 0.012)), 1e-3)
+          .column("V"));
+  const Diagnosis found = diagnose(test::input_of(position_axis(), test::axis_parameters, {std::move(record)}),
+                                   {.effects = {"delay", "odd_nonlinearity", "cogging", "relaxation", "load"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "delay");
+  EXPECT_GT(found.effects[0].share, 0.9) << "what its variation does counts as explained";
+  EXPECT_NEAR(found.effects[0].parameters[0].value, mean_delay, 0.006);
   EXPECT_THAT(found.warnings, testing::Contains(testing::HasSubstr("varies by")));
 }
 

@@ -17,6 +17,7 @@
 namespace hysteron::records {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -67,6 +68,15 @@ TEST(Record, KnowsWhereItsNumbersStand) {
   EXPECT_THAT(at(record.slice({1, 3}), "y", 1), ElementsAre(6, 5, 1));
   EXPECT_THAT(at(record, "added", 2), ElementsAre(6, 1, 5)) << "the row, where the file has no such column";
   EXPECT_EQ(sample().place("u", 3).line, 0U) << "a record that was not read from a file";
+}
+
+TEST(Record, TakesOtherValuesForAColumn) {
+  Record record = sample();
+  record.replace("u", std::vector<double>(8, 2.0));
+  EXPECT_THAT(record.column("U").values, Each(2.0));
+  EXPECT_EQ(record.column("U").unit, "V");
+  EXPECT_THROW(record.replace("u", {1, 2}), std::invalid_argument);
+  EXPECT_THROW(record.replace("z", std::vector<double>(8)), InputError);
 }
 
 TEST(Record, RefusesColumnsThatDoNotFit) {

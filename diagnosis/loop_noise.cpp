@@ -14,6 +14,7 @@
 #include "diagnosis/insertion.hpp"
 #include "diagnosis/noise_colour.hpp"
 #include "diagnosis/signals.hpp"
+#include "diagnosis/spectrum.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -24,6 +25,8 @@ constexpr std::size_t reach = 10;
 /// what an effect leaves, noise that is taken anew.
 constexpr double most_left = 0.7;
 constexpr double most_elsewhere = 1.1;
+/// Of the noise, what the sensor may have rounded off.
+constexpr double most_rounded = 0.5;
 
 /// A signal less the parabola that fits best about each sample (Savitzky and Golay 1964); less of it at both ends.
 Signal fast_part(const Signal& signal) {
@@ -109,6 +112,10 @@ class Loops {
         {.output = task.outputs[output], .input = free_input(base, top_, task.outputs[output])});
     std::vector<Signal> noise = noise_of(task, output, fit_.residuals);
     const double size = rms(noise);
+    const double step = common_step(task.records.front().column(task.outputs[output]).values);
+    if (step / std::sqrt(12.0) > most_rounded * size) {
+      return;
+    }
     for (std::size_t e = 0; e < task.records.size(); ++e) {
       task.records[e].add({.name = base.noisy_outputs.back().input, .values = std::move(noise[e])});
     }

@@ -11,7 +11,8 @@
 // fast part, r less the parabola through ten samples to either side, is given to the model's loop: what reads y in the
 // diagram reads y + n. It is the noise that the loop had only if other outputs show it: the fast part of what is left
 // of one of them, as the controller's command, has to fall by three tenths. Noise of a logger, which no controller saw,
-// makes it grow.
+// makes it grow. What a sensor with coarse steps rounds off is fast as well, and is no noise to an effect that rounds:
+// where it is the half of n, n stays out.
 #pragma once
 
 #include <string>

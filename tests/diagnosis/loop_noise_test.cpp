@@ -20,9 +20,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A position under a PD controller; `sensor` is what the controller reads, `amplifier` what drives the motor.
+/// A position under a PD controller; `sensor` is what the controller reads, `amplifier` a block more, which reads
+/// `amplified`.
 std::string loop(const std::string& sensor, const std::string& measured = "POS.XOUT", const std::string& input = "",
-                 const std::string& amplifier = "", const std::string& drive = "U") {
+                 const std::string& amplifier = "", const std::string& drive = "U",
+                 const std::string& amplified = "U") {
   return fmt::format(
       "FUNCTION_BLOCK LOOP  (* @ts 1ms *)\n"
       "  VAR_INPUT REF : LREAL;  (* @unit rad *) {} END_VAR\n"
@@ -35,7 +37,7 @@ std::string loop(const std::string& sensor, const std::string& measured = "POS.X
       "DAMPING.XOUT);\n"
       "END_FUNCTION_BLOCK\n",
       input, amplifier.empty() ? "" : "    AMP : " + amplifier + ";\n", measured, sensor, sensor,
-      amplifier.empty() ? "" : "  AMP(XIN := U);\n", drive);
+      amplifier.empty() ? "" : "  AMP(XIN := " + amplified + ");\n", drive);
 }
 
 constexpr std::string_view parameters =
@@ -135,6 +137,12 @@ TEST(LoopNoise, OfALoggerIsNone) {
   EXPECT_THAT(found.remark, IsEmpty());
   EXPECT_THAT(found.base.noisy_outputs, IsEmpty());
   EXPECT_EQ(prepared.task.records[0].find("Y_NOISE"), nullptr);
+}
+
+TEST(LoopNoise, IsNotWhatASensorRoundsOff) {
+  const std::string machine = loop("Y", "AMP.XOUT", "", "HY_QUANTIZER := (QUANTUM := 0.05)", "U", "POS.XOUT");
+  Prepared prepared(test::measured(test::program_of(machine), test::record_of("REF", reference(), 1e-3), 0.0));
+  EXPECT_THAT(with_loop_noise(prepared.task, prepared.base, "LOOP").remark, IsEmpty());
 }
 
 TEST(LoopNoise, IsRenewedWhereTheNoiseWasAnother) {

@@ -99,7 +99,8 @@ std::string free_input(const Variant& base, const std::string& top, const std::s
 
 class Loops {
  public:
-  Loops(const Task& task, const Variant& base, const std::string& top) : top_(top), task_(task), noise_{.base = base} {
+  Loops(Task task, const Variant& base, const std::string& top)
+      : top_(top), task_(std::move(task)), noise_{.base = base} {
     Model model(task_, *base.program);
     fit_ = fit(model, model.start(), {.iterations = 20});
     left_ = fast_parts(model, fit_.residuals, task_.outputs.size());

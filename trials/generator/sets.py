@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import sys
 import warnings
 from concurrent.futures import ProcessPoolExecutor
@@ -13,6 +14,12 @@ from pathlib import Path
 from trials.generator.case import Specification, build, write
 from trials.generator.strata import seed_of
 from trials.progress import Progress
+
+
+def finish_what_is_begun() -> None:
+    """In a worker: a signal to all processes of the terminal is the first one's to answer, which then begins no case more."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
 
 
 def case_name(seed: str, number: int) -> str:
@@ -41,7 +48,7 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
     progress = Progress("generate", len(names), len(names) - len(missing), quiet)
-    with ProcessPoolExecutor(jobs) as pool:
+    with ProcessPoolExecutor(jobs, initializer=finish_what_is_begun) as pool:
         futures = [
             pool.submit(make_one, specifications[i], str(cases / names[i]), str(labels / f"{names[i]}.json")) for i in missing
         ]

@@ -109,7 +109,7 @@ class Run {
       base_ = std::move(noise.base);
       result_.warnings.push_back(std::move(noise.remark));
     }
-    spare_left_out();
+    simulate_nominal();
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
         result_.warnings.push_back(fmt::format(
@@ -120,7 +120,8 @@ class Run {
     }
   }
 
-  void spare_left_out() {
+  /// The diagram as given, with the noise of its loops and without what is left out.
+  void simulate_nominal() {
     Model model(task_, *base_.program);
     (void)model.residuals(model.start(), nominal_);  // finite before
     for (const Index row : task_.left_out) {
@@ -181,7 +182,7 @@ class Run {
     };
     search_from_another_start(searched, again);
     if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {
-      spare_left_out();
+      simulate_nominal();
       searched = again();
     }
     if (budget_.has_cut()) {
@@ -205,7 +206,7 @@ class Run {
     Search found = search_with(options);
     if (cleaned) {
       task_ = std::move(*cleaned);
-      spare_left_out();
+      simulate_nominal();
       found = search_with(search_options());
     }
     return found;

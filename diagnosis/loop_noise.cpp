@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "diagnosis/noise_colour.hpp"
 #include "diagnosis/signals.hpp"
 #include "diagnosis/spectrum.hpp"
+#include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -47,21 +49,16 @@ Signal fast_part(const Signal& signal) {
 }
 
 /// By record, the noise of an output in its unit: what a model's residuals have of it that is fast.
-std::vector<Signal> noise_of(const Task& task, std::size_t output, const VectorXd& residuals) {
-  const Index rows = residuals.size() / std::ssize(task.outputs);
-  Index row = static_cast<Index>(output) * rows;
-  std::vector<Signal> noise;
-  for (const records::Record& record : task.records) {
-    Signal left(record.size());
-    for (double& value : left) {
-      value = -task.scales[output] * residuals[row++];
-    }
-    noise.push_back(fast_part(left));
+RecordSignals noise_of(const Task& task, std::size_t output, const VectorXd& residuals) {
+  RecordSignals noise = by_record(task, residuals, output);
+  for (Signal& signal : noise) {
+    signal = fast_part(signal);
+    std::ranges::transform(signal, signal.begin(), std::negate<>());  // measured − model
   }
   return noise;
 }
 
-double rms(const std::vector<Signal>& signals) {
+double rms(const RecordSignals& signals) {
   double squares = 0.0;
   std::size_t count = 0;
   for (const Signal& signal : signals) {
@@ -71,17 +68,9 @@ double rms(const std::vector<Signal>& signals) {
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count)));
 }
 
-std::vector<std::size_t> samples_of(const Model& model) {
-  std::vector<std::size_t> samples;
-  for (const Experiment& experiment : model.problem().experiments) {
-    samples.push_back(experiment.drive.steps);
-  }
-  return samples;
-}
-
 /// By output, the fast part of its residuals.
 std::vector<double> fast_parts(const Model& model, const VectorXd& residuals, std::size_t outputs) {
-  const std::vector<std::size_t> samples = samples_of(model);
+  const std::vector<std::size_t> samples = model.samples();
   const Index rows = residuals.size() / static_cast<Index>(outputs);
   std::vector<double> result;
   for (Index output = 0; output < static_cast<Index>(outputs); ++output) {
@@ -107,16 +96,16 @@ class Loops {
   }
 
   void add(std::size_t output) {
+    RecordSignals noise = noise_of(task_, output, fit_.residuals);
+    const double size = rms(noise);
+    const double step = common_step(task_.records.front().column(task_.outputs[output]).values);
+    if (step / std::sqrt(12.0) > most_rounded * size) {
+      return;
+    }
     Task task = task_;
     Variant base = noise_.base;
     base.noisy_outputs.push_back(
         {.output = task.outputs[output], .input = free_input(base, top_, task.outputs[output])});
-    std::vector<Signal> noise = noise_of(task, output, fit_.residuals);
-    const double size = rms(noise);
-    const double step = common_step(task.records.front().column(task.outputs[output]).values);
-    if (step / std::sqrt(12.0) > most_rounded * size) {
-      return;
-    }
     for (std::size_t e = 0; e < task.records.size(); ++e) {
       task.records[e].add({.name = base.noisy_outputs.back().input, .values = std::move(noise[e])});
     }
@@ -191,7 +180,7 @@ bool renew_loop_noise(Task& task, const Explanation& best) {
   Task renewed = task;
   for (const NoisyOutput& noisy : best.variant.noisy_outputs) {
     const auto output = static_cast<std::size_t>(std::ranges::find(task.outputs, noisy.output) - task.outputs.begin());
-    std::vector<Signal> noise = noise_of(task, output, best.fit.residuals);
+    RecordSignals noise = noise_of(task, output, best.fit.residuals);
     for (std::size_t e = 0; e < noise.size(); ++e) {
       renewed.records[e].replace(noisy.input, std::move(noise[e]));
     }

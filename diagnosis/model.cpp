@@ -77,6 +77,14 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
   }
 }
 
+std::vector<std::size_t> Model::samples() const {
+  std::vector<std::size_t> samples;
+  for (const Experiment& experiment : problem_->experiments) {
+    samples.push_back(experiment.drive.steps);
+  }
+  return samples;
+}
+
 std::vector<double> Model::measured(std::size_t output) const {
   std::vector<double> values;
   for (const Experiment& experiment : problem_->experiments) {

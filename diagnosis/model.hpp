@@ -71,6 +71,8 @@ class Model {
   [[nodiscard]] const VectorXd& prior() const { return prior_; }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const OutputErrorProblem& problem() const { return *problem_; }
+  /// How many samples each record has.
+  [[nodiscard]] std::vector<std::size_t> samples() const;
   /// An output as it was measured, of all records one after the other.
   [[nodiscard]] std::vector<double> measured(std::size_t output) const;
 

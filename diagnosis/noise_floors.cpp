@@ -4,24 +4,9 @@
 #include <cmath>
 
 #include "diagnosis/least_squares.hpp"
+#include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
-namespace {
-
-/// Rows of one output, by record, in its unit.
-std::vector<Signal> by_record(const std::vector<Experiment>& experiments, const VectorXd& residuals, Index first,
-                              double scale) {
-  std::vector<Signal> result;
-  for (const Experiment& experiment : experiments) {
-    Signal& here = result.emplace_back(experiment.drive.steps);
-    for (double& value : here) {
-      value = residuals[first++] * scale;
-    }
-  }
-  return result;
-}
-
-}  // namespace
 
 std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
                                      const std::vector<std::vector<Signal>>& others) {
@@ -44,12 +29,9 @@ std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
     return floors;
   }
   const std::vector<Experiment>& experiments = model.problem().experiments;
-  const Index rows = model.rows() / std::ssize(task.outputs);
   for (std::size_t output = 0; output < floors.size(); ++output) {
     if (floors[output].evidence == "dwells") {
-      floors[output] = noise_floor(
-          experiments, output, others,
-          by_record(experiments, calibrated.residuals, static_cast<Index>(output) * rows, task.scales[output]));
+      floors[output] = noise_floor(experiments, output, others, by_record(task, calibrated.residuals, output));
     }
   }
   return floors;

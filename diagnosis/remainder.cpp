@@ -48,10 +48,7 @@ double possible_noise(const NoiseFloor& floor, const VectorXd& residuals, const 
 
 std::vector<double> possible_noise(const Model& model, const std::vector<NoiseFloor>& floors,
                                    const VectorXd& residuals) {
-  std::vector<std::size_t> samples;
-  for (const Experiment& experiment : model.problem().experiments) {
-    samples.push_back(experiment.drive.steps);
-  }
+  const std::vector<std::size_t> samples = model.samples();
   const Index rows = residuals.size() / std::ssize(floors);
   std::vector<double> noise;
   for (Index output = 0; output < std::ssize(floors); ++output) {

@@ -125,6 +125,18 @@ double longest_duration(const Task& task) {
   return longest;
 }
 
+std::vector<Signal> by_record(const Task& task, const VectorXd& residuals, std::size_t output) {
+  Index row = static_cast<Index>(output) * (residuals.size() / std::ssize(task.outputs));
+  std::vector<Signal> result;
+  for (const records::Record& record : task.records) {
+    Signal& here = result.emplace_back(record.size());
+    for (double& value : here) {
+      value = residuals[row++] * task.scales[output];
+    }
+  }
+  return result;
+}
+
 double rms_of(const Task& task, const VectorXd& residuals, std::size_t output) {
   const Index rows = residuals.size() / std::ssize(task.outputs);
   const Index first = static_cast<Index>(output) * rows;

@@ -26,6 +26,9 @@ namespace hysteron::diagnosis {
 /// Of the longest record, in s.
 [[nodiscard]] double longest_duration(const Task& task);
 
+/// The residuals of one output by record, in its unit.
+[[nodiscard]] std::vector<Signal> by_record(const Task& task, const VectorXd& residuals, std::size_t output);
+
 /// The RMS of one output's residuals over the samples that count, in its unit.
 [[nodiscard]] double rms_of(const Task& task, const VectorXd& residuals, std::size_t output);
 

@@ -21,7 +21,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 /// A position under a PD controller; `sensor` is what the controller reads, `amplifier` a block more, which reads
-/// `amplified`.
+/// `amplified`, and `drive` what moves the motor.
 std::string loop(const std::string& sensor, const std::string& measured = "POS.XOUT", const std::string& input = "",
                  const std::string& amplifier = "", const std::string& drive = "U",
                  const std::string& amplified = "U") {
@@ -166,7 +166,7 @@ TEST(LoopNoise, IsRenewedWhereTheNoiseWasAnother) {
 }
 
 TEST(LoopNoise, DoesNotHideTheDeadZoneThatItSmooths) {
-  // The noise moves the command by some ten times the width.
+  // The noise moves the command about as far as the dead band is wide.
   const DiagnosisInput input =
       test::input_of(loop("Y"), parameters, {with_noise_in_the_loop("HY_DEAD_BAND := (WIDTH := 12.0)", "AMP.XOUT")});
   const Diagnosis found = diagnose(input, {.effects = {"dead_zone", "odd_nonlinearity", "lag", "saturation"}});

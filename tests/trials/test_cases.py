@@ -5,10 +5,8 @@ from __future__ import annotations
 import csv
 import os
 import re
-import signal
 import subprocess
 import tempfile
-import time
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -214,34 +212,6 @@ class NothingLeaks(unittest.TestCase):
         for file in [*ROOT.glob("trials/**/*.py"), *(ROOT / "trials" / name for name in ("generate", "seal", "run", "score"))]:
             with self.subTest(file.name):
                 self.assertIsNone(forbidden.search(file.read_text()))
-
-
-class CommandLine(unittest.TestCase):
-    """What `trials/generate` refuses, and how it ends."""
-
-    def generate(self, folder: str, *more: str) -> list[str]:
-        return [str(ROOT / "trials" / "generate"), "--out", f"{folder}/cases", "--key", f"{folder}/key.json", "--seed", "a", *more]
-
-    def test_what_makes_no_set_is_refused(self) -> None:
-        for more in (("--count", "0"), ("--count", "-3"), ("--jobs", "0"), ("--length", "nan"), ("--each", "0"), ("--stratum", "single=²")):
-            with self.subTest(more), tempfile.TemporaryDirectory() as folder:
-                done = subprocess.run(self.generate(folder, *more), capture_output=True, text=True, check=False)
-                self.assertEqual(done.returncode, 2)
-                self.assertNotIn("Traceback", done.stderr)
-                self.assertEqual(list(Path(folder).iterdir()), [])
-
-    def test_a_signal_to_the_whole_group_ends_it(self) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            command = self.generate(folder, "--count", "400", "--jobs", "2")
-            with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True) as running:
-                labels = Path(folder) / "key.labels"
-                while running.poll() is None and not any(labels.glob("*.json")):
-                    time.sleep(0.05)
-                os.killpg(running.pid, signal.SIGTERM)
-                _, said = running.communicate(timeout=60)
-            self.assertEqual(running.returncode, 130)
-            self.assertIn(b"the same command goes on", said)
-            self.assertFalse((Path(folder) / "key.json").exists())
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -40,11 +41,36 @@ def make_one(specification: Specification, folder: str, label_file: str) -> None
     os.replace(label_file + ".part", label_file)
 
 
+def fingerprint(specifications: list[Specification]) -> str:
+    """SHA-256 of a plan: sets of one seed differ in sizes, lengths and ratios."""
+    return hashlib.sha256(repr(specifications).encode()).hexdigest()
+
+
+class OtherSet(Exception):
+    """A key, or the labels of a set that was interrupted, are of another plan."""
+
+
+def is_made(key: Path, plan: str) -> bool:
+    """Whether this set is there already. Raises OtherSet where the key, or what is begun of it, is of another one."""
+    begun = key.with_suffix(".labels") / "plan.sha256"
+    try:
+        other = json.loads(key.read_text()).get("plan") if key.exists() else begun.read_text() if begun.exists() else plan
+    except (ValueError, AttributeError):
+        other = None
+    if other != plan:
+        raise OtherSet(f"{key if key.exists() else begun.parent} is of another set, or of another generator")
+    return key.exists()
+
+
 def make_set(seed: str, specifications: list[Specification], cases: Path, key: Path, jobs: int, quiet: bool = False) -> int:
-    """Makes what is missing of a set, then joins the labels into the key. Returns the number of cases."""
+    """Makes what is missing of a set, then joins the labels into the key. Returns the number of cases. Raises OtherSet."""
+    plan = fingerprint(specifications)
     names = [case_name(seed, number) for number in range(len(specifications))]
     labels = key.with_suffix(".labels")
+    if is_made(key, plan) and all((cases / name).is_dir() for name in names):
+        return len(names)
     labels.mkdir(parents=True, exist_ok=True, mode=0o700)
+    (labels / "plan.sha256").write_text(plan)
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
     progress = Progress("generate", len(names), len(names) - len(missing), quiet)
@@ -64,9 +90,11 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
                 raise
             progress.step()
     merged = {name: json.loads((labels / f"{name}.json").read_text()) for name in sorted(names)}
-    text = json.dumps({"schema": "hysteron-trial-key/1", "seed": seed, "cases": merged}, indent=1)
-    key.touch(mode=0o600)
-    key.write_text(text)
+    text = json.dumps({"schema": "hysteron-trial-key/1", "seed": seed, "plan": plan, "cases": merged}, indent=1)
+    scratch = key.with_suffix(".part")
+    scratch.touch(mode=0o600)
+    scratch.write_text(text)
+    os.replace(scratch, key)
     for file in labels.iterdir():
         file.unlink()
     labels.rmdir()

@@ -219,7 +219,7 @@ struct HysteresisGeneral {
   /// What is remembered before the present sample.
   template <class S>
   static State<S> held(const Params<S>& params, const State<S>& state, const In<S>& in) {
-    if constexpr (std::is_same_v<Bool<S>, bool>) {
+    if constexpr (is_number<S>) {
       if (!in.R1) {
         return state;  // as below, without a dozen choices
       }

@@ -6,7 +6,10 @@
 //   arithmetic   + - * / unary-           comparison  < <= > >= == !=       logic   ! && || !=
 //   abs sqrt exp log sin cos tan asin acos atan        power(base, exponent)   min max
 //   select(condition, a, b)               to_int (towards zero)   to_real
-//   at(array, index)   store(array, index, value)   fill(array, value)   value_of
+//   at(array, index)   store(array, index, value)   fill(array, value)   value_of   vanishes
+//
+// What costs much is written with either(condition, a, b) and unless_zero(factor, at_zero, value), which leave out on a
+// number what is not chosen.
 //
 // A signal-dependent choice is select, never `if`: a traced scalar has no truth value. Both sides of a select
 // are evaluated, so a side may be infinite or NaN where it is not chosen. Literals are written S(0.5); integers
@@ -47,6 +50,10 @@ using Array = typename ScalarTypes<S>::template Array<N>;
 
 template <class S>
 concept MachineReal = std::is_same_v<S, double> || std::is_same_v<S, float>;
+
+/// A scalar whose conditions are known as it computes: all but the traced ones.
+template <class S>
+inline constexpr bool is_number = std::is_same_v<Bool<S>, bool>;
 
 template <MachineReal S>
 S abs(S x) {
@@ -127,7 +134,7 @@ T select(bool condition, const T& a, const T& b) {
 /// select of two values that cost much: of numbers only the chosen one is worked out, of traced scalars both are.
 template <class S, class First, class Second>
 S either(const Bool<S>& condition, const First& a, const Second& b) {
-  if constexpr (std::is_same_v<Bool<S>, bool>) {
+  if constexpr (is_number<S>) {
     return condition ? a() : b();
   } else {
     const S first = a();
@@ -146,7 +153,7 @@ bool vanishes(S x) {
 /// vanish, of traced scalars always.
 template <class T, class S, class Value>
 T unless_zero(const S& factor, const T& at_zero, const Value& value) {
-  if constexpr (std::is_same_v<Bool<S>, bool>) {
+  if constexpr (is_number<S>) {
     if (vanishes(factor)) {
       return at_zero;
     }

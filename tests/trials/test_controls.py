@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -14,9 +11,8 @@ import numpy as np
 
 from tests.trials.labels import judged, keys, named, truth
 from trials.peers.largest import verdict
-from trials.runner import fingerprint, run_set
 from trials.scoring.beside import SHOWN, beside
-from trials.scoring.controls import always, coarse, peeking, shuffled, table
+from trials.scoring.controls import TooFew, always, coarse, enough, peeking, shuffled, table
 from trials.scoring.figures import score
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,67 +84,18 @@ class Peers(unittest.TestCase):
         self.assertAlmostEqual(found["gap"]["closed"], 1 - 3 / 24)
         self.assertEqual(verdict({"gap": gap, "fitted": []}, 1.0)["verdict"], "none")
 
+class Refusals(unittest.TestCase):
+    """Sets on which a control says nothing."""
 
-PROGRAM = """#!/usr/bin/python3
-import os, sys
-os.makedirs("result")
-open("result/verdict.json", "w").write("{}")
-open(%r, "a").write("ran\\n")
-"""
+    def test_too_few_cases(self) -> None:
+        few = dict([(name, label) for name, label in KEYS.items() if label["stratum"] == "single"][:20])
+        with self.assertRaisesRegex(TooFew, "too few for controls"):
+            enough(judged(few, {name: RIGHT[name] for name in few}))
+        enough(judged(KEYS, RIGHT))
 
-
-class Resumed(unittest.TestCase):
-    """A set that was interrupted goes on; verdicts of another diagnoser are not taken for its own."""
-
-    def test_what_has_run_is_not_run_again(self) -> None:
-        with tempfile.TemporaryDirectory() as name:
-            top = Path(name)
-            for case in ("1a", "2b", "3c"):
-                (top / "cases" / case).mkdir(parents=True)
-                (top / "cases" / case / "plant.st").write_text("x")
-            program, runs = top / "program", top / "runs"
-            program.write_text(PROGRAM % str(runs))
-            program.chmod(0o755)
-
-            def run(options: list[str]) -> int:
-                return run_set(top / "cases", top / "out", str(program), options, 1, 10.0, None, False)
-
-            self.assertEqual(run([]), 0)
-            (top / "out" / "2b" / "run.json").unlink()  # as if interrupted before it was whole
-            self.assertEqual(run([]), 0)
-            self.assertEqual(runs.read_text().count("ran"), 4)
-            with self.assertRaises(SystemExit):
-                run(["--other"])
-
-    def test_an_interrupt_ends_what_runs_and_keeps_what_has_run(self) -> None:
-        with tempfile.TemporaryDirectory() as name:
-            top = Path(name)
-            for case in ("1a", "2b", "3c"):
-                (top / "cases" / case).mkdir(parents=True)
-                (top / "cases" / case / "plant.st").write_text("x")
-            program, runs = top / "program", top / "runs"
-            program.write_text(PROGRAM % str(runs) + f"import time\nif open({str(runs)!r}).read().count('ran') == 2:\n    time.sleep(600)\n")
-            program.chmod(0o755)
-            command = ["env", "--default-signal=INT", str(ROOT / "trials" / "run"), str(top / "cases"), "--out", str(top / "out"), "--product", str(program)]
-            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as trial:
-                while not (runs.exists() and runs.read_text().count("ran") == 2):
-                    time.sleep(0.02)
-                trial.send_signal(signal.SIGINT)
-                said = trial.communicate(timeout=60)[1]
-            self.assertEqual(trial.returncode, 130)
-            self.assertIn("1 cases have run", said)
-            self.assertFalse((top / "out" / "2b" / "run.json").exists())
-            done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-            self.assertIn("3 cases run, 0 of them without a verdict", done.stdout)
-            self.assertEqual(runs.read_text().count("ran"), 4)
-
-    def test_a_program_that_an_option_names_counts(self) -> None:
-        with tempfile.TemporaryDirectory() as name:
-            program = Path(name) / "program"
-            program.write_text("1")
-            before = fingerprint(__file__, [f"--hysteron={program}"])
-            program.write_text("2")
-            self.assertNotEqual(before, fingerprint(__file__, [f"--hysteron={program}"]))
+    def test_a_folder_that_is_not_there_is_no_proof(self) -> None:
+        with self.assertRaises(FileNotFoundError):
+            peeking(judged(KEYS, RIGHT), Path("/no/such/folder"), np.random.default_rng(1))
 
 
 if __name__ == "__main__":

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import json
+import math
+import shutil
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
 from tests.trials.labels import judged, keys, named, truth
 from trials.scoring import statistics
 from trials.scoring.figures import Figure, figures, score
-from trials.scoring.floors import broken, proposal
+from trials.scoring.floors import below, proposal
 from trials.scoring.page import page
 from trials.scoring.text import whole
+from trials.scoring.verdict import fault_of, read_verdict
 
+ROOT = Path(__file__).resolve().parents[2]
 KEYS = keys()
 
 
@@ -165,8 +173,109 @@ class Output(unittest.TestCase):
         self.assertEqual((sum(hits for hits, _ in cells), sum(count for _, count in cells)), (len(clear), len(clear)))
 
     def test_floors(self) -> None:
-        self.assertEqual(broken(self.score.figures, proposal(self.score.figures)), [])
-        self.assertEqual(len(broken(self.score.figures, {"floors": {"pair": 0.5, "false_alarm": 0.1, "no_such": 0.0}})), 3)
+        self.assertEqual(below(self.score.figures, proposal(self.score.figures)), [])
+        self.assertEqual(len(below(self.score.figures, {"floors": {"pair": 0.5, "false_alarm": 0.1, "no_such": 0.0}})), 3)
+
+ODD = (
+    {"effects": None}, {"effects": {}}, {"effects": ["lag"]}, {"effects": 3}, {"effects": [{"id": "lag", "same_edges": None}]}, {"effects": [{"id": 3}]},
+    {"rivals": None}, {"rivals": [1, 2]}, {"rivals": ["lag"]}, {"gap": [1]}, {"gap": "x"}, {"gap": {"improved_rms": 1e300}}, {"gap": {"closed": "much"}},
+    {"confidence": 5}, {"confidence": -1}, {"confidence": "high"}, {"confidence": math.nan}, {"unknown_score": math.inf}, {"verdict": "guilty"}, {"verdict": ["none"]},
+    {"cannot_tell": "anything"},
+)  # fmt: skip
+
+
+class Verdicts(unittest.TestCase):
+    """A verdict that is none counts as missing, and stops no score."""
+
+    def test_each_oddity_is_named(self) -> None:
+        self.assertEqual(fault_of(named(["creep"])), "")
+        for odd in ODD:
+            with self.subTest(odd):
+                self.assertNotEqual(fault_of(named(["creep"]) | odd), "")
+        for other in (None, [], "x", 3):
+            self.assertEqual(fault_of(other), "no JSON object")
+
+    def test_what_cannot_be_read_is_none(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "verdict.json"
+            for text in ("{", "[" * 100_000, "[]", '"x"', ""):
+                file.write_text(text)
+                self.assertIsNone(read_verdict(file))
+            file.unlink()
+            self.assertIsNone(read_verdict(file))
+            file.write_text(json.dumps(named(["creep"])))
+            self.assertIsNotNone(read_verdict(file))
+
+
+class CommandLine(unittest.TestCase):
+    """`trials/score` on a set of three cases, sealed."""
+
+    def setUp(self) -> None:
+        held = tempfile.TemporaryDirectory()
+        self.addCleanup(held.cleanup)
+        self.top = Path(held.name)
+        self.key = dict(list(KEYS.items())[:3])
+        for name, label in self.key.items():
+            (self.top / "v" / name).mkdir(parents=True)
+            (self.top / "v" / name / "verdict.json").write_text(json.dumps(truth(label)))
+            (self.top / "v" / name / "run.json").write_text('{"seconds": 1.0, "exit": 0, "verdict": true}')
+        (self.top / "key.json").write_text(json.dumps({"cases": self.key}))
+        shutil.copytree(ROOT / "trials", self.top / "trials")  # a log of openings of its own
+        self.log = self.top / "trials" / "openings.log"
+        self.log.write_text("")
+        (self.top / "pass").write_text("a passphrase of some length")
+        (self.top / "pass").chmod(0o600)
+
+    def score(self, *more: str, key: str = "key.json") -> subprocess.CompletedProcess:
+        command = [str(self.top / "trials" / "score"), str(self.top / "v"), "--key", str(self.top / key), "--out", str(self.top / "s"), *more]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=self.top)
+        self.assertNotIn("Traceback", done.stderr)
+        return done
+
+    def test_odd_verdicts_are_missing_and_the_rest_is_scored(self) -> None:
+        first = next(iter(self.key))
+        (self.top / "v" / first / "verdict.json").write_text('{"verdict": "named", "effects": null}')
+        done = self.score()
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(f"{first}: no verdict; wanted is effects", done.stderr)
+        found = json.loads((self.top / "s" / "score.json").read_text(), parse_constant=self.fail)
+        missing = next(f for f in found["figures"] if f["key"] == "missing")
+        self.assertAlmostEqual(missing["value"], 1 / 3)
+
+    def test_no_opening_is_spent_on_a_slip(self) -> None:
+        passphrase = ("--passphrase-file", str(self.top / "pass"))
+        sealed = subprocess.run([str(self.top / "trials" / "seal"), "new", str(self.top / "key.json"), *passphrase], capture_output=True, check=False)
+        self.assertEqual(sealed.returncode, 0)
+        purpose = ("--purpose", "a test")
+        (self.top / "blocked" / "score.txt").mkdir(parents=True)
+        (self.top / "empty").mkdir()
+        for slip in (
+            passphrase, (*passphrase, "--purpose", " "), purpose, (*passphrase, *purpose, "--product", "/no/such"), (*passphrase, *purpose, "--floors", "/no/such"),
+            (*passphrase, *purpose, "--peer", "sparse=empty"), (*passphrase, *purpose, "--peer", "sparse"), (*passphrase, *purpose, "--peer", "verdicts=v"),
+            (*passphrase, *purpose, "--peer", "../x=v"), (*passphrase, *purpose, "--peer", "a=v", "--peer", "a=v"), (*passphrase, *purpose, "--out", "blocked"),
+            (*passphrase, *purpose, "--jobs", "0"),
+        ):  # fmt: skip
+            with self.subTest(slip):
+                self.assertNotEqual(self.score(*slip, key="key.sealed").returncode, 0)
+                self.assertEqual(self.log.read_text(), "")
+        done = self.score(*passphrase, *purpose, "--peer", "twin=v", key="key.sealed")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(self.log.read_text(), r"^\S+Z  [0-9a-f]{64}  \S+  a test\n$")
+        self.assertIn("twin", (self.top / "s" / "score.html").read_text())
+        self.assertIn("twin", json.loads((self.top / "s" / "score.json").read_text())["peers"])
+
+    def test_verdicts_of_another_set(self) -> None:
+        for folder in list((self.top / "v").iterdir()):
+            folder.rename(folder.with_name("f" + folder.name))
+        self.assertIn("they are of another set", self.score().stderr)
+
+    def test_all_that_is_scored_is_hashed(self) -> None:
+        printed = set()
+        first = self.top / "v" / next(iter(self.key))
+        for file, text in (("run.json", '{"seconds": 0.001, "verdict": true}'), ("improved.st", "x"), ("improved.toml", "x"), ("run.json", "{}")):
+            (first / file).write_text(text)
+            printed.add(next(line for line in self.score().stdout.splitlines() if line.startswith("verdicts ")))
+        self.assertEqual(len(printed), 4)
 
 
 if __name__ == "__main__":

@@ -2,29 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-import os
-import stat
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 from trials import vault
-from trials.runner import run_case
 
-PROBE = """#!/usr/bin/python3
-import json, os, sys
-os.makedirs(sys.argv[sys.argv.index("--out") + 1])
-def read(path):
-    try:
-        with open(path) as file:
-            return file.read()
-    except OSError as error:
-        return type(error).__name__
-seen = sorted(os.path.join(folder, f) for folder, _, files in os.walk(".") for f in files)
-json.dump({"verdict": "none", "key": read(sys.argv[-1]), "seen": seen, "uid": os.getuid(), "up": sorted(os.listdir(".."))},
-          open("result/verdict.json", "w"))
-"""
+ROOT = Path(__file__).resolve().parents[2]
 
 
 class Vault(unittest.TestCase):
@@ -61,54 +48,66 @@ class Vault(unittest.TestCase):
         self.assertEqual(len({vault.seed(c, n) for c in ("a", "b") for n in ("1", "2")}), 4)
         self.assertEqual(vault.seed("a", "1"), vault.seed("a", "1"))
 
+class Seal(unittest.TestCase):
+    """`trials/seal`: no key is lost, and a seed comes out the same for everyone."""
 
-class Sandbox(unittest.TestCase):
-    """What a diagnoser sees while it runs."""
+    def setUp(self) -> None:
+        held = tempfile.TemporaryDirectory()
+        self.addCleanup(held.cleanup)
+        self.top = Path(held.name)
+        self.key, self.passphrase = self.top / "key.json", self.top / "pass"
+        self.text = json.dumps({"seed": "a", "cases": {"1f": {"stratum": "none"}}})
+        self.key.write_text(self.text)
+        self.passphrase.write_text("a passphrase of some length\n")
+        self.passphrase.chmod(0o600)
 
-    def run_probe(self, user: str | None) -> dict:
-        """Runs a diagnoser that tries to read the key, and returns what it found."""
-        with tempfile.TemporaryDirectory() as name:
-            top = Path(name)
-            top.chmod(0o755)
-            (top / "cases" / "1f").mkdir(parents=True)
-            for file in ("plant.st", "params.toml", "log.csv", "notes.txt"):
-                (top / "cases" / "1f" / file).write_text("x")
-            keys = top / "keys"
-            keys.mkdir(mode=0o700)
-            key = keys / "key.json"
-            key.write_text("creep")
-            key.chmod(0o600)
-            self.assertEqual(stat.S_IMODE(key.stat().st_mode), 0o600)
-            probe = top / "probe"
-            probe.write_text(PROBE)
-            probe.chmod(0o755)
-            self.assertTrue(run_case(top / "cases" / "1f", top / "out", str(probe), [str(key)], 30.0, user))
-            return json.loads((top / "out" / "1f" / "verdict.json").read_text())
+    def seal(self, *arguments: str) -> subprocess.CompletedProcess:
+        done = subprocess.run([str(ROOT / "trials" / "seal"), *arguments], capture_output=True, text=True, check=False)
+        self.assertNotIn("Traceback", done.stderr)
+        return done
 
-    def test_another_user_cannot_read_the_key(self) -> None:
-        if os.getuid() == 0:
-            found = self.run_probe("nobody")
-            self.assertNotEqual(found["uid"], 0)
-            self.assertEqual(found["key"], "PermissionError")
-        else:
-            # Nobody but root can become another user: there the key has to be sealed, which the tests above hold.
-            self.assertEqual(self.run_probe(None)["uid"], os.getuid())
+    def new(self, key: Path) -> subprocess.CompletedProcess:
+        return self.seal("new", str(key), "--passphrase-file", str(self.passphrase))
 
-    def test_the_folder_of_a_run_holds_the_case_alone(self) -> None:
-        found = self.run_probe(None)
-        self.assertEqual(found["seen"], ["./log.csv", "./params.toml", "./plant.st"])
-        self.assertNotIn("cases", found["up"])
-        self.assertNotIn("keys", found["up"])
+    def test_a_key_goes_only_once_it_is_sealed(self) -> None:
+        self.assertEqual(self.new(self.key).returncode, 0)
+        self.assertFalse(self.key.exists())
+        sealed = (self.top / "key.sealed").read_bytes()
+        self.assertEqual(vault.unseal(sealed, b"a passphrase of some length").decode(), self.text)
+        self.assertIn(hashlib.sha256(sealed).hexdigest(), (self.top / "key.sha256").read_text())
 
-    def test_a_diagnoser_that_hangs_is_ended(self) -> None:
-        with tempfile.TemporaryDirectory() as name:
-            top = Path(name)
-            (top / "1f").mkdir()
-            (top / "1f" / "plant.st").write_text("x")
-            (top / "sleeper").write_text("#!/bin/sh\nsleep 60\n")
-            (top / "sleeper").chmod(0o755)
-            self.assertFalse(run_case(top / "1f", top / "out", str(top / "sleeper"), [], 0.2, None))
-            self.assertEqual(json.loads((top / "out" / "1f" / "run.json").read_text())["exit"], "time limit")
+    def test_nothing_is_sealed_twice_or_written_over(self) -> None:
+        self.assertEqual(self.new(self.key).returncode, 0)
+        sealed = (self.top / "key.sealed").read_bytes()
+        self.key.write_text(self.text)
+        for other in (self.top / "key.sealed", self.key):
+            self.assertEqual(self.new(other).returncode, 1)
+            self.assertEqual((self.top / "key.sealed").read_bytes(), sealed)
+        self.assertTrue(self.key.exists())
+        (self.top / "key.sealed").unlink()
+        self.assertIn("key.sha256 is there already", self.new(self.key).stderr)
+        self.assertFalse((self.top / "key.sealed").exists())
+
+    def test_what_is_no_key_is_left(self) -> None:
+        for text in ("", "notes", "[1]", '{"cases": {}}', '{"cases": 3}', "[" * 100_000):
+            self.key.write_text(text)
+            self.assertIn("no key of a set", self.new(self.key).stderr)
+            self.assertEqual(self.key.read_text(), text)
+
+    def test_a_passphrase_that_others_read_or_guess(self) -> None:
+        self.passphrase.chmod(0o640)
+        self.assertIn("chmod 600", self.new(self.key).stderr)
+        self.passphrase.chmod(0o600)
+        self.passphrase.write_text("short")
+        self.assertIn("fewer than 16", self.new(self.key).stderr)
+        self.passphrase.unlink()
+        self.assertEqual(self.new(self.key).returncode, 1)
+        self.assertTrue(self.key.exists())
+
+    def test_seeds(self) -> None:
+        for commit, nonce in (("nonsense", "a"), ("no-such-commit", "a"), ("0" * 40, "")):
+            self.assertNotEqual(self.seal("seed", "--commit", commit, "--nonce", nonce).returncode, 0)
+        self.assertEqual(self.seal("seed", "--commit", "0" * 40, "--nonce", "a").stdout.strip(), vault.seed("0" * 40, "a"))
 
 
 if __name__ == "__main__":

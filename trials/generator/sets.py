@@ -71,7 +71,7 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
         return len(names)
     labels.mkdir(parents=True, exist_ok=True, mode=0o700)
     (labels / "plan.sha256").write_text(plan)
-    cases.mkdir(parents=True, exist_ok=True)
+    cases.mkdir(parents=True, exist_ok=True, mode=0o700)  # a product that runs as another user sees its own case alone
     missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
     progress = Progress("generate", len(names), len(names) - len(missing), quiet)
     with ProcessPoolExecutor(jobs, initializer=finish_what_is_begun) as pool:

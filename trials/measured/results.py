@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from trials.scoring.judge import NAMES, Judgement
+from trials.scoring.judge import Judgement
 from trials.scoring.statistics import Share, share
+from trials.scoring.verdict import NAMES
 
 SURE = 0.9
 """A confidence from which on a wrong name is a false one."""

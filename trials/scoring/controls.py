@@ -3,6 +3,8 @@ classifier that sees names, sizes and times of files alone, and a set whose phys
 
 from __future__ import annotations
 
+import errno
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,20 @@ from trials.scoring.judge import IN_LIBRARY, Judgement, judge
 from trials.scoring.statistics import Share, share
 
 SHUFFLES = 1000
+FEWEST = 30
+"""Cases whose name is asked; of fewer a control says nothing that chance does not."""
+
+
+class TooFew(ValueError):
+    """A set on which no control can be told from chance."""
+
+
+def enough(cases: list[Judgement]) -> None:
+    """Raises TooFew."""
+    chosen = _named(cases)
+    causes = {c.truth[0] for c in chosen}
+    if len(chosen) < FEWEST or len(causes) < 2:
+        raise TooFew(f"{len(chosen)} single effects at R = 3 and above, of {len(causes)} kinds: too few for controls, which take {FEWEST}; generate 60 cases or more")
 
 
 @dataclass(frozen=True)
@@ -67,6 +83,8 @@ def always(effect: str, labels: dict[str, dict[str, Any]]) -> Control:
 def _outside(folder: Path) -> list[float]:
     """What can be seen of a case without opening a file, but for the length of the record, which the diagnosis knows."""
     names = ("plant.st", "params.toml", "log.csv", "log2.csv")
+    if not folder.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(folder))
     stats = [(folder / name).stat() if (folder / name).exists() else None for name in names]
     sizes = [float(s.st_size) if s else 0.0 for s in stats]
     return [float(int(folder.name, 16) % 2**40), *sizes, *(s.st_mtime if s else 0.0 for s in stats)]

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from trials.scoring.judge import ACCUSES, IN_LIBRARY, Judgement
+from trials.scoring.judge import IN_LIBRARY, Judgement
 from trials.scoring.statistics import Share, auroc, quantile_interval, recall_at, share
+from trials.scoring.verdict import ACCUSES
 
 
 @dataclass
@@ -54,6 +55,8 @@ class Score:
     confusion: dict[str, dict[str, int]]
     reliability: list[dict[str, float]]
     strata: dict[str, dict[str, int]]
+    seconds: list[float]
+    """Of every case that has a run time."""
     misses: list[dict[str, Any]] = field(default_factory=list)
 
 
@@ -212,5 +215,6 @@ def score(cases: list[Judgement]) -> Score:
     for c in cases:
         strata.setdefault(c.stratum, Counter())[c.verdict] += 1
     return Score(
-        with_decidable(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())}, misses(cases)
-    )
+        with_decidable(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())},
+        [c.seconds for c in cases if not math.isnan(c.seconds)], misses(cases),
+    )  # fmt: skip

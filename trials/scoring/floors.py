@@ -8,7 +8,7 @@ from typing import Any
 from trials.scoring.figures import Figure
 
 
-def broken(figures: list[Figure], floors: dict[str, Any]) -> list[str]:
+def below(figures: list[Figure], floors: dict[str, Any]) -> list[str]:
     """What lies on the wrong side of its floor. A floor for a figure that has no cases is broken too."""
     known = {f.key: f for f in figures}
     found = []

@@ -25,13 +25,14 @@ def outputs(product: str, diagram: Path, parameters: Path, log: Path, names: tup
     """Outputs of a diagram by the product's own run; None where it refuses."""
     out = log.with_suffix(".out.csv")
     command = [product, "run", str(diagram), "--in", str(log), "--out", str(out), "--params", str(parameters)]
-    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
-    if done.returncode != 0:
-        return None
-    with out.open() as file:
-        rows = list(csv.reader(file))
-    at = [[name.upper() for name in rows[0]].index(name.upper()) for name in names]
-    return np.array([[float(row[i]) for i in at] for row in rows[1:]])
+    try:
+        subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=True)
+        with out.open() as file:
+            rows = list(csv.reader(file))
+        at = [[name.upper() for name in rows[0]].index(name.upper()) for name in names]
+        return np.array([[float(row[i]) for i in at] for row in rows[1:]])
+    except (subprocess.SubprocessError, OSError, ValueError, IndexError):
+        return None  # it refuses, takes too long, or has not these outputs
 
 
 def checked(label: dict, verdict: str, product: str) -> tuple[float, float]:
@@ -53,8 +54,8 @@ def checked(label: dict, verdict: str, product: str) -> tuple[float, float]:
         before = outputs(product, scratch / "plant.st", scratch / "params.toml", scratch / "fresh.csv", machine.outputs)
         after = outputs(product, *improved, scratch / "fresh.csv", machine.outputs)
         here = outputs(product, *improved, scratch / "log.csv", machine.outputs)
-    apart = float("nan") if here is None else float(np.max(np.sqrt(np.mean(((here - case.clean) * weights) ** 2, axis=0))))
-    if before is None or after is None:
+    apart = float("nan") if here is None or len(here) != len(case.clean) else float(np.max(np.sqrt(np.mean(((here - case.clean) * weights) ** 2, axis=0))))
+    if before is None or after is None or len(before) != len(clean) or len(after) != len(clean):
         return float("nan"), apart
     error = [float(np.mean(((y - clean) * weights) ** 2)) for y in (before, after)]
     return 1.0 - error[1] / error[0] if error[0] > 0.0 else float("nan"), apart

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-ACCUSES = frozenset({"named", "group", "partial", "unknown"})
-"""Verdicts that say that something is wrong with the model's structure."""
-NAMES = frozenset({"named", "partial", "group"})
-"""Verdicts that name effects."""
-VERDICTS = ACCUSES | {"none", "calibration", "refused", "missing"}
+from trials.scoring.verdict import NAMES, VERDICTS, number, read_object, read_verdict
+
 IN_LIBRARY = ("single", "cousin", "pair")
 CALIBRATION_NAMES = frozenset({"parameter_mismatch", "gain_error"})
 
@@ -109,14 +105,6 @@ def plain(name: str) -> str:
     return "".join(str(name).split()).upper()
 
 
-def number(value: Any) -> float:
-    """A number, or not a number."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan
-
-
 def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run: dict[str, Any]) -> Judgement:
     """Compares a verdict with the label of its case."""
     v = verdict or {}
@@ -169,18 +157,9 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
     )
 
 
-def read_json(path: Path) -> dict | None:
-    """What stands in a file, if it can be read; a broken verdict is no verdict."""
-    try:
-        found = json.loads(path.read_text())
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) else None
-
-
 def judged(labels: dict[str, dict[str, Any]], verdicts: Path) -> list[Judgement]:
     """A diagnoser's verdicts, as trials/run has left them, against the labels of a key."""
     return [
-        judge(name, label, read_json(verdicts / name / "verdict.json"), read_json(verdicts / name / "run.json") or {})
+        judge(name, label, read_verdict(verdicts / name / "verdict.json"), read_object(verdicts / name / "run.json") or {})
         for name, label in labels.items()
     ]

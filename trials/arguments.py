@@ -1,0 +1,39 @@
+"""What the command lines of the trial take: kinds of arguments with their refusals."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+
+def whole(text: str) -> int:
+    """A whole number from 1."""
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: write a whole number from 1")
+    return int(text)
+
+
+def above_zero(text: str) -> float:
+    """A finite number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text}: write a number above 0")
+    return value
+
+
+def seconds(text: str) -> float:
+    """A time above 0, of a year at most."""
+    value = above_zero(text)
+    if value > 366.0 * 86400.0:
+        raise argparse.ArgumentTypeError(f"{text}: write a time in seconds, of a year at most")
+    return value
+
+
+def reason(text: str) -> str:
+    """A text that says something."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError("write what for")
+    return " ".join(text.split())

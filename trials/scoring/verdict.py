@@ -1,0 +1,89 @@
+"""A diagnoser's answer as it stands in its files: hashed, read, and refused where it is no verdict."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+ACCUSES = frozenset({"named", "group", "partial", "unknown"})
+"""Verdicts that say that something is wrong with the model's structure."""
+NAMES = frozenset({"named", "partial", "group"})
+"""Verdicts that name effects."""
+VERDICTS = ACCUSES | {"none", "calibration", "refused", "missing"}
+HASHED = ("verdict.json", "run.json", "improved.st", "improved.toml")
+"""Of each case, what a figure of the score depends on."""
+LARGEST = 1e100
+"""A number beyond is no figure of a machine, and its square has no value."""
+
+
+def number(value: Any) -> float:
+    """A number, or not a number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+
+
+def _is_share(value: Any) -> bool:
+    return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 <= value <= 1.0)
+
+
+def _is_amount(value: Any) -> bool:
+    return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST)
+
+
+def _are_names(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(one, str) for one in value)
+
+
+def _is_effect(value: Any) -> bool:
+    return isinstance(value, dict) and isinstance(value.get("id"), str) and isinstance(value.get("edge", ""), str) and _are_names(value.get("same_edges", []))
+
+
+def fault_of(verdict: Any) -> str:
+    """Why this is no verdict; empty where it is one."""
+    if not isinstance(verdict, dict):
+        return "no JSON object"
+    gap = verdict.get("gap") or {}
+    checks = {
+        f"verdict: one of {', '.join(sorted(VERDICTS))}": verdict.get("verdict") in VERDICTS if isinstance(verdict.get("verdict"), str) else False,
+        "effects: a list of objects with id, edge and same_edges": isinstance(verdict.get("effects", []), list) and all(map(_is_effect, verdict.get("effects", []))),
+        "rivals: a list of lists of names": isinstance(verdict.get("rivals", []), list) and all(map(_are_names, verdict.get("rivals", []))),
+        "cannot_tell: a list of sentences": _are_names(verdict.get("cannot_tell", [])),
+        "confidence: 0 to 1": _is_share(verdict.get("confidence")),
+        "unknown_score: 0 to 1": _is_share(verdict.get("unknown_score")),
+        "gap: an object of finite numbers": isinstance(gap, dict)
+        and isinstance(gap.get("signal", ""), str)
+        and all(_is_amount(gap.get(key)) for key in ("nominal_rms", "improved_rms", "closed", "closed_low", "closed_high")),
+    }
+    return next((wanted for wanted, held in checks.items() if not held), "")
+
+
+def read_object(path: Path) -> dict | None:
+    """A JSON object; None where the file holds none."""
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def read_verdict(path: Path) -> dict | None:
+    """A verdict; None where there is none, or one that is none."""
+    found = read_object(path)
+    return None if fault_of(found) else found
+
+
+def broken(verdicts: Path) -> list[str]:
+    """By case a line for each file verdict.json that is no verdict."""
+    found = {file.parent.name: fault_of(read_object(file)) for file in sorted(verdicts.glob("*/verdict.json"))}
+    return [f"{name}: no verdict; wanted is {fault}" for name, fault in found.items() if fault]
+
+
+def hashes(verdicts: Path) -> str:
+    """SHA-256 of all that the score reads, one file a line."""
+    files = sorted(file for name in HASHED for file in verdicts.glob(f"*/{name}"))
+    return "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.parent.name}/{file.name}\n" for file in files)

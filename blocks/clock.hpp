@@ -31,7 +31,8 @@ struct Clock : PastSignal {
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{
-          HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).means("seconds lost per second, or won"),
+          HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-0.1, 0.1).means(
+              "seconds lost per second, or won"),
           HY_FIELD(LOST).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost at once"),
           HY_FIELD(T_LOST).in("s").at_least(0.0).otherwise(0.0).means("time at which they are lost")};
     }

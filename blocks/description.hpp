@@ -30,7 +30,8 @@ struct Field {
   std::string_view unit;
   std::string_view meaning;
   std::string_view effect;  ///< the physical effect that this parameter switches on by itself; empty for none
-  double effect_maximum = std::numeric_limits<double>::infinity();  ///< above it, the block is another effect
+  double effect_minimum = -std::numeric_limits<double>::infinity();  ///< below it, the block is another effect
+  double effect_maximum = std::numeric_limits<double>::infinity();   ///< above it, likewise
   double preset = 0.0;
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
@@ -106,6 +107,13 @@ struct BoundField : Field {
   [[nodiscard]] constexpr BoundField effect_up_to(double value) const {
     auto copy = *this;
     copy.effect_maximum = value;
+    return copy;
+  }
+  /// The same on both sides: a clock that is off by a quarter is none, but another rate.
+  [[nodiscard]] constexpr BoundField effect_within(double low, double high) const {
+    auto copy = *this;
+    copy.effect_minimum = low;
+    copy.effect_maximum = high;
     return copy;
   }
 };

@@ -68,6 +68,7 @@ struct EffectFinding {
   std::string id{};
   std::string edge{};
   std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
+  std::vector<std::string> drivers{};     ///< signals that drive it, besides that of its edge
   double share = 0.0;                     ///< of the gap that calibration leaves, with the glitches in it
   Inverse inverse = Inverse::None;
   std::vector<ParameterFinding> parameters{};

@@ -209,6 +209,9 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
         finding.settings.push_back({.name = leaf(path), .value = value, .unit = units[static_cast<std::size_t>(at)]});
       }
     }
+    for (const auto& [pin, driver] : applied.wires) {
+      finding.drivers.push_back(in_the_diagram(driver, chosen.variant.effects));
+    }
     std::set<std::string> same;
     for (const std::string& twin : applied.twins) {
       same.insert(in_the_diagram(twin, chosen.variant.effects));
@@ -264,8 +267,9 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
 }
 
 double confidence(const Findings& findings, const Diagnosis& so_far) {
-  // An effect as large as the noise can hide in what depends on the machine's motion and is called noise.
-  const double no_effect = 0.95 - 0.3 * findings.predictable;
+  // An effect as large as the noise can hide in what depends on the machine's motion and is called noise, a larger one
+  // in what is left above it.
+  const double no_effect = (0.95 - 0.3 * findings.predictable) * (1.0 - so_far.unknown_score);
   switch (so_far.verdict) {
     case Verdict::Named:
     case Verdict::Group:

@@ -1,12 +1,14 @@
 #include "diagnosis/jitter.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +23,8 @@ namespace {
 constexpr std::size_t fewest_samples = 4;
 constexpr std::size_t most_knots = 400;
 constexpr std::size_t most_values = 10'000'000;
+/// Copies of the delayed signal's rate that stand for a linear filter in the delay's place, samples.
+constexpr std::array<std::ptrdiff_t, 13> shifts{-64, -32, -16, -8, -4, -2, 0, 2, 4, 8, 16, 32, 64};
 
 /// The rate of a signal, from the samples on either side.
 Signal rate_of(const Signal& signal, double sample_time) {
@@ -49,6 +53,19 @@ RecordSignals peak_at(const Knot& knot, std::size_t reach, const RecordSignals& 
   for (std::size_t k = knot.middle < reach ? 0 : knot.middle - reach + 1; k < end; ++k) {
     const double away = std::abs(static_cast<double>(k) - static_cast<double>(knot.middle));
     result[knot.record][k] = -size * rate[k] * (1.0 - away / static_cast<double>(reach));
+  }
+  return result;
+}
+
+/// The rates so many samples later, which stand still where the record has none.
+RecordSignals shifted(const RecordSignals& rates, std::ptrdiff_t samples, double size) {
+  RecordSignals result;
+  for (const Signal& rate : rates) {
+    result.emplace_back(rate.size(), 0.0);
+    const auto count = std::ssize(rate);
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, samples); k < std::min(count, count + samples); ++k) {
+      result.back()[static_cast<std::size_t>(k)] = size * rate[static_cast<std::size_t>(k - samples)];
+    }
   }
   return result;
 }
@@ -85,28 +102,17 @@ std::vector<Knot> knots_over(const RecordSignals& rates, std::size_t reach) {
   return knots;
 }
 
-double evenness_of(const VectorXd& eigenvalues, const VectorXd& projections, double lambda, double variance) {
-  constexpr double ruled = 3.0;
-  constexpr std::size_t fewest = 20;
-  std::vector<double> squares;  // weakest first, as the eigenvalues are
-  for (Index k = 0; k < eigenvalues.size(); ++k) {
-    if (lambda * eigenvalues[k] > ruled) {
-      squares.push_back(projections[k] * projections[k] /
-                        (eigenvalues[k] * variance * (1.0 + lambda * eigenvalues[k])));
-    }
-  }
-  if (squares.size() < fewest) {
-    return 1.0;
-  }
-  const auto strong = squares.end() - std::ssize(squares) / 4;
-  const auto mean = [](auto from, auto to) { return std::accumulate(from, to, 0.0) / static_cast<double>(to - from); };
-  return mean(strong, squares.end()) / std::max(mean(squares.begin(), strong), 1e-300);
-}
+/// λ and σ² of a residual, and what they leave of it.
+struct Likeliest {
+  double lambda = 0.0;
+  double variance = 0.0;
+  double unexplained = 0.0;
+};
 
-/// The likeliest λ and what it leaves, from the eigenvalues of SᵀS and the projections of r on its eigenvectors.
-Jitter likeliest(const VectorXd& eigenvalues, const VectorXd& projections, double squares, double count) {
+/// From the eigenvalues of SᵀS and the projections of r on its eigenvectors.
+Likeliest likeliest(const VectorXd& eigenvalues, const VectorXd& projections, double squares, double count) {
   const double scale = eigenvalues.mean();
-  Jitter best{.deviation = 0.0, .unexplained = std::sqrt(squares / count), .left = std::sqrt(squares / count)};
+  Likeliest best{.variance = squares / count, .unexplained = std::sqrt(squares / count)};
   for (double power = -4.0; power <= 4.0; power += 0.25) {
     const double lambda = std::pow(10.0, power) / scale;
     double explained = 0.0;
@@ -119,12 +125,57 @@ Jitter likeliest(const VectorXd& eigenvalues, const VectorXd& projections, doubl
     const double variance = std::max(0.0, squares - explained) / count;
     const double unexplained = std::sqrt(variance * std::exp(determinant / count));
     if (unexplained < best.unexplained) {
-      best.unexplained = unexplained;
-      best.deviation = std::sqrt(lambda * variance);
-      best.evenness = evenness_of(eigenvalues, projections, lambda, variance);
+      best = {.lambda = lambda, .variance = variance, .unexplained = unexplained};
     }
   }
   return best;
+}
+
+/// By direction that the variation rules, the weakest first: what standardises a projection Eᵀ Sᵀ r on it.
+VectorXd standards(const VectorXd& eigenvalues, const Likeliest& fit) {
+  constexpr double ruled = 3.0;
+  std::vector<double> result;
+  for (Index k = 0; k < eigenvalues.size(); ++k) {  // from the smallest
+    if (fit.lambda * eigenvalues[k] > ruled) {
+      result.push_back(1.0 / std::sqrt(eigenvalues[k] * fit.variance * (1.0 + fit.lambda * eigenvalues[k])));
+    }
+  }
+  return Eigen::Map<const VectorXd>(result.data(), std::ssize(result));
+}
+
+double evenness_of(const VectorXd& standardised) {
+  constexpr Index fewest = 20;
+  if (standardised.size() < fewest) {
+    return 1.0;
+  }
+  const Index strong = standardised.size() / 4;
+  const double weak = standardised.head(standardised.size() - strong).squaredNorm();
+  return standardised.tail(strong).squaredNorm() / static_cast<double>(strong) /
+         std::max(weak / static_cast<double>(standardised.size() - strong), 1e-300);
+}
+
+/// What columns leave of others.
+MatrixXd less(const Eigen::ColPivHouseholderQR<MatrixXd>& columns, const MatrixXd& of) {
+  MatrixXd rotated = columns.householderQ().transpose() * of;
+  rotated.topRows(columns.rank()).setZero();
+  return columns.householderQ() * rotated;
+}
+
+/// 1 − the variance beside both kinds of columns over that beside the known ones, each for its degrees of freedom.
+double share_explained(const MatrixXd& columns, const MatrixXd& known, const VectorXd& by) {
+  if (by.size() < 2 * (columns.cols() + known.cols())) {
+    return 0.0;
+  }
+  const Eigen::ColPivHouseholderQR<MatrixXd> first(known);
+  const VectorXd before = less(first, by);
+  const Eigen::ColPivHouseholderQR<MatrixXd> second(less(first, columns));
+  const VectorXd after = less(second, before);
+  const auto variance = [](const VectorXd& left, Index degrees) {
+    return left.squaredNorm() / static_cast<double>(degrees);
+  };
+  const Index degrees = by.size() - first.rank();
+  return std::max(0.0, 1.0 - variance(after, degrees - second.rank()) /
+                                 std::max(variance(before, degrees), std::numeric_limits<double>::min()));
 }
 
 }  // namespace
@@ -171,6 +222,15 @@ std::optional<JitterResponse> response_to_jitter(const Task& task, const std::st
       result.columns.col(static_cast<Index>(k)) = (there - as_it_is) / size;
     }
   });
+  result.fitted = one.fit.jacobian;
+  result.filtered = MatrixXd::Zero(as_it_is.size(), std::ssize(shifts));
+  in_parallel(shifts.size(), threads, [&](std::size_t j) {
+    const VectorXd there =
+        residuals_with(task, *added, shifted(rates, shifts[j], size), one.variant.further, one.fit.x);
+    if (there.size() > 0) {
+      result.filtered.col(static_cast<Index>(j)) = there - as_it_is;
+    }
+  });
   const Index rows = as_it_is.size() / std::ssize(task.outputs);
   for (Index output = 0; output < std::ssize(task.outputs); ++output) {
     result.moves.push_back(result.columns.middleRows(output * rows, rows).squaredNorm() > 0.0);
@@ -187,9 +247,27 @@ Jitter jitter_of(const Task& task, const JitterResponse& response, const VectorX
     }
   }
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(response.columns.transpose() * response.columns);
-  const VectorXd projections = solved.eigenvectors().transpose() * (response.columns.transpose() * moved);
+  const auto projected = [&](const MatrixXd& of) -> MatrixXd {
+    return solved.eigenvectors().transpose() * (response.columns.transpose() * of);
+  };
+  const VectorXd projections = projected(moved);
   const auto count = static_cast<double>(rows * std::ranges::count(response.moves, true) - std::ssize(task.left_out));
-  return likeliest(solved.eigenvalues(), projections, moved.squaredNorm(), std::max(1.0, count));
+  const Likeliest best = likeliest(solved.eigenvalues(), projections, moved.squaredNorm(), std::max(1.0, count));
+  Jitter result{.deviation = std::sqrt(best.lambda * best.variance),
+                .unexplained = best.unexplained,
+                .left = std::sqrt(moved.squaredNorm() / std::max(1.0, count))};
+  const double elsewhere = residuals.squaredNorm() - moved.squaredNorm();
+  result.everywhere = std::sqrt((best.unexplained * best.unexplained * count + elsewhere) /
+                                std::max(1.0, static_cast<double>(residuals.size() - std::ssize(task.left_out))));
+  const VectorXd standard = standards(solved.eigenvalues(), best);
+  const VectorXd standardised = standard.cwiseProduct(projections.tail(standard.size()));
+  result.evenness = evenness_of(standardised);
+  const auto standardised_columns = [&](const MatrixXd& of) -> MatrixXd {
+    return standard.asDiagonal() * projected(of).bottomRows(standard.size());
+  };
+  result.filtered =
+      share_explained(standardised_columns(response.filtered), standardised_columns(response.fitted), standardised);
+  return result;
 }
 
 }  // namespace hysteron::diagnosis

@@ -13,6 +13,8 @@ namespace hysteron::diagnosis {
 /// How residuals answer to a delay that is longer at knots a few samples apart, straight between them.
 struct JitterResponse {
   MatrixXd columns{};         ///< S, by knot: residuals a second of delay
+  MatrixXd fitted{};          ///< by unknown of the fit
+  MatrixXd filtered{};        ///< F: what the delayed signal's rate, some samples earlier or later, adds to residuals
   std::vector<bool> moves{};  ///< by output: whether the delay reaches it; the others do not count
 };
 
@@ -29,11 +31,16 @@ struct JitterResponse {
 struct Jitter {
   double deviation = 0.0;    ///< of the delay about its mean, s
   double unexplained = 0.0;  ///< u, in units of the residuals
-  double left = 0.0;         ///< RMS of the residuals themselves
+  double left = 0.0;         ///< RMS of the residuals themselves, of the outputs that the delay reaches
+  double everywhere = 0.0;   ///< u on those outputs and the residuals of the others, RMS over all
   /// What the residual has along the strongest quarter of the directions that the variation rules, over what it has
   /// along the others, each for its variance 1 + λs²: 1 where a delay varies at random. Another cause, told a
   /// variation, has no reason to lie where that would be strong.
   double evenness = 1.0;
+  /// Along those directions, each for its variance, the share of what a better fit leaves that the columns of F explain
+  /// beyond their number: 0 where a delay varies at random, 1 where the machine has another linear filter in the
+  /// delay's place, as a zero in the right half-plane, whose difference from a delay is a sum of such copies.
+  double filtered = 0.0;
 };
 
 [[nodiscard]] Jitter jitter_of(const Task& task, const JitterResponse& response, const VectorXd& residuals);

@@ -40,10 +40,11 @@ double size_or(double size, double otherwise) {
   return std::isfinite(size) && size > 0.0 ? size : otherwise;
 }
 
-/// Whether an effect is an oscillation, which has a frequency that the residual shows.
+/// Whether an effect is an oscillation, which has a frequency that the residual shows: with more damping it is none.
 bool is_oscillation(const Applied& effect) {
-  return std::ranges::any_of(effect.parameters,
-                             [](const EffectParameter& one) { return std::isfinite(one.field.effect_maximum); });
+  return std::ranges::any_of(effect.parameters, [](const EffectParameter& one) {
+    return std::isfinite(one.field.effect_maximum) && std::isinf(one.field.effect_minimum);
+  });
 }
 
 std::vector<double> strength_grid(const EffectParameter& parameter, bool rings, const Extent& input,
@@ -246,6 +247,7 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     if (parameter.role == Role::Reference) {
       setting = reference(parameter, input, auxiliary, candidate.about_zero);
     } else {
+      grid.lowest = parameter.field.effect_minimum;
       grid.highest = parameter.field.effect_maximum;
       if (parameter.role == Role::Duration && !parameter.strength && parameter.field.preset > 0.0) {
         grid.lowest = 4.0 * hints.sample_time;                  // what is over sooner is a gain, an offset or a lag

@@ -30,6 +30,8 @@ constexpr double is_noise = 1.3;
 constexpr double most_varied = 0.7;
 /// The evenness of a variation, or one over it, at least.
 constexpr double least_even = 0.3;
+/// Where a linear filter explains so much of it, the machine has another filter than a delay, and none that varies.
+constexpr double most_filtered = 0.4;
 /// Of sets with a delay so many are tried, none that leaves more than so many times what the chosen one leaves.
 constexpr std::size_t most_sets = 4;
 constexpr double far_behind = 4.0;
@@ -110,7 +112,7 @@ class VaryingDelay {
   [[nodiscard]] bool is_over() const { return options_.out_of_time && options_.out_of_time(); }
 
   [[nodiscard]] bool explains_all() const {
-    return best_ && best_->jitter.unexplained * best_->jitter.unexplained < is_noise;
+    return best_ && best_->jitter.everywhere * best_->jitter.everywhere < is_noise;
   }
 
   /// The best set that is a delay and nothing else; null where none was fitted.
@@ -174,16 +176,16 @@ class VaryingDelay {
     }
     const Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
     const bool larger = best_ && one.variant.effects.size() > best_->set.variant.effects.size();
-    const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.unexplained
+    const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.everywhere
                                : std::sqrt(of_chosen) * chosen_left_;
-    if (jitter.unexplained < limit && is_random(one, jitter)) {
+    if (jitter.everywhere < limit && is_random(one, jitter)) {
       best_ = std::make_shared<const Varying>(one, jitter, response->moves);
     }
   }
 
   [[nodiscard]] bool is_random(const Explanation& one, const Jitter& jitter) const {
     return jitter.deviation < most_varied * mean_delay(task_, one) && jitter.evenness > least_even &&
-           jitter.evenness * least_even < 1.0;
+           jitter.evenness * least_even < 1.0 && jitter.filtered < most_filtered;
   }
 
   /// The delay and nothing else, on each of its edges, fitted to residuals that are whitened of its own variation: that
@@ -235,8 +237,8 @@ class VaryingDelay {
       return;
     }
     Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
-    const double limit = best_ ? best_->jitter.unexplained : std::sqrt(most_left_by_another) * chosen_left_;
-    if (!(jitter.unexplained * jitter.unexplained < is_noise) || !(jitter.unexplained < limit) ||
+    const double limit = best_ ? best_->jitter.everywhere : std::sqrt(most_left_by_another) * chosen_left_;
+    if (!(jitter.everywhere * jitter.everywhere < is_noise) || !(jitter.everywhere < limit) ||
         !is_random(one, jitter)) {
       return;
     }
@@ -288,7 +290,7 @@ class VaryingDelay {
   struct Place {
     Explanation set{};
     JitterResponse response{};
-    double unexplained = 0.0;
+    double left = 0.0;  ///< see Jitter::everywhere
   };
 
   /// The edges for a delay by itself, first the one where its variation leaves least.
@@ -299,11 +301,11 @@ class VaryingDelay {
     for (const Explanation& one : sets) {
       if (std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads)) {
         const double own = places.empty() ? 1.0 : 1.0 / elsewhere;
-        const double unexplained = own * jitter_of(task_, *response, one.fit.residuals).unexplained;
-        places.push_back({.set = one, .response = std::move(*response), .unexplained = unexplained});
+        const double left = own * jitter_of(task_, *response, one.fit.residuals).everywhere;
+        places.push_back({.set = one, .response = std::move(*response), .left = left});
       }
     }
-    std::ranges::stable_sort(places, {}, &Place::unexplained);
+    std::ranges::stable_sort(places, {}, &Place::left);
     return places;
   }
 

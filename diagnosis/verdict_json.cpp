@@ -107,6 +107,7 @@ std::string verdict_json(const Diagnosis& found) {
     effects.push_back({{"id", effect.id},
                        {"edge", effect.edge},
                        {"same_edges", effect.same_edges},
+                       {"drivers", effect.drivers},
                        {"share", number(effect.share)},
                        {"invertible", effect.inverse == Inverse::Exact},
                        {"parameters", parameters_of(effect.parameters)},

@@ -138,8 +138,9 @@ std::string diagnosis_text(const Diagnosis& found) {
                         closed_percent(gap.closed), closed_percent(gap.closed_low), closed_percent(gap.closed_high));
   }
   for (const diagnosis::EffectFinding& effect : found.effects) {
-    text += fmt::format("  {} at {}{}: {:.0f} % of the gap\n", effect.id, effect.edge,
+    text += fmt::format("  {} at {}{}{}: {:.0f} % of the gap\n", effect.id, effect.edge,
                         effect.same_edges.empty() ? "" : fmt::format(" (or {})", fmt::join(effect.same_edges, ", ")),
+                        effect.drivers.empty() ? "" : fmt::format(", driven by {}", fmt::join(effect.drivers, ", ")),
                         100.0 * effect.share);
     for (const ParameterFinding& one : effect.parameters) {
       text += line_of(one);

@@ -76,12 +76,15 @@ std::string effect_card(const EffectFinding& effect, const Diagnosis& diagnosis)
       "<article class=\"effect\"><h3>{} <span class=\"at\">on {}</span></h3>\n<p><strong>{}</strong> of the gap "
       "that calibration leaves; {}.</p>\n",
       escaped(words_of(effect.id)), escaped(effect.edge), percent(effect.share), inverse_of(effect.inverse));
+  const auto list = [](const std::vector<std::string>& names) {
+    return escaped(fmt::format("{}", fmt::join(names, ", ")));
+  };
+  if (!effect.drivers.empty()) {
+    html += fmt::format("<p>Driven by {}.</p>\n", list(effect.drivers));
+  }
   if (!effect.same_edges.empty()) {
-    std::string edges;
-    for (const std::string& edge : effect.same_edges) {
-      edges += (edges.empty() ? "" : ", ") + escaped(edge);
-    }
-    html += fmt::format("<p class=\"note\">This record cannot tell it from the same effect on {}.</p>\n", edges);
+    html += fmt::format("<p class=\"note\">This record cannot tell it from the same effect on {}.</p>\n",
+                        list(effect.same_edges));
   }
   if (effect.inverse == Inverse::Exact && diagnosis.feedforward_text.empty()) {
     for (const std::string& reason : diagnosis.feedforward_notes) {

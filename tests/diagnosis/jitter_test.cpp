@@ -39,14 +39,36 @@ std::vector<double> late(const std::vector<double>& signal, double deviation) {
   return result;
 }
 
-/// A record of the axis whose force comes late.
-records::Record late_axis(double deviation, const test::Effect& effect = {}) {
-  const std::vector<double> force = test::rich_force();
+/// A signal behind (1 − a s)/(1 + b s)², which goes the wrong way first: a zero in the right half-plane.
+std::vector<double> wrong_way_first(const std::vector<double>& signal) {
+  constexpr double a = 0.1;
+  constexpr double b = 0.05;
+  constexpr int substeps = 50;
+  double first = 0.0;
+  double second = 0.0;
+  std::vector<double> result;
+  for (const double value : signal) {
+    result.push_back(second - a * (first - second) / b);
+    for (int i = 0; i < substeps; ++i) {
+      second += sample_time / substeps * (first - second) / b;
+      first += sample_time / substeps * (value - first) / b;
+    }
+  }
+  return result;
+}
+
+/// A record of the axis that gets `force` where its record says another.
+records::Record axis_with(const std::vector<double>& force, const test::Effect& effect = {}) {
   const records::Record driven =
-      test::measured(test::program_of(test::axis(effect)), test::record_of("FORCE", late(force, deviation)), noise);
-  records::Record record = test::record_of("FORCE", force);
+      test::measured(test::program_of(test::axis(effect)), test::record_of("FORCE", force), noise);
+  records::Record record = test::record_of("FORCE", test::rich_force());
   record.add(driven.column("V"));
   return record;
+}
+
+/// A record of the axis whose force comes late.
+records::Record late_axis(double deviation, const test::Effect& effect = {}) {
+  return axis_with(late(test::rich_force(), deviation), effect);
 }
 
 /// The axis with a delay of its force, fitted.
@@ -88,6 +110,7 @@ TEST(Jitter, OfKnownSize) {
     EXPECT_GT(found->unexplained, 1.0) << "each knot that is estimated is paid for";
     EXPECT_GT(found->evenness, 0.4);
     EXPECT_LT(found->evenness, 2.5);
+    EXPECT_LT(found->filtered, 0.2);
   }
 }
 
@@ -134,6 +157,76 @@ std::string position_axis() {
   put("SPEED : HY_INTEGRAL;", "SPEED : HY_INTEGRAL;\n    POS : HY_INTEGRAL;");
   put("V := SPEED.XOUT;", "POS(XIN := SPEED.XOUT);\n  V := POS.XOUT;");
   return text;
+}
+
+TEST(Jitter, IsNotAnotherFilterInTheDelaysPlace) {
+  const std::vector<double> filtered = wrong_way_first(test::rich_force());
+  const std::optional<Jitter> found = DelayedAxis(axis_with(filtered)).jitter();
+  ASSERT_TRUE(found);
+  EXPECT_GT(found->left, 3.0);
+  EXPECT_GT(found->filtered, 0.5);
+  records::Record record = test::record_of("FORCE", test::rich_force());
+  record.add(test::measured(test::program_of(position_axis()), test::record_of("FORCE", filtered), 1e-3).column("V"));
+  const Diagnosis diagnosis = diagnose(test::input_of(position_axis(), test::axis_parameters, {std::move(record)}),
+                                       {.effects = {"delay", "viscous_friction"}});
+  EXPECT_THAT(diagnosis.warnings, testing::Not(testing::Contains(testing::HasSubstr("varies by"))))
+      << diagnosis.summary;
+}
+
+/// Two axes, each with its own input and output.
+constexpr const char* two_axes = R"(FUNCTION_BLOCK PAIR  (* @ts 5ms *)
+  VAR_INPUT
+    UX : LREAL;
+    UY : LREAL;
+  END_VAR
+  VAR_OUTPUT
+    X : LREAL;
+    Y : LREAL;
+  END_VAR
+  VAR
+    GX : HY_GAIN := (K := 2.0);
+    GY : HY_GAIN := (K := 2.0);
+    LX : HY_LAG := (T1 := 0.05);
+    LY : HY_LAG := (T1 := 0.05);
+  END_VAR
+  GX(XIN := UX);
+  GY(XIN := UY);
+  LX(XIN := GX.XOUT);
+  LY(XIN := GY.XOUT);
+  X := LX.XOUT;
+  Y := LY.XOUT;
+END_FUNCTION_BLOCK
+)";
+constexpr const char* two_axes_parameters = R"([parameters.GX]
+K = 2.0
+[parameters.GY]
+K = 2.0
+[fit.GX]
+K = {}
+[fit.GY]
+K = {}
+[tune]
+outputs = ["X", "Y"]
+)";
+
+/// A delay of one axis leaves that axis at its noise, as no delay does; the gap of the other is still there.
+TEST(Jitter, CountsTheOutputsThatTheDelayDoesNotReach) {
+  const std::vector<double> force = test::rich_force();
+  const std::vector<double> late_force(force.rbegin(), force.rend());
+  // Two backlashes: by one effect more than noise is left.
+  std::string machine = two_axes;
+  machine.replace(machine.find("    GX :"), 0,
+                  "    WIDE : HY_BACKLASH := (WIDTH := 2.0);\n    NARROW : HY_BACKLASH := (WIDTH := 0.5);\n");
+  machine.replace(machine.find("GX(XIN := UX)"), 13,
+                  "WIDE(XIN := UX);\n  NARROW(XIN := UX);\n  GX(XIN := 0.5 * WIDE.XOUT + 0.5 * NARROW.XOUT)");
+  records::Record record = test::record_of("UX", force);
+  record.add({.name = "UY", .unit = "", .values = late_force});
+  record = test::measured(test::program_of(machine), std::move(record), noise);
+  const Diagnosis found =
+      diagnose(test::input_of(two_axes, two_axes_parameters, {std::move(record)}), {.effects = {"backlash", "delay"}});
+  ASSERT_FALSE(found.effects.empty()) << found.summary;
+  EXPECT_EQ(found.effects.front().id, "backlash") << found.summary;
+  EXPECT_THAT(found.warnings, testing::Not(testing::Contains(testing::HasSubstr("varies by"))));
 }
 
 /// What varies adds up behind two integrators, further than any constant delay comes near; nothing else is there.

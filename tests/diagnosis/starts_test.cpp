@@ -70,5 +70,19 @@ TEST(Starts, AGainThatMultipliesByMoreThanTenIsNoErrorOfOne) {
   EXPECT_DOUBLE_EQ(gain.upper, 10.0);
 }
 
+TEST(Starts, AClockThatIsOffByMoreThanATenthIsNone) {
+  const std::string axis = test::axis();
+  const Variant base{.text = axis, .program = std::make_shared<const Program>(compile_text(axis, {.top = "AXIS"}))};
+  const std::vector<Candidate> list = candidates_of(base, "AXIS", {.effects = {"clock"}});
+  ASSERT_FALSE(list.empty());
+  const Applied& own = list.front().own();
+  const Extent extent = extent_of({{0.0, 1.0, -1.0, 0.5}}, 0.001);
+  const Grids grids = grids_of(list.front(), extent, nullptr, {.sample_time = 0.001, .duration = 1.0}, {});
+  const Unknown skew = unknown_of(own.parameters.front(), own.paths.front(), grids.parameters.front());
+  EXPECT_TRUE(skew.path.ends_with("SKEW"));
+  EXPECT_DOUBLE_EQ(skew.lower, -0.1);
+  EXPECT_DOUBLE_EQ(skew.upper, 0.1);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

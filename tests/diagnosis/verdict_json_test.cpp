@@ -24,6 +24,7 @@ Diagnosis full() {
   found.effects = {{.id = "creep",
                     .edge = "HYST.XOUT",
                     .same_edges = {"Y"},
+                    .drivers = {"V"},
                     .share = 0.93,
                     .inverse = Inverse::Exact,
                     .parameters = {{.name = "GAIN", .value = 0.1, .low = 0.09, .high = 0.11, .unit = "1"}},
@@ -112,6 +113,12 @@ TEST(VerdictJson, SplitsTheGapAndHasTheControllerWhereThereIsATrace) {
   verdict = json::parse(verdict_json(found));
   EXPECT_EQ(verdict["split"]["controller"]["same_bits"], false);
   EXPECT_EQ(verdict["split"]["controller"]["first_different"], 3);
+}
+
+TEST(VerdictJson, SaysWhatDrivesAnEffect) {
+  const json effects = json::parse(verdict_json(full()))["effects"];
+  EXPECT_EQ(effects[0]["drivers"], json({"V"}));
+  EXPECT_TRUE(effects[1]["drivers"].empty());
 }
 
 TEST(VerdictJson, OnlyAnExactInverseIsInvertible) {

@@ -12,6 +12,7 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/budget.hpp"
+#include "diagnosis/fast_clock.hpp"
 #include "diagnosis/findings.hpp"
 #include "diagnosis/harmonics.hpp"
 #include "diagnosis/held_out.hpp"
@@ -83,14 +84,7 @@ class Run {
       return;
     }
     unused_ = unused_columns(task_, *given_);
-    std::vector<std::vector<Signal>> others;
-    for (const records::Record& record : task_.records) {
-      others.emplace_back();
-      for (const std::string& name : unused_) {
-        others.back().push_back(record.column(name).values);
-      }
-    }
-    floors_ = noise_floors(task_, *given_, others);
+    floors_ = noise_floors(task_, *given_, columns_by_record(task_, unused_));
     std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
     left_out_ = leave_out(task_, *given_);
     Model scaled(task_, *given_);
@@ -109,6 +103,11 @@ class Run {
       base_ = std::move(noise.base);
       result_.warnings.push_back(std::move(noise.remark));
     }
+    if (std::optional<FastClock> clock = is_tried("clock") ? fast_clock(task_, *base_.program) : std::nullopt) {
+      task_ = std::move(clock->task);
+      ahead_ = std::move(clock->moved);
+      left_out_.push_back(std::move(clock->finding));
+    }
     simulate_nominal();
     for (std::size_t output = 0; output < floors_.size(); ++output) {
       if (floors_[output].evidence == "differences") {
@@ -124,6 +123,9 @@ class Run {
   void simulate_nominal() {
     Model model(task_, *base_.program);
     (void)model.residuals(model.start(), nominal_);  // finite before
+    if (ahead_.size() > 0) {
+      nominal_ += ahead_;
+    }
     for (const Index row : task_.left_out) {
       nominal_[row] = 0.0;
     }
@@ -477,6 +479,7 @@ class Run {
   Materiality materiality_{task_, floors_, options_.material};
   std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
+  VectorXd ahead_{};  ///< see FastClock::moved
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;              ///< see Findings
   std::optional<Explanation> harmonics_{};  ///< the chosen set, where its line has some

@@ -117,6 +117,17 @@ InputError error_of_start(const DiagnosisInput& input) {
           "run it with hysteron run to see where it leaves its range, and correct the parameters."};
 }
 
+std::vector<std::vector<Signal>> columns_by_record(const Task& task, const std::vector<std::string>& names) {
+  std::vector<std::vector<Signal>> result;
+  for (const records::Record& record : task.records) {
+    result.emplace_back();
+    for (const std::string& name : names) {
+      result.back().push_back(record.column(name).values);
+    }
+  }
+  return result;
+}
+
 double longest_duration(const Task& task) {
   double longest = 0.0;
   for (const records::Record& record : task.records) {

@@ -23,6 +23,10 @@ namespace hysteron::diagnosis {
 /// HY711: the diagram has no finite value with the parameters as given.
 [[nodiscard]] InputError error_of_start(const DiagnosisInput& input);
 
+/// The values of columns, record by record.
+[[nodiscard]] std::vector<std::vector<Signal>> columns_by_record(const Task& task,
+                                                                 const std::vector<std::string>& names);
+
 /// Of the longest record, in s.
 [[nodiscard]] double longest_duration(const Task& task);
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "codegen/trace/block_type.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/projection.hpp"
 
@@ -19,13 +20,18 @@ constexpr double least_open = 4.0;
 constexpr double most_open_then = 1.3;
 /// Of what the calibrated diagram leaves, what the first mend may.
 constexpr double most_left_first = 0.5;
-/// Samples that the clock is ahead at the end of the longest record; no clock is off by more than a tenth.
+/// Samples that the clock is ahead at the end of the longest record.
 constexpr double fewest_ahead = 0.5;
 constexpr double most_ahead = 512.0;
-constexpr double most_skew = 0.1;
 constexpr int halvings = 24;
 /// How often parameters and share are fitted in turn.
 constexpr int rounds = 3;
+
+/// By what share a clock may run fast and still be one.
+double most_share() {
+  const BlockType& clock = *find_block_type("HY_CLOCK");
+  return -std::ranges::find(clock.params, "SKEW", &Field::name)->effect_minimum;
+}
 
 /// The signal at t/(1 + ahead), in samples.
 Signal read_later(const Signal& signal, double ahead) {
@@ -93,7 +99,8 @@ Ahead best_ahead(const Mend& mend, const VectorXd& residuals, const Projection& 
     return known.rest(residuals + mend.change(share, residuals.size())).squaredNorm();
   };
   Ahead best;
-  for (double ahead = fewest_ahead; ahead <= std::min(most_ahead, most_skew * samples); ahead *= std::sqrt(2.0)) {
+  const double most = std::min(most_ahead, most_share() * samples);
+  for (double ahead = fewest_ahead; ahead <= most; ahead *= std::sqrt(2.0)) {
     if (const double there = left(ahead / samples); there < best.left) {
       best = {.share = ahead / samples, .left = there};
     }
@@ -103,18 +110,14 @@ Ahead best_ahead(const Mend& mend, const VectorXd& residuals, const Projection& 
   for (int i = 0; i < halvings; ++i) {
     const double first = low + (high - low) / 3.0;
     const double second = high - (high - low) / 3.0;
-    (left(first) < left(second) ? high : low) = left(first) < left(second) ? second : first;
+    if (left(first) < left(second)) {
+      high = second;
+    } else {
+      low = first;
+    }
   }
   const double share = 0.5 * (low + high);
   return {.share = share, .left = left(share)};
-}
-
-double longest(const Task& task) {
-  std::size_t samples = 1;
-  for (const records::Record& record : task.records) {
-    samples = std::max(samples, record.size());
-  }
-  return static_cast<double>(samples);
 }
 
 }  // namespace
@@ -124,13 +127,17 @@ std::optional<FastClock> fast_clock(const Task& task, const Program& program) {
     return std::nullopt;
   }
   Model model(task, program);
+  const auto rows = static_cast<double>(model.rows());
+  VectorXd as_tuned;
+  if (!model.residuals(model.start(), as_tuned) || as_tuned.squaredNorm() < least_open * rows) {
+    return std::nullopt;  // a fit leaves no more
+  }
   Fit at = fit(model, model.start(), {.iterations = 20});
-  const auto rows = static_cast<double>(at.residuals.size());
-  if (!std::isfinite(at.cost) || at.residuals.squaredNorm() < least_open * rows) {
+  const double open = at.residuals.squaredNorm();
+  if (!std::isfinite(at.cost) || open < least_open * rows) {
     return std::nullopt;
   }
-  const double open = at.residuals.squaredNorm();
-  const double samples = longest(task);
+  const auto samples = static_cast<double>(std::ranges::max(model.samples()));
   const auto known = [&] { return Projection(at.jacobian, model.prior()); };
   std::optional<Mend> best;
   Ahead ahead;
@@ -139,9 +146,10 @@ std::optional<FastClock> fast_clock(const Task& task, const Program& program) {
     if (!model.residuals(about, at.residuals, &at.jacobian)) {
       continue;
     }
+    const Projection beside = known();
     for (std::size_t output = 0; output < task.outputs.size(); ++output) {
       const Mend mend(task, output);
-      if (const Ahead found = best_ahead(mend, at.residuals, known(), samples); found.left < ahead.left) {
+      if (const Ahead found = best_ahead(mend, at.residuals, beside, samples); found.left < ahead.left) {
         best.emplace(mend);
         ahead = found;
         at.x = about;

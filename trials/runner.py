@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from trials.progress import Progress
+from trials.scoring.verdict import read_object
 
 VISIBLE = ("plant.st", "params.toml", "log.csv", "log2.csv")
 """What a case consists of; nothing else is copied."""
@@ -140,11 +141,8 @@ def keep_all(left: Path, folder: Path) -> None:
 
 
 def is_verdict(file: Path) -> bool:
-    """Whether a file holds a JSON object."""
-    try:
-        return is_plain(file) and isinstance(json.loads(file.read_text()), dict)
-    except (OSError, ValueError, RecursionError):
-        return False
+    """Whether a file of its own holds a JSON object."""
+    return is_plain(file) and read_object(file) is not None
 
 
 def ended_by_itself(code: int | str) -> bool:
@@ -215,10 +213,8 @@ def cases_of(folder: Path, out: Path, user: str | None) -> list[Path]:
 
 def has_run(folder: Path, again: bool) -> bool:
     """Whether a case has been run; with `again` one without a verdict has not."""
-    try:
-        return bool(json.loads((folder / "run.json").read_text())["verdict"]) or not again
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+    notes = read_object(folder / "run.json") or {}
+    return "verdict" in notes and (bool(notes["verdict"]) or not again)
 
 
 def run_set(cases: Path, out: Path, one: Diagnoser, jobs: int, again: bool = False) -> tuple[int, int]:

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/budget.hpp"
@@ -18,7 +19,9 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/improved.hpp"
 #include "diagnosis/inner_signals.hpp"
+#include "diagnosis/lagged_glitches.hpp"
 #include "diagnosis/left_out.hpp"
+#include "diagnosis/left_out_findings.hpp"
 #include "diagnosis/loop_noise.hpp"
 #include "diagnosis/maps.hpp"
 #include "diagnosis/materiality.hpp"
@@ -84,13 +87,13 @@ class Run {
       return;
     }
     unused_ = unused_columns(task_, *given_);
-    floors_ = noise_floors(task_, *given_, columns_by_record(task_, unused_));
-    std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
+    find_floors();
     left_out_ = leave_out(task_, *given_);
     Model scaled(task_, *given_);
     if (!scaled.residuals(scaled.start(), nominal_)) {
       throw InputError(error_of_start(input_));
     }
+    moved_ = VectorXd::Zero(nominal_.size());
     RecordCheck checked = check_records(task_, scaled, nominal_);
     result_.refusals = std::move(checked.refusals);
     result_.warnings = std::move(checked.warnings);
@@ -103,9 +106,10 @@ class Run {
       base_ = std::move(noise.base);
       result_.warnings.push_back(std::move(noise.remark));
     }
-    if (std::optional<FastClock> clock = is_tried("clock") ? fast_clock(task_, *base_.program) : std::nullopt) {
+    if (std::optional<FastClock> clock =
+            is_tried(options_.effects, "clock") ? fast_clock(task_, *base_.program) : std::nullopt) {
       task_ = std::move(clock->task);
-      ahead_ = std::move(clock->moved);
+      moved_ = std::move(clock->moved);
       left_out_.push_back(std::move(clock->finding));
     }
     simulate_nominal();
@@ -119,13 +123,17 @@ class Run {
     }
   }
 
+  void find_floors() {
+    floors_ = noise_floors(task_, *given_, columns_by_record(task_, unused_));
+    task_.scales.clear();
+    std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
+  }
+
   /// The diagram as given, with the noise of its loops and without what is left out.
   void simulate_nominal() {
     Model model(task_, *base_.program);
     (void)model.residuals(model.start(), nominal_);  // finite before
-    if (ahead_.size() > 0) {
-      nominal_ += ahead_;
-    }
+    nominal_ += moved_;
     for (const Index row : task_.left_out) {
       nominal_[row] = 0.0;
     }
@@ -183,7 +191,8 @@ class Run {
       return std::make_unique<Searched>(task_, search_with(search_options()), floor_cost_);
     };
     search_from_another_start(searched, again);
-    if (leave_out_beside(left_out_, task_, *searched->judgement.chosen, floors_)) {
+    const Explanation& chosen = *searched->judgement.chosen;
+    if (take_off_record(glitches_behind_lag({&chosen, 1})) || leave_out_beside(left_out_, task_, chosen, floors_)) {
       simulate_nominal();
       searched = again();
     }
@@ -197,10 +206,14 @@ class Run {
   Search search_without_glitches() {
     SearchOptions options = search_options();
     std::optional<Task> cleaned;
-    options.ends_with_singles = [&](const Explanation& best) {
+    std::optional<LaggedGlitches> lagged;
+    options.ends_with_singles = [&](const std::vector<Explanation>& singles) {
+      if (lagged = glitches_behind_lag(singles); lagged) {
+        return true;
+      }
       Task without = task_;
-      const bool renewed = renew_loop_noise(without, best);
-      if (leave_out_beside(left_out_, without, best, floors_) || renewed) {
+      const bool renewed = renew_loop_noise(without, singles.front());
+      if (leave_out_beside(left_out_, without, singles.front(), floors_) || renewed) {
         cleaned = std::move(without);
       }
       return cleaned.has_value();
@@ -208,10 +221,36 @@ class Run {
     Search found = search_with(options);
     if (cleaned) {
       task_ = std::move(*cleaned);
+    }
+    if (take_off_record(lagged) || cleaned) {
       simulate_nominal();
       found = search_with(search_options());
     }
     return found;
+  }
+
+  /// Once: what a second look would find was left by an explanation that does not hold.
+  [[nodiscard]] std::optional<LaggedGlitches> glitches_behind_lag(std::span<const Explanation> beside) const {
+    return is_tried(options_.effects, "glitches") && !took_off_ ? lagged_glitches(task_, beside, options_.threads)
+                                                                : std::nullopt;
+  }
+
+  /// And finds the noise floors anew: where an input rests they had counted as noise. Whether there were any.
+  bool take_off_record(const std::optional<LaggedGlitches>& glitches) {
+    if (!glitches) {
+      return false;
+    }
+    took_off_ = true;
+    take_off(task_, left_out_, *glitches);
+    const std::vector<double> before = task_.scales;
+    find_floors();
+    moved_ += glitches->moved;
+    const Index rows = moved_.size() / std::ssize(before);
+    for (Index output = 0; output < std::ssize(before); ++output) {
+      const auto at = static_cast<std::size_t>(output);
+      moved_.segment(output * rows, rows) *= before[at] / task_.scales[at];
+    }
+    return true;
   }
 
   /// Where the record has next to nothing to do with the diagram, no effect is chosen.
@@ -382,7 +421,8 @@ class Run {
       }
     }
     const std::vector<Edge> edges = edges_of_text(input_.text, result_.top);
-    add_left_out(findings, edges);
+    add_left_out(findings, {.left_out = left_out_, .floors = floors_, .noise = noise_, .tried = options_.effects},
+                 edges, result_);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
       result_.confidence = std::min(result_.confidence, sure_of_one_motion);
@@ -391,8 +431,9 @@ class Run {
       result_.warnings.push_back(std::move(reason));
       result_.confidence = std::min(result_.confidence, sure_of_missed_start);
     }
-    for (std::string& reason : structural_reasons(result_, given_->graph.sample_time(),
-                                                  is_tried("periodic_disturbance") ? longest_duration(task_) : 0.0)) {
+    for (std::string& reason :
+         structural_reasons(result_, given_->graph.sample_time(),
+                            is_tried(options_.effects, "periodic_disturbance") ? longest_duration(task_) : 0.0)) {
       result_.cannot_tell.push_back(std::move(reason));
     }
     result_.traces = traces_of(task_, result_.gaps, nominal_, found.calibrated.fit.residuals, kept.fit.residuals);
@@ -423,48 +464,6 @@ class Run {
     return names;
   }
 
-  [[nodiscard]] bool is_tried(std::string_view effect) const {
-    return options_.effects.empty() || std::ranges::find(options_.effects, effect) != options_.effects.end();
-  }
-
-  /// What was left out of the fits: an effect of its own where it is no small part of the noise, else a remark.
-  void add_left_out(const Findings& findings, const std::vector<Edge>& edges) {
-    double gap = gap_energy(findings);
-    for (const LeftOut& one : left_out_) {
-      const NoiseFloor& floor = floors_[one.output];
-      const double ratio = one.rms / floor.value;
-      result_.warnings.push_back(one.remark);
-      if (one.rms < least_excess(floor) || !is_tried(one.effect)) {
-        continue;
-      }
-      const Edge* const edge = find_edge(edges, task_.outputs[one.output]);
-      EffectFinding finding{.id = one.effect,
-                            .edge = edge == nullptr ? task_.outputs[one.output] : edge->name,
-                            .parameters = one.parameters};
-      const bool alone = result_.effects.empty();
-      const double rows = static_cast<double>(nominal_.size()) / static_cast<double>(task_.outputs.size());
-      gap = add_share(result_.effects, gap, std::move(finding), 0.5 * rows * ratio * ratio);
-      for (Rival& rival : result_.rivals) {
-        rival.effects.push_back(one.effect);
-        rival.edges.push_back(result_.effects.back().edge);
-      }
-      if (alone) {
-        result_.verdict = result_.verdict == Verdict::Unknown ? Verdict::Partial : Verdict::Named;
-        result_.rivals = {{.effects = {one.effect},
-                           .edges = {result_.effects.back().edge},
-                           .improved_rms = result_.gap.improved,
-                           .probability = 1.0}};
-        result_.unknown_score =
-            excess_of(result_.gaps[one.output].improved / (floors_[one.output].value * noise_[one.output]));
-        result_.confidence = 0.9 * (1.0 - result_.unknown_score);
-      }
-    }
-    if (!left_out_.empty()) {
-      std::ranges::stable_sort(result_.effects,
-                               [](const EffectFinding& x, const EffectFinding& y) { return x.share > y.share; });
-    }
-  }
-
   std::vector<std::string> unmatched_{};  ///< remarks on columns that look like inner signals
   std::vector<std::string> inner_{};      ///< outputs that are inner signals of the user's diagram
   DiagnosisInput input_;
@@ -479,7 +478,8 @@ class Run {
   Materiality materiality_{task_, floors_, options_.material};
   std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
-  VectorXd ahead_{};  ///< see FastClock::moved
+  VectorXd moved_{};       ///< residuals of the records as they were, less those of the mended ones
+  bool took_off_ = false;  ///< glitches behind a lag
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;              ///< see Findings
   std::optional<Explanation> harmonics_{};  ///< the chosen set, where its line has some

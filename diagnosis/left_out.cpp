@@ -10,6 +10,7 @@
 #include "diagnosis/glitches.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/missed_samples.hpp"
+#include "diagnosis/task.hpp"
 #include "support/median.hpp"
 
 namespace hysteron::diagnosis {
@@ -18,15 +19,6 @@ namespace {
 /// The model shows samples that the measurement alone does not, and without them is calibrated better.
 constexpr int rounds_with_model = 2;
 
-ParameterFinding counted(std::string name, double value, std::string unit = "1") {
-  return {.name = std::move(name), .value = value, .low = value, .high = value, .unit = std::move(unit)};
-}
-
-std::string unit_of(const Program& program, const std::string& output) {
-  const Port* const port = find_port(program.graph.outputs, output);
-  return port == nullptr ? std::string() : port->unit;
-}
-
 LeftOut as_left_out(Glitches glitches, std::size_t output, const Task& task, const Program& program) {
   return {.effect = "glitches",
           .output = output,
@@ -34,8 +26,8 @@ LeftOut as_left_out(Glitches glitches, std::size_t output, const Task& task, con
           .remark = fmt::format("{} single samples of {} lie far off their neighbours, by up to {:.3g}; they are left "
                                 "out of the fits.",
                                 glitches.rows.size(), task.outputs[output], glitches.largest),
-          .parameters = {counted("COUNT", static_cast<double>(glitches.rows.size())),
-                         counted("LARGEST", glitches.largest, unit_of(program, task.outputs[output]))},
+          .parameters = {as_counted("COUNT", static_cast<double>(glitches.rows.size())),
+                         as_counted("LARGEST", glitches.largest, unit_of(program, task.outputs[output]))},
           .glitches = std::move(glitches.rows)};
 }
 
@@ -59,13 +51,6 @@ void add_rows(std::vector<Index>& left_out, const std::vector<std::size_t>& rows
   }
   std::ranges::sort(left_out);
   left_out.erase(std::unique(left_out.begin(), left_out.end()), left_out.end());
-}
-
-/// Of an explanation, with what was left out of its fit.
-Model model_of_all_rows(const Task& task, const Explanation& one) {
-  Task whole = task;
-  whole.left_out.clear();
-  return {whole, *one.variant.program, one.variant.further};
 }
 
 class Finder {
@@ -140,7 +125,7 @@ class Finder {
         .remark = fmt::format("{:.2g} % of the samples of {} repeat the last value while the signal moves on, up to "
                               "{} in a row: they were missed, and are left out of the fits.",
                               100.0 * share, task_.outputs[output], missed.longest),
-        .parameters = {counted("MISSED", share), counted("LONGEST", static_cast<double>(missed.longest))}};
+        .parameters = {as_counted("MISSED", share), as_counted("LONGEST", static_cast<double>(missed.longest))}};
   }
 
   Task& task_;
@@ -152,6 +137,16 @@ class Finder {
 };
 
 }  // namespace
+
+ParameterFinding as_counted(std::string name, double value, std::string unit) {
+  return {.name = std::move(name), .value = value, .low = value, .high = value, .unit = std::move(unit)};
+}
+
+Model model_of_all_rows(const Task& task, const Explanation& one) {
+  Task whole = task;
+  whole.left_out.clear();
+  return {whole, *one.variant.program, one.variant.further};
+}
 
 std::vector<LeftOut> leave_out(Task& task, const Program& program) {
   return Finder(task, program).run();
@@ -217,7 +212,7 @@ void forget_explained(std::vector<LeftOut>& found, const Task& task, const Expla
       one = as_left_out(std::move(still), one.output, task, *chosen.variant.program);
     }
   }
-  std::erase_if(found, [](const LeftOut& one) { return one.effect == "glitches" && one.glitches.empty(); });
+  std::erase_if(found, [](const LeftOut& one) { return one.effect == "glitches" && one.rms == 0.0; });
 }
 
 }  // namespace hysteron::diagnosis

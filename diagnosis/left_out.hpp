@@ -22,6 +22,12 @@ struct LeftOut {
   std::vector<std::size_t> glitches{};         ///< their rows in the output
 };
 
+/// What was counted, not fitted, and has no interval.
+[[nodiscard]] ParameterFinding as_counted(std::string name, double value, std::string unit = "1");
+
+/// Of an explanation, with what was left out of its fit.
+[[nodiscard]] Model model_of_all_rows(const Task& task, const Explanation& one);
+
 /// Finds them, the largest ones of an output first, and takes their rows out of the task. `task.scales` are set.
 [[nodiscard]] std::vector<LeftOut> leave_out(Task& task, const Program& program);
 

@@ -83,8 +83,8 @@ class Searcher {
         exchange(1, found);
         simplify(found);
       }
-      const bool ends =
-          round == 0 && !found.empty() && options_.ends_with_singles && options_.ends_with_singles(best_of(found));
+      std::ranges::stable_sort(found, {}, cost_of_fit);
+      const bool ends = round == 0 && !found.empty() && options_.ends_with_singles && options_.ends_with_singles(found);
       beam = ends ? std::vector<Explanation>{} : next_beam(found, round == 0 ? options_.beam : 1);
       append(std::move(found), result.explanations);
     }
@@ -99,21 +99,33 @@ class Searcher {
   }
 
   /// The effects in front after the first round on their other edges: beside others an effect is often screened best
-  /// where it is not.
+  /// where it is not. Where none of them closes the gap, the others get a few more edges as well: about parameters that
+  /// are far off, a straight line ranks the edge where an effect is behind those where it is not.
   void on_other_edges(const Explanation& bare, std::vector<Explanation>& found) {
     std::ranges::stable_sort(found, {}, cost_of_fit);
     if (found.empty() || !expansion_.is_worth_following(bare.fit.cost, found.front().fit)) {
       return;
     }
     std::set<std::string> front;
+    std::set<std::string> others;
     std::vector<Applied> fitted;
     for (const Explanation& one : found) {
       fitted.push_back(one.variant.effects.front());
+      const std::string& effect = fitted.back().effect;
       if (front.size() < options_.beam) {
-        front.insert(fitted.back().effect);
+        front.insert(effect);
+      } else if (!front.contains(effect)) {
+        others.insert(effect);
       }
     }
-    append(expansion_.fitted_and_finished(on_untried_edges(expansion_.singles(), front, fitted), bare), found);
+    const auto on_more = [&](const std::set<std::string>& effects, int most) {
+      const std::vector<Screened> more = on_untried_edges(expansion_.singles(), effects, fitted, most);
+      append(expansion_.fitted_and_finished(more, bare), found);
+    };
+    on_more(front, options_.edges_of_front);
+    if (!is_closed(found)) {
+      on_more(others, options_.edges_of_others);
+    }
   }
 
   /// The best sets of this round with each of their effects taken away again: what an effect was found beside may be
@@ -257,9 +269,9 @@ class Searcher {
     }
   }
 
-  /// The sets that one effect more is tried on: the best of each, none where the gap is closed.
-  [[nodiscard]] std::vector<Explanation> next_beam(std::vector<Explanation>& found, std::size_t width) const {
-    std::ranges::stable_sort(found, {}, cost_of_fit);
+  /// The sets that one effect more is tried on, of those found, best first: the best of each, none where the gap is
+  /// closed.
+  [[nodiscard]] std::vector<Explanation> next_beam(const std::vector<Explanation>& found, std::size_t width) const {
     std::vector<Explanation> beam;
     std::set<std::vector<std::string>> taken;
     const double gap = footing_.calibrated.fit.cost - floor_cost_;

@@ -61,8 +61,7 @@ void keep_best(std::vector<Screened>& list, std::size_t count, int of_each, int 
 }
 
 std::vector<Screened> on_untried_edges(const std::vector<Screened>& list, const std::set<std::string>& effects,
-                                       const std::vector<Applied>& fitted) {
-  constexpr int most_edges = 8;
+                                       const std::vector<Applied>& fitted, int most_edges) {
   std::set<std::string> places;
   for (const Applied& one : fitted) {
     places.insert(one.place());

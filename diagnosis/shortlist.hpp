@@ -18,10 +18,10 @@ namespace hysteron::diagnosis {
 /// finds.
 void keep_best(std::vector<Screened>& list, std::size_t count, int of_each, int most_edges = 5);
 
-/// Of a list sorted by gain the best edges of these effects on which they have not been fitted, eight of
-/// each at most.
+/// Of a list sorted by gain the best edges of these effects on which they have not been fitted, of each so many at
+/// most.
 [[nodiscard]] std::vector<Screened> on_untried_edges(const std::vector<Screened>& list,
                                                      const std::set<std::string>& effects,
-                                                     const std::vector<Applied>& fitted);
+                                                     const std::vector<Applied>& fitted, int most_edges);
 
 }  // namespace hysteron::diagnosis

@@ -128,6 +128,11 @@ std::vector<std::vector<Signal>> columns_by_record(const Task& task, const std::
   return result;
 }
 
+std::string unit_of(const Program& program, const std::string& output) {
+  const Port* const port = find_port(program.graph.outputs, output);
+  return port == nullptr ? std::string() : port->unit;
+}
+
 double longest_duration(const Task& task) {
   double longest = 0.0;
   for (const records::Record& record : task.records) {

@@ -27,6 +27,9 @@ namespace hysteron::diagnosis {
 [[nodiscard]] std::vector<std::vector<Signal>> columns_by_record(const Task& task,
                                                                  const std::vector<std::string>& names);
 
+/// Of an output by its name; empty where it has none.
+[[nodiscard]] std::string unit_of(const Program& program, const std::string& output);
+
 /// Of the longest record, in s.
 [[nodiscard]] double longest_duration(const Task& task);
 

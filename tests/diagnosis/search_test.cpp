@@ -50,9 +50,9 @@ TEST_F(SearchOfTwo, FindsBoth) {
 TEST_F(SearchOfTwo, EndsWithTheSinglesWhereTheRecordIsToBeMendedFirst) {
   int asked = 0;
   double best = 0.0;
-  options_.ends_with_singles = [&](const Explanation& one) {
+  options_.ends_with_singles = [&](const std::vector<Explanation>& singles) {
     ++asked;
-    best = one.fit.cost;
+    best = singles.front().fit.cost;
     return true;
   };
   const Search found = search_all();
@@ -62,7 +62,7 @@ TEST_F(SearchOfTwo, EndsWithTheSinglesWhereTheRecordIsToBeMendedFirst) {
 }
 
 TEST_F(SearchOfTwo, TriesEverySingleEffectWithNoTimeAtAll) {
-  options_.ends_with_singles = [](const Explanation& /*best*/) { return true; };
+  options_.ends_with_singles = [](const std::vector<Explanation>& /*singles*/) { return true; };
   const std::size_t singles = search_all().tried;
   options_.ends_with_singles = nullptr;
   options_.out_of_time = [] { return true; };

@@ -37,20 +37,22 @@ const std::vector<Screened>& list() {
 }
 
 TEST(OnUntriedEdges, LeavesOutWhatWasFittedAndItsTwins) {
-  EXPECT_THAT(places(on_untried_edges(list(), {"saturation"}, {})),
+  EXPECT_THAT(places(on_untried_edges(list(), {"saturation"}, {}, 8)),
               ElementsAre("saturation@KP.XOUT", "saturation@U", "saturation@E", "saturation@Y"));
   EXPECT_THAT(places(on_untried_edges(
                   list(), {"saturation", "lag"},
-                  {{.effect = "saturation", .edge = "KP.XOUT", .twins = {"E"}}, {.effect = "lag", .edge = "Y"}})),
+                  {{.effect = "saturation", .edge = "KP.XOUT", .twins = {"E"}}, {.effect = "lag", .edge = "Y"}}, 8)),
               ElementsAre("lag@U", "saturation@U", "saturation@Y"));
-  EXPECT_THAT(on_untried_edges(list(), {}, {}), IsEmpty());
+  EXPECT_THAT(places(on_untried_edges(list(), {"saturation", "lag"}, {{.effect = "lag", .edge = "U"}}, 2)),
+              ElementsAre("saturation@KP.XOUT", "saturation@U", "lag@Y"));
+  EXPECT_THAT(on_untried_edges(list(), {}, {}, 8), IsEmpty());
 }
 
 TEST(OnUntriedEdges, OfTwoThatGainAlikeTakesOne) {
   std::vector<Screened> alike = list();
   alike.push_back(screened("saturation", "MOTOR.XIN", 4.0));
   alike.back().candidate.upstream = 1;
-  const std::vector<Screened> found = on_untried_edges(alike, {"saturation"}, {});
+  const std::vector<Screened> found = on_untried_edges(alike, {"saturation"}, {}, 8);
   ASSERT_EQ(found.size(), 4U);
   EXPECT_EQ(found.back().candidate.own().edge, "Y");
   EXPECT_THAT(found.back().candidate.own().twins, ElementsAre("MOTOR.XIN"));

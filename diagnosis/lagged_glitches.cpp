@@ -1,0 +1,378 @@
+#include "diagnosis/lagged_glitches.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/parallel.hpp"
+#include "diagnosis/task.hpp"
+#include "support/median.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double far_out = 6.0;  // standard deviations of a leap
+/// Of the residual's RMS, in what its fast part says is noise, less is no reason to look.
+constexpr double least_rms = 1.3;
+constexpr double least_explained = 0.5;        // of its energy
+constexpr double least_asymmetry = 1.0 / 0.7;  // of the energies that as many leaps leave either way
+constexpr double rare_leaps = 0.02;            // of all samples
+constexpr std::size_t most_leaps = 200;
+constexpr std::size_t fewest = 5;        // glitches
+constexpr std::size_t near = 3;          // samples from one leap to the next of the same glitch, or from an input's
+constexpr double at_inputs = 0.3;        // of the glitches, the share that may lie at a leap of an input
+constexpr double leap_of_input = 0.05;   // of its range
+constexpr std::size_t explanations = 4;  // that they are looked for beside, of different effects
+constexpr int rounds_beside = 4;         // of finding them and fitting the explanation
+/// Time constants in samples: below, a glitch's tail is `glitches`' own; above, too few fit into the record.
+constexpr double shortest = 2.8;
+constexpr double per_record = 40.0;
+
+/// The leaps of one record that were found, and what they leave.
+class Decays {
+ public:
+  Decays(std::span<const double> values, double pole)
+      : pole_(pole), values_(values), left_(values.begin(), values.end()) {}
+
+  /// The next leap, and how far it stands out, in units of the values.
+  struct Next {
+    std::size_t at = 0;
+    double size = 0.0;
+  };
+  [[nodiscard]] Next next() const {
+    Next best;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t k = left_.size(); k-- > 0;) {
+      sum = left_[k] + pole_ * sum;
+      squares = 1.0 + pole_ * pole_ * squares;
+      const double size = std::abs(sum) / std::sqrt(squares);
+      if (size > best.size && !std::ranges::binary_search(leaps_, k)) {
+        best = {.at = k, .size = size};
+      }
+    }
+    return best;
+  }
+
+  void add(std::size_t leap) {
+    leaps_.insert(std::ranges::lower_bound(leaps_, leap), leap);
+    const std::vector<double> decays = fitted();
+    std::ranges::transform(values_, decays, left_.begin(), std::minus<>());
+  }
+
+  /// The sum of all decays, fitted together.
+  [[nodiscard]] std::vector<double> fitted() const {
+    const Index count = std::ssize(leaps_);
+    MatrixXd products(count, count);
+    VectorXd shown(count);
+    double sum = 0.0;
+    double squares = 0.0;
+    Index i = count;
+    for (std::size_t k = values_.size(); k-- > 0 && i > 0;) {
+      sum = values_[k] + pole_ * sum;
+      squares = 1.0 + pole_ * pole_ * squares;
+      if (leaps_[static_cast<std::size_t>(i - 1)] == k) {
+        --i;
+        shown[i] = sum;
+        for (Index j = 0; j <= i; ++j) {
+          const auto apart = static_cast<double>(k - leaps_[static_cast<std::size_t>(j)]);
+          products(i, j) = squares * std::pow(pole_, apart);
+        }
+      }
+    }
+    const VectorXd sizes = products.selfadjointView<Eigen::Lower>().ldlt().solve(shown);
+    std::vector<double> result(values_.size(), 0.0);
+    for (Index leap = 0; leap < count; ++leap) {
+      result[leaps_[static_cast<std::size_t>(leap)]] = sizes[leap];
+    }
+    for (std::size_t k = 1; k < result.size(); ++k) {
+      result[k] += pole_ * result[k - 1];
+    }
+    return result;
+  }
+
+  [[nodiscard]] const std::vector<std::size_t>& leaps() const { return leaps_; }
+  [[nodiscard]] double energy() const {
+    double sum = 0.0;
+    for (const double value : left_) {
+      sum += value * value;
+    }
+    return sum;
+  }
+
+ private:
+  double pole_;
+  std::span<const double> values_;
+  std::vector<double> left_;
+  std::vector<std::size_t> leaps_{};
+};
+
+/// All records of an output, with one time constant, in samples.
+struct Train {
+  double time_constant = 0.0;
+  std::vector<Decays> records{};
+  std::size_t leaps = 0;
+  double left = 0.0;       ///< energy
+  double penalised = 0.0;  ///< with what each leap has to gain
+};
+
+Train train_of(const std::vector<Signal>& residuals, double time_constant, double noise, std::size_t most) {
+  Train result{.time_constant = time_constant};
+  std::vector<Decays::Next> next;
+  for (const Signal& one : residuals) {
+    result.records.emplace_back(one, std::exp(-1.0 / time_constant));
+    next.push_back(result.records.back().next());
+  }
+  while (result.leaps < most) {
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(next, {}, &Decays::Next::size) - next.begin());
+    if (next[best].size < far_out * noise) {
+      break;
+    }
+    result.records[best].add(next[best].at);
+    next[best] = result.records[best].next();
+    ++result.leaps;
+  }
+  for (const Decays& one : result.records) {
+    result.left += one.energy();
+  }
+  result.penalised = result.left + std::pow(far_out * noise, 2) * static_cast<double>(result.leaps);
+  return result;
+}
+
+std::vector<Signal> reversed(std::vector<Signal> residuals) {
+  for (Signal& one : residuals) {
+    std::ranges::reverse(one);
+  }
+  return residuals;
+}
+
+/// The first leaps of glitches: one that a pole of first order does not give exactly takes two or three.
+std::vector<std::size_t> first_of_each(const std::vector<std::size_t>& leaps) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < leaps.size(); ++i) {
+    if (i == 0 || leaps[i] > leaps[i - 1] + near) {
+      result.push_back(leaps[i]);
+    }
+  }
+  return result;
+}
+
+bool leaps_about(const Signal& input, std::size_t at) {
+  const auto [low, high] = std::ranges::minmax(input);
+  for (std::size_t k = std::max<std::size_t>(at, near + 1) - near; k <= std::min(at + near, input.size() - 1); ++k) {
+    if (std::abs(input[k] - input[k - 1]) > leap_of_input * (high - low)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+struct Counted {
+  std::size_t all = 0;
+  std::size_t at_inputs = 0;
+};
+
+Counted counted(const Train& train, const std::vector<Experiment>& experiments) {
+  Counted result;
+  for (std::size_t record = 0; record < train.records.size(); ++record) {
+    for (const std::size_t at : first_of_each(train.records[record].leaps())) {
+      ++result.all;
+      const bool answers = std::ranges::any_of(experiments[record].drive.inputs,
+                                               [&](const Signal& input) { return leaps_about(input, at); });
+      result.at_inputs += answers ? 1 : 0;
+    }
+  }
+  return result;
+}
+
+[[nodiscard]] double energy_of(const std::vector<Signal>& signals) {
+  double sum = 0.0;
+  for (const Signal& one : signals) {
+    sum += VectorXd::Map(one.data(), std::ssize(one)).squaredNorm();
+  }
+  return sum;
+}
+
+/// The deviation of white noise with such differences, by their median. Of coloured noise it is too little, but such
+/// noise has no direction.
+double by_differences(const std::vector<Signal>& residuals) {
+  std::vector<double> sizes;
+  for (const Signal& one : residuals) {
+    for (std::size_t k = 1; k < one.size(); ++k) {
+      if (one[k] != one[k - 1]) {  // a coarse sensor rounds many to 0
+        sizes.push_back(std::abs(one[k] - one[k - 1]));
+      }
+    }
+  }
+  return deviation_of_median * median(std::move(sizes)) / std::sqrt(2.0);
+}
+
+/// The train that a residual shows, if it is one of glitches.
+std::optional<Train> glitches_of(const std::vector<Signal>& residuals) {
+  const double noise = by_differences(residuals);
+  std::size_t samples = 0;
+  std::size_t shortest_record = std::numeric_limits<std::size_t>::max();
+  for (const Signal& one : residuals) {
+    samples += one.size();
+    shortest_record = std::min(shortest_record, one.size());
+  }
+  const double energy = energy_of(residuals);
+  if (!(noise > 0.0) || energy < std::pow(least_rms * noise, 2) * static_cast<double>(samples)) {
+    return std::nullopt;
+  }
+  const std::size_t most = std::min(most_leaps, static_cast<std::size_t>(rare_leaps * static_cast<double>(samples)));
+  std::optional<Train> best;
+  const auto try_with = [&](double time_constant) {
+    Train train = train_of(residuals, time_constant, noise, most);
+    if (!best || train.penalised < best->penalised) {
+      best = std::move(train);
+    }
+  };
+  for (double time_constant = shortest; time_constant < static_cast<double>(shortest_record) / per_record;
+       time_constant *= std::sqrt(2.0)) {
+    try_with(time_constant);
+  }
+  for (const double power : {0.25, -0.25, 0.125, -0.125}) {
+    if (best) {
+      try_with(best->time_constant * std::pow(2.0, power));
+    }
+  }
+  if (!best || best->left > (1.0 - least_explained) * energy) {
+    return std::nullopt;
+  }
+  const Train backwards = train_of(reversed(residuals), best->time_constant, noise, best->leaps);
+  return backwards.left > least_asymmetry * best->left ? best : std::nullopt;
+}
+
+LaggedGlitches described(const Train& train, std::size_t count, const Model& model, const Task& task,
+                         std::size_t output) {
+  LaggedGlitches result;
+  double largest = 0.0;
+  double rows = 0.0;
+  for (const Decays& one : train.records) {
+    const Signal& removed = result.removed.emplace_back(one.fitted());
+    const auto [low, high] = std::ranges::minmax(removed);
+    largest = std::max({largest, -low, high});
+    rows += static_cast<double>(removed.size());
+  }
+  const double time_constant = train.time_constant * model.problem().program.graph.sample_time();
+  const std::string unit = unit_of(model.problem().program, task.outputs[output]);
+  result.finding = {
+      .effect = "glitches",
+      .output = output,
+      .rms = std::sqrt(energy_of(result.removed) / rows),
+      .remark =
+          fmt::format("{} glitches of {}, of up to {:.3g} {}, die away with a time constant of about {:.2g} s: a lag "
+                      "has taken them up. They are taken off the record before the fits.",
+                      count, task.outputs[output], largest, unit, time_constant),
+      .parameters = {as_counted("COUNT", static_cast<double>(count)), as_counted("LARGEST", largest, unit)}};
+  return result;
+}
+
+/// In what an explanation leaves with these parameters.
+std::optional<LaggedGlitches> found_at(const Task& task, Model& model, const VectorXd& x) {
+  VectorXd residuals;
+  if (!model.residuals(x, residuals)) {
+    return std::nullopt;
+  }
+  const Index rows = residuals.size() / std::ssize(task.outputs);
+  std::optional<LaggedGlitches> best;
+  double best_share = 0.0;
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    const std::vector<Signal> measured_beyond = by_record(task, -residuals, output);
+    const std::optional<Train> train = glitches_of(measured_beyond);
+    if (!train) {
+      continue;
+    }
+    const Counted leaps = counted(*train, model.problem().experiments);
+    const double share = 1.0 - train->left / energy_of(measured_beyond);
+    if (leaps.all >= fewest && static_cast<double>(leaps.at_inputs) <= at_inputs * static_cast<double>(leaps.all) &&
+        share > best_share) {
+      best_share = share;
+      best = described(*train, leaps.all, model, task, output);
+      const double before = 0.5 * residuals.squaredNorm();
+      best->left = before - 0.5 * (energy_of(measured_beyond) - train->penalised) / std::pow(task.scales[output], 2);
+      best->moved = VectorXd::Zero(residuals.size());
+      Index row = static_cast<Index>(output) * rows;
+      for (const Signal& one : best->removed) {
+        for (const double value : one) {
+          best->moved[row++] = -value / task.scales[output];
+        }
+      }
+    }
+  }
+  return best;
+}
+
+/// In what one explanation leaves, fitted anew beside them: they had bent its parameters.
+std::optional<LaggedGlitches> beside_one(const Task& task, const Explanation& beside) {
+  Model model = model_of_all_rows(task, beside);
+  VectorXd x = beside.fit.x;
+  std::optional<LaggedGlitches> best;
+  for (int round = 0; round < rounds_beside; ++round) {
+    std::optional<LaggedGlitches> found = found_at(task, model, x);
+    if (!found || (best && found->left >= best->left)) {
+      break;
+    }
+    best = std::move(found);
+    Task without = task;
+    std::vector<LeftOut> forgotten;
+    take_off(without, forgotten, *best);
+    Model mended = model_of_all_rows(without, beside);
+    x = fit(mended, x, {.iterations = 10}).x;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<LaggedGlitches> lagged_glitches(const Task& task, std::span<const Explanation> beside, unsigned threads) {
+  std::vector<const Explanation*> tried;
+  std::set<std::vector<std::string>> taken;
+  for (const Explanation& one : beside) {
+    if (tried.size() < explanations && taken.insert(one.names()).second) {
+      tried.push_back(&one);
+    }
+  }
+  std::vector<std::optional<LaggedGlitches>> found(tried.size());
+  in_parallel(tried.size(), threads, [&](std::size_t i) { found[i] = beside_one(task, *tried[i]); });
+  std::optional<LaggedGlitches> best;
+  for (std::optional<LaggedGlitches>& one : found) {
+    if (one && (!best || one->left < best->left)) {
+      best = std::move(one);
+    }
+  }
+  return best;
+}
+
+void take_off(Task& task, std::vector<LeftOut>& found, const LaggedGlitches& glitches) {
+  const std::string& name = task.outputs[glitches.finding.output];
+  Index rows = 0;
+  for (std::size_t record = 0; record < task.records.size(); ++record) {
+    Signal mended = task.records[record].column(name).values;
+    std::ranges::transform(mended, glitches.removed[record], mended.begin(), std::minus<>());
+    rows += std::ssize(mended);
+    task.records[record].replace(name, std::move(mended));
+  }
+  const Index first = static_cast<Index>(glitches.finding.output) * rows;
+  std::erase_if(found, [&](const LeftOut& one) {
+    if (one.output != glitches.finding.output || one.glitches.empty()) {
+      return false;
+    }
+    std::erase_if(task.left_out, [&](Index row) {
+      return row >= first && std::ranges::binary_search(one.glitches, static_cast<std::size_t>(row - first));
+    });
+    return true;
+  });
+  found.push_back(glitches.finding);
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,41 @@
+// Glitches that a lag has taken up: spikes ahead of a sensor's filter, or knocks on a slow plant. Each leaps and dies
+// away,
+//
+//   e_k = p·e_(k−1) + a_k + noise,   p = exp(−Ts/T),   a_k ≠ 0 at a few samples only,
+//
+// so that no sample lies far off its neighbours, while the energy is many times that of the leap. The a_k of a residual
+// are found one after the other, each time the one that stands farthest out of the noise, all amplitudes fitted anew
+// (orthogonal matching pursuit: Pati, Rezaiifar and Krishnaprasad 1993), for the T that leaves least.
+//
+// With enough leaps such a sum follows any slow signal, what an effect that is missing leaves as well. But time has a
+// direction: of such glitches the record read backwards, where they would grow and vanish, shows next to nothing, while
+// a slow signal is followed as well from either end. Only what the one direction leaves less of than the other is taken
+// for glitches, and only where few leaps lie at a leap of an input, which an effect answers.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "diagnosis/left_out.hpp"
+
+namespace hysteron::diagnosis {
+
+/// Of one output.
+struct LaggedGlitches {
+  LeftOut finding{};              ///< without rows: none is left out
+  std::vector<Signal> removed{};  ///< by record, in the unit of the output
+  VectorXd moved{};               ///< residuals of the records as they were, less those without them
+  double left = 0.0;              ///< ½Σr² of all outputs, with what each leap has to gain
+};
+
+/// In what one of these explanations leaves, the best first: beside the one that leaves least with them, of several
+/// outputs in the one that loses the largest share. What is taken for something else hides them, so that the best
+/// without them is often not the best with them.
+[[nodiscard]] std::optional<LaggedGlitches> lagged_glitches(const Task& task, std::span<const Explanation> beside,
+                                                            unsigned threads);
+
+/// Takes them off the records. Single glitches of the same output are forgotten: some were the leaps of these.
+void take_off(Task& task, std::vector<LeftOut>& found, const LaggedGlitches& glitches);
+
+}  // namespace hysteron::diagnosis

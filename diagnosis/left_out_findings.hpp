@@ -1,0 +1,28 @@
+// What was left out of the fits or taken off the record, as the user reads it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/edges.hpp"
+#include "diagnosis/findings.hpp"
+#include "diagnosis/left_out.hpp"
+
+namespace hysteron::diagnosis {
+
+/// Whether an effect is among those that the user wants tried; none given are all.
+[[nodiscard]] bool is_tried(const std::vector<std::string>& effects, std::string_view effect);
+
+struct LeftOutOfFits {
+  const std::vector<LeftOut>& left_out;
+  const std::vector<NoiseFloor>& floors;
+  const std::vector<double>& noise;  ///< of each output what may be noise, in floors
+  const std::vector<std::string>& tried;
+};
+
+/// An effect of its own where it is no small part of the noise, a remark in any case. By itself it makes the verdict.
+void add_left_out(const Findings& findings, const LeftOutOfFits& from, const std::vector<Edge>& edges,
+                  Diagnosis& result);
+
+}  // namespace hysteron::diagnosis

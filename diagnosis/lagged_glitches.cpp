@@ -22,6 +22,7 @@ namespace {
 constexpr double far_out = 6.0;  // standard deviations of a leap
 /// Of the residual's RMS, in what its fast part says is noise, less is no reason to look.
 constexpr double least_rms = 1.3;
+constexpr double left_of_noise = 1.5;          // likewise, of what they leave
 constexpr double least_explained = 0.5;        // of its energy
 constexpr double least_asymmetry = 1.0 / 0.7;  // of the energies that as many leaps leave either way
 constexpr double rare_leaps = 0.02;            // of all samples
@@ -245,7 +246,9 @@ std::optional<Train> glitches_of(const std::vector<Signal>& residuals) {
       try_with(best->time_constant * std::pow(2.0, power));
     }
   }
-  if (!best || best->left > (1.0 - least_explained) * energy) {
+  const double may_leave =
+      std::min((1.0 - least_explained) * energy, std::pow(left_of_noise * noise, 2) * static_cast<double>(samples));
+  if (!best || best->left > may_leave) {
     return std::nullopt;
   }
   const Train backwards = train_of(reversed(residuals), best->time_constant, noise, best->leaps);

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <set>
-#include <span>
 #include <utility>
 
+#include "diagnosis/decays.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/task.hpp"
@@ -36,117 +35,6 @@ constexpr int rounds_beside = 4;         // of finding them and fitting the expl
 /// Time constants in samples: below, a glitch's tail is `glitches`' own; above, too few fit into the record.
 constexpr double shortest = 2.8;
 constexpr double per_record = 40.0;
-
-/// The leaps of one record that were found, and what they leave.
-class Decays {
- public:
-  Decays(std::span<const double> values, double pole)
-      : pole_(pole), values_(values), left_(values.begin(), values.end()) {}
-
-  /// The next leap, and how far it stands out, in units of the values.
-  struct Next {
-    std::size_t at = 0;
-    double size = 0.0;
-  };
-  [[nodiscard]] Next next() const {
-    Next best;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t k = left_.size(); k-- > 0;) {
-      sum = left_[k] + pole_ * sum;
-      squares = 1.0 + pole_ * pole_ * squares;
-      const double size = std::abs(sum) / std::sqrt(squares);
-      if (size > best.size && !std::ranges::binary_search(leaps_, k)) {
-        best = {.at = k, .size = size};
-      }
-    }
-    return best;
-  }
-
-  void add(std::size_t leap) {
-    leaps_.insert(std::ranges::lower_bound(leaps_, leap), leap);
-    const std::vector<double> decays = fitted();
-    std::ranges::transform(values_, decays, left_.begin(), std::minus<>());
-  }
-
-  /// The sum of all decays, fitted together.
-  [[nodiscard]] std::vector<double> fitted() const {
-    const Index count = std::ssize(leaps_);
-    MatrixXd products(count, count);
-    VectorXd shown(count);
-    double sum = 0.0;
-    double squares = 0.0;
-    Index i = count;
-    for (std::size_t k = values_.size(); k-- > 0 && i > 0;) {
-      sum = values_[k] + pole_ * sum;
-      squares = 1.0 + pole_ * pole_ * squares;
-      if (leaps_[static_cast<std::size_t>(i - 1)] == k) {
-        --i;
-        shown[i] = sum;
-        for (Index j = 0; j <= i; ++j) {
-          const auto apart = static_cast<double>(k - leaps_[static_cast<std::size_t>(j)]);
-          products(i, j) = squares * std::pow(pole_, apart);
-        }
-      }
-    }
-    const VectorXd sizes = products.selfadjointView<Eigen::Lower>().ldlt().solve(shown);
-    std::vector<double> result(values_.size(), 0.0);
-    for (Index leap = 0; leap < count; ++leap) {
-      result[leaps_[static_cast<std::size_t>(leap)]] = sizes[leap];
-    }
-    for (std::size_t k = 1; k < result.size(); ++k) {
-      result[k] += pole_ * result[k - 1];
-    }
-    return result;
-  }
-
-  [[nodiscard]] const std::vector<std::size_t>& leaps() const { return leaps_; }
-  [[nodiscard]] double energy() const {
-    double sum = 0.0;
-    for (const double value : left_) {
-      sum += value * value;
-    }
-    return sum;
-  }
-
- private:
-  double pole_;
-  std::span<const double> values_;
-  std::vector<double> left_;
-  std::vector<std::size_t> leaps_{};
-};
-
-/// All records of an output, with one time constant, in samples.
-struct Train {
-  double time_constant = 0.0;
-  std::vector<Decays> records{};
-  std::size_t leaps = 0;
-  double left = 0.0;       ///< energy
-  double penalised = 0.0;  ///< with what each leap has to gain
-};
-
-Train train_of(const std::vector<Signal>& residuals, double time_constant, double noise, std::size_t most) {
-  Train result{.time_constant = time_constant};
-  std::vector<Decays::Next> next;
-  for (const Signal& one : residuals) {
-    result.records.emplace_back(one, std::exp(-1.0 / time_constant));
-    next.push_back(result.records.back().next());
-  }
-  while (result.leaps < most) {
-    const auto best = static_cast<std::size_t>(std::ranges::max_element(next, {}, &Decays::Next::size) - next.begin());
-    if (next[best].size < far_out * noise) {
-      break;
-    }
-    result.records[best].add(next[best].at);
-    next[best] = result.records[best].next();
-    ++result.leaps;
-  }
-  for (const Decays& one : result.records) {
-    result.left += one.energy();
-  }
-  result.penalised = result.left + std::pow(far_out * noise, 2) * static_cast<double>(result.leaps);
-  return result;
-}
 
 std::vector<Signal> reversed(std::vector<Signal> residuals) {
   for (Signal& one : residuals) {
@@ -183,8 +71,8 @@ struct Counted {
 
 Counted counted(const Train& train, const std::vector<Experiment>& experiments) {
   Counted result;
-  for (std::size_t record = 0; record < train.records.size(); ++record) {
-    for (const std::size_t at : first_of_each(train.records[record].leaps())) {
+  for (std::size_t record = 0; record < train.signals.size(); ++record) {
+    for (const std::size_t at : first_of_each(train.signals[record].leaps())) {
       ++result.all;
       const bool answers = std::ranges::any_of(experiments[record].drive.inputs,
                                                [&](const Signal& input) { return leaps_about(input, at); });
@@ -232,7 +120,7 @@ std::optional<Train> glitches_of(const std::vector<Signal>& residuals) {
   const std::size_t most = std::min(most_leaps, static_cast<std::size_t>(rare_leaps * static_cast<double>(samples)));
   std::optional<Train> best;
   const auto try_with = [&](double time_constant) {
-    Train train = train_of(residuals, time_constant, noise, most);
+    Train train = train_of(residuals, time_constant, far_out * noise, most);
     if (!best || train.penalised < best->penalised) {
       best = std::move(train);
     }
@@ -251,8 +139,9 @@ std::optional<Train> glitches_of(const std::vector<Signal>& residuals) {
   if (!best || best->left > may_leave) {
     return std::nullopt;
   }
-  const Train backwards = train_of(reversed(residuals), best->time_constant, noise, best->leaps);
-  return backwards.left > least_asymmetry * best->left ? best : std::nullopt;
+  const std::vector<Signal> backwards = reversed(residuals);
+  const Train growing = train_of(backwards, best->time_constant, far_out * noise, best->leaps);
+  return growing.left > least_asymmetry * best->left ? best : std::nullopt;
 }
 
 LaggedGlitches described(const Train& train, std::size_t count, const Model& model, const Task& task,
@@ -260,8 +149,8 @@ LaggedGlitches described(const Train& train, std::size_t count, const Model& mod
   LaggedGlitches result;
   double largest = 0.0;
   double rows = 0.0;
-  for (const Decays& one : train.records) {
-    const Signal& removed = result.removed.emplace_back(one.fitted());
+  for (const Decays& one : train.signals) {
+    const Signal& removed = result.removed.emplace_back(one.sum());
     const auto [low, high] = std::ranges::minmax(removed);
     largest = std::max({largest, -low, high});
     rows += static_cast<double>(removed.size());

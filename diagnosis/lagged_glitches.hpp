@@ -1,16 +1,11 @@
 // Glitches that a lag has taken up: spikes ahead of a sensor's filter, or knocks on a slow plant. Each leaps and dies
-// away,
-//
-//   e_k = p·e_(k−1) + a_k + noise,   p = exp(−Ts/T),   a_k ≠ 0 at a few samples only,
-//
-// so that no sample lies far off its neighbours, while the energy is many times that of the leap. The a_k of a residual
-// are found one after the other, each time the one that stands farthest out of the noise, all amplitudes fitted anew
-// (orthogonal matching pursuit: Pati, Rezaiifar and Krishnaprasad 1993), for the T that leaves least.
+// away, so that no sample lies far off its neighbours, while its energy is many times that of the leap. In a residual
+// they are a sum of `decays`, for the time constant that leaves least.
 //
 // With enough leaps such a sum follows any slow signal, what an effect that is missing leaves as well. But time has a
 // direction: of such glitches the record read backwards, where they would grow and vanish, shows next to nothing, while
-// a slow signal is followed as well from either end. Only what the one direction leaves less of than the other is taken
-// for glitches, and only where few leaps lie at a leap of an input, which an effect answers.
+// a slow signal is followed as well from either end. They are glitches only where the one direction leaves less than
+// the other and little more than noise, and where few leaps lie at a leap of an input, which an effect answers.
 #pragma once
 
 #include <optional>

@@ -20,6 +20,11 @@ namespace {
 constexpr std::size_t finished_always = 6;
 /// Of what a straight line leaves of the tuned parameters' part, a bent one leaves less than this where it is bent.
 constexpr double straight_enough = 0.5;
+/// A calibration is near that moves no parameter by as many deviations of its prior, leaves a small part of what the
+/// tuned parameters leave, and no more than a straight line about these.
+constexpr double near_shift = 1.0;
+constexpr double near_left = 0.1;
+constexpr double near_straight = 1.1;
 /// One point in so many of a long grid comes first.
 constexpr std::size_t stride = 3;
 /// Of a period many are tried: the one that a straight line favours before a fit is often not the one.
@@ -56,7 +61,11 @@ Footing footing_of(const Task& task, Variant base) {
   (void)model.residuals(nominal.x, nominal.residuals, &nominal.jacobian);
   nominal.cost = cost_of(model, nominal.x, nominal.residuals, nullptr);
   result.nominal_cost = Background(model, nominal).unexplained();
-  result.about_nominal = Background(model, result.calibrated.fit).unexplained() > straight_enough * result.nominal_cost;
+  const double calibrated_cost = Background(model, result.calibrated.fit).unexplained();
+  const double shift = (result.calibrated.fit.x - nominal.x).cwiseProduct(model.prior()).cwiseAbs().maxCoeff();
+  result.about_nominal = calibrated_cost > straight_enough * result.nominal_cost;
+  result.is_near = result.about_nominal && shift < near_shift && calibrated_cost < near_left * nominal.cost &&
+                   calibrated_cost < near_straight * result.nominal_cost;
   return result;
 }
 
@@ -73,6 +82,12 @@ void Expansion::say(double fraction, std::string_view text) {
 }
 
 std::vector<Explanation> Expansion::of(const Explanation& from, const Wanted& wanted, std::size_t fitted) {
+  std::vector<Screened> list = screen(from, wanted, fitted);
+  keep_best(list, fitted, from.variant.effects.empty() ? 2 : 1);
+  return fitted_and_finished(list, from);
+}
+
+std::vector<Screened> Expansion::screen(const Explanation& from, const Wanted& wanted, std::size_t fitted) {
   std::vector<Candidate> candidates = candidates_of(from.variant, top_, options_.candidates);
   std::erase_if(candidates, [&](const Candidate& one) { return !wanted(one.own()); });
   const Drivers drivers(task_, candidates, from.fit.x.head(std::ssize(task_.known)), options_.threads);
@@ -113,7 +128,7 @@ std::vector<Explanation> Expansion::of(const Explanation& from, const Wanted& wa
         candidates[i].own().effect + " at " + candidates[i].own().edge);
   });
   refine(list, candidates, grids, from, background, fitted);
-  if (from.variant.effects.empty() && footing_.about_nominal) {
+  if (from.variant.effects.empty() && footing_.about_nominal && &from != &footing_.calibrated) {
     about_calibration(list, candidates, grids);
   }
   std::erase_if(list, [](const Screened& one) { return one.starts.empty(); });
@@ -121,8 +136,7 @@ std::vector<Explanation> Expansion::of(const Explanation& from, const Wanted& wa
   if (from.variant.effects.empty()) {
     singles_ = list;
   }
-  keep_best(list, fitted, from.variant.effects.empty() ? 2 : 1);
-  return fitted_and_finished(list, from);
+  return list;
 }
 
 std::vector<Explanation> Expansion::fitted_and_finished(const std::vector<Screened>& list, const Explanation& from) {

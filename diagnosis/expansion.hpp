@@ -22,6 +22,9 @@ struct Footing {
   /// The first candidates are tried about the parameters as tuned, since a large effect bends a calibration far away;
   /// but where these are so far off that a straight line does not calibrate them, about the calibrated ones.
   bool about_nominal = true;
+  /// Where the calibration may be nearer to the machine than the tuned parameters are, pairs are looked for about it:
+  /// where a plant integrates, what is off by then hides which two would add up.
+  bool is_near = false;
   [[nodiscard]] const Explanation& bare() const { return about_nominal ? nominal : calibrated; }
   [[nodiscard]] KnownStarts known_starts() const;
 };
@@ -42,6 +45,9 @@ class Expansion {
 
   /// To a set every effect more is added that is wanted; the best, so many.
   [[nodiscard]] std::vector<Explanation> of(const Explanation& from, const Wanted& wanted, std::size_t fitted);
+
+  /// As above, but nothing is fitted; those of the bare diagram are the `singles` from here on.
+  [[nodiscard]] std::vector<Screened> screen(const Explanation& from, const Wanted& wanted, std::size_t fitted);
 
   /// Candidates as they were screened, fitted; those in front to the end.
   [[nodiscard]] std::vector<Explanation> fitted_and_finished(const std::vector<Screened>& list,

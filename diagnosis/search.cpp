@@ -54,9 +54,12 @@ class Searcher {
       expansion_.progress_within(begin, part);
       std::vector<Explanation> found;
       if (round == 1) {
-        std::vector<Screened> singles = expansion_.singles();
-        pair_up(bare, singles, found);
-        pair_with_line(bare, singles, found);
+        const bool again = footing_.is_near && !expansion_.must_stop();
+        const Explanation& about = again ? footing_.calibrated : bare;
+        std::vector<Screened> singles =
+            again ? expansion_.screen(about, any_effect, options_.fitted_first) : expansion_.singles();
+        pair_up(about, singles, found);
+        pair_with_line(about, singles, found);
       }
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::size_t read_samples = 2000;
-constexpr double sensor_noise = 0.002;
+constexpr double speed_noise = 0.002;
 constexpr double sensor_step = 0.005;
 constexpr double filter_time = 0.1;  // s, of the sensor
 
@@ -47,7 +47,7 @@ void add_spikes(std::vector<double>& values, double size) {
 
 records::Record sensed(std::vector<double> speed) {
   test::Noise random(5);
-  std::ranges::for_each(speed, [&](double& value) { value += sensor_noise * random(); });
+  std::ranges::for_each(speed, [&](double& value) { value += speed_noise * random(); });
   records::Record record = test::record_of("FORCE", test::rich_force(read_samples));
   record.add({.name = "V", .values = std::move(speed)});
   return record;
@@ -77,8 +77,8 @@ TEST(LaggedGlitches, AreNamedBesideTheLag) {
       EXPECT_NEAR(effect.parameters.at(0).value, filter_time, 0.003);
     }
   }
-  EXPECT_LT(found.gap.improved, 1.15 * sensor_noise);
-  EXPECT_LT(found.gap.floor.value, 1.2 * sensor_noise) << "found anew without them";
+  EXPECT_LT(found.gap.improved, 1.15 * speed_noise);
+  EXPECT_LT(found.gap.floor.value, 1.2 * speed_noise) << "found anew without them";
   EXPECT_GT(found.gap.nominal, found.gap.calibrated);
 }
 
@@ -104,7 +104,7 @@ TEST(LaggedGlitches, AreNoSlowSignalNorOneThatGrowsAndVanishes) {
     std::ranges::transform(disturbed, disturbance, disturbed.begin(), std::plus<>());
     const Diagnosis found = found_in(sensed(lagged(std::move(disturbed))), {"glitches", "lag"});
     EXPECT_THAT(found.warnings, Not(taken_off));
-    EXPECT_GT(found.gap.improved, 2.0 * sensor_noise);
+    EXPECT_GT(found.gap.improved, 2.0 * speed_noise);
   }
 }
 
@@ -127,7 +127,7 @@ TEST(LaggedGlitches, AreNoAnswerToAnInputThatLeaps) {
     with_spikes = lagged(std::move(with_spikes));
     std::ranges::transform(with_spikes, position, with_spikes.begin(), std::plus<>());
     records::Record record = test::record_of("FORCE", force);
-    std::ranges::for_each(with_spikes, [&](double& value) { value += sensor_noise * random(); });
+    std::ranges::for_each(with_spikes, [&](double& value) { value += speed_noise * random(); });
     record.add({.name = "V", .values = with_spikes});
     // The lag that is there is not among the effects, so that its answer to each leap is left.
     const Diagnosis found = diagnose(test::input_of(stage, "[parameters.FLEXURE]\nK = 0.1\n", {record}),

@@ -155,7 +155,7 @@ class Enumeration {
 
   std::vector<Candidate> list() {
     for (const EffectKind& kind : effect_kinds(definitions_)) {
-      if (!options_.effects.empty() && std::ranges::find(options_.effects, kind.id) == options_.effects.end()) {
+      if (!is_tried(options_.effects, kind.id)) {
         continue;
       }
       if (kind.change == Change::Insert) {
@@ -473,6 +473,10 @@ bool Applied::has_end() const {
 }
 bool Applied::has_gap() const {
   return std::ranges::any_of(parameters, [](const EffectParameter& one) { return is_gap(one.role); });
+}
+
+bool is_tried(const std::vector<std::string>& effects, std::string_view effect) {
+  return effects.empty() || std::ranges::find(effects, effect) != effects.end();
 }
 
 std::vector<Candidate> candidates_of(const Variant& base, const std::string& top, const CandidateOptions& options) {

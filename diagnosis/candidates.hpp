@@ -62,6 +62,9 @@ struct Candidate {
   [[nodiscard]] const Applied& own() const { return variant.effects.back(); }
 };
 
+/// Whether an effect is among those that the user wants tried; none given are all.
+[[nodiscard]] bool is_tried(const std::vector<std::string>& effects, std::string_view effect);
+
 struct CandidateOptions {
   std::vector<std::string> effects{};  ///< identifiers; empty: all
   std::vector<std::string> columns{};  ///< of the records that the diagram does not use, for cross-coupling

@@ -13,6 +13,7 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/budget.hpp"
+#include "diagnosis/candidates.hpp"
 #include "diagnosis/fast_clock.hpp"
 #include "diagnosis/findings.hpp"
 #include "diagnosis/harmonics.hpp"
@@ -93,7 +94,6 @@ class Run {
     if (!scaled.residuals(scaled.start(), nominal_)) {
       throw InputError(error_of_start(input_));
     }
-    moved_ = VectorXd::Zero(nominal_.size());
     RecordCheck checked = check_records(task_, scaled, nominal_);
     result_.refusals = std::move(checked.refusals);
     result_.warnings = std::move(checked.warnings);
@@ -109,7 +109,6 @@ class Run {
     if (std::optional<FastClock> clock =
             is_tried(options_.effects, "clock") ? fast_clock(task_, *base_.program) : std::nullopt) {
       task_ = std::move(clock->task);
-      moved_ = std::move(clock->moved);
       left_out_.push_back(std::move(clock->finding));
     }
     simulate_nominal();
@@ -129,11 +128,17 @@ class Run {
     std::ranges::transform(floors_, std::back_inserter(task_.scales), &NoiseFloor::value);
   }
 
-  /// The diagram as given, with the noise of its loops and without what is left out.
+  /// The diagram as given, with the noise of its loops and without what is left out, against the outputs as they were
+  /// measured: a record may have been mended since.
   void simulate_nominal() {
-    Model model(task_, *base_.program);
+    Task measured = task_;
+    for (std::size_t i = 0; i < measured.records.size(); ++i) {
+      for (const std::string& output : measured.outputs) {
+        measured.records[i].replace(output, input_.records[i].column(output).values);
+      }
+    }
+    Model model(measured, *base_.program);
     (void)model.residuals(model.start(), nominal_);  // finite before
-    nominal_ += moved_;
     for (const Index row : task_.left_out) {
       nominal_[row] = 0.0;
     }
@@ -242,14 +247,7 @@ class Run {
     }
     took_off_ = true;
     take_off(task_, left_out_, *glitches);
-    const std::vector<double> before = task_.scales;
     find_floors();
-    moved_ += glitches->moved;
-    const Index rows = moved_.size() / std::ssize(before);
-    for (Index output = 0; output < std::ssize(before); ++output) {
-      const auto at = static_cast<std::size_t>(output);
-      moved_.segment(output * rows, rows) *= before[at] / task_.scales[at];
-    }
     return true;
   }
 
@@ -478,7 +476,6 @@ class Run {
   Materiality materiality_{task_, floors_, options_.material};
   std::vector<LeftOut> left_out_{};
   VectorXd nominal_{};
-  VectorXd moved_{};       ///< residuals of the records as they were, less those of the mended ones
   bool took_off_ = false;  ///< glitches behind a lag
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;              ///< see Findings

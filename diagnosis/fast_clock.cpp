@@ -178,7 +178,6 @@ std::optional<FastClock> fast_clock(const Task& task, const Program& program) {
   const double scale = task.scales[best->output()];
   return FastClock{
       .task = best->mended(ahead.share),
-      .moved = -change,
       .finding = {
           .effect = "clock",
           .output = best->output(),

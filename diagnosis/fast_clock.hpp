@@ -17,7 +17,6 @@ namespace hysteron::diagnosis {
 
 struct FastClock {
   Task task{};        ///< with the output as it would have been
-  VectorXd moved{};   ///< residuals of the record as it was, less those of the mended one
   LeftOut finding{};  ///< SKEW of HY_CLOCK, below 0
 };
 

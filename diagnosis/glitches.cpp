@@ -39,17 +39,6 @@ bool stands_alone(const std::vector<double>& values, std::size_t first, std::siz
   return std::max({before, after, across}) < 0.4 * size;
 }
 
-/// The standard deviation of most of them: by the median of those that are not 0, which rounding makes many.
-double spread(const std::vector<double>& differences) {
-  std::vector<double> sizes;
-  for (const double d : differences) {
-    if (d != 0.0) {
-      sizes.push_back(std::abs(d));
-    }
-  }
-  return deviation_of_median * median(std::move(sizes));
-}
-
 /// The median of seven taken off; 0 for the first and the last few, which have neighbours on one side only: a slope
 /// would make glitches of them.
 std::vector<double> off_neighbours(const std::vector<double>& values) {
@@ -187,6 +176,16 @@ bool repeats(const std::vector<double>& values, const Run& run) {
 }
 
 }  // namespace
+
+double spread(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  for (const double d : differences) {
+    if (d != 0.0) {
+      sizes.push_back(std::abs(d));
+    }
+  }
+  return deviation_of_median * median(std::move(sizes));
+}
 
 Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output) {
   Sum sum({});

@@ -21,6 +21,9 @@ struct Glitches {
   double largest = 0.0;
 };
 
+/// The standard deviation of most of them: by the median of those that are not 0, which rounding makes many.
+[[nodiscard]] double spread(const std::vector<double>& differences);
+
 /// In the measurement alone.
 [[nodiscard]] Glitches find_glitches(const std::vector<Experiment>& experiments, std::size_t output);
 

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "diagnosis/decays.hpp"
+#include "diagnosis/glitches.hpp"
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/task.hpp"
-#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -93,15 +93,13 @@ Counted counted(const Train& train, const std::vector<Experiment>& experiments) 
 /// The deviation of white noise with such differences, by their median. Of coloured noise it is too little, but such
 /// noise has no direction.
 double by_differences(const std::vector<Signal>& residuals) {
-  std::vector<double> sizes;
+  std::vector<double> differences;
   for (const Signal& one : residuals) {
     for (std::size_t k = 1; k < one.size(); ++k) {
-      if (one[k] != one[k - 1]) {  // a coarse sensor rounds many to 0
-        sizes.push_back(std::abs(one[k] - one[k - 1]));
-      }
+      differences.push_back(one[k] - one[k - 1]);
     }
   }
-  return deviation_of_median * median(std::move(sizes)) / std::sqrt(2.0);
+  return spread(differences) / std::sqrt(2.0);
 }
 
 /// The train that a residual shows, if it is one of glitches.
@@ -175,7 +173,6 @@ std::optional<LaggedGlitches> found_at(const Task& task, Model& model, const Vec
   if (!model.residuals(x, residuals)) {
     return std::nullopt;
   }
-  const Index rows = residuals.size() / std::ssize(task.outputs);
   std::optional<LaggedGlitches> best;
   double best_share = 0.0;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
@@ -192,13 +189,6 @@ std::optional<LaggedGlitches> found_at(const Task& task, Model& model, const Vec
       best = described(*train, leaps.all, model, task, output);
       const double before = 0.5 * residuals.squaredNorm();
       best->left = before - 0.5 * (energy_of(measured_beyond) - train->penalised) / std::pow(task.scales[output], 2);
-      best->moved = VectorXd::Zero(residuals.size());
-      Index row = static_cast<Index>(output) * rows;
-      for (const Signal& one : best->removed) {
-        for (const double value : one) {
-          best->moved[row++] = -value / task.scales[output];
-        }
-      }
     }
   }
   return best;
@@ -207,19 +197,19 @@ std::optional<LaggedGlitches> found_at(const Task& task, Model& model, const Vec
 /// In what one explanation leaves, fitted anew beside them: they had bent its parameters.
 std::optional<LaggedGlitches> beside_one(const Task& task, const Explanation& beside) {
   Model model = model_of_all_rows(task, beside);
+  std::optional<LaggedGlitches> best = found_at(task, model, beside.fit.x);
   VectorXd x = beside.fit.x;
-  std::optional<LaggedGlitches> best;
-  for (int round = 0; round < rounds_beside; ++round) {
-    std::optional<LaggedGlitches> found = found_at(task, model, x);
-    if (!found || (best && found->left >= best->left)) {
-      break;
-    }
-    best = std::move(found);
+  for (int round = 1; best && round < rounds_beside; ++round) {
     Task without = task;
     std::vector<LeftOut> forgotten;
     take_off(without, forgotten, *best);
     Model mended = model_of_all_rows(without, beside);
     x = fit(mended, x, {.iterations = 10}).x;
+    std::optional<LaggedGlitches> found = found_at(task, model, x);
+    if (!found || found->left >= best->left) {
+      break;
+    }
+    best = std::move(found);
   }
   return best;
 }

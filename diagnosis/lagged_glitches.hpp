@@ -20,7 +20,6 @@ namespace hysteron::diagnosis {
 struct LaggedGlitches {
   LeftOut finding{};              ///< without rows: none is left out
   std::vector<Signal> removed{};  ///< by record, in the unit of the output
-  VectorXd moved{};               ///< residuals of the records as they were, less those without them
   double left = 0.0;              ///< ½Σr² of all outputs, with what each leap has to gain
 };
 

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnosis/candidates.hpp"
 #include "diagnosis/remainder.hpp"
 #include "diagnosis/shares.hpp"
 
 namespace hysteron::diagnosis {
-
-bool is_tried(const std::vector<std::string>& effects, std::string_view effect) {
-  return effects.empty() || std::ranges::find(effects, effect) != effects.end();
-}
 
 void add_left_out(const Findings& findings, const LeftOutOfFits& from, const std::vector<Edge>& edges,
                   Diagnosis& result) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "diagnosis/edges.hpp"
@@ -10,9 +9,6 @@
 #include "diagnosis/left_out.hpp"
 
 namespace hysteron::diagnosis {
-
-/// Whether an effect is among those that the user wants tried; none given are all.
-[[nodiscard]] bool is_tried(const std::vector<std::string>& effects, std::string_view effect);
 
 struct LeftOutOfFits {
   const std::vector<LeftOut>& left_out;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import subprocess
 import tempfile
 import unittest
@@ -61,8 +62,10 @@ class Seal(unittest.TestCase):
         self.passphrase.write_text("a passphrase of some length\n")
         self.passphrase.chmod(0o600)
 
-    def seal(self, *arguments: str) -> subprocess.CompletedProcess:
-        done = subprocess.run([str(ROOT / "trials" / "seal"), *arguments], capture_output=True, text=True, check=False)
+    def seal(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess:
+        done = subprocess.run(
+            [str(ROOT / "trials" / "seal"), *arguments], capture_output=True, text=True, check=False, env={**os.environ, **environment}
+        )
         self.assertNotIn("Traceback", done.stderr)
         return done
 
@@ -108,6 +111,11 @@ class Seal(unittest.TestCase):
         for commit, nonce in (("nonsense", "a"), ("no-such-commit", "a"), ("0" * 40, "")):
             self.assertNotEqual(self.seal("seed", "--commit", commit, "--nonce", nonce).returncode, 0)
         self.assertEqual(self.seal("seed", "--commit", "0" * 40, "--nonce", "a").stdout.strip(), vault.seed("0" * 40, "a"))
+
+    def test_seeds_where_no_git_is(self) -> None:
+        no_programs = {"PATH": str(self.top)}
+        self.assertIn("git is not installed", self.seal("seed", "--commit", "HEAD", "--nonce", "a", **no_programs).stderr)
+        self.assertEqual(self.seal("seed", "--commit", "0" * 40, "--nonce", "a", **no_programs).returncode, 0)
 
 
 if __name__ == "__main__":

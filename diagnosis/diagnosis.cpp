@@ -149,7 +149,7 @@ class Run {
     const std::unique_ptr<Searched> searched = searched_record();
     const Search& found = searched->search;
     judge_related(*searched);
-    harmonics_ = with_harmonics(task_, result_.top, *searched->judgement.chosen, searched->judgement.weighing_samples);
+    harmonics_ = with_all_lines(task_, result_.top, search_options().candidates, *searched);
     if (harmonics_) {
       choose_instead(task_, *harmonics_, searched->judgement);
     }

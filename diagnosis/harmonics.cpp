@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/simpler.hpp"
 #include "diagnosis/starts.hpp"
 #include "diagnosis/task.hpp"
 
@@ -118,6 +119,18 @@ std::optional<Explanation> with_harmonics(const Task& task, const std::string& t
     }
   }
   return best;
+}
+
+std::optional<Explanation> with_all_lines(const Task& task, const std::string& top, const CandidateOptions& options,
+                                          const Searched& searched) {
+  const double samples = searched.judgement.weighing_samples;
+  std::optional<Explanation> whole = with_harmonics(task, top, *searched.judgement.chosen, samples);
+  if (!whole) {
+    return whole;
+  }
+  const Sets sets(task, top, options);
+  std::optional<Explanation> simpler = with_simpler_formulas(sets, searched.search.calibrated.variant, *whole, samples);
+  return simpler ? simpler : whole;
 }
 
 }  // namespace hysteron::diagnosis

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "diagnosis/fitting.hpp"
+#include "diagnosis/sets.hpp"
 #include "diagnosis/verdict.hpp"
 
 namespace hysteron::diagnosis {
@@ -16,5 +16,10 @@ namespace hysteron::diagnosis {
 /// no effect twice, as with two lines at any frequencies it would fit what is no disturbance.
 [[nodiscard]] std::optional<Explanation> with_harmonics(const Task& task, const std::string& top,
                                                         const Explanation& one, double samples);
+
+/// The chosen set with its harmonics, and then with simpler formulas where these explain it as well; nothing where it
+/// has no harmonics.
+[[nodiscard]] std::optional<Explanation> with_all_lines(const Task& task, const std::string& top,
+                                                        const CandidateOptions& options, const Searched& searched);
 
 }  // namespace hysteron::diagnosis

@@ -39,6 +39,11 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
     file.tune.initial_states.push_back({.text = state});
   }
   problem_ = std::make_unique<OutputErrorProblem>(output_error_problem(program, file, task.records, true));
+  if (task.shooting) {
+    for (std::size_t e = 0; e < problem_->experiments.size(); ++e) {
+      problem_->experiments[e].restarts = task.shooting->restarts[e];
+    }
+  }
   rollout_ = std::make_unique<hysteron::detail::Rollout>(*problem_);
   if (!task.scales.empty()) {
     rollout_->set_scales(task.scales);
@@ -64,16 +69,19 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
     }
     prior_[at] = unknown.deviation > 0.0 && std::isfinite(unknown.deviation) ? 1.0 / unknown.deviation : 0.0;
   }
-  const std::vector<double> states = rollout_->states_after_reset(start_.head(std::ssize(problem_->parameters)));
-  auto at = std::ssize(problem_->parameters);
-  for (const Experiment& experiment : problem_->experiments) {
-    for (std::size_t state = 0; state < states.size(); ++state, ++at) {
-      names_.push_back(problem_->initial_states[state].path + " at the start of " + experiment.name);
-      start_[at] = states[state];
-      lower_[at] = problem_->initial_states[state].lower;
-      upper_[at] = problem_->initial_states[state].upper;
-      typical_[at] = std::max(std::abs(states[state]), 1e-3);
-    }
+  const Index parameters = std::ssize(problem_->parameters);
+  const std::vector<double> states = task.shooting && !task.shooting->states.empty()
+                                         ? task.shooting->states
+                                         : rollout_->own_states(start_.head(parameters));
+  auto at = parameters;
+  for (const auto& column : rollout_->state_columns()) {
+    const FreeState& state = problem_->initial_states[column.state];
+    names_.push_back(state.path + " at the start of " + problem_->experiments[column.experiment].name);
+    start_[at] = states[static_cast<std::size_t>(at - parameters)];
+    lower_[at] = state.lower;
+    upper_[at] = state.upper;
+    typical_[at] = std::max(std::abs(start_[at]), 1e-3);
+    ++at;
   }
 }
 

@@ -37,6 +37,12 @@ struct Unknown {
   bool rounds = false;     ///< a quantum, 0 where it is off
 };
 
+/// Shooting of the records, each with its own initial states.
+struct Shooting {
+  std::vector<std::vector<std::size_t>> restarts{};  ///< by record: the steps at which a stretch begins, but the first
+  std::vector<double> states{};  ///< where a fit begins: by record, stretch and state; empty: where the model is then
+};
+
 /// What stays the same while candidates come and go.
 struct Task {
   parameters::ParameterFile file{};  ///< values and initial states only
@@ -44,6 +50,7 @@ struct Task {
   std::vector<std::string> outputs{};  ///< the measured ones, by name
   std::vector<Unknown> known{};        ///< calibration parameters
   std::vector<std::string> initial_states{};
+  std::shared_ptr<const Shooting> shooting{};    ///< null: each record from its start to its end
   std::vector<double> scales{};                  ///< of the residuals, by output
   std::vector<Index> left_out{};                 ///< rows that do not count: glitches
   std::shared_ptr<const Whitening> whitening{};  ///< of the residuals; null: their rows are independent

@@ -13,6 +13,7 @@
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/sets.hpp"
 #include "diagnosis/shortlist.hpp"
+#include "diagnosis/stretches.hpp"
 #include "diagnosis/superposition.hpp"
 #include "tuning/covariance.hpp"
 
@@ -22,8 +23,20 @@ namespace {
 /// A pair whose cost is below so many of the floor's closes the gap: no third effect is tried beside it.
 constexpr double well_closed = 1.3;
 
+/// What was found on stretches and leaves less over whole records is followed by itself.
+constexpr double nearly_closed = 4.0;
+
 /// One whose cost is above so many of the best one's is not followed.
 constexpr double pair_far_behind = 3.0;
+
+/// What the calibrated diagram leaves on stretches, of what it leaves over whole records, where most of that adds up.
+constexpr double adds_up = 0.25;
+
+/// A set that leaves so little of that gap has closed it.
+constexpr double little = 0.05;
+
+/// So many sets that were found on stretches are fitted over the whole records.
+constexpr std::size_t most_taken_over = 6;
 
 void append(std::vector<Explanation> more, std::vector<Explanation>& found) {
   std::ranges::move(more, std::back_inserter(found));
@@ -38,6 +51,7 @@ class Searcher {
   Searcher(const Task& task, const std::string& top, const Footing& footing, double floor_cost,
            const SearchOptions& options)
       : task_(task),
+        top_(top),
         footing_(footing),
         floor_cost_(floor_cost),
         expansion_(task, top, footing, floor_cost, options),
@@ -54,12 +68,18 @@ class Searcher {
       expansion_.progress_within(begin, part);
       std::vector<Explanation> found;
       if (round == 1) {
+        on_stretches(found);
         const bool again = footing_.is_near && !expansion_.must_stop();
         const Explanation& about = again ? footing_.calibrated : bare;
         std::vector<Screened> singles =
             again ? expansion_.screen(about, any_effect, options_.fitted_first) : expansion_.singles();
-        pair_up(about, singles, found);
-        pair_with_line(about, singles, found);
+        if (!is_closed(found, nearly_closed)) {
+          pair_up(about, singles, found);
+          pair_with_line(about, singles, found);
+        } else {
+          beam.clear();
+          simplify(found);
+        }
       }
       if (is_closed(found)) {
         beam.clear();  // what remains to be seen is which others close it, too
@@ -92,11 +112,60 @@ class Searcher {
       append(std::move(found), result.explanations);
     }
     std::ranges::stable_sort(result.explanations, {}, cost_of_fit);
-    result.tried = expansion_.tried();
+    result.tried = tried_on_stretches_ + expansion_.tried();
     return result;
   }
 
  private:
+  /// Where a plant integrates, sets of up to two effects that close the gap over stretches of the records.
+  void on_stretches(std::vector<Explanation>& found) {
+    const std::optional<Task> cut = in_stretches(task_, footing_.calibrated);
+    if (!cut || expansion_.must_stop()) {
+      return;
+    }
+    Footing about = footing_of(*cut, footing_.calibrated.variant);
+    about.about_nominal = false;  // the states at the starts were fitted to the calibration
+    about.is_near = false;
+    const Index states = about.calibrated.fit.x.size() - std::ssize(task_.known);
+    about.nominal.fit.x.tail(states) = about.calibrated.fit.x.tail(states);
+    if (about.calibrated.fit.cost > adds_up * footing_.calibrated.fit.cost) {
+      return;
+    }
+    Searcher inner(*cut, top_, about, floor_cost_, options_);
+    const std::vector<Explanation> sets = inner.first_to_close();
+    tried_on_stretches_ = inner.expansion_.tried();
+    std::vector<Explanation> whole;
+    std::set<std::vector<std::string>> taken;
+    for (const Explanation& one : sets) {
+      if (whole.size() < most_taken_over && taken.insert(one.names()).second) {
+        whole.push_back(one);
+      }
+    }
+    in_parallel(whole.size(), options_.threads, [&](std::size_t i) { whole[i] = over_whole_records(task_, whole[i]); });
+    append(std::move(whole), found);
+  }
+
+  /// The single effects and the sets of two, best first, until one closes the gap.
+  std::vector<Explanation> first_to_close() {
+    expansion_.may_stop();
+    std::vector<Explanation> found;
+    expand(footing_.bare(), any_effect, options_.fitted_first, found);
+    std::ranges::stable_sort(found, {}, cost_of_fit);
+    const double closed =
+        std::max(well_closed * floor_cost_, floor_cost_ + little * (footing_.calibrated.fit.cost - floor_cost_));
+    const auto is_open = [&] { return !is_closed(found, closed / floor_cost_) && !expansion_.must_stop(); };
+    for (const Explanation& one : next_beam(found, options_.beam)) {
+      if (is_open()) {
+        expand(one, any_effect, options_.fitted_later, found);
+      }
+    }
+    if (is_open()) {
+      exchange(1, found);
+    }
+    std::ranges::stable_sort(found, {}, cost_of_fit);
+    return found;
+  }
+
   void expand(const Explanation& from, const Wanted& wanted, std::size_t fitted, std::vector<Explanation>& found) {
     append(expansion_.of(from, wanted, fitted), found);
   }
@@ -212,9 +281,8 @@ class Searcher {
     }
   }
 
-  [[nodiscard]] bool is_closed(const std::vector<Explanation>& found) const {
-    return std::ranges::any_of(found,
-                               [&](const Explanation& one) { return one.fit.cost <= well_closed * floor_cost_; });
+  [[nodiscard]] bool is_closed(const std::vector<Explanation>& found, double floors = well_closed) const {
+    return std::ranges::any_of(found, [&](const Explanation& one) { return one.fit.cost <= floors * floor_cost_; });
   }
 
   /// Each effect of so many of the best pairs in turn gives its place to any other: what was found first may have stood
@@ -246,7 +314,14 @@ class Searcher {
     if (found.empty()) {
       return;
     }
-    replace_in(best_of(found), found, simplified_, [](const Applied& gone, const Applied& other) {
+    const Explanation best = best_of(found);
+    const bool is_new = best.variant.effects.size() > 1 && held_.insert(best.places()).second;
+    for (std::size_t i = 0; is_new && i < best.variant.effects.size(); ++i) {
+      if (!expansion_.must_stop()) {
+        append(sets_.in_simpler_formulas(best, i, footing_.calibrated.variant), found);
+      }
+    }
+    replace_in(best, found, simplified_, [](const Applied& gone, const Applied& other) {
       return other.paths.size() < gone.paths.size() && Sets::same_root(other.edge, gone.edge);
     });
   }
@@ -297,12 +372,15 @@ class Searcher {
   }
 
   const Task& task_;
+  const std::string& top_;
   const Footing& footing_;
   double floor_cost_;
   Expansion expansion_;
   Sets sets_;
   Replaced exchanged_{};
   Replaced simplified_{};
+  std::set<std::vector<std::string>> held_{};  ///< sets whose simpler formulas were fitted
+  std::size_t tried_on_stretches_ = 0;
   const SearchOptions& options_;
 };
 

@@ -3,8 +3,10 @@
 // 1. The known parameters alone are fitted: what that closes is calibration.
 // 2. Every candidate is screened against what is left; the best are fitted together with the known parameters,
 //    those of the three effects in front on up to eight edges more.
-// 3. Pairs whose changes would add up to the residual are fitted. Where one of them closes the gap, each of its effects
-//    gives its place to all others once, to see which close it, too.
+// 3. Where the plant integrates, effects and pairs are looked for on stretches of the records (stretches.hpp), and the
+//    best sets fitted over the whole. Where none of these comes near the floor, pairs whose changes would add up to the
+//    residual are fitted. Where one of them closes the gap, each of its effects gives its place to all others once, to
+//    see which close it, too.
 // 4. Else to the best sets, in a beam, one effect more is added as in 2, while it closes a notable part of the gap. The
 //    effects of the best pairs give their places to all others, are moved to other edges, and give their places again.
 // Every set that was fitted is kept: the verdict weighs them against each other.

@@ -8,18 +8,40 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// The settings of an effect, of its instance in another variant.
-void take_settings(Applied& own, const Applied& from) {
+std::string without_instance(const std::string& path, const Applied& applied) {
+  return path.substr(applied.instance.size());
+}
+
+/// The settings of an effect, of its instance in another variant; a simpler formula may not have all.
+void take_settings(Candidate& candidate, const Applied& from) {
+  Applied& own = candidate.variant.effects.back();
   for (const auto& [path, value] : from.settings) {
-    own.settings.emplace_back(own.instance + path.substr(from.instance.size()), value);
+    std::string there = own.instance + without_instance(path, from);
+    if (find_parameter(candidate.variant.program->graph, there) >= 0) {
+      own.settings.emplace_back(std::move(there), value);
+    }
   }
 }
 
 /// Whether two effects have the same parameters: one effect may have several formulas in one block.
 bool same_formula(const Applied& a, const Applied& b) {
   return std::ranges::equal(a.paths, b.paths, [&](const std::string& one, const std::string& other) {
-    return one.substr(a.instance.size()) == other.substr(b.instance.size());
+    return without_instance(one, a) == without_instance(other, b);
   });
+}
+
+/// Whether one effect's parameters are some of another's, by name and by what they measure.
+bool holds(const Applied& whole, const Applied& part) {
+  return part.parameters.size() < whole.parameters.size() &&
+         std::ranges::all_of(part.parameters, [&](const EffectParameter& own) {
+           return std::ranges::any_of(whole.parameters, [&](const EffectParameter& other) {
+             return own.name == other.name && own.role == other.role;
+           });
+         });
+}
+
+bool has_effect(const Variant& variant, const std::string& effect) {
+  return std::ranges::any_of(variant.effects, [&](const Applied& one) { return one.effect == effect; });
 }
 
 }  // namespace
@@ -29,7 +51,8 @@ bool Sets::same_root(std::string_view a, std::string_view b) {
 }
 
 std::vector<Candidate> Sets::in_place_of(const Variant& base, const Applied& wanted) const {
-  std::vector<Candidate> list = candidates_of(base, top_, {.effects = {wanted.effect}, .columns = options_.columns});
+  std::vector<Candidate> list = candidates_of(
+      base, top_, {.effects = {wanted.effect}, .columns = options_.columns, .again = has_effect(base, wanted.effect)});
   std::erase_if(list, [&](const Candidate& one) {
     return one.own().block != wanted.block || one.own().wires != wanted.wires ||
            !same_root(one.own().edge, wanted.edge) || !same_formula(one.own(), wanted);
@@ -45,15 +68,15 @@ Explanation Sets::without(const Explanation& whole, std::size_t dropped, const V
 
 void Sets::take_on(Explanation& result, VectorXd& start, Candidate candidate, const Explanation& whole,
                    const Applied& wanted) const {
+  take_settings(candidate, wanted);
   Variant& variant = candidate.variant;
-  Applied& own = variant.effects.back();
-  take_settings(own, wanted);
-  for (std::size_t j = 0; j < own.paths.size(); ++j) {
+  const Applied& own = variant.effects.back();
+  for (const std::string& path : own.paths) {
     for (std::size_t k = 0; k < whole.variant.further.size(); ++k) {
       const Unknown& unknown = whole.variant.further[k];
-      if (unknown.path == wanted.paths[j]) {
+      if (unknown.path == wanted.instance + without_instance(path, own)) {
         variant.further.push_back(unknown);
-        variant.further.back().path = own.paths[j];
+        variant.further.back().path = path;
         start.conservativeResize(start.size() + 1);
         start[start.size() - 1] = whole.fit.x[std::ssize(task_.known) + static_cast<Index>(k)];
       }
@@ -102,18 +125,46 @@ std::vector<Explanation> Sets::on_each_edge(const Explanation& whole, std::size_
     if (candidate.own().block != wanted.block || !same_formula(candidate.own(), wanted)) {
       continue;
     }
-    Explanation one = unless_refused([&] {
-      Explanation result{};
-      VectorXd start = rest.fit.x.head(std::ssize(task_.known) + std::ssize(rest.variant.further));
-      take_on(result, start, std::move(candidate), whole, wanted);
-      fit_from(result, std::move(start), whole, iterations);
-      return result;
-    });
+    Explanation one = with_candidate(rest, std::move(candidate), whole, wanted, iterations);
     if (std::isfinite(one.fit.cost)) {
       list.push_back(std::move(one));
     }
   }
   return list;
+}
+
+std::vector<Explanation> Sets::in_simpler_formulas(const Explanation& whole, std::size_t which,
+                                                   const Variant& bare) const {
+  std::vector<Explanation> list;
+  const Applied& wanted = whole.variant.effects[which];
+  const Explanation rest = without(whole, which, bare, 0);
+  if (!std::isfinite(rest.fit.cost)) {
+    return list;
+  }
+  const std::string edge = in_the_diagram(wanted.edge, whole.variant.effects);
+  for (Candidate& candidate : candidates_of(rest.variant, top_, options_)) {
+    if (!holds(wanted, candidate.own()) || candidate.own().wires != wanted.wires ||
+        in_the_diagram(candidate.own().edge, candidate.variant.effects) != edge) {
+      continue;
+    }
+    Explanation one = with_candidate(rest, std::move(candidate), whole, wanted, 20);
+    if (std::isfinite(one.fit.cost)) {
+      finish(task_, one, {.thoroughly = true});
+      list.push_back(std::move(one));
+    }
+  }
+  return list;
+}
+
+Explanation Sets::with_candidate(const Explanation& rest, Candidate candidate, const Explanation& whole,
+                                 const Applied& wanted, int iterations) const {
+  return unless_refused([&] {
+    Explanation result{};
+    VectorXd start = rest.fit.x.head(std::ssize(task_.known) + std::ssize(rest.variant.further));
+    take_on(result, start, std::move(candidate), whole, wanted);
+    fit_from(result, std::move(start), whole, iterations);
+    return result;
+  });
 }
 
 Explanation Sets::rest_of(const Explanation& whole, std::size_t dropped, const Variant& bare,
@@ -136,8 +187,7 @@ Explanation Sets::together(const Screened& first, const Screened& second, const 
     if (edge != wanted.edge && !edge.starts_with(behind)) {
       continue;
     }
-    Applied& own = candidate.variant.effects.back();
-    take_settings(own, wanted);
+    take_settings(candidate, wanted);
     candidate.variant.program = compiled(candidate.variant, top_);
     Screened there{.candidate = std::move(candidate), .unknowns = second.unknowns, .starts = second.starts};
     for (Unknown& unknown : there.unknowns) {

@@ -30,6 +30,11 @@ class Sets {
   [[nodiscard]] std::vector<Explanation> on_each_edge(const Explanation& whole, std::size_t moved, const Variant& bare,
                                                       int iterations) const;
 
+  /// A set with one of its effects in each simpler formula that it holds, one whose parameters are some of its own, on
+  /// the same edge and from its values: a Coulomb friction for a Stribeck friction. Fitted to the end.
+  [[nodiscard]] std::vector<Explanation> in_simpler_formulas(const Explanation& whole, std::size_t which,
+                                                             const Variant& bare) const;
+
   /// Two effects as they were screened, with the known parameters and states `known`, after a few steps of a fit; on
   /// one edge in the better order. The cost is ∞ where the second one has no place beside the first.
   [[nodiscard]] Explanation together(const Screened& first, const Screened& second, const VectorXd& known) const;
@@ -40,9 +45,13 @@ class Sets {
  private:
   [[nodiscard]] Explanation rebuilt(const Explanation& whole, std::size_t dropped, const Variant& bare,
                                     int iterations) const;
-  /// A candidate for `wanted` with that one's settings, and its parameters at the end of `start`.
+  /// A candidate for `wanted` with that one's settings, and at the end of `start` those of its parameters that both
+  /// have.
   void take_on(Explanation& result, VectorXd& start, Candidate candidate, const Explanation& whole,
                const Applied& wanted) const;
+  /// As above, fitted; the cost is ∞ where it cannot be built.
+  [[nodiscard]] Explanation with_candidate(const Explanation& rest, Candidate candidate, const Explanation& whole,
+                                           const Applied& wanted, int iterations) const;
   /// With the states at the start as in `whole`.
   void fit_from(Explanation& result, VectorXd start, const Explanation& whole, int iterations) const;
   /// The effect on that edge of another variant, in the same formula, or else about it.

@@ -27,23 +27,6 @@ constexpr std::size_t most_singles = 3;
 /// The start has to be the better explanation by so many nats.
 constexpr double clearly = 3.0;
 
-/// Real states of blocks that follow their input in time, or control; those without a unit count steps.
-std::vector<std::string> dynamic_states(const Graph& graph) {
-  std::vector<std::string> result;
-  for (const Node& node : graph.nodes) {
-    if (node.block == nullptr ||
-        (node.block->about.group != Group::Dynamics && node.block->about.group != Group::Control)) {
-      continue;
-    }
-    for (const Field& field : node.block->states) {
-      if (field.type == Type::Real && field.length == 1 && !field.unit.empty() && field.unit != "1") {
-        result.push_back(fmt::format("{}.{}", node.path, field.name));
-      }
-    }
-  }
-  return result;
-}
-
 /// A constant and a straight line for each output, over the time of each record.
 MatrixXd lines_of(const Model& model) {
   const OutputErrorProblem& problem = model.problem();
@@ -59,23 +42,6 @@ MatrixXd lines_of(const Model& model) {
     }
   }
   return lines;
-}
-
-/// The trace of a state over all records, each from its own start.
-VectorXd trace_of(const MatrixXd& jacobian, Index first, Index states, Index state) {
-  VectorXd trace = VectorXd::Zero(jacobian.rows());
-  for (Index column = first + state; column < jacobian.cols(); column += states) {
-    trace += jacobian.col(column);
-  }
-  return trace;
-}
-
-/// Where a fit begins whose states are others than those of the fit that is given: at its parameters.
-VectorXd start_from(const Model& model, const Explanation& from) {
-  VectorXd start = model.start();
-  const auto parameters = std::ssize(model.problem().parameters);
-  start.head(parameters) = from.fit.x.head(parameters);
-  return start;
 }
 
 /// The best of the fits from where the set stands, from the tuned parameters, and from where the chosen set stands in
@@ -152,6 +118,37 @@ double deviation_of(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::vector<std::string> dynamic_states(const Graph& graph) {
+  std::vector<std::string> result;
+  for (const Node& node : graph.nodes) {
+    if (node.block == nullptr ||
+        (node.block->about.group != Group::Dynamics && node.block->about.group != Group::Control)) {
+      continue;
+    }
+    for (const Field& field : node.block->states) {
+      if (field.type == Type::Real && field.length == 1 && !field.unit.empty() && field.unit != "1") {
+        result.push_back(fmt::format("{}.{}", node.path, field.name));
+      }
+    }
+  }
+  return result;
+}
+
+VectorXd trace_of(const MatrixXd& jacobian, Index first, Index states, Index state) {
+  VectorXd trace = VectorXd::Zero(jacobian.rows());
+  for (Index column = first + state; column < jacobian.cols(); column += states) {
+    trace += jacobian.col(column);
+  }
+  return trace;
+}
+
+VectorXd start_from(const Model& model, const Explanation& from) {
+  VectorXd start = model.start();
+  const auto parameters = std::ssize(model.problem().parameters);
+  start.head(parameters) = from.fit.x.head(parameters);
+  return start;
+}
 
 std::vector<std::string> visible_states(const Task& task, const Explanation& calibrated) {
   const Program& program = *calibrated.variant.program;

@@ -19,6 +19,15 @@
 
 namespace hysteron::diagnosis {
 
+/// Real states of blocks that follow their input in time, or control, by path; those without a unit count steps.
+[[nodiscard]] std::vector<std::string> dynamic_states(const Graph& graph);
+
+/// The trace of a state over all records, each from its own start; `first` is the column of the first of the states.
+[[nodiscard]] VectorXd trace_of(const MatrixXd& jacobian, Index first, Index states, Index state);
+
+/// Where a fit begins whose states are others than those of the fit that is given: at its parameters.
+[[nodiscard]] VectorXd start_from(const Model& model, const Explanation& from);
+
 /// The states of a fitted diagram whose start shows in its outputs, by path; at most a few.
 [[nodiscard]] std::vector<std::string> visible_states(const Task& task, const Explanation& calibrated);
 

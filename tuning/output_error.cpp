@@ -80,19 +80,24 @@ class Fitter {
       least_squares_.upper[j] = free.upper;
       least_squares_.typical[j++] = free.typical;
     }
-    const std::vector<double> states = rollout_.states_after_reset(least_squares_.start);
-    for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
-      for (std::size_t i = 0; i < states.size(); ++i) {
-        const FreeState& state = problem_.initial_states[i];
-        const bool several = problem_.experiments.size() > 1;
-        fit_.names.push_back(several ? fmt::format("{} at the start of record {}", state.path, e + 1)
-                                     : fmt::format("{} at the start", state.path));
-        fit_.units.push_back(state.unit);
-        least_squares_.start[j] = states[i];
-        least_squares_.lower[j] = state.lower;
-        least_squares_.upper[j] = state.upper;
-        least_squares_.typical[j++] = states[i] != 0.0 ? std::fabs(states[i]) : 1.0;
+    const std::vector<double> states = rollout_.own_states(least_squares_.start);
+    for (const detail::Rollout::StateColumn& column : rollout_.state_columns()) {
+      const FreeState& state = problem_.initial_states[column.state];
+      const Experiment& record = problem_.experiments[column.experiment];
+      std::string when = "at the start";
+      if (column.start > 0) {
+        when = fmt::format("at t = {:.6g} s", record.time[record.restarts[column.start - 1]]);
       }
+      if (problem_.experiments.size() > 1) {
+        when += fmt::format(" of record {}", column.experiment + 1);
+      }
+      const double own = states[static_cast<std::size_t>(j - std::ssize(problem_.parameters))];
+      fit_.names.push_back(fmt::format("{} {}", state.path, when));
+      fit_.units.push_back(state.unit);
+      least_squares_.start[j] = own;
+      least_squares_.lower[j] = state.lower;
+      least_squares_.upper[j] = state.upper;
+      least_squares_.typical[j++] = own != 0.0 ? std::fabs(own) : 1.0;
     }
     least_squares_.names = fit_.names;
     least_squares_.residual_count = rollout_.residual_count();
@@ -190,10 +195,8 @@ class Fitter {
     const Index parameters = std::ssize(others.parameters);
     VectorXd x = VectorXd::Zero(rollout.unknowns());
     x.head(parameters) = least_squares_.start.head(parameters);
-    const std::vector<double> reset = rollout.states_after_reset(x.head(parameters));
-    for (Index j = parameters; j < x.size(); ++j) {
-      x[j] = reset[static_cast<std::size_t>(j - parameters) % reset.size()];
-    }
+    const std::vector<double> own = rollout.own_states(x.head(parameters));
+    std::ranges::copy(own, x.data() + parameters);
     VectorXd residuals(rollout.residual_count());
     MatrixXd jacobian(rollout.residual_count(), rollout.unknowns());
     std::vector<std::string> shown;

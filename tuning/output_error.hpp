@@ -58,6 +58,9 @@ struct Experiment {
   std::vector<double> time{};
   Drive drive{};
   std::vector<Signal> measured{};  ///< by measured output
+  /// Multiple shooting (Bock and Plitt, IFAC 1984): before these steps, ascending, the initial states take other values
+  /// that are unknowns of their own. All else that the diagram remembers goes on.
+  std::vector<std::size_t> restarts{};
   std::vector<records::RowRange> train{};
   std::vector<records::RowRange> test{};
 };

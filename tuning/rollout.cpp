@@ -60,14 +60,45 @@ Rollout::Rollout(const OutputErrorProblem& problem)
       }
     }
   }
+  first_state_.push_back(std::ssize(problem.parameters));
+  for (const Experiment& experiment : problem.experiments) {
+    first_state_.push_back(first_state_.back() +
+                           std::ssize(problem.initial_states) * (1 + std::ssize(experiment.restarts)));
+  }
 }
 
 Index Rollout::unknowns() const {
-  return std::ssize(problem_.parameters) + std::ssize(problem_.initial_states) * std::ssize(problem_.experiments);
+  return first_state_.back();
 }
 
-Index Rollout::state_column(std::size_t experiment, std::size_t state) const {
-  return static_cast<Index>(problem_.parameters.size() + experiment * problem_.initial_states.size() + state);
+std::vector<Rollout::StateColumn> Rollout::state_columns() const {
+  std::vector<StateColumn> columns;
+  for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+    for (std::size_t start = 0; start <= problem_.experiments[e].restarts.size(); ++start) {
+      for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
+        columns.push_back({.experiment = e, .start = start, .state = state});
+      }
+    }
+  }
+  return columns;
+}
+
+Index Rollout::state_column(std::size_t experiment, std::size_t start, std::size_t state) const {
+  return first_state_[experiment] + static_cast<Index>(start * problem_.initial_states.size() + state);
+}
+
+Index Rollout::column_at(Index column, std::size_t start) const {
+  const bool is_state = column >= std::ssize(problem_.parameters);
+  return is_state ? column + static_cast<Index>(start) * std::ssize(problem_.initial_states) : column;
+}
+
+template <class S>
+void Rollout::load_states(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::size_t start,
+                          std::span<const Index> columns) {
+  for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
+    *machine.real_state(problem_.initial_states[state].path) =
+        seeded<S>(x[state_column(experiment, start, state)], state_column(experiment, 0, state), columns);
+  }
 }
 
 template <class S>
@@ -78,10 +109,7 @@ void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experi
     machine.set_parameter(free.parameter, seeded<S>(x[column], column, columns), free.element);
   }
   machine.reset();
-  for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
-    const Index column = state_column(experiment, state);
-    *machine.real_state(problem_.initial_states[state].path) = seeded<S>(x[column], column, columns);
-  }
+  load_states(machine, x, experiment, 0, columns);
 }
 
 template <class S>
@@ -99,9 +127,13 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
   prepare(machine, x, experiment, columns);
   const Experiment& record = problem_.experiments[experiment];
   std::size_t step = 0;
+  std::size_t start = 0;
   Index row = 0;
   for (const records::RowRange& range : record.train) {
     for (; step < range.last; ++step) {
+      if (start < record.restarts.size() && step == record.restarts[start]) {
+        load_states(machine, x, experiment, ++start, columns);
+      }
       drive(machine, record.drive, step);
       machine.step();
       if (step < range.first) {
@@ -118,7 +150,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
         residuals[at] = (value - record.measured[output][step]) / scale;
         if constexpr (Width<S>::value > 0) {
           for (std::size_t k = 0; k < columns.size(); ++k) {
-            (*jacobian)(at, columns[k]) = y.derivative(static_cast<int>(k)) / scale;
+            (*jacobian)(at, column_at(columns[k], start)) = y.derivative(static_cast<int>(k)) / scale;
           }
         }
       }
@@ -144,7 +176,7 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
       columns.push_back(j);
     }
     for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
-      columns.push_back(state_column(e, state));
+      columns.push_back(state_column(e, 0, state));
     }
     const std::span<const Index> all(columns);
     for (std::size_t begin = 0; begin < all.size();) {
@@ -173,8 +205,13 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
 std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) {
   prepare<double>(plain_, x, experiment, {});
   const Drive& inputs = problem_.experiments[experiment].drive;
+  const std::vector<std::size_t>& restarts = problem_.experiments[experiment].restarts;
   std::vector<Signal> result(problem_.outputs.size(), Signal(inputs.steps));
+  std::size_t start = 0;
   for (std::size_t step = 0; step < inputs.steps; ++step) {
+    if (start < restarts.size() && step == restarts[start]) {
+      load_states<double>(plain_, x, experiment, ++start, {});
+    }
     drive(plain_, inputs, step);
     plain_.step();
     for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {
@@ -184,14 +221,28 @@ std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) 
   return result;
 }
 
-std::vector<double> Rollout::states_after_reset(const VectorXd& x) {
+std::vector<double> Rollout::own_states(const VectorXd& parameters) {
   for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
-    plain_.set_parameter(problem_.parameters[j].parameter, x[static_cast<Index>(j)], problem_.parameters[j].element);
+    const FreeParameter& free = problem_.parameters[j];
+    plain_.set_parameter(free.parameter, parameters[static_cast<Index>(j)], free.element);
   }
-  plain_.reset();
   std::vector<double> values;
-  for (const FreeState& state : problem_.initial_states) {
-    values.push_back(*plain_.real_state(state.path));
+  const auto keep = [&] {
+    for (const FreeState& state : problem_.initial_states) {
+      values.push_back(*plain_.real_state(state.path));
+    }
+  };
+  for (const Experiment& experiment : problem_.experiments) {
+    plain_.reset();
+    keep();
+    std::size_t step = 0;
+    for (const std::size_t restart : experiment.restarts) {
+      for (; step < restart; ++step) {
+        drive(plain_, experiment.drive, step);
+        plain_.step();
+      }
+      keep();
+    }
   }
   return values;
 }

@@ -96,5 +96,43 @@ TEST(Sets, KeepTheFormulaOfAnEffectThatHasSeveral) {
   }
 }
 
+/// A Stribeck friction holds a Coulomb friction, and a relaxation none.
+TEST(Sets, TakeASimplerFormulaFromTheValuesOfTheOneThatHoldsIt) {
+  const std::string truth =
+      test::axis({"HY_COULOMB_FRICTION := (LEVEL := 0.3, PRESLIDE := 0.0001)", "MASS.XOUT", ", V := LATE.XOUT"});
+  const DiagnosisInput input =
+      test::input_of(test::axis(), test::axis_parameters,
+                     {test::measured(test::program_of(truth), test::record_of("FORCE", test::rich_force()), 0.001)});
+  Task task = task_of(input);
+  task.scales = {0.001};
+  const Variant bare{.text = input.text, .program = std::make_shared<const Program>(input.program)};
+  std::vector<Candidate> list = candidates_of(bare, "AXIS", {.effects = {"stribeck_friction"}});
+  std::erase_if(list, [](const Candidate& one) { return one.own().edge != "MASS.XOUT"; });
+  ASSERT_FALSE(list.empty());
+  Explanation whole{.variant = list.front().variant};
+  for (const std::string& path : whole.variant.effects.front().paths) {
+    const bool is_level = path.ends_with("LEVEL");
+    whole.variant.further.push_back({.path = path,
+                                     .start = is_level                     ? 0.29
+                                              : path.ends_with("STICTION") ? 0.01
+                                              : path.ends_with("PRESLIDE") ? 1e-4
+                                                                           : 0.5,
+                                     .lower = 0.0,
+                                     .upper = 10.0,
+                                     .typical = 0.1,
+                                     .deviation = std::numeric_limits<double>::infinity()});
+  }
+  Model model(task, *whole.variant.program, whole.variant.further);
+  whole.fit.x = model.start();
+  const CandidateOptions options{};
+  const std::vector<Explanation> simpler = Sets(task, "AXIS", options).in_simpler_formulas(whole, 0, bare);
+  ASSERT_EQ(simpler.size(), 1U);
+  EXPECT_EQ(simpler.front().names(), std::vector<std::string>{"coulomb_friction"});
+  const std::optional<Index> level = place_in_fit(task, simpler.front(), simpler.front().variant.further.front().path);
+  ASSERT_TRUE(level);
+  EXPECT_NEAR(simpler.front().fit.x[*level], 0.3, 0.01);
+  EXPECT_LT(simpler.front().fit.cost, 1.1 * 0.5 * 2000.0);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

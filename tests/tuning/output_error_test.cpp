@@ -150,6 +150,30 @@ TEST_P(OutputErrorCases, StandardErrorsCoverTheTruthOverFiftySeeds) {
   }
 }
 
+/// The Jacobian at a point, whose residuals are those of the plain rollout to the bit and whose columns are the slopes
+/// of central differences.
+Eigen::MatrixXd checked_jacobian(detail::Rollout& rollout, const Eigen::VectorXd& x) {
+  Eigen::VectorXd plain(rollout.residual_count());
+  Eigen::VectorXd dual(rollout.residual_count());
+  Eigen::MatrixXd jacobian(rollout.residual_count(), x.size());
+  EXPECT_TRUE(rollout.residuals(x, plain, nullptr));
+  EXPECT_TRUE(rollout.residuals(x, dual, &jacobian));
+  EXPECT_TRUE((plain.array() == dual.array()).all());
+  for (Index j = 0; j < x.size(); ++j) {
+    const double step = 1e-6 * std::fabs(x[j]);
+    Eigen::VectorXd beside = x;
+    beside[j] += step;
+    Eigen::VectorXd above = plain;
+    EXPECT_TRUE(rollout.residuals(beside, above, nullptr));
+    beside[j] -= 2.0 * step;
+    Eigen::VectorXd below = plain;
+    EXPECT_TRUE(rollout.residuals(beside, below, nullptr));
+    const Eigen::VectorXd slope = (above - below) / (2.0 * step);
+    EXPECT_LT((slope - jacobian.col(j)).norm(), 1e-5 * jacobian.col(j).norm()) << j;
+  }
+  return jacobian;
+}
+
 TEST_P(OutputErrorCases, DualRolloutHasThePlainValuesAndTheSlopesOfDifferences) {
   const Case one = GetParam()();
   const Program truth = program_of(one.diagram, one.truth);
@@ -159,24 +183,7 @@ TEST_P(OutputErrorCases, DualRolloutHasThePlainValuesAndTheSlopesOfDifferences) 
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     x[static_cast<Index>(j)] = 1.01 * problem.parameters[j].start + 0.001;
   }
-  Eigen::VectorXd plain(rollout.residual_count());
-  Eigen::VectorXd dual(rollout.residual_count());
-  Eigen::MatrixXd jacobian(rollout.residual_count(), x.size());
-  ASSERT_TRUE(rollout.residuals(x, plain, nullptr));
-  ASSERT_TRUE(rollout.residuals(x, dual, &jacobian));
-  EXPECT_TRUE((plain.array() == dual.array()).all());
-  for (Index j = 0; j < x.size(); ++j) {
-    const double step = 1e-6 * std::fabs(x[j]);
-    Eigen::VectorXd beside = x;
-    beside[j] += step;
-    Eigen::VectorXd above = plain;
-    ASSERT_TRUE(rollout.residuals(beside, above, nullptr));
-    beside[j] -= 2.0 * step;
-    Eigen::VectorXd below = plain;
-    ASSERT_TRUE(rollout.residuals(beside, below, nullptr));
-    const Eigen::VectorXd slope = (above - below) / (2.0 * step);
-    EXPECT_LT((slope - jacobian.col(j)).norm(), 1e-5 * jacobian.col(j).norm()) << j;
-  }
+  (void)checked_jacobian(rollout, x);
 }
 
 INSTANTIATE_TEST_SUITE_P(Diagrams, OutputErrorCases, ::testing::Values(&stack_case, &oven_case, &axis_case));
@@ -218,19 +225,7 @@ TEST(Restarts, HaveColumnsOfTheirOwn) {
   detail::Rollout rollout(problem);
   Eigen::VectorXd x(7);
   x << 1.9, 0.1, -0.2, 0.3, 1.0, -0.4, 2.0;
-  Eigen::VectorXd plain(rollout.residual_count());
-  Eigen::VectorXd dual(rollout.residual_count());
-  Eigen::MatrixXd jacobian(rollout.residual_count(), x.size());
-  ASSERT_TRUE(rollout.residuals(x, plain, nullptr));
-  ASSERT_TRUE(rollout.residuals(x, dual, &jacobian));
-  EXPECT_TRUE((plain.array() == dual.array()).all());
-  for (Index j = 0; j < x.size(); ++j) {
-    Eigen::VectorXd beside = x;
-    beside[j] += 1e-5;
-    Eigen::VectorXd above = plain;
-    ASSERT_TRUE(rollout.residuals(beside, above, nullptr));
-    EXPECT_LT(((above - plain) / 1e-5 - jacobian.col(j)).cwiseAbs().maxCoeff(), 1e-6) << j;
-  }
+  const Eigen::MatrixXd jacobian = checked_jacobian(rollout, x);
   // Before its stretch and behind it a state has no influence.
   EXPECT_EQ(jacobian.col(3).head(100).norm(), 0.0);
   EXPECT_GT(jacobian.col(3).segment(101, 149).norm(), 0.0);

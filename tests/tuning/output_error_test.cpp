@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "records/csv.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
+#include "tests/tuning/measured_machines.hpp"
 #include "tests/tuning/output_error_diagrams.hpp"
 #include "tuning/rollout.hpp"
 
@@ -23,57 +22,9 @@ namespace {
 
 using Eigen::Index;
 using namespace output_error_diagrams;
+using namespace measured_machines;
 using records::Record;
 using ::testing::HasSubstr;
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
-
-Program program_of(std::string_view text, std::string_view settings = {}) {
-  Program program = compile_text(std::string(text));
-  parameters::apply(parameters::parse_parameter_file("truth.toml", settings), program.graph);
-  return program;
-}
-
-Record inputs(std::string name, double sample_time, std::size_t rows, double (*signal)(double)) {
-  Record record = Record::even(0.0, sample_time, rows);
-  std::vector<double> values;
-  for (std::size_t k = 0; k < rows; ++k) {
-    values.push_back(signal(static_cast<double>(k) * sample_time));
-  }
-  record.add({.name = std::move(name), .values = std::move(values)});
-  return record;
-}
-
-class Noise {
- public:
-  explicit Noise(unsigned seed) : engine_(seed) {}
-  double operator()() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(two_pi * uniform());
-  }
-  double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-/// The record with the outputs of a program, and noise on them.
-Record measured(const Program& truth, Record record, std::vector<double> deviations = {}, unsigned seed = 1) {
-  Noise noise(seed);
-  auto outputs = simulate(truth, record);
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    for (double& value : outputs[i]) {
-      value += deviations.empty() ? 0.0 : deviations[i] * noise();
-    }
-    record.add({.name = truth.graph.outputs[i].name, .values = std::move(outputs[i])});
-  }
-  return record;
-}
-
-OutputErrorProblem problem_of(std::string_view diagram, std::string_view settings, std::vector<Record> records) {
-  return output_error_problem(compile_text(std::string(diagram)), parameters::parse_parameter_file("p.toml", settings),
-                              records);
-}
 
 double truth_of(const Program& truth, const std::string& name) {
   return truth.graph.parameters[static_cast<std::size_t>(find_parameter(truth.graph, name))].value.front();
@@ -150,30 +101,6 @@ TEST_P(OutputErrorCases, StandardErrorsCoverTheTruthOverFiftySeeds) {
   }
 }
 
-/// The Jacobian at a point, whose residuals are those of the plain rollout to the bit and whose columns are the slopes
-/// of central differences.
-Eigen::MatrixXd checked_jacobian(detail::Rollout& rollout, const Eigen::VectorXd& x) {
-  Eigen::VectorXd plain(rollout.residual_count());
-  Eigen::VectorXd dual(rollout.residual_count());
-  Eigen::MatrixXd jacobian(rollout.residual_count(), x.size());
-  EXPECT_TRUE(rollout.residuals(x, plain, nullptr));
-  EXPECT_TRUE(rollout.residuals(x, dual, &jacobian));
-  EXPECT_TRUE((plain.array() == dual.array()).all());
-  for (Index j = 0; j < x.size(); ++j) {
-    const double step = 1e-6 * std::fabs(x[j]);
-    Eigen::VectorXd beside = x;
-    beside[j] += step;
-    Eigen::VectorXd above = plain;
-    EXPECT_TRUE(rollout.residuals(beside, above, nullptr));
-    beside[j] -= 2.0 * step;
-    Eigen::VectorXd below = plain;
-    EXPECT_TRUE(rollout.residuals(beside, below, nullptr));
-    const Eigen::VectorXd slope = (above - below) / (2.0 * step);
-    EXPECT_LT((slope - jacobian.col(j)).norm(), 1e-5 * jacobian.col(j).norm()) << j;
-  }
-  return jacobian;
-}
-
 TEST_P(OutputErrorCases, DualRolloutHasThePlainValuesAndTheSlopesOfDifferences) {
   const Case one = GetParam()();
   const Program truth = program_of(one.diagram, one.truth);
@@ -187,70 +114,6 @@ TEST_P(OutputErrorCases, DualRolloutHasThePlainValuesAndTheSlopesOfDifferences) 
 }
 
 INSTANTIATE_TEST_SUITE_P(Diagrams, OutputErrorCases, ::testing::Values(&stack_case, &oven_case, &axis_case));
-
-/// A cart: force over mass, speed and place, which is measured.
-constexpr std::string_view cart =
-    "FUNCTION_BLOCK CART (* @ts 10ms *) VAR_INPUT F : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR "
-    "VAR G : HY_GAIN := (K := 2.0); VEL : HY_INTEGRAL_FORWARD; POS : HY_INTEGRAL_FORWARD; END_VAR "
-    "G(XIN := F); POS(XIN := VEL.XOUT); VEL(XIN := G.XOUT); Y := POS.XOUT; END_FUNCTION_BLOCK";
-
-OutputErrorProblem cart_in_stretches(const Record& record) {
-  OutputErrorProblem problem =
-      problem_of(cart, "[fit.G]\nK = {}\n[tune]\ninitial_states = [\"VEL.SUM\", \"POS.SUM\"]\n", {record});
-  problem.experiments.front().restarts = {100, 250};
-  return problem;
-}
-
-Record cart_record() {
-  return measured(program_of(cart), inputs("f", 0.01, 400, [](double t) { return std::sin(3.0 * t); }));
-}
-
-TEST(Restarts, StandWhereTheModelIsByItself) {
-  const OutputErrorProblem problem = cart_in_stretches(cart_record());
-  detail::Rollout rollout(problem);
-  ASSERT_EQ(rollout.unknowns(), 1 + 2 * 3);
-  Eigen::VectorXd x(7);
-  x[0] = 2.0;
-  const std::vector<double> own = rollout.own_states(x.head(1));
-  ASSERT_EQ(own.size(), 6U);
-  std::ranges::copy(own, x.data() + 1);
-  Eigen::VectorXd residuals(rollout.residual_count());
-  ASSERT_TRUE(rollout.residuals(x, residuals, nullptr));
-  EXPECT_LT(residuals.cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(rollout.outputs(x, 0).front().size(), 400U);
-}
-
-TEST(Restarts, HaveColumnsOfTheirOwn) {
-  const OutputErrorProblem problem = cart_in_stretches(cart_record());
-  detail::Rollout rollout(problem);
-  Eigen::VectorXd x(7);
-  x << 1.9, 0.1, -0.2, 0.3, 1.0, -0.4, 2.0;
-  const Eigen::MatrixXd jacobian = checked_jacobian(rollout, x);
-  // Before its stretch and behind it a state has no influence.
-  EXPECT_EQ(jacobian.col(3).head(100).norm(), 0.0);
-  EXPECT_GT(jacobian.col(3).segment(101, 149).norm(), 0.0);
-  EXPECT_EQ(jacobian.col(3).tail(150).norm(), 0.0);
-}
-
-/// Somebody moved the cart at the 100th row: over the whole record the gain pays for it, in stretches it does not.
-TEST(Restarts, KeepWhatHappenedInOneStretchOutOfTheOthers) {
-  Record moved = Record::even(0.0, 0.01, 400);
-  const Record record = cart_record();
-  for (records::Column column : record.columns()) {
-    if (column.name == "Y") {
-      for (std::size_t k = 100; k < 400; ++k) {
-        column.values[k] += 0.5 + 0.02 * static_cast<double>(k - 100);
-      }
-    }
-    moved.add(std::move(column));
-  }
-  const OutputErrorFit fit = fit_output_error(cart_in_stretches(moved));
-  EXPECT_NEAR(fit.solution.x[0], 2.0, 1e-6);
-  EXPECT_THAT(fit.names[3], HasSubstr("VEL.SUM at t = 1 s"));
-  OutputErrorProblem whole = cart_in_stretches(moved);
-  whole.experiments.front().restarts.clear();
-  EXPECT_GT(std::fabs(fit_output_error(whole).solution.x[0] - 2.0), 0.05);
-}
 
 /// More unknowns than one pass of dual numbers has: ten gains, each on an input of its own frequency.
 TEST(OutputError, MoreParametersThanOnePassHolds) {

@@ -14,6 +14,24 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 
+class Peers(unittest.TestCase):
+    """The peers need the product, and say so where they do not find it or it refuses."""
+
+    def test_a_product_that_is_not_there_or_refuses(self) -> None:
+        for peer in ("sparse", "largest"):
+            for product, said in (("/no/such/hysteron", "name the product"), ("/bin/false", "ended with 1")):
+                with self.subTest(peer=peer, product=product), tempfile.TemporaryDirectory() as folder:
+                    log = Path(folder) / "log.csv"
+                    log.write_text("t,U,Y\n0,0,0\n1,1,1\n")
+                    command = [str(ROOT / "trials" / "peers" / peer), "diagnose", "plant.st", "--log", str(log), "--params", "params.toml"]
+                    done = subprocess.run(
+                        [*command, "--out", f"{folder}/out", f"--hysteron={product}"], capture_output=True, text=True, check=False
+                    )
+                    self.assertEqual(done.returncode, 1)
+                    self.assertIn(said, done.stderr)
+                    self.assertNotIn("Traceback", done.stderr)
+
+
 class Generate(unittest.TestCase):
     """What `trials/generate` refuses, and how it ends."""
 

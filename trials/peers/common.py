@@ -6,6 +6,7 @@ import argparse
 import csv
 import json
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -60,13 +61,23 @@ def read(path: Path) -> dict[str, np.ndarray]:
     return {name: values[:, i] for i, name in enumerate(head)}
 
 
+def run_product(command: list[str]) -> None:
+    """Runs the product, or ends with what it said."""
+    try:
+        done = subprocess.run(command, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    except OSError as fault:
+        sys.exit(f"--hysteron {command[0]}: {fault.strerror}; name the product, as --hysteron=build/hysteron")
+    if done.returncode:
+        sys.exit(f"{' '.join(command)} ended with {done.returncode}:\n{done.stderr}")
+
+
 def load(diagram: Path, log: Path, parameters: Path, product: str) -> Record:
     """Reads a log and runs the nominal model over it."""
     columns = read(log)
     with tempfile.TemporaryDirectory(prefix="peer-") as name:
         out = Path(name) / "out.csv"
         command = [product, "run", str(diagram), "--in", str(log), "--out", str(out), "--params", str(parameters)]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        run_product(command)
         model = read(out)
     outputs = [name for name in model if name != "t" and name in columns]
     inputs = {name: x for name, x in columns.items() if name not in ("t", *outputs)}

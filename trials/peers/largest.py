@@ -5,12 +5,11 @@ held-out blocks, rivals, combinations."""
 from __future__ import annotations
 
 import json
-import subprocess
 import tempfile
 import time
 from pathlib import Path
 
-from trials.peers.common import arguments, leave
+from trials.peers.common import arguments, leave, run_product
 
 
 def closed(gap: dict, improved: float) -> float:
@@ -42,6 +41,6 @@ def main(title: str) -> int:
     with tempfile.TemporaryDirectory(prefix="peer-") as name:
         logs = [part for log in given.log for part in ("--log", str(log))]
         command = [given.hysteron, "diagnose", str(given.diagram), *logs, "--params", str(given.params), "--out", name, "--most", "1"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        run_product(command)
         found = json.loads((Path(name) / "verdict.json").read_text())
     return leave(given.out, verdict(found, time.monotonic() - started))

@@ -135,6 +135,15 @@ std::vector<std::string> dynamic_states(const Graph& graph) {
   return result;
 }
 
+void free_too(Task& task, std::vector<std::string> states) {
+  for (std::string& state : states) {
+    if (std::ranges::none_of(task.initial_states,
+                             [&](const std::string& given) { return language::same_name(given, state); })) {
+      task.initial_states.push_back(std::move(state));
+    }
+  }
+}
+
 VectorXd trace_of(const MatrixXd& jacobian, Index first, Index states, Index state) {
   VectorXd trace = VectorXd::Zero(jacobian.rows());
   for (Index column = first + state; column < jacobian.cols(); column += states) {
@@ -184,12 +193,7 @@ std::vector<std::string> visible_states(const Task& task, const Explanation& cal
 std::optional<Task> with_free_start(const Task& task, const Search& search, const Judgement& judgement,
                                     double floor_cost, unsigned threads) {
   Task free = task;
-  for (std::string& state : visible_states(task, search.calibrated)) {
-    if (std::ranges::none_of(task.initial_states,
-                             [&](const std::string& given) { return language::same_name(given, state); })) {
-      free.initial_states.push_back(std::move(state));
-    }
-  }
+  free_too(free, visible_states(task, search.calibrated));
   if (free.initial_states.size() == task.initial_states.size()) {
     return std::nullopt;
   }

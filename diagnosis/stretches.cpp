@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "codegen/language/syntax.hpp"
 #include "diagnosis/start_state.hpp"
 
 namespace hysteron::diagnosis {
@@ -86,12 +85,7 @@ std::optional<Task> in_stretches(const Task& task, const Explanation& calibrated
   auto stretches = std::make_shared<Shooting>(Shooting{.restarts = restarts_of(task)});
   const Program& program = *calibrated.variant.program;
   Task cut = task;
-  for (std::string& state : dynamic_states(program.graph)) {
-    if (std::ranges::none_of(task.initial_states,
-                             [&](const std::string& given) { return language::same_name(given, state); })) {
-      cut.initial_states.push_back(std::move(state));
-    }
-  }
+  free_too(cut, dynamic_states(program.graph));
   if (std::ranges::all_of(stretches->restarts, [](const auto& one) { return one.empty(); }) ||
       cut.initial_states.empty()) {
     return std::nullopt;

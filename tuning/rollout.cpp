@@ -102,6 +102,17 @@ void Rollout::load_states(Machine<S>& machine, const VectorXd& x, std::size_t ex
 }
 
 template <class S>
+bool Rollout::restarts(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::size_t step,
+                       std::size_t& start, std::span<const Index> columns) {
+  const std::vector<std::size_t>& steps = problem_.experiments[experiment].restarts;
+  if (start == steps.size() || step != steps[start]) {
+    return false;
+  }
+  load_states(machine, x, experiment, ++start, columns);
+  return true;
+}
+
+template <class S>
 void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
   for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
     const FreeParameter& free = problem_.parameters[j];
@@ -126,13 +137,14 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
                    VectorXd& residuals, MatrixXd* jacobian) {
   prepare(machine, x, experiment, columns);
   const Experiment& record = problem_.experiments[experiment];
+  std::vector<Index> targets(columns.begin(), columns.end());
   std::size_t step = 0;
   std::size_t start = 0;
   Index row = 0;
   for (const records::RowRange& range : record.train) {
     for (; step < range.last; ++step) {
-      if (start < record.restarts.size() && step == record.restarts[start]) {
-        load_states(machine, x, experiment, ++start, columns);
+      if (restarts(machine, x, experiment, step, start, columns)) {
+        std::ranges::transform(columns, targets.begin(), [&](Index column) { return column_at(column, start); });
       }
       drive(machine, record.drive, step);
       machine.step();
@@ -150,7 +162,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
         residuals[at] = (value - record.measured[output][step]) / scale;
         if constexpr (Width<S>::value > 0) {
           for (std::size_t k = 0; k < columns.size(); ++k) {
-            (*jacobian)(at, column_at(columns[k], start)) = y.derivative(static_cast<int>(k)) / scale;
+            (*jacobian)(at, targets[k]) = y.derivative(static_cast<int>(k)) / scale;
           }
         }
       }
@@ -205,13 +217,10 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
 std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) {
   prepare<double>(plain_, x, experiment, {});
   const Drive& inputs = problem_.experiments[experiment].drive;
-  const std::vector<std::size_t>& restarts = problem_.experiments[experiment].restarts;
   std::vector<Signal> result(problem_.outputs.size(), Signal(inputs.steps));
   std::size_t start = 0;
   for (std::size_t step = 0; step < inputs.steps; ++step) {
-    if (start < restarts.size() && step == restarts[start]) {
-      load_states<double>(plain_, x, experiment, ++start, {});
-    }
+    (void)restarts<double>(plain_, x, experiment, step, start, {});
     drive(plain_, inputs, step);
     plain_.step();
     for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {

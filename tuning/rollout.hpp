@@ -57,6 +57,10 @@ class Rollout {
   template <class S>
   void load_states(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t start,
                    std::span<const Eigen::Index> columns);
+  /// Whether a record restarts at this step; then `start` is counted on and its states are loaded.
+  template <class S>
+  bool restarts(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t step,
+                std::size_t& start, std::span<const Eigen::Index> columns);
   [[nodiscard]] Eigen::Index state_column(std::size_t experiment, std::size_t start, std::size_t state) const;
   /// Of what is in this column at start 0.
   [[nodiscard]] Eigen::Index column_at(Eigen::Index column, std::size_t start) const;

@@ -11,7 +11,7 @@ struct CoulombFriction {
       .name = "HY_COULOMB_FRICTION",
       .title = "Coulomb friction",
       .group = Group::Dynamics,
-      .equation = "XOUT(k) = XIN(k) − LEVEL·z(k), z(k) = max(−1, min(1, z(k−1) + TS·V(k)/PRESLIDE))",
+      .equation = "XOUT(k) = XIN(k) − LEVEL·z(k), z(k) = max(−1, min(1, z(k−1) + TS·(3·V(k) − V(k−1))/(2·PRESLIDE)))",
       .meaning =
           "Dry friction, taken off a driving force: LEVEL against the motion once the travel after a reversal exceeds "
           "2·PRESLIDE, and elastic before that, so that it holds at rest without chatter. V is the velocity that "
@@ -33,13 +33,7 @@ struct CoulombFriction {
     }
   };
   template <class S>
-  struct State {
-    S STOP;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1")};
-    }
-  };
+  using State = DryFrictionState<S>;
   template <class S>
   using In = FrictionIn<S>;
   template <class S>
@@ -47,15 +41,15 @@ struct CoulombFriction {
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
-    return {.STOP = S(0.0)};
+    return {.STOP = S(0.0), .V1 = S(0.0)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * stop_operator(state.STOP, in.V, params.PRESLIDE, ts)))};
+    return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * stop_operator(state, in.V, params.PRESLIDE, ts)))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    state.STOP = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
+    state = {.STOP = stop_operator(state, in.V, params.PRESLIDE, ts), .V1 = in.V};
   }
 };
 

@@ -20,13 +20,25 @@ struct FrictionIn {
 template <class S>
 using FrictionOut = Xout<S, "'x", "force that is left for the motion">;
 
-/// The part of the dry friction that acts, −1 to 1, after one that did a step ago. It follows the travel ∫V dt with the
-/// slope 1/preslide, and stops at ±1 (L. Prandtl's elasto-plastic element): at rest it holds any force up to the whole
-/// friction, and a reversal turns it over within a travel of 2·preslide. The velocity is that of the same step: a step
-/// late, an axis at rest would swing about it, the more the stiffer it is held.
 template <class S>
-S stop_operator(const S& acting, const S& velocity, const S& preslide, const S& ts) {
-  return max(min(acting + velocity * ts / preslide, S(1.0)), S(-1.0));
+struct DryFrictionState {
+  S STOP;
+  S V1;
+  using Self = DryFrictionState;
+  static constexpr auto fields() {
+    return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1"),
+                      HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one sample ago")};
+  }
+};
+
+/// The part of the dry friction that acts, −1 to 1. It follows the travel ∫V dt with the slope 1/preslide, and stops at
+/// ±1 (L. Prandtl's elasto-plastic element): at rest it holds any force up to the whole friction, and a reversal turns
+/// it over within a travel of 2·preslide. What it does in a step is right on average with the velocity in the middle of
+/// the step, (3·V(k) − V(k−1))/2 (J. C. Adams' extrapolation). With that of the beginning a reversal would come half a
+/// step late, and an axis at rest would swing about it, undamped.
+template <class S>
+S stop_operator(const DryFrictionState<S>& state, const S& velocity, const S& preslide, const S& ts) {
+  return max(min(state.STOP + (S(1.5) * velocity - S(0.5) * state.V1) * ts / preslide, S(1.0)), S(-1.0));
 }
 
 }  // namespace hysteron

@@ -13,7 +13,7 @@ struct StribeckFriction {
       .group = Group::Dynamics,
       .equation =
           "XOUT(k) = XIN(k) − LEVEL·(1 + STICTION·exp(−(V(k)/V_STRIBECK)²))·z(k), "
-          "z(k) = max(−1, min(1, z(k−1) + TS·V(k)/PRESLIDE))",
+          "z(k) = max(−1, min(1, z(k−1) + TS·(3·V(k) − V(k−1))/(2·PRESLIDE)))",
       .meaning =
           "Dry friction that is larger by the share STICTION at low velocity, as of a lubricated guide: it is the "
           "cause of stick-slip. With STICTION = 0 it is HY_COULOMB_FRICTION. V is the velocity that has come about "
@@ -42,13 +42,7 @@ struct StribeckFriction {
     }
   };
   template <class S>
-  struct State {
-    S STOP;
-    using Self = State;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1")};
-    }
-  };
+  using State = DryFrictionState<S>;
   template <class S>
   using In = FrictionIn<S>;
   template <class S>
@@ -56,18 +50,18 @@ struct StribeckFriction {
 
   template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
-    return {.STOP = S(0.0)};
+    return {.STOP = S(0.0), .V1 = S(0.0)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
     const S slip = in.V / params.V_STRIBECK;
     const S sticking = S(1.0) + params.STICTION * exp(-(slip * slip));
-    const S acting = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
+    const S acting = stop_operator(state, in.V, params.PRESLIDE, ts);
     return {.XOUT = with_term<S>(in.XIN, -(params.LEVEL * sticking * acting))};
   }
   template <class S>
   static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    state.STOP = stop_operator(state.STOP, in.V, params.PRESLIDE, ts);
+    state = {.STOP = stop_operator(state, in.V, params.PRESLIDE, ts), .V1 = in.V};
   }
 };
 

@@ -79,10 +79,17 @@ class Friction(unittest.TestCase):
         axis = Axis(1e-4, 0.0, friction.coulomb(2.0), None)
         axis.v = 1.0
         positions, speeds = axis.run([0.0] * 20000)
-        self.assertAlmostEqual(positions[-1], 0.25, delta=2e-4)  # v^2 / (2 F)
+        self.assertAlmostEqual(positions[-1], 0.25, places=9)  # v^2 / (2 F)
         self.assertEqual(speeds[-1], 0.0)
         self.assertEqual(axis.run([1.99] * 1000)[1][-1], 0.0)
         self.assertGreater(axis.run([2.5] * 1000)[1][-1], 0.0)
+
+    def test_coulomb_reverses_between_two_sub_steps(self) -> None:
+        axis = Axis(1e-2, 0.0, friction.coulomb(2.0), None)
+        axis.v = 1.0
+        positions, speeds = axis.run([-6.0] * 100)  # at rest after 1/8 s, and then -4 rad/s^2
+        self.assertAlmostEqual(speeds[-1], -4.0 * 0.875, places=12)
+        self.assertAlmostEqual(positions[-1], 1.0 / 16 - 2.0 * 0.875**2, places=12)
 
     def test_presliding_laws_reach_their_level(self) -> None:
         for law in (friction.dahl(2.0, 500.0, 1e-4), friction.lugre(2.0, 3.0, 0.01, 500.0, 1.0, 1e-4), friction.maxwell_slip(2.0, 500.0, 1e-4)):

@@ -13,11 +13,11 @@ from trials.generator.plant import Injection, Plant, literal
 
 
 class Axis:
-    """The axis in continuous time: exact for a force that stands through a sub-step, with sticking found by the change of
-    sign of the speed and the drive that is then too weak."""
+    """The axis in continuous time: exact for a force that stands through a sub-step, with the instant of rest found by the
+    change of sign of the speed, and sticking by the drive that is then too weak."""
 
     def __init__(self, dt: float, damping: float, law: fr.Law | None, cogging: tuple[float, float, int] | None) -> None:
-        self.dt, self.law, self.cogging = dt, law, cogging
+        self.dt, self.damping, self.law, self.cogging = dt, damping, law, cogging
         self.keep = math.exp(-damping * dt)
         self.take = (1.0 - self.keep) / damping if damping > 0.0 else dt
         self.x = self.v = 0.0
@@ -36,25 +36,35 @@ class Axis:
                 f -= torque * math.sin(angle)
                 if harmonics > 1:
                     f -= 0.3 * torque * math.sin(2.0 * angle + 0.7)
-            before = v
-            if force is None:
-                v = keep * v + take * f
-            elif breakaway == 0.0:
-                v = keep * v + take * (f - force(v))
-            elif v == 0.0:
-                if f > breakaway:
-                    v = take * (f - breakaway)
-                elif f < -breakaway:
-                    v = take * (f + breakaway)
+            if breakaway > 0.0:
+                travel, v = self.through_rest(v, f)
             else:
-                v = keep * v + take * (f - force(v))
-                if v * before < 0.0:
-                    v = 0.0  # comes to rest; the next sub-step decides whether it leaves
-            x += half * (before + v)
+                before = v
+                v = keep * v + take * (f - force(v) if force else f)
+                travel = half * (before + v)
+            x += travel
             positions.append(x)
             speeds.append(v)
         self.x, self.v = x, v
         return positions, speeds
+
+    def through_rest(self, v: float, drive: float) -> tuple[float, float]:
+        """Travel in a sub-step, and the speed after it, under dry friction. Where the speed passes 0 the axis stands, and
+        goes on from there in what is left of the sub-step if the drive exceeds what breaks it loose."""
+        travel, left, law = 0.0, self.dt, self.law
+        for _ in range(2):
+            if v == 0.0 and abs(drive) <= law.breakaway:
+                return travel, 0.0
+            friction = law.force(v) if v != 0.0 else math.copysign(law.breakaway, drive)
+            decay = 1.0 if self.damping == 0.0 else math.exp(-self.damping * left)
+            end = decay * v + (left if self.damping == 0.0 else (1.0 - decay) / self.damping) * (drive - friction)
+            if end * v >= 0.0:
+                return travel + 0.5 * left * (v + end), end
+            until = left * v / (v - end)  # the speed is a straight line within so short a time
+            travel += 0.5 * until * v
+            left -= until
+            v = 0.0
+        return travel, v
 
 
 def _none(x, c, size, rng):

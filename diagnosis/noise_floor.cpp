@@ -23,6 +23,20 @@ double smallest_step(std::vector<double> values) {
   return std::isfinite(step) ? step : 0.0;
 }
 
+/// Of the samples that differ from the last one, the share that does so by whole steps, to a thousandth.
+double share_of_whole_steps(const std::vector<double>& values, double step) {
+  std::size_t moved = 0;
+  std::size_t whole = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double steps = (values[k] - values[k - 1]) / step;
+    if (std::abs(steps) > 1e-3) {
+      ++moved;
+      whole += std::abs(steps - std::round(steps)) < 1e-3 ? 1 : 0;
+    }
+  }
+  return moved > 0 ? static_cast<double>(whole) / static_cast<double>(moved) : 0.0;
+}
+
 /// The least for an estimate, in samples.
 constexpr std::size_t fewest = 60;
 
@@ -187,8 +201,9 @@ double noise_by_differences(const std::vector<double>& values) {
 }
 
 double noise_off_steps(const std::vector<double>& values) {
+  constexpr double rounded_last = 0.1;  // noise behind the rounding leaves no whole steps; a mended record, many
   const double step = common_step(values);
-  if (!(step > 0.0)) {
+  if (!(step > 0.0) || share_of_whole_steps(values, step) > rounded_last) {
     return 0.0;
   }
   // Of a normal deviation σ the mean of the turned values is exp(−2π²σ²/step²) long. Values on the steps themselves,

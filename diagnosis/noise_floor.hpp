@@ -34,7 +34,7 @@ struct NoiseFloor {
 };
 
 /// √(−2 ln |mean exp(2πi y/q)|)·q/2π, of values on steps q with noise behind the rounding; 0 where there are no steps,
-/// or the values lie on them.
+/// or the values lie on them, but for stretches that were mended afterwards.
 [[nodiscard]] double noise_off_steps(const std::vector<double>& values);
 
 /// For one measured output over all records. `others`: by record, what else was logged, and moves the machine perhaps.

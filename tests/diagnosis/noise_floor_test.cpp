@@ -215,6 +215,22 @@ TEST(NoiseFloor, BehindARoundingIsWhatLiesOffItsSteps) {
   EXPECT_EQ(noise_off_steps(over_time(4000, slow_sine)), 0.0);
 }
 
+TEST(NoiseFloor, DecaysTakenOffRoundedValuesAreNoNoiseBehindTheRounding) {
+  constexpr double quantum = 0.03;
+  const std::vector<double> noise = test::Noise(8).white(4000, 0.02);
+  auto y = over_time(4000, slow_sine);
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    y[k] = quantum * std::round((y[k] + noise[k]) / quantum);
+  }
+  for (std::size_t first = 400; first < y.size(); first += 200) {
+    for (std::size_t k = first; k < y.size(); ++k) {
+      y[k] -= 0.8 * std::exp(-static_cast<double>(k - first) / 2.5);
+    }
+  }
+  EXPECT_EQ(noise_off_steps(y), 0.0);
+  EXPECT_GT(noise_floor(experiment(over_time(4000, chirp), y), 0).value, 0.015);
+}
+
 TEST(NoiseFloor, WithoutNoiseIsSmallButAboveZero) {
   const auto sine = [](double t) { return std::sin(test::two_pi * 0.5 * t); };
   for (const auto& input : {over_time(4000, sine), over_time(4000, chirp)}) {

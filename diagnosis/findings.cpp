@@ -243,14 +243,12 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
 }
 
 std::vector<Rival> rival_findings(const Findings& findings) {
+  const std::vector<Weighed>& rivals = findings.judgement.rivals;
+  const std::vector<double> probability = probabilities(rivals);
   std::vector<Rival> result;
-  double total = 0.0;
-  for (const Weighed& weighed : findings.judgement.rivals) {
-    result.push_back(rival_of(findings.task, findings.gap_output, weighed));
-    total += result.back().probability;
-  }
-  for (Rival& rival : result) {
-    rival.probability /= total;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    result.push_back(rival_of(findings.task, findings.gap_output, rivals[i]));
+    result.back().probability = probability[i];
   }
   return result;
 }

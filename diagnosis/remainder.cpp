@@ -86,4 +86,10 @@ Remainder remainder_of(const Model& model, const VectorXd& calibrated, const Vec
   return result;
 }
 
+double unknown_score(const Remainder& left, double named) {
+  const double open = std::pow(left.open, 0.25) * left.excess;
+  const double in_doubt = (1.0 - named) * left.excess;
+  return 1.0 - (1.0 - open) * (1.0 - in_doubt);
+}
+
 }  // namespace hysteron::diagnosis

@@ -44,4 +44,9 @@ struct Remainder {
 [[nodiscard]] Remainder remainder_of(const Model& model, const VectorXd& calibrated, const VectorXd& left,
                                      const std::vector<double>& noise);
 
+/// 0 to 1: what was called noise or an effect is neither. The fourth root of the share that stays open, times the
+/// excess; likewise, where an excess is left, the doubt which of several sets it is: none may be the cause. `named`:
+/// the probability of the named set among its rivals, 1 without any.
+[[nodiscard]] double unknown_score(const Remainder& left, double named);
+
 }  // namespace hysteron::diagnosis

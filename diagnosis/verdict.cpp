@@ -257,6 +257,19 @@ void choose_instead(const Task& task, const Explanation& one, Judgement& judgeme
   judgement.rivals = {{.explanation = &one, .support = 0.0}};
 }
 
+std::vector<double> probabilities(std::span<const Weighed> rivals) {
+  std::vector<double> result;
+  double total = 0.0;
+  for (const Weighed& one : rivals) {
+    result.push_back(std::exp(std::min(0.0, one.support)));
+    total += result.back();
+  }
+  for (double& probability : result) {
+    probability /= total;
+  }
+  return result;
+}
+
 double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried) {
   const double penalty = 0.5 * static_cast<double>(parameters) * std::log(std::max(2.0, samples)) +
                          static_cast<double>(effects) * std::log(static_cast<double>(std::max<std::size_t>(2, tried)));

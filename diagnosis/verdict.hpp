@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ struct Weighed {
   const Explanation* explanation = nullptr;
   double support = 0.0;  ///< L(S) less that of the best
 };
+
+/// Of each, among all of them: exp(support), to a sum of 1.
+[[nodiscard]] std::vector<double> probabilities(std::span<const Weighed> rivals);
 
 struct Judgement {
   const Explanation* chosen = nullptr;  ///< never null: the calibrated diagram, where no effect holds

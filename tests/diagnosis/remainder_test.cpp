@@ -44,5 +44,19 @@ TEST(Excess, IsTheEnergyBeyondWhatIsSuspicious) {
   EXPECT_NEAR(excess_of(2.0 * suspicious_from), 0.75, 1e-12);
 }
 
+TEST(UnknownScore, IsHigherWhereSeveralSetsLeaveTooMuchAlike) {
+  const Remainder much{.size = 3.0, .open = 0.01, .excess = 0.8};
+  const double named = unknown_score(much, 1.0);
+  EXPECT_NEAR(named, 0.8 * std::pow(0.01, 0.25), 1e-12);
+  const double one_of_two = unknown_score(much, 0.5);
+  EXPECT_NEAR(1.0 - one_of_two, (1.0 - named) * (1.0 - 0.5 * 0.8), 1e-12);
+  EXPECT_GT(unknown_score(much, 0.1), one_of_two);
+  EXPECT_LE(unknown_score({.size = 1e6, .open = 1.0, .excess = 1.0}, 0.0), 1.0);
+}
+
+TEST(UnknownScore, OfNoiseIsNoneHoweverManySetsExplainTheRest) {
+  EXPECT_EQ(unknown_score({.size = 1.0, .open = 0.5, .excess = 0.0}, 0.1), 0.0);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

@@ -459,6 +459,14 @@ bool Applied::has(Role role) const {
   return std::ranges::any_of(parameters, [&](const EffectParameter& one) { return one.role == role; });
 }
 
+bool Applied::holds(const Applied& other) const {
+  return other.parameters.size() < parameters.size() &&
+         std::ranges::all_of(other.parameters, [&](const EffectParameter& its) {
+           return std::ranges::any_of(
+               parameters, [&](const EffectParameter& own) { return own.name == its.name && own.role == its.role; });
+         });
+}
+
 const EffectParameter& Applied::parameter(const std::string& path) const {
   return parameters[static_cast<std::size_t>(std::ranges::find(paths, path) - paths.begin())];
 }

@@ -34,6 +34,8 @@ struct Applied {
   /// By one of its paths.
   [[nodiscard]] const EffectParameter& parameter(const std::string& path) const;
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
+  /// Whether the other one is a simpler formula of this: its parameters are some of these.
+  [[nodiscard]] bool holds(const Applied& other) const;
 };
 
 /// The edge of the user's diagram that an edge lies on: beside the block of another effect there is only the edge where

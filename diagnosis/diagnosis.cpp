@@ -353,8 +353,7 @@ class Run {
     const Remainder left = remainder_of(model, found.calibrated.fit.residuals, residuals, noise_);
     predictable_ = gap_left ? left.share : 0.0;
     unexplained_ = rms(residuals, gap_output_) / (floors_[gap_output_].value * noise_[gap_output_]);
-    const std::vector<double> among_rivals = probabilities(judgement.rivals);
-    result_.unknown_score = unknown_score(left, has_effect && !among_rivals.empty() ? among_rivals.front() : 1.0);
+    result_.unknown_score = unknown_score(left, probability_of_cause(judgement));
 
     if (!related_) {
       result_.verdict = Verdict::Unknown;

@@ -30,16 +30,6 @@ bool same_formula(const Applied& a, const Applied& b) {
   });
 }
 
-/// Whether one effect's parameters are some of another's, by name and by what they measure.
-bool holds(const Applied& whole, const Applied& part) {
-  return part.parameters.size() < whole.parameters.size() &&
-         std::ranges::all_of(part.parameters, [&](const EffectParameter& own) {
-           return std::ranges::any_of(whole.parameters, [&](const EffectParameter& other) {
-             return own.name == other.name && own.role == other.role;
-           });
-         });
-}
-
 bool has_effect(const Variant& variant, const std::string& effect) {
   return std::ranges::any_of(variant.effects, [&](const Applied& one) { return one.effect == effect; });
 }
@@ -143,7 +133,7 @@ std::vector<Explanation> Sets::in_simpler_formulas(const Explanation& whole, std
   }
   const std::string edge = in_the_diagram(wanted.edge, whole.variant.effects);
   for (Candidate& candidate : candidates_of(rest.variant, top_, options_)) {
-    if (!holds(wanted, candidate.own()) || candidate.own().wires != wanted.wires ||
+    if (!wanted.holds(candidate.own()) || candidate.own().wires != wanted.wires ||
         in_the_diagram(candidate.own().edge, candidate.variant.effects) != edge) {
       continue;
     }

@@ -270,6 +270,23 @@ std::vector<double> probabilities(std::span<const Weighed> rivals) {
   return result;
 }
 
+double probability_of_cause(const Judgement& judgement) {
+  const auto alike = [](const Applied& a, const Applied& b) {
+    return a.effect == b.effect || a.holds(b) || b.holds(a);
+  };
+  const std::vector<Applied>& chosen = judgement.chosen->variant.effects;
+  const std::vector<double> probability = probabilities(judgement.rivals);
+  double sum = judgement.rivals.empty() ? 1.0 : 0.0;
+  for (std::size_t i = 0; i < probability.size(); ++i) {
+    const std::vector<Applied>& rival = judgement.rivals[i].explanation->variant.effects;
+    const bool same = rival.size() == chosen.size() && std::ranges::all_of(chosen, [&](const Applied& one) {
+                        return std::ranges::any_of(rival, [&](const Applied& other) { return alike(one, other); });
+                      });
+    sum += same ? probability[i] : 0.0;
+  }
+  return sum;
+}
+
 double support_of(double cost, Index parameters, std::size_t effects, double samples, std::size_t tried) {
   const double penalty = 0.5 * static_cast<double>(parameters) * std::log(std::max(2.0, samples)) +
                          static_cast<double>(effects) * std::log(static_cast<double>(std::max<std::size_t>(2, tried)));

@@ -45,6 +45,9 @@ struct Judgement {
   double significance = 0.0;      ///< of the chosen set against the calibrated diagram, nats
 };
 
+/// Of the chosen set among its rivals, with those that are the same in a simpler or a richer formula; 1 without rivals.
+[[nodiscard]] double probability_of_cause(const Judgement& judgement);
+
 /// What a machine does that no diagram repeats, counted as explained: steps of unequal widths, a delay that varies.
 struct Unrepeatable {
   VectorXd residuals{};                      ///< of all outputs, without it

@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
@@ -50,6 +52,34 @@ Weight weight_of(double force) {
   return {.samples = judgement.weighing_samples,
           .effective = judgement.effective_samples,
           .gap = found.calibrated.fit.cost / floor_cost - 1.0};
+}
+
+/// An explanation by effects whose parameters have these names.
+Explanation explanation_of(const std::vector<std::pair<std::string, std::vector<std::string>>>& effects) {
+  Explanation result{};
+  for (const auto& [effect, names] : effects) {
+    Applied& one = result.variant.effects.emplace_back();
+    one.effect = effect;
+    for (const std::string& name : names) {
+      one.parameters.push_back({.name = name});
+    }
+  }
+  return result;
+}
+
+TEST(Verdict, ASimplerFormulaOfTheSameCauseIsNoDoubt) {
+  const Explanation richer = explanation_of({{"stribeck_friction", {"LEVEL", "STICTION"}}, {"lag", {"T1"}}});
+  const Explanation simpler = explanation_of({{"lag", {"T1"}}, {"coulomb_friction", {"LEVEL"}}});
+  const Explanation other = explanation_of({{"stribeck_friction", {"LEVEL", "STICTION"}}, {"delay", {"DEAD_TIME"}}});
+  const Explanation alone = explanation_of({{"lag", {"T1"}}});
+  Judgement judgement{.chosen = &richer,
+                      .rivals = {{.explanation = &richer}, {.explanation = &simpler, .support = 1.0}}};
+  EXPECT_NEAR(probability_of_cause(judgement), 1.0, 1e-12);
+  judgement.rivals.push_back({.explanation = &other});
+  judgement.rivals.push_back({.explanation = &alone, .support = -std::log(2.0)});
+  EXPECT_NEAR(probability_of_cause(judgement), 2.0 / 3.5, 1e-12);
+  judgement.rivals.clear();
+  EXPECT_EQ(probability_of_cause(judgement), 1.0);
 }
 
 TEST(Verdict, WeighsNoFinerThanFormulasAreTrue) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "codegen/trace/block_type.hpp"
+#include "diagnosis/seen_steps.hpp"
 #include "tuning/covariance.hpp"
 
 namespace hysteron::diagnosis {
@@ -31,6 +32,9 @@ constexpr double bends = 8.0;
 /// What an effect closes beside another one may be the error of that one's formula up to this share of the whole.
 constexpr double may_be_formula = 0.1;
 
+/// Nats that are the proof of an effect which the measured values show by themselves.
+constexpr double seen = 100.0;
+
 /// Nats between two ways to write one and the same effect.
 constexpr double same_to_the_last = 0.02;
 
@@ -50,7 +54,10 @@ std::pair<std::ptrdiff_t, std::size_t> unlikely(const Explanation& one) {
 class Judge {
  public:
   Judge(const Task& task, const Search& search, double floor_cost)
-      : task_(task), search_(search), floor_cost_(floor_cost) {}
+      : task_(task),
+        search_(search),
+        floor_cost_(floor_cost),
+        shows_steps_(search.calibrated.fit.residuals.size() > 0 && shows_steps(task, search.calibrated)) {}
 
   Judgement run() {
     Judgement result{.chosen = &search_.calibrated};
@@ -102,7 +109,10 @@ class Judge {
 
  private:
   [[nodiscard]] double support(const Explanation& one) const {
-    return support_of(one.fit.cost, one.parameters(), one.variant.effects.size(), samples_, search_.tried);
+    const bool denies_steps = shows_steps_ && std::ranges::find(one.variant.effects, "quantization",
+                                                                &Applied::effect) == one.variant.effects.end();
+    return support_of(one.fit.cost, one.parameters(), one.variant.effects.size(), samples_, search_.tried) -
+           (denies_steps ? seen : 0.0);
   }
 
   /// As many as tell two formulas apart that are equally near to the machine.
@@ -226,6 +236,7 @@ class Judge {
   const Task& task_;
   const Search& search_;
   double floor_cost_;
+  bool shows_steps_;
   double samples_ = 1.0;
   std::map<const Explanation*, VectorXd> unseen_{};
 };

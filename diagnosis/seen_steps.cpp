@@ -1,0 +1,42 @@
+#include "diagnosis/seen_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "diagnosis/noise_floor.hpp"
+#include "diagnosis/spectrum.hpp"
+#include "diagnosis/task.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+bool on_coarse_steps(const Signal& measured, const Signal& beyond) {
+  const double step = common_step(measured);
+  const auto [low, high] = std::ranges::minmax(measured);
+  if (step / std::sqrt(12.0) <= most_rounding * (high - low)) {
+    return false;
+  }
+  std::vector<double> foretold = measured;
+  std::ranges::transform(measured, beyond, foretold.begin(), std::plus<>());
+  return alignment(foretold, step) < 0.5 * alignment(measured, step);
+}
+
+}  // namespace
+
+bool shows_steps(const Task& task, const Explanation& calibrated) {
+  for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+    const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
+    std::size_t on_steps = 0;
+    for (std::size_t record = 0; record < task.records.size(); ++record) {
+      on_steps += on_coarse_steps(task.records[record].column(task.outputs[output]).values, beyond[record]) ? 1 : 0;
+    }
+    if (on_steps == task.records.size()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,43 @@
+// Coarse steps that the measured values show, with the diagram's own told from those of the machine.
+#include "diagnosis/seen_steps.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "diagnosis/task.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+std::string axis_with_steps(double quantum) {
+  return test::axis({fmt::format("HY_QUANTIZER := (QUANTUM := {})", quantum), "SPEED.XOUT"});
+}
+
+/// Of a machine, explained by a diagram as it stands.
+bool shown(const std::string& machine, const std::string& diagram, double noise) {
+  const DiagnosisInput input =
+      test::input_of(diagram, test::axis_parameters,
+                     {test::measured(test::program_of(machine), test::record_of("FORCE", test::rich_force()), noise)});
+  Task task = task_of(input);
+  task.scales = {0.01};
+  Model model(task, input.program);
+  Explanation explanation{};
+  EXPECT_TRUE(model.residuals(model.start(), explanation.fit.residuals));
+  return shows_steps(task, explanation);
+}
+
+TEST(SeenSteps, OfACoarseSensorUnlessTheDiagramHasThem) {
+  constexpr double coarse = 0.08;  // a sixth of the range
+  constexpr double fine = 0.004;
+  EXPECT_TRUE(shown(axis_with_steps(coarse), test::axis(), 0.004));
+  EXPECT_FALSE(shown(axis_with_steps(coarse), axis_with_steps(coarse), 0.004)) << "the diagram has them";
+  EXPECT_FALSE(shown(axis_with_steps(fine), test::axis(), 0.0)) << "as any sensor's";
+  EXPECT_FALSE(shown(axis_with_steps(coarse), test::axis(), 0.08)) << "noise hides them";
+  EXPECT_FALSE(shown(test::axis(), test::axis(), 0.004));
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

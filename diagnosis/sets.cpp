@@ -1,6 +1,8 @@
 #include "diagnosis/sets.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "diagnosis/refusal.hpp"
@@ -28,6 +30,44 @@ bool same_formula(const Applied& a, const Applied& b) {
   return std::ranges::equal(a.paths, b.paths, [&](const std::string& one, const std::string& other) {
     return without_instance(one, a) == without_instance(other, b);
   });
+}
+
+/// What a richer formula shares out among its strengths, a simpler one has in its own: of multiples of the last
+/// effect's strengths from a third to fourfold, the one that leaves the least, to half a hundredth.
+void take_best_multiple(Model& model, Explanation& one) {
+  const Applied& own = one.variant.effects.back();
+  std::vector<Index> strengths;
+  for (std::size_t k = 0; k < one.variant.further.size(); ++k) {
+    const std::string& path = one.variant.further[k].path;
+    if (std::ranges::find(own.paths, path) != own.paths.end() && own.parameter(path).strength) {
+      strengths.push_back(model.first_further() + static_cast<Index>(k));
+    }
+  }
+  const VectorXd shared = one.fit.x;
+  double best = 0.0;  // octaves
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_octaves = [&](double octaves) {
+    VectorXd x = shared;
+    for (const Index k : strengths) {
+      x[k] = std::clamp(shared[k] * std::exp2(octaves), model.lower()[k], model.upper()[k]);
+    }
+    VectorXd residuals;
+    if (model.residuals(x, residuals) && residuals.squaredNorm() < least) {
+      least = residuals.squaredNorm();
+      best = octaves;
+      one.fit.x = std::move(x);
+    }
+  };
+  double step = 0.125;
+  for (int k = -12; k <= 16; ++k) {
+    try_octaves(step * k);
+  }
+  for (int halving = 0; halving < 5; ++halving) {
+    step *= 0.5;
+    const double middle = best;
+    try_octaves(middle - step);
+    try_octaves(middle + step);
+  }
 }
 
 bool has_effect(const Variant& variant, const std::string& effect) {
@@ -137,8 +177,12 @@ std::vector<Explanation> Sets::in_simpler_formulas(const Explanation& whole, std
         in_the_diagram(candidate.own().edge, candidate.variant.effects) != edge) {
       continue;
     }
-    Explanation one = with_candidate(rest, std::move(candidate), whole, wanted, 20);
+    Explanation one = with_candidate(rest, std::move(candidate), whole, wanted, 0);
     if (std::isfinite(one.fit.cost)) {
+      Model model(task_, *one.variant.program, one.variant.further);
+      take_best_multiple(model, one);
+      one.fit = fit(model, one.fit.x, {.iterations = 20});
+      keep_starts(one, model);
       finish(task_, one, {.thoroughly = true});
       list.push_back(std::move(one));
     }

@@ -100,7 +100,7 @@ class Substeps(unittest.TestCase):
 
     def test_one_substep_a_sample_changes_the_data(self) -> None:
         for plant, effect, name in (
-            ("servo_speed", "coulomb_friction", "coulomb"),
+            ("servo_position", "cogging", "cogging"),
             ("servo_position", "stribeck_friction", "stribeck"),
             ("piezo", "rate_dependence", "rate_dependence"),
             ("piezo", "asymmetry", "asymmetry"),
@@ -108,18 +108,26 @@ class Substeps(unittest.TestCase):
             ("closed_loop", "lag", "lag"),
         ):
             with self.subTest(name):
-                builder = Builder(Specification("single", plant, ((effect, name),), 30.0, 21))
-                injections = builder.inject()
-
-                def simulate(substeps: int) -> np.ndarray:
-                    grid = Grid(builder.grid.ts, builder.grid.samples, substeps)
-                    return builder.plant.simulate(builder.plant.truth, injections, grid)[:, 0]
-
-                fine, half, coarse = simulate(20), simulate(10), simulate(1)
-                moved = float(np.sqrt(np.sum((fine - coarse) ** 2))) / builder.sigma
-                left = float(np.sqrt(np.sum((fine - half) ** 2))) / builder.sigma
+                moved, left = self.moved_by_substeps(plant, effect, name)
                 self.assertGreater(moved, 8.0)  # a known waveform is found in white noise from about 4 on
                 self.assertLess(left, 0.15 * moved)
+
+    def test_dry_friction_is_exact_in_any_substeps(self) -> None:
+        moved, _ = self.moved_by_substeps("servo_speed", "coulomb_friction", "coulomb")
+        self.assertLess(moved, 0.1)
+
+    def moved_by_substeps(self, plant: str, effect: str, name: str) -> tuple[float, float]:
+        """What one sub-step a sample and ten change of twenty, over the noise, all samples together."""
+        builder = Builder(Specification("single", plant, ((effect, name),), 30.0, 21))
+        injections = builder.inject()
+
+        def simulate(substeps: int) -> np.ndarray:
+            grid = Grid(builder.grid.ts, builder.grid.samples, substeps)
+            return builder.plant.simulate(builder.plant.truth, injections, grid)[:, 0]
+
+        fine = simulate(20)
+        one, ten = (float(np.sqrt(np.sum((fine - simulate(substeps)) ** 2))) / builder.sigma for substeps in (1, 10))
+        return one, ten
 
 
 class Cases(unittest.TestCase):

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -65,6 +68,33 @@ TEST(Sources, HeadersAreIncludedOnce) {
       EXPECT_NE(std::ranges::find(file.lines, "#pragma once"), file.lines.end()) << file.path;
     }
   }
+}
+
+/// Whether the text names a file, alone or by a common beginning: `sets`, `sets.hpp`, `inverse*`.
+bool names(const std::string& readme, const std::string& stem) {
+  for (std::size_t length = 1; length <= stem.size(); ++length) {
+    if (readme.find("`" + stem.substr(0, length) + "*`") != std::string::npos) {
+      return true;
+    }
+  }
+  return readme.find("`" + stem + "`") != std::string::npos || readme.find("`" + stem + ".hpp`") != std::string::npos;
+}
+
+/// Where a folder's README has a table of files and their jobs.
+TEST(Sources, AFoldersTableOfFilesNamesItsHeaders) {
+  const std::filesystem::path root = HYSTERON_SOURCE_DIR;
+  std::size_t named = 0;
+  for (const SourceText& file : all_sources()) {
+    const std::filesystem::path path = file.path;
+    std::ifstream readme(root / path.parent_path() / "README.md");
+    if (file.is_header() && readme) {
+      const std::string text{std::istreambuf_iterator<char>(readme), std::istreambuf_iterator<char>()};
+      const bool has_table = text.find(" | job |") != std::string::npos;
+      EXPECT_TRUE(!has_table || names(text, path.stem().string())) << path.parent_path() << "'s README lacks " << path;
+      named += has_table ? 1 : 0;
+    }
+  }
+  EXPECT_GT(named, 50U) << "or nothing was tested";
 }
 
 TEST(Sources, NothingIsLeftUndone) {

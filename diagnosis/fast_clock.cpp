@@ -18,8 +18,10 @@ namespace {
 /// In floors' energy: what a gap has at least, and what the mended record may leave.
 constexpr double least_open = 4.0;
 constexpr double most_open_then = 1.3;
-/// Of what the calibrated diagram leaves, what the first mend may.
+/// Of what the calibrated diagram leaves, what the first mend may; and what is next to nothing, where the noise is less
+/// than what reading between samples misses.
 constexpr double most_left_first = 0.5;
+constexpr double next_to_nothing = 0.01;
 /// Samples that the clock is ahead at the end of the longest record.
 constexpr double fewest_ahead = 0.5;
 constexpr double most_ahead = 512.0;
@@ -168,7 +170,7 @@ std::optional<FastClock> fast_clock(const Task& task, const Program& program) {
     }
     ahead = best_ahead(*best, at.residuals, known(), samples);
   }
-  if (!(ahead.left < most_open_then * rows)) {
+  if (!(ahead.left < std::max(most_open_then * rows, next_to_nothing * open))) {
     return std::nullopt;
   }
   const VectorXd change = best->change(ahead.share, at.residuals.size());

@@ -5,8 +5,8 @@
 // which no causal block repeats, HY_CLOCK with a SKEW of −a but for a few samples, as it cannot know what comes. The
 // record does: the output is read at t/(1 + a) instead, between samples by a cubic through the four about it (Catmull
 // and Rom 1974), and is as a sensor with the right clock would have given it. It is mended so before anything is
-// searched, where the calibrated diagram then leaves no more than noise, of more than two floors before: a clock that
-// runs slow, and one beside other effects, are the search's.
+// searched, where the calibrated diagram then leaves no more than noise, or a hundredth of its energy, of more than two
+// floors before: a clock that runs slow, and one beside other effects, are the search's.
 #pragma once
 
 #include <optional>

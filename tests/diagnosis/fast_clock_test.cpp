@@ -1,13 +1,18 @@
 // A sensor whose clock runs fast.
+#include "diagnosis/fast_clock.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "diagnosis/least_squares.hpp"
+#include "diagnosis/task.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
@@ -17,7 +22,7 @@ constexpr std::size_t samples = 2000;
 constexpr double noise = 0.002;
 
 /// A record of the axis whose sensor reads at (1 + skew)·t, straight between samples.
-records::Record read_ahead(double skew, const test::Effect& effect = {}) {
+records::Record read_ahead(double skew, const test::Effect& effect = {}, double deviation = noise) {
   const records::Record driven = test::measured(
       test::program_of(test::axis(effect)), test::record_of("FORCE", test::rich_force(samples + samples / 50)), 0.0);
   const std::vector<double>& speed = driven.column("V").values;
@@ -26,7 +31,8 @@ records::Record read_ahead(double skew, const test::Effect& effect = {}) {
   for (std::size_t k = 0; k < samples; ++k) {
     const double place = static_cast<double>(k) * (1.0 + skew);
     const auto below = static_cast<std::size_t>(place);
-    read.push_back(std::lerp(speed[below], speed[below + 1], place - static_cast<double>(below)) + noise * random());
+    read.push_back(std::lerp(speed[below], speed[below + 1], place - static_cast<double>(below)) +
+                   deviation * random());
   }
   records::Record record = test::record_of("FORCE", test::rich_force(samples));
   record.add({.name = "V", .values = std::move(read)});
@@ -52,6 +58,18 @@ TEST(FastClock, IsNamedByWhatTheRecordHoldsAhead) {
     EXPECT_GT(found.gap.closed, 0.9);
     EXPECT_THAT(found.warnings, testing::Contains(testing::HasSubstr("The clock of V runs fast by")));
   }
+}
+
+TEST(FastClock, IsFoundWhereReadingBetweenSamplesMissesMoreThanTheNoise) {
+  constexpr double quiet = 2e-5;
+  const DiagnosisInput input = test::input_of(test::axis(), test::axis_parameters, {read_ahead(0.004, {}, quiet)});
+  Task task = task_of(input);
+  task.scales = {quiet};
+  const std::optional<FastClock> found = fast_clock(task, input.program);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->finding.parameters.at(0).value, -0.004, 1e-5);
+  Model mended(found->task, input.program);
+  EXPECT_GT(fit(mended, mended.start(), {}).residuals.squaredNorm(), 1.5 * samples) << "or nothing was missed";
 }
 
 TEST(FastClock, IsNoneWhereTheCauseIsAnotherOrTheClockIsNotAskedFor) {

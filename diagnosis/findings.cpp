@@ -142,7 +142,7 @@ Rival rival_of(const Task& task, std::size_t gap_output, const Weighed& weighed)
   Rival rival{.parameters = static_cast<std::size_t>(one.parameters()),
               .improved_rms = rms_of(task, one.fit.residuals, gap_output),
               .support = weighed.support,
-              .probability = std::exp(std::min(0.0, weighed.support))};
+              .probability = weighed.weight()};
   std::vector<std::pair<std::string, std::string>> places;
   for (const Applied& applied : one.variant.effects) {
     places.emplace_back(applied.effect, in_the_diagram(applied.edge, one.variant.effects));

@@ -99,7 +99,7 @@ class Loops {
     RecordSignals noise = noise_of(task_, output, fit_.residuals);
     const double size = rms(noise);
     const double step = common_step(task_.records.front().column(task_.outputs[output]).values);
-    if (step / std::sqrt(12.0) > most_rounded * size) {
+    if (rounded_off(step) > most_rounded * size) {
       return;
     }
     Task task = task_;

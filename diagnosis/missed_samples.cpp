@@ -46,7 +46,7 @@ double noise_of(const std::vector<double>& values) {
 
 /// What a sensor that rounds adds to the noise: between its steps a slow signal stands still, too.
 double rounding(const std::vector<double>& values) {
-  return common_step(values) / std::sqrt(12.0);
+  return rounded_off(common_step(values));
 }
 
 /// One record's runs.

@@ -255,7 +255,7 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   floor.dwells = noise_by_dwells(experiments, output, others, unmodelled);
   floor.repeats = noise_by_repeats(experiments, output);
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
-  const double rounding = quanta.empty() ? 0.0 : *std::ranges::min_element(quanta) / std::sqrt(12.0);
+  const double rounding = quanta.empty() ? 0.0 : rounded_off(*std::ranges::min_element(quanta));
   const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
   // Differences of a fast signal see such a quantum as noise, too.
   const bool of_rounding = rounding > most_rounding * range && floor.differences < 1.5 * rounding;

@@ -46,7 +46,7 @@ struct Remainder {
 
 /// 0 to 1: what was called noise or an effect is neither. The fourth root of the share that stays open, times the
 /// excess; likewise, where an excess is left, the doubt which of several sets it is: none may be the cause. `named`:
-/// the probability of the named set among its rivals, 1 without any.
+/// see probability_of_cause.
 [[nodiscard]] double unknown_score(const Remainder& left, double named);
 
 }  // namespace hysteron::diagnosis

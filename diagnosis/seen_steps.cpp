@@ -1,7 +1,6 @@
 #include "diagnosis/seen_steps.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -15,7 +14,7 @@ namespace {
 bool on_coarse_steps(const Signal& measured, const Signal& beyond) {
   const double step = common_step(measured);
   const auto [low, high] = std::ranges::minmax(measured);
-  if (step / std::sqrt(12.0) <= most_rounding * (high - low)) {
+  if (rounded_off(step) <= most_rounding * (high - low)) {
     return false;
   }
   std::vector<double> foretold = measured;

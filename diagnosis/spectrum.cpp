@@ -203,6 +203,10 @@ double common_step(const std::vector<double>& values) {
   return Lattice(values).clear();
 }
 
+double rounded_off(double step) {
+  return step / std::sqrt(12.0);
+}
+
 double likely_step(const std::vector<double>& values) {
   const Lattice lattice(values);
   const double clear = lattice.clear();

@@ -30,6 +30,9 @@ class Periodogram {
 /// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
+/// What rounding to a step takes off, RMS: step/√12.
+[[nodiscard]] double rounded_off(double step);
+
 /// That step, or one that noise of up to a third of it hides: the peak of |Σ exp(2πi y/q)| that stands highest over the
 /// median about it, if six times as high. A start for a fit, no finding: where a machine rests now and then, its levels
 /// may lie on a step by chance.

@@ -272,7 +272,7 @@ std::vector<double> probabilities(std::span<const Weighed> rivals) {
   std::vector<double> result;
   double total = 0.0;
   for (const Weighed& one : rivals) {
-    result.push_back(std::exp(std::min(0.0, one.support)));
+    result.push_back(one.weight());
     total += result.back();
   }
   for (double& probability : result) {

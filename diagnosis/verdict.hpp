@@ -10,6 +10,8 @@
 // blocks held out, and if it moves the output notably.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -29,9 +31,12 @@ inline constexpr double rival_within = 4.0;
 struct Weighed {
   const Explanation* explanation = nullptr;
   double support = 0.0;  ///< L(S) less that of the best
+
+  /// How probable it is, of that of the best.
+  [[nodiscard]] double weight() const { return std::exp(std::min(0.0, support)); }
 };
 
-/// Of each, among all of them: exp(support), to a sum of 1.
+/// Of each, among all of them: the weights, to a sum of 1.
 [[nodiscard]] std::vector<double> probabilities(std::span<const Weighed> rivals);
 
 struct Judgement {

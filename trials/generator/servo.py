@@ -18,8 +18,7 @@ class Axis:
 
     def __init__(self, dt: float, damping: float, law: fr.Law | None, cogging: tuple[float, float, int] | None) -> None:
         self.dt, self.damping, self.law, self.cogging = dt, damping, law, cogging
-        self.keep = math.exp(-damping * dt)
-        self.take = (1.0 - self.keep) / damping if damping > 0.0 else dt
+        self.keep, self.take = self.over(dt)
         self.x = self.v = 0.0
 
     def run(self, drive: list[float]) -> tuple[list[float], list[float]]:
@@ -48,21 +47,27 @@ class Axis:
         self.x, self.v = x, v
         return positions, speeds
 
+    def over(self, time: float) -> tuple[float, float]:
+        """What is kept of a speed after a time, and what of it a unit of force gives."""
+        keep = math.exp(-self.damping * time)
+        return keep, (1.0 - keep) / self.damping if self.damping > 0.0 else time
+
     def through_rest(self, v: float, drive: float) -> tuple[float, float]:
         """Travel in a sub-step, and the speed after it, under dry friction. Where the speed passes 0 the axis stands, and
         goes on from there in what is left of the sub-step if the drive exceeds what breaks it loose."""
         travel, left, law = 0.0, self.dt, self.law
+        keep, take = self.keep, self.take
         for _ in range(2):
             if v == 0.0 and abs(drive) <= law.breakaway:
                 return travel, 0.0
             friction = law.force(v) if v != 0.0 else math.copysign(law.breakaway, drive)
-            decay = 1.0 if self.damping == 0.0 else math.exp(-self.damping * left)
-            end = decay * v + (left if self.damping == 0.0 else (1.0 - decay) / self.damping) * (drive - friction)
+            end = keep * v + take * (drive - friction)
             if end * v >= 0.0:
                 return travel + 0.5 * left * (v + end), end
             until = left * v / (v - end)  # the speed is a straight line within so short a time
             travel += 0.5 * until * v
             left -= until
+            keep, take = self.over(left)
             v = 0.0
         return travel, v
 

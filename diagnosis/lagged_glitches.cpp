@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <utility>
@@ -30,6 +31,7 @@ constexpr std::size_t fewest = 5;        // glitches
 constexpr std::size_t near = 3;          // samples from one leap to the next of the same glitch, or from an input's
 constexpr double at_inputs = 0.3;        // of the glitches, the share that may lie at a leap of an input
 constexpr double leap_of_input = 0.05;   // of its range
+constexpr double fast_from = 0.9;        // of its steps, the share that is slower than a fast one
 constexpr std::size_t explanations = 4;  // that they are looked for beside, of different effects
 constexpr int rounds_beside = 4;         // of finding them and fitting the explanation
 /// Time constants in samples: below, a glitch's tail is `glitches`' own; above, too few fit into the record.
@@ -54,14 +56,32 @@ std::vector<std::size_t> first_of_each(const std::vector<std::size_t>& leaps) {
   return result;
 }
 
-bool leaps_about(const Signal& input, std::size_t at) {
-  const auto [low, high] = std::ranges::minmax(input);
-  for (std::size_t k = std::max<std::size_t>(at, near + 1) - near; k <= std::min(at + near, input.size() - 1); ++k) {
-    if (std::abs(input[k] - input[k - 1]) > leap_of_input * (high - low)) {
-      return true;
+/// By sample, how far the input goes at most from one sample to the next, about it.
+Signal fastest_about(const Signal& input) {
+  Signal result(input.size(), 0.0);
+  for (std::size_t k = 1; k < input.size(); ++k) {
+    const double step = std::abs(input[k] - input[k - 1]);
+    for (std::size_t at = k - std::min(k, near); at <= std::min(k + near, input.size() - 1); ++at) {
+      result[at] = std::max(result[at], step);
     }
   }
-  return false;
+  return result;
+}
+
+/// By sample, whether the input leaps about it, or is among its fastest: what limits a rate answers steps far smaller
+/// than the range.
+std::vector<bool> leaps_about(const Signal& input) {
+  const auto [low, high] = std::ranges::minmax(input);
+  const Signal steps = fastest_about(input);
+  Signal sorted = steps;
+  const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(fast_from * static_cast<double>(sorted.size()));
+  std::ranges::nth_element(sorted, usual);
+  const double least = std::min(leap_of_input * (high - low), *usual);
+  std::vector<bool> result(input.size());
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    result[k] = steps[k] > least;
+  }
+  return result;
 }
 
 struct Counted {
@@ -72,10 +92,11 @@ struct Counted {
 Counted counted(const Train& train, const std::vector<Experiment>& experiments) {
   Counted result;
   for (std::size_t record = 0; record < train.signals.size(); ++record) {
+    std::vector<std::vector<bool>> leaps;
+    std::ranges::transform(experiments[record].drive.inputs, std::back_inserter(leaps), leaps_about);
     for (const std::size_t at : first_of_each(train.signals[record].leaps())) {
       ++result.all;
-      const bool answers = std::ranges::any_of(experiments[record].drive.inputs,
-                                               [&](const Signal& input) { return leaps_about(input, at); });
+      const bool answers = std::ranges::any_of(leaps, [&](const std::vector<bool>& about) { return about[at]; });
       result.at_inputs += answers ? 1 : 0;
     }
   }

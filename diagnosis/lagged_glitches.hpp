@@ -5,7 +5,8 @@
 // With enough leaps such a sum follows any slow signal, what an effect that is missing leaves as well. But time has a
 // direction: of such glitches the record read backwards, where they would grow and vanish, shows next to nothing, while
 // a slow signal is followed as well from either end. They are glitches only where the one direction leaves less than
-// the other and little more than noise, and where few leaps lie at a leap of an input, which an effect answers.
+// the other and little more than noise, and where few leaps lie at a leap of an input or where it is fastest, which an
+// effect answers.
 #pragma once
 
 #include <optional>

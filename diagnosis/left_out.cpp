@@ -44,6 +44,20 @@ std::vector<double> modelled(const Task& task, Model& model, const VectorXd& x, 
   return values;
 }
 
+/// The standard deviation of what has these absolute values, by those that glitches hardly move: by their median, or
+/// where a poor fit leaves much at times, at edges that it puts elsewhere, by what one in twenty is above.
+double usual_deviation(std::vector<double> sizes) {
+  constexpr double mostly = 0.95;
+  constexpr double deviations = 1.96;  // that a normal distribution is above as often
+  if (sizes.empty()) {
+    return 0.0;
+  }
+  const double by_median = deviation_of_median * median(sizes);
+  const auto high = sizes.begin() + static_cast<std::ptrdiff_t>(mostly * static_cast<double>(sizes.size()));
+  std::ranges::nth_element(sizes, high);
+  return std::max(by_median, *high / deviations);
+}
+
 /// Of an output whose first row is `first`; each row once, in order.
 void add_rows(std::vector<Index>& left_out, const std::vector<std::size_t>& rows, Index first) {
   for (const std::size_t row : rows) {
@@ -195,9 +209,7 @@ void forget_explained(std::vector<LeftOut>& found, const Task& task, const Expla
     }
     const double scale = task.scales[one.output];
     const VectorXd own = chosen.fit.residuals.segment(static_cast<Index>(one.output) * rows, rows).cwiseAbs();
-    // By the median: glitches that were not found at first are among them.
-    const double elsewhere =
-        scale * std::max(1.0, deviation_of_median * median(std::vector<double>(own.begin(), own.end())));
+    const double elsewhere = scale * std::max(1.0, usual_deviation({own.begin(), own.end()}));
     Glitches still;
     for (const std::size_t row : one.glitches) {
       const double off = scale * std::abs(residuals[static_cast<Index>(one.output) * rows + static_cast<Index>(row)]);

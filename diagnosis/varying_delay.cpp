@@ -18,8 +18,8 @@
 namespace hysteron::diagnosis {
 namespace {
 
-/// Of the energy that the chosen set leaves, what its delay's variation may leave, and what that of another set may,
-/// whose constant delay leaves more.
+/// Of the energy that the chosen set leaves, what its delay's variation may leave, or that of a smaller set, and what
+/// that of another set may, whose constant delay leaves more.
 constexpr double most_left = 0.6;
 constexpr double most_left_by_another = 0.25;
 /// A residual of which this share is foretold by inputs and outputs has another cause.
@@ -99,7 +99,7 @@ class VaryingDelay {
       if (one == &chosen_) {
         try_on_each_edge(*one);
       } else if (!is_over()) {
-        try_fitted(*one, most_left_by_another);
+        try_fitted(*one);
       }
     }
     if (!explains_all()) {
@@ -155,29 +155,34 @@ class VaryingDelay {
   }
 
   void try_on_each_edge(const Explanation& one) {
-    try_fitted(one, most_left);
+    try_fitted(one);
     for (const Explanation& moved : on_other_edges(one)) {
-      try_fitted(moved, most_left, elsewhere);
+      try_fitted(moved, elsewhere);
     }
   }
 
-  void try_fitted(const Explanation& one, double of_chosen, double of_best = 1.0) {
+  void try_fitted(const Explanation& one, double of_best = 1.0) {
     if (!is_foretold(task_, top_, one)) {
-      try_set(one, of_chosen, of_best);
+      try_set(one, of_best);
     }
   }
 
-  /// It becomes the best where it leaves less than `of_chosen` of the chosen set's energy, or less than `of_best` of
-  /// what the best so far leaves.
-  void try_set(const Explanation& one, double of_chosen, double of_best = 1.0) {
+  /// What the RMS has to be below that a set's variation leaves.
+  [[nodiscard]] double limit_of(const Explanation& one) const {
+    const bool simple = one.names() == chosen_.names() || one.variant.effects.size() < chosen_.variant.effects.size();
+    return std::sqrt(simple ? most_left : most_left_by_another) * chosen_left_;
+  }
+
+  /// It becomes the best where it leaves little enough of what the chosen set does, or less than `of_best` of what the
+  /// best so far leaves.
+  void try_set(const Explanation& one, double of_best = 1.0) {
     const std::optional<JitterResponse> response = response_to_jitter(task_, top_, one, options_.threads);
     if (!response) {
       return;
     }
     const Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
     const bool larger = best_ && one.variant.effects.size() > best_->set.variant.effects.size();
-    const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.everywhere
-                               : std::sqrt(of_chosen) * chosen_left_;
+    const double limit = best_ ? (larger ? std::sqrt(most_left) : of_best) * best_->jitter.everywhere : limit_of(one);
     if (jitter.everywhere < limit && is_random(one, jitter)) {
       best_ = std::make_shared<const Varying>(one, jitter, response->moves);
     }
@@ -237,7 +242,7 @@ class VaryingDelay {
       return;
     }
     Jitter jitter = jitter_of(task_, *response, one.fit.residuals);
-    const double limit = best_ ? best_->jitter.everywhere : std::sqrt(most_left_by_another) * chosen_left_;
+    const double limit = best_ ? best_->jitter.everywhere : limit_of(one);
     if (!(jitter.everywhere * jitter.everywhere < is_noise) || !(jitter.everywhere < limit) ||
         !is_random(one, jitter)) {
       return;
@@ -269,7 +274,7 @@ class VaryingDelay {
       found.resize(std::min(found.size(), kept));
       for (Explanation& one : found) {
         if (set_plain(one)) {
-          try_set(one, most_left_by_another);
+          try_set(one);
         }
       }
     }

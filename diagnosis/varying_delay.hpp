@@ -11,14 +11,14 @@
 namespace hysteron::diagnosis {
 
 /// A delay and nothing else, fitted to residuals that are whitened of its own variation, where that leaves no more than
-/// noise and a quarter of the energy that the chosen set leaves; the known parameters are then those that leave least
-/// beside its mean. Else, of the chosen set, the same with its delay on another edge, other sets that have one with no
-/// more effects, and sets of a delay and an effect that shows once the residuals are whitened of the delay's variation:
-/// the one whose variation leaves least, where that has less than 0.6 of the energy that the chosen set leaves, or for
-/// other sets a quarter, and a larger set's less than 0.6 of a smaller one's. It is then the chosen one. A delay that
-/// varies by more than 0.7 of its mean is something else; what inputs and outputs foretell of a fit's residual is no
-/// jitter, and neither is what does not lie where a variation would be strong. The residuals are those of the set, on
-/// each output that the delay moves as large as what is still a surprise.
+/// noise; the known parameters are then those that leave least beside its mean. Else, of the chosen set, the same with
+/// its delay on another edge, other sets that have one with no more effects, and sets of a delay and an effect that
+/// shows once the residuals are whitened of the delay's variation: the one whose variation leaves least, a larger set's
+/// less than 0.6 of a smaller one's energy. It is then the chosen one, where it leaves less than 0.6 of the energy that
+/// the chosen set does, or a quarter if it has other effects and as many. A delay that varies by more than 0.7 of its
+/// mean is something else; what inputs and outputs foretell of a fit's residual is no jitter, and neither is what does
+/// not lie where a variation would be strong. The residuals are those of the set, on each output that the delay moves
+/// as large as what is still a surprise.
 [[nodiscard]] std::optional<Unrepeatable> with_varying_delay(const Task& task, const std::string& top,
                                                              const Search& search, double floor_cost,
                                                              const SearchOptions& options, Judgement& judgement);

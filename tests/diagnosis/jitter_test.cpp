@@ -244,5 +244,15 @@ TEST(Jitter, IsADelayAloneWhereItAddsUp) {
   EXPECT_THAT(found.warnings, testing::Contains(testing::HasSubstr("varies by")));
 }
 
+/// Behind one integrator lines of a cogging follow the random walk that a varying delay leaves: the smaller set is the
+/// better one, although it leaves no quarter of what they do.
+TEST(Jitter, NeedsNoEffectBesideIt) {
+  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {late_axis(0.006)}),
+                                   {.effects = {"delay", "cogging", "periodic_disturbance", "load", "relaxation"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "delay");
+  EXPECT_NE(found.verdict, Verdict::Partial);
+}
+
 }  // namespace
 }  // namespace hysteron::diagnosis

@@ -1,4 +1,5 @@
 // Glitches that a lag has taken up.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -136,6 +137,34 @@ TEST(LaggedGlitches, AreNoAnswerToAnInputThatLeaps) {
     EXPECT_THAT(found.warnings, spikes > 0.0 ? testing::Matcher<std::vector<std::string>>(taken_off) : Not(taken_off))
         << found.summary;
   }
+}
+
+/// A limit of its rate holds an input up for a few samples after each small step, which an axis with damping takes up
+/// as it would a knock.
+TEST(LaggedGlitches, AreNoAnswerToTheFastestParts) {
+  const auto text = [](bool limited) {
+    return fmt::format(
+        "FUNCTION_BLOCK AXIS  (* @ts 5ms *)\n  VAR_INPUT FORCE : LREAL; END_VAR\n  VAR_OUTPUT V : LREAL; END_VAR\n"
+        "  VAR MASS : HY_GAIN := (K := 10.0); DAMPING : HY_GAIN := (K := 10.0); SPEED : HY_INTEGRAL_FORWARD;\n"
+        "    {} END_VAR\n  DAMPING(XIN := SPEED.XOUT);\n  {}  SPEED(XIN := MASS.XOUT - DAMPING.XOUT);\n"
+        "  V := SPEED.XOUT;\nEND_FUNCTION_BLOCK\n",
+        limited ? "SLOW : HY_RATE_LIMIT := (RISE := 12.0, FALL := 12.0);" : "",
+        limited ? "SLOW(XIN := FORCE);\n  MASS(XIN := SLOW.XOUT);\n" : "MASS(XIN := FORCE);\n");
+  };
+  std::vector<double> force;
+  test::Noise random(3);
+  double step = 0.0;
+  for (std::size_t k = 0; k < read_samples; ++k) {
+    step = k % 60 == 30 ? 0.12 * random() : step;
+    force.push_back(3.0 * std::sin(0.8 * sensor_step * static_cast<double>(k)) + step);
+  }
+  const records::Record record =
+      test::measured(test::program_of(text(true)), test::record_of("FORCE", force), speed_noise);
+  const Diagnosis found = diagnose(test::input_of(text(false), "[parameters.MASS]\nK = 10.0\n", {record}),
+                                   {.effects = {"glitches", "load", "rate_limit"}});
+  EXPECT_THAT(found.warnings, Not(taken_off));
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "rate_limit");
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 //
 // On a branch that left u_i the loop's rise over the distance d = u − u_i, with p = |d| (2|d| on the skeleton), is
 //   (C1·d + (1 ± A)·G(d) + B(d))·(1 + b·m),   G(d) = d·C2·p^C3·(p/r)^±E/(C3±E+1),
-//   B(d) = SHAPE·C1·d·z·exp(2(1 − z)),   z = p/DEPTH
+//   B(d) = SHAPE·C1·d·(1 − (1 − exp(−z))/z),   z = p/DEPTH
 // with + upwards and − downwards, so that C2 and C3 differ between the two by A and E, and m the middle of the branch
 // so far, (u_i + u)/2, from the origin. Since m is the same for the way up and the way down, a loop that closes without
-// b closes with it. B is 0 at the branching point and again far from it, and highest at p = DEPTH: Y(p), whose slope is
-// monotone, cannot have that shape. With Duhem's form of the bias, y' = f(u)·M(p)·u', f = 1 + h·(u − origin), the slope
-// follows the input itself, and the rise has in addition
+// b closes with it. B's slope SHAPE·C1·(1 − exp(−z)) is 0 at the branching point and saturates: Y(p), whose slope goes
+// on as a power of p, cannot have that shape. With Duhem's form of the bias, y' = f(u)·M(p)·u', f = 1 + h·(u − origin),
+// the slope follows the input itself, and the rise has in addition
 //   h·((u_i − origin)·(C1·d + G(d)) + d²·(C1/2 + C2·p^C3/(C3+2)))
 // which differs on the way up and the way down: such a loop wanders by the difference in each cycle. Where the growth
 // alone follows the input, y' = (C1 + f(u)·C2·p^C3)·u', the terms in C1 are left out of that.
@@ -121,16 +121,16 @@ struct RichParams : Enriched {
                 .means("distance at which HARDENING is that share"),
             HY_FIELD(SHAPE)
                 .in("1")
-                .within(-0.5, 0.5)
+                .within(-1.0, 4.0)
                 .otherwise(0.0)
                 .neutral_at(0.0)
                 .effect("curve_shape")
-                .means("bend of the branch, over C1*SHAPE_DEPTH"),
+                .means("share of C1 by which the slope is larger far from the branching point"),
             HY_FIELD(SHAPE_DEPTH)
                 .in(momentum_unit)
                 .above(0.0)
                 .otherwise(1.0)
-                .means("momentum at which the bend is largest")});
+                .means("momentum within which the slope gets there")});
   }
   /// The effects, with the bias counted from where the input has the value `origin_of_bias`.
   [[nodiscard]] LoopEffects<S> effects(const S& origin_of_bias) const {
@@ -207,9 +207,11 @@ RichRise<S> rich_rise(const LoopConstants<S>& loop, const LoopEffects<S>& effect
   const S m_skewed = m_growth * growth.changed_slope;
   const RiseTerm<S> none{.rise = S(0.0), .slope = S(0.0)};
   const RiseTerm<S> bend = unless_zero(effects.shape, none, [&] {
-    const S z = momentum / effects.depth;
-    const S bell = effects.shape * loop.c1 * z * exp(S(2.0) * (S(1.0) - z));
-    return RiseTerm<S>{.rise = distance * bell, .slope = S(2.0) * (S(1.0) - z) * bell};
+    constexpr double soon = 1e-9;  // nothing has risen yet
+    const S z = max(momentum / effects.depth, S(soon));
+    const S there = S(1.0) - exp(-z);
+    const S most = effects.shape * loop.c1;
+    return RiseTerm<S>{.rise = distance * (most * (S(1.0) - there / z)), .slope = most * there};
   });
   const S half = S(0.5) * effects.bias;
   const RiseTerm<S> biased = unless_zero(effects.bias, none, [&] {

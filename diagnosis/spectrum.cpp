@@ -51,6 +51,14 @@ double median_about(const std::vector<double>& heights, std::size_t at) {
   return std::max(*middle, 1e-300);
 }
 
+std::complex<double> mean_turn(const std::vector<double>& values, double step) {
+  std::complex<double> sum = 0.0;
+  for (const double value : values) {
+    sum += std::polar(1.0, 2.0 * std::numbers::pi * value / step);
+  }
+  return sum / static_cast<double>(values.size());
+}
+
 /// The steps on which values may lie.
 class Lattice {
  public:
@@ -214,11 +222,18 @@ double likely_step(const std::vector<double>& values) {
 }
 
 double alignment(const std::vector<double>& values, double step) {
-  std::complex<double> sum = 0.0;
-  for (const double value : values) {
-    sum += std::polar(1.0, 2.0 * std::numbers::pi * value / step);
+  return std::abs(mean_turn(values, step));
+}
+
+double step_from_zero(const std::vector<double>& values, double step) {
+  constexpr double nearly = 0.95;  // of its alignment
+  constexpr int rounds = 4;
+  const double middle = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  double found = step;
+  for (int round = 0; round < rounds; ++round) {  // d(phase)/d(1/q) is 2π times the middle
+    found = 1.0 / (1.0 / found - std::arg(mean_turn(values, found)) / (2.0 * std::numbers::pi * middle));
   }
-  return std::abs(sum) / static_cast<double>(values.size());
+  return mean_turn(values, found).real() > nearly * alignment(values, step) ? found : step;
 }
 
 std::vector<double> strongest_periods(const Eigen::VectorXd& residuals, const std::vector<std::vector<double>>& signal,

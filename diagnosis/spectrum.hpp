@@ -38,6 +38,11 @@ class Periodogram {
 /// may lie on a step by chance.
 [[nodiscard]] double likely_step(const std::vector<double>& values);
 
+/// The step next to a likely one of which the values are multiples: a step q that begins anywhere may be off by some of
+/// its own thousandths, and where the values are hundreds of steps from 0 that is a part of a step there. Their phase
+/// over 2π, arg(mean of exp(2πi y/q)), has then to be 0. The step itself where no other near it gives that.
+[[nodiscard]] double step_from_zero(const std::vector<double>& values, double step);
+
 /// How well values y lie on a step q: |mean of exp(2πi y/q)|, 1 on the step itself, wherever it begins.
 [[nodiscard]] double alignment(const std::vector<double>& values, double step);
 

@@ -173,17 +173,26 @@ bool is_off_centre(const Extent& input) {
   return std::abs(input.low + input.high) > off_centre * input.range();
 }
 
+/// Of the rates of a signal, above which their decades count.
+bool is_of_rate(const EffectParameter& parameter) {
+  return parameter.role == Role::Reference && parameter.unit == "'x/s";
+}
+
 /// What a reference is set to: about the middle, or half the width of what it refers to, seen from the centre. Another
 /// signal begins where the machine stood when its working point was taken.
-double reference(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary, bool about_zero) {
+double reference(const EffectParameter& parameter, const Extent& input, const Extent* auxiliary,
+                 const Candidate& candidate) {
+  const bool about_zero = candidate.about_zero;
   if (is_of_other(parameter)) {
     return about_zero || auxiliary == nullptr ? 0.0 : auxiliary->begin;
   }
   if (is_centre(parameter)) {
     return about_zero || !is_off_centre(input) ? 0.0 : 0.5 * (input.low + input.high);
   }
-  if (parameter.unit == "'x/s") {
-    return size_or(input.rates.empty() ? 0.0 : input.rates[50], 1.0);
+  if (is_of_rate(parameter)) {
+    constexpr double far_below = 0.05;
+    const double share = candidate.low_rates ? far_below : 1.0;
+    return size_or(input.rates.empty() ? 0.0 : share * input.rates[50], 1.0);
   }
   return size_or(about_zero ? std::max(std::abs(input.low), std::abs(input.high)) : 0.5 * input.range(), 1.0);
 }
@@ -200,8 +209,12 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
     hints.duration = std::max(hints.duration, record.sample_time() * static_cast<double>(record.size()));
   }
   for (const std::string& output : task.outputs) {
-    if (const double step = likely_step(task.records.front().column(output).values); step > 0.0) {
+    const std::vector<double>& values = task.records.front().column(output).values;
+    if (const double step = likely_step(values); step > 0.0) {
       hints.quanta.push_back(step);
+      if (const double from_zero = step_from_zero(values, step); from_zero != step) {
+        hints.quanta.push_back(from_zero);
+      }
     }
   }
   const Eigen::Index rows = std::min<Eigen::Index>(residuals.size(), std::ssize(task.records.front().time()));
@@ -228,6 +241,10 @@ std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& i
     others.push_back(candidate);
     others.back().about_zero = true;
   }
+  if (std::ranges::any_of(parameters, is_of_rate)) {
+    others.push_back(candidate);
+    others.back().low_rates = true;
+  }
   for (const Field& choice : candidate.kind.choices) {
     if (input.first > at_rest * input.range()) {
       others.push_back(candidate);
@@ -245,7 +262,7 @@ Grids grids_of(const Candidate& candidate, const Extent& input, const Extent* au
     Grid grid;
     double setting = std::numeric_limits<double>::quiet_NaN();
     if (parameter.role == Role::Reference) {
-      setting = reference(parameter, input, auxiliary, candidate.about_zero);
+      setting = reference(parameter, input, auxiliary, candidate);
     } else {
       grid.lowest = parameter.field.effect_minimum;
       grid.highest = parameter.field.effect_maximum;

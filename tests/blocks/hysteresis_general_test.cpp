@@ -77,12 +77,12 @@ class SteppedLoop {
     const double growth = p_.C2 * (1.0 + sign * p_.ASYMMETRY) * faster * std::pow(p, exponent) /
                           std::pow(p_.ASYMMETRY_REFERENCE, sign * p_.ASYMMETRY_EXPONENT);
     const double z = p / p_.SHAPE_DEPTH;
-    const double bump = p_.SHAPE * p_.C1 * std::exp(2.0 - 2.0 * z);
+    const double bend = p_.SHAPE * p_.C1 * -std::expm1(-z);
+    const double bend_chord = z > 0.0 ? p_.SHAPE * p_.C1 * (1.0 + std::expm1(-z) / z) : 0.0;
     const double by_middle = p_.BIAS / p_.BIAS_REFERENCE;
-    const double rise = d * (p_.C1 + growth / (exponent + 1.0) + bump * z);
+    const double rise = d * (p_.C1 + growth / (exponent + 1.0) + bend_chord);
     const double plain = p_.C2 * std::pow(p, p_.C3);
-    return (p_.C1 + growth + bump * 2.0 * z * (1.0 - z)) * (1.0 + by_middle * (0.5 * (x + start_) - p_.U0)) +
-           rise * by_middle / 2.0 +
+    return (p_.C1 + growth + bend) * (1.0 + by_middle * (0.5 * (x + start_) - p_.U0)) + rise * by_middle / 2.0 +
            (x - p_.U0) *
                (p_.DUHEM / p_.DUHEM_REFERENCE * (p_.C1 + plain) + p_.HARDENING / p_.HARDENING_REFERENCE * plain);
   }

@@ -116,6 +116,17 @@ TEST(LikelyStep, IsSeenBehindNoiseOfItsOwnSize) {
   EXPECT_EQ(likely_step(std::vector<double>(4000, 1.0)), 0.0);
 }
 
+TEST(StepFromZero, IsTheOneWhoseMultiplesTheValuesAre) {
+  constexpr double step = 0.0117;
+  std::vector<double> far = rounded_motion(step, step / 10.0);
+  std::ranges::for_each(far, [](double& value) { value += 700.0 * step; });
+  EXPECT_NEAR(step_from_zero(far, step * (1.0 + 3e-4)), step, 1e-6) << "a fifth of a step off where the values are";
+  std::ranges::for_each(far, [](double& value) { value -= 700.0 * step; });
+  EXPECT_NEAR(step_from_zero(far, step), step, 1e-6);
+  std::ranges::for_each(far, [](double& value) { value += 0.4 * step; });
+  EXPECT_EQ(step_from_zero(far, step), step) << "about 0 none gives these values";
+}
+
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {
   EXPECT_TRUE(strongest_periods(noise(1.0), {std::vector<double>(count, 2.0)}, 3).empty());
 }

@@ -59,7 +59,7 @@ struct Candidate {
   std::vector<Wire> auxiliary{};  ///< what drives its further inputs
   std::size_t upstream = 0;       ///< how many blocks its input comes from
   bool about_zero = false;        ///< its centre is 0, not the middle of the signal
-  bool low_rates = false;         ///< what its rate refers to lies far below the signal's
+  double rate_reference = 1.0;    ///< what its rate refers to, over the signal's usual rate
   std::string family{};           ///< candidates with the same signals: name of edge and wires
 
   [[nodiscard]] const Applied& own() const { return variant.effects.back(); }

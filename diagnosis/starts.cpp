@@ -190,9 +190,7 @@ double reference(const EffectParameter& parameter, const Extent& input, const Ex
     return about_zero || !is_off_centre(input) ? 0.0 : 0.5 * (input.low + input.high);
   }
   if (is_of_rate(parameter)) {
-    constexpr double far_below = 0.05;
-    const double share = candidate.low_rates ? far_below : 1.0;
-    return size_or(input.rates.empty() ? 0.0 : share * input.rates[50], 1.0);
+    return size_or(input.rates.empty() ? 0.0 : candidate.rate_reference * input.rates[50], 1.0);
   }
   return size_or(about_zero ? std::max(std::abs(input.low), std::abs(input.high)) : 0.5 * input.range(), 1.0);
 }
@@ -242,8 +240,10 @@ std::vector<Candidate> other_guesses(const Candidate& candidate, const Extent& i
     others.back().about_zero = true;
   }
   if (std::ranges::any_of(parameters, is_of_rate)) {
-    others.push_back(candidate);
-    others.back().low_rates = true;
+    for (const double share : {0.05, 0.01}) {  // a plain logarithm bends nowhere; nearer it is easier to fit
+      others.push_back(candidate);
+      others.back().rate_reference = share;
+    }
   }
   for (const Field& choice : candidate.kind.choices) {
     if (input.first > at_rest * input.range()) {

@@ -4,17 +4,18 @@
 #include <functional>
 #include <vector>
 
-#include "diagnosis/noise_floor.hpp"
 #include "diagnosis/spectrum.hpp"
 #include "diagnosis/task.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
-bool on_coarse_steps(const Signal& measured, const Signal& beyond) {
+/// Of the noise floor, what the steps round off at least: where it is theirs, they are as any sensor's.
+constexpr double beyond_noise = 1.3;
+
+bool on_coarse_steps(const Signal& measured, const Signal& beyond, double floor) {
   const double step = common_step(measured);
-  const auto [low, high] = std::ranges::minmax(measured);
-  if (rounded_off(step) <= most_rounding * (high - low)) {
+  if (rounded_off(step) <= beyond_noise * floor) {
     return false;
   }
   std::vector<double> foretold = measured;
@@ -29,7 +30,10 @@ bool shows_steps(const Task& task, const Explanation& calibrated) {
     const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
     std::size_t on_steps = 0;
     for (std::size_t record = 0; record < task.records.size(); ++record) {
-      on_steps += on_coarse_steps(task.records[record].column(task.outputs[output]).values, beyond[record]) ? 1 : 0;
+      on_steps +=
+          on_coarse_steps(task.records[record].column(task.outputs[output]).values, beyond[record], task.scales[output])
+              ? 1
+              : 0;
     }
     if (on_steps == task.records.size()) {
       return true;

@@ -7,8 +7,8 @@
 
 namespace hysteron::diagnosis {
 
-/// Whether an output lies on steps, in each record, on which what the explanation says of it does not lie. Steps of
-/// less than a fourteenth of its range count as noise, as with the noise floor.
+/// Whether an output lies on steps, in each record, on which what the explanation says of it does not lie. Steps that
+/// round off less than 1.3 times the noise floor do not count: a floor that holds the rounding of a sensor is as large.
 [[nodiscard]] bool shows_steps(const Task& task, const Explanation& calibrated);
 
 }  // namespace hysteron::diagnosis

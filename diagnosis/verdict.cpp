@@ -108,11 +108,15 @@ class Judge {
   }
 
  private:
+  /// Whether it has no quantiser where the record shows steps.
+  [[nodiscard]] bool denies_steps(const Explanation& one) const {
+    return shows_steps_ &&
+           std::ranges::find(one.variant.effects, "quantization", &Applied::effect) == one.variant.effects.end();
+  }
+
   [[nodiscard]] double support(const Explanation& one) const {
-    const bool denies_steps = shows_steps_ && std::ranges::find(one.variant.effects, "quantization",
-                                                                &Applied::effect) == one.variant.effects.end();
     return support_of(one.fit.cost, one.parameters(), one.variant.effects.size(), samples_, search_.tried) -
-           (denies_steps ? seen : 0.0);
+           (denies_steps(one) ? seen : 0.0);
   }
 
   /// As many as tell two formulas apart that are equally near to the machine.
@@ -188,7 +192,8 @@ class Judge {
       const bool better = support(*best) - support(*chosen) > more * least_significance;
       const bool notable =
           chosen->fit.cost - best->fit.cost > more * least_gain(search_.calibrated.fit.cost, floor_cost_, size);
-      if (better && notable && holds_on_unseen(*chosen, *best)) {
+      const bool has_its_steps = denies_steps(*chosen) && !denies_steps(*best);
+      if (better && notable && (has_its_steps || holds_on_unseen(*chosen, *best))) {
         chosen = best;
       }
     }

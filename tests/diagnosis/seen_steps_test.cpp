@@ -17,12 +17,12 @@ std::string axis_with_steps(double quantum) {
 }
 
 /// Of a machine, explained by a diagram as it stands.
-bool shown(const std::string& machine, const std::string& diagram, double noise) {
+bool shown(const std::string& machine, const std::string& diagram, double noise, double floor = 0.01) {
   const DiagnosisInput input =
       test::input_of(diagram, test::axis_parameters,
                      {test::measured(test::program_of(machine), test::record_of("FORCE", test::rich_force()), noise)});
   Task task = task_of(input);
-  task.scales = {0.01};
+  task.scales = {floor};
   Model model(task, input.program);
   Explanation explanation{};
   EXPECT_TRUE(model.residuals(model.start(), explanation.fit.residuals));
@@ -35,6 +35,7 @@ TEST(SeenSteps, OfACoarseSensorUnlessTheDiagramHasThem) {
   EXPECT_TRUE(shown(axis_with_steps(coarse), test::axis(), 0.004));
   EXPECT_FALSE(shown(axis_with_steps(coarse), axis_with_steps(coarse), 0.004)) << "the diagram has them";
   EXPECT_FALSE(shown(axis_with_steps(fine), test::axis(), 0.0)) << "as any sensor's";
+  EXPECT_TRUE(shown(axis_with_steps(fine), test::axis(), 0.0003, 0.0003)) << "which the noise behind it is not";
   EXPECT_FALSE(shown(axis_with_steps(coarse), test::axis(), 0.08)) << "noise hides them";
   EXPECT_FALSE(shown(test::axis(), test::axis(), 0.004));
 }

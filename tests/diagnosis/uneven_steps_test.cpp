@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "tests/diagnosis/simulated_machine.hpp"
 
@@ -84,6 +88,26 @@ TEST(UnevenSteps, ValuesOnNoStepsOrFarFromTheSignalHaveNone) {
   std::vector<double> elsewhere = to_and_fro();
   std::ranges::for_each(elsewhere, [](double& value) { value += 3.0 * step; });
   EXPECT_FALSE(moved_steps(elsewhere, uneven, step));
+}
+
+/// An even quantiser of the same step closes little of the gap there, since it leaves a whole step wherever a
+/// threshold lies elsewhere; but the values lie on its steps.
+TEST(UnevenSteps, OfASensorAreNamedAsTheValuesShow) {
+  const std::vector<double> force = test::rich_force(length);
+  const std::vector<double> speed = simulate(test::program_of(test::axis()), test::record_of("FORCE", force)).front();
+  const auto [low, high] = std::ranges::minmax(speed);
+  const double size = (high - low) / (30.0 * step);  // of the step: thirty over the range
+  std::vector<double> scaled;
+  std::ranges::transform(speed, std::back_inserter(scaled), [&](double value) { return value / size; });
+  std::vector<double> measured = stepped(scaled, test::Noise(8).white(200, 0.16), 0.03);
+  std::ranges::for_each(measured, [&](double& value) { value *= size; });
+  records::Record record = test::record_of("FORCE", force);
+  record.add({.name = "V", .values = std::move(measured)});
+  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {std::move(record)}),
+                                   {.effects = {"quantization", "load", "offset"}});
+  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
+  EXPECT_EQ(found.effects[0].id, "quantization");
+  EXPECT_EQ(found.verdict, Verdict::Named);
 }
 
 }  // namespace

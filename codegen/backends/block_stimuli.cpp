@@ -87,7 +87,7 @@ const std::vector<Entry>& entries() {
         .steps = 400,
         .shown = {"XOUT"}}},
       {"HY_M_GENERAL",
-       {.settings = "C1 := 1.0, C2 := 2.0, C3 := 0.5, SHAPE := 0.5, SHAPE_DEPTH := 0.3",
+       {.settings = "C1 := 1.0, C2 := 1.0, C3 := 1.0, SHAPE := -0.9, SHAPE_DEPTH := 0.2",
         .pins = {{"XIN", levels({{0.0, 1.0}})}, {"P", sweep(0.0, 1.0)}},
         .abscissa = "P",
         .shown = {"XOUT"}}},

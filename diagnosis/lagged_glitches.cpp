@@ -15,6 +15,7 @@
 #include "diagnosis/least_squares.hpp"
 #include "diagnosis/parallel.hpp"
 #include "diagnosis/task.hpp"
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -73,10 +74,7 @@ Signal fastest_about(const Signal& input) {
 std::vector<bool> leaps_about(const Signal& input) {
   const auto [low, high] = std::ranges::minmax(input);
   const Signal steps = fastest_about(input);
-  Signal sorted = steps;
-  const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(fast_from * static_cast<double>(sorted.size()));
-  std::ranges::nth_element(sorted, usual);
-  const double least = std::min(leap_of_input * (high - low), *usual);
+  const double least = std::min(leap_of_input * (high - low), quantile(steps, fast_from));
   std::vector<bool> result(input.size());
   for (std::size_t k = 0; k < steps.size(); ++k) {
     result[k] = steps[k] > least;

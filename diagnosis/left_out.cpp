@@ -46,16 +46,10 @@ std::vector<double> modelled(const Task& task, Model& model, const VectorXd& x, 
 
 /// The standard deviation of what has these absolute values, by those that glitches hardly move: by their median, or
 /// where a poor fit leaves much at times, at edges that it puts elsewhere, by what one in twenty is above.
-double usual_deviation(std::vector<double> sizes) {
+double usual_deviation(const std::vector<double>& sizes) {
   constexpr double mostly = 0.95;
   constexpr double deviations = 1.96;  // that a normal distribution is above as often
-  if (sizes.empty()) {
-    return 0.0;
-  }
-  const double by_median = deviation_of_median * median(sizes);
-  const auto high = sizes.begin() + static_cast<std::ptrdiff_t>(mostly * static_cast<double>(sizes.size()));
-  std::ranges::nth_element(sizes, high);
-  return std::max(by_median, *high / deviations);
+  return std::max(deviation_of_median * median(sizes), quantile(sizes, mostly) / deviations);
 }
 
 /// Of an output whose first row is `first`; each row once, in order.

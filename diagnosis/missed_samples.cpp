@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <utility>
 
 #include "diagnosis/spectrum.hpp"
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -39,9 +41,7 @@ double noise_of(const std::vector<double>& values) {
   }
   constexpr double quartile_of_normal = 0.3186;  // of |z|
   constexpr double of_the_difference = 1.394;    // √(1 + (4² + 4² + 1 + 1)/6²)
-  const auto at = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 4);
-  std::ranges::nth_element(off, at);
-  return *at / (quartile_of_normal * of_the_difference);
+  return quantile(std::move(off), 0.25) / (quartile_of_normal * of_the_difference);
 }
 
 /// What a sensor that rounds adds to the noise: between its steps a slow signal stands still, too.

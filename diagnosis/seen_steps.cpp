@@ -28,14 +28,12 @@ bool on_coarse_steps(const Signal& measured, const Signal& beyond, double floor)
 bool shows_steps(const Task& task, const Explanation& calibrated) {
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
     const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
-    std::size_t on_steps = 0;
-    for (std::size_t record = 0; record < task.records.size(); ++record) {
-      on_steps +=
-          on_coarse_steps(task.records[record].column(task.outputs[output]).values, beyond[record], task.scales[output])
-              ? 1
-              : 0;
+    bool on_steps = true;
+    for (std::size_t record = 0; on_steps && record < task.records.size(); ++record) {
+      const Signal& measured = task.records[record].column(task.outputs[output]).values;
+      on_steps = on_coarse_steps(measured, beyond[record], task.scales[output]);
     }
-    if (on_steps == task.records.size()) {
+    if (on_steps) {
       return true;
     }
   }

@@ -9,6 +9,9 @@
 #include <numeric>
 #include <span>
 #include <unsupported/Eigen/FFT>
+#include <utility>
+
+#include "support/median.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -46,9 +49,7 @@ double median_about(const std::vector<double>& heights, std::size_t at) {
   const std::size_t last = std::min(at + reach, heights.size() - 1);
   std::vector<double> near(heights.begin() + static_cast<std::ptrdiff_t>(first),
                            heights.begin() + static_cast<std::ptrdiff_t>(last));
-  const auto middle = near.begin() + std::ssize(near) / 2;
-  std::ranges::nth_element(near, middle);
-  return std::max(*middle, 1e-300);
+  return std::max(median(std::move(near)), 1e-300);
 }
 
 std::complex<double> mean_turn(const std::vector<double>& values, double step) {
@@ -128,9 +129,7 @@ class Lattice {
     const std::size_t low = std::max(first, k * 4 / 5);
     std::vector<double> near(heights_.begin() + static_cast<std::ptrdiff_t>(low),
                              heights_.begin() + static_cast<std::ptrdiff_t>(std::min(last, k * 5 / 4 + 8)));
-    const auto middle = near.begin() + std::ssize(near) / 2;
-    std::ranges::nth_element(near, middle);
-    return *middle;
+    return median(std::move(near));
   }
 
   /// To the place itself by all values: many steps from 0 a small error has become a whole step.

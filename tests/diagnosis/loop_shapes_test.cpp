@@ -1,4 +1,5 @@
 // A hysteresis whose slope along a branch is another than C1 + C2·p^C3, integrated here in small steps.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ using Slope = std::function<double(double, double)>;
 std::string loop() {
   return "FUNCTION_BLOCK STACK  (* @ts 5ms *)\n  VAR_INPUT U : LREAL;  (* @unit V *) END_VAR\n"
          "  VAR_OUTPUT Y : LREAL;  (* @unit um *) END_VAR\n"
-         "  VAR HYST : HY_HYSTERESIS_RO := (C1 := 5.0, C2 := 4.0, C3 := 0.8, START := 1); END_VAR\n"
+         "  VAR HYST : HY_HYSTERESIS_RO := (START := 1); END_VAR\n"
          "  HYST(XIN := U);\n  Y := HYST.XOUT;\nEND_FUNCTION_BLOCK\n";
 }
 
@@ -58,8 +59,9 @@ records::Record record_with(const Slope& slope) {
 
 /// It is that effect and nothing else, and what remains is noise.
 void expect_alone(const std::string& effect, const Slope& slope) {
+  const std::string tuned = fmt::format("[parameters.HYST]\nC1 = {}\nC2 = {}\nC3 = {}\n", c1, c2, c3);
   const Diagnosis found =
-      diagnose(test::input_of(loop(), "[parameters.HYST]\nC1 = 5.0\nC2 = 4.0\nC3 = 0.8\n", {record_with(slope)}),
+      diagnose(test::input_of(loop(), tuned, {record_with(slope)}),
                {.effects = {"curve_shape", "rate_dependence", "gain_error", "asymmetry", "bias_dependence"}});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects[0].id, effect);

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "codegen/compile.hpp"
-#include "codegen/graph/unit.hpp"
 #include "codegen/graph/units.hpp"
 #include "diagnosis/insertion.hpp"
+#include "diagnosis/motions.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -47,97 +47,6 @@ std::vector<Wire> sources_of(const Graph& graph, const Wire& signal, const Wire&
 bool depends_on(const Graph& graph, const Wire& signal, const Wire& source, const Wire& barrier) {
   return std::ranges::any_of(sources_of(graph, signal, barrier),
                              [&](const Wire& wire) { return wire.from == source.from && wire.index == source.index; });
-}
-
-/// Whether a block is a linear one that gives the rate of its output beside it, of which of its outputs that is, and of
-/// how many states it is: 1 for a lag, 2 for a mass on a spring. The input one sample ago is no state of its own.
-struct Smoothing {
-  int order = 0;
-  std::size_t rate = 0;
-};
-Smoothing smoothing_of(const Node& node) {
-  if (node.block == nullptr || node.block->about.group != Group::Dynamics) {
-    return {};
-  }
-  const auto& outputs = node.block->outputs;
-  const auto rate = std::ranges::find(outputs, std::string_view("RATE"), &Field::name);
-  if (rate == outputs.end()) {
-    return {};
-  }
-  const auto order = std::ranges::count_if(
-      node.block->states, [](const Field& state) { return state.type == Type::Real && state.name != "X1"; });
-  return {.order = static_cast<int>(order), .rate = static_cast<std::size_t>(rate - outputs.begin())};
-}
-
-/// How often a block integrates its input on the way to one of its outputs: +1 for an integrator and for a lag, whose
-/// output follows its input as a speed follows a force, 2 for a mass on a spring, one less for the rates of these; −1
-/// for a block that gives the rate of change of its input, by the units of its description.
-int integrals_of(const Node& node, std::size_t output = 0) {
-  if (const Smoothing smoothing = smoothing_of(node); smoothing.order > 0) {
-    return output == smoothing.rate ? smoothing.order - 1 : smoothing.order;
-  }
-  if (node.block == nullptr || node.block->inputs.empty() || node.block->inputs.front().unit != "'x") {
-    return 0;
-  }
-  const std::string_view unit = node.block->outputs.front().unit;
-  return unit == "'x*s" ? 1 : unit == "'x/s" ? -1 : 0;
-}
-
-/// The fewest integrals on a way from a node's output to a signal that depends on it, rates taken off.
-int integrals_between(const Graph& graph, std::uint32_t node, const Wire& signal) {
-  constexpr int far = 1000;
-  std::vector<int> before(graph.nodes.size(), far);  // what drives a node: the fewest on a way to it
-  const auto behind = [&](const Wire& wire) {
-    if (wire.from != Wire::From::Node) {
-      return far;
-    }
-    if (wire.index == node) {
-      return 0;
-    }
-    return before[wire.index] == far
-               ? far
-               : std::max(0, before[wire.index] + integrals_of(graph.nodes[wire.index], wire.port));
-  };
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-      for (std::size_t pin = 0; i != node && pin < graph.nodes[i].wire_count; ++pin) {
-        const int here = behind(graph.wire(graph.nodes[i], pin));
-        if (here < before[i]) {
-          before[i] = here;
-          changed = true;
-        }
-      }
-    }
-  }
-  return behind(signal);
-}
-
-/// Whether a unit is known and is none of a velocity: a position, a force, a voltage, a power.
-bool is_no_velocity(std::string_view text) {
-  constexpr std::size_t metres = 0;
-  constexpr std::size_t seconds = 2;
-  std::string reason;
-  const auto unit = text.empty() ? std::nullopt : units::parse_unit(text, reason);
-  if (!unit || std::ranges::all_of(unit->powers, &units::Fraction::zero)) {
-    return false;
-  }
-  for (std::size_t i = 0; i < units::dimensions; ++i) {
-    if (i != metres && i != seconds && !unit->powers[i].zero()) {
-      return true;
-    }
-  }
-  const units::Fraction length = unit->powers[metres];
-  return unit->powers[seconds].number() != -1.0 || (!length.zero() && length.number() != 1.0);
-}
-
-/// Whether an output of a block may be a velocity at all: its main one, or the rate that it gives beside it.
-bool may_be_velocity(const Node* node, std::size_t output) {
-  if (node == nullptr || output == 0) {
-    return true;
-  }
-  const Smoothing smoothing = smoothing_of(*node);
-  return smoothing.order > 1 && output == smoothing.rate;
 }
 
 class Enumeration {
@@ -231,13 +140,20 @@ class Enumeration {
       const Node* const node = find_node(base_.program->graph, edge.prefix + instance);
       for (std::size_t i = 0; i < declared.block->outputs.size(); ++i) {
         const Field& output = declared.block->outputs[i];
-        const bool fits = !kind.by_velocity || (may_be_velocity(node, i) && !is_no_velocity(unit_of(node, i)));
-        if (output.type == Type::Real && fits) {
+        if (output.type == Type::Real && may_drive(kind, node, i)) {
           result.push_back(instance + "." + std::string(output.name));
         }
       }
     }
     return result;
+  }
+
+  /// Whether an output of a block may be the velocity or position that an effect depends on.
+  [[nodiscard]] bool may_drive(const EffectKind& kind, const Node* node, std::size_t output) const {
+    const std::string_view unit = unit_of(node, output);
+    return kind.by_velocity   ? may_be_velocity(node, output) && !is_no_velocity(unit)
+           : kind.by_position ? !is_no_position(unit)
+                              : true;
   }
 
   /// Of an output of a block, where the diagram says enough; else empty.
@@ -369,7 +285,7 @@ class Enumeration {
       if (candidate.kind.of_output) {
         candidate.input = changed;
       }
-      if (!makes_sense(graph, candidate, changed)) {
+      if (!makes_sense(*candidate.variant.program, candidate, changed)) {
         return true;
       }
     }
@@ -377,21 +293,14 @@ class Enumeration {
     return true;
   }
 
-  /// A friction opposes the motion that it slows: its velocity comes from what it changes, as the integral of that
-  /// force and not as a position, the integral of the integral; and what it changes is neither that velocity nor a
-  /// position.
-  [[nodiscard]] static bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed,
-                                        const Wire& input) {
-    if (integrals_between(graph, changed.index, driver) > 1 || input == driver) {
+  /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
+  /// already; what is periodic in the signal itself has a position there.
+  [[nodiscard]] static bool makes_sense(const Program& program, const Candidate& candidate, const Wire& changed) {
+    const Graph& graph = program.graph;
+    if (candidate.kind.by_position && candidate.auxiliary.empty() &&
+        is_no_position(units::Solution(graph, program.schedule).outputs()[changed.index].front())) {
       return false;
     }
-    return input.from != Wire::From::Node || integrals_of(graph.nodes[input.index]) != 1 ||
-           graph.wire(graph.nodes[input.index], 0) != driver;
-  }
-
-  /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
-  /// already.
-  [[nodiscard]] static bool makes_sense(const Graph& graph, const Candidate& candidate, const Wire& changed) {
     return std::ranges::all_of(candidate.auxiliary, [&](const Wire& driver) {
       if (candidate.kind.by_velocity && !is_velocity(graph, driver, changed, candidate.input)) {
         return false;

@@ -101,6 +101,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       }
     }
     kind.parameters = searched(block.params);
+    kind.by_position = std::ranges::count(kind.parameters, Role::Period, &EffectParameter::role) > 0;
     std::ranges::copy_if(block.params, std::back_inserter(kind.choices), &Field::open);
     // A level at which something starts or stands, which the search leaves alone: X0, say.
     std::erase_if(kind.parameters, [](const EffectParameter& one) {
@@ -160,6 +161,7 @@ void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
   kind.output = outputs.front();
   kind.auxiliaries.assign(inputs.begin() + 1, inputs.end());
   kind.parameters = searched(parameters);
+  kind.by_position = std::ranges::count(kind.parameters, Role::Period, &EffectParameter::role) > 0;
   if (has_strength(kind)) {
     kinds.push_back(std::move(kind));
   }

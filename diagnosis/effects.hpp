@@ -63,6 +63,7 @@ struct EffectKind {
   bool of_output = false;                     ///< its levels are those of the block's output, not of its input
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
   bool by_velocity = false;                   ///< and it is a velocity
+  bool by_position = false;                   ///< periodic in a position: the auxiliary, or the signal itself
 };
 
 /// Those of the catalogue and of the definitions of a file, each with at least one strength, sorted by identifier.

@@ -18,15 +18,18 @@ void add_left_out(const Findings& findings, const LeftOutOfFits& from, const std
   for (const LeftOut& one : from.left_out) {
     const NoiseFloor& floor = from.floors[one.output];
     const double ratio = one.rms / floor.value;
+    const double closes = 0.5 * rows * ratio * ratio;
+    const bool alone = result.effects.empty();
     result.warnings.push_back(one.remark);
-    if (one.rms < least_excess(floor) || !is_tried(from.tried, one.effect)) {
+    const bool is_notable = alone || closes > least_gain(findings.search.calibrated.fit.cost, findings.floor_cost,
+                                                         result.effects.size() + 1);
+    if (one.rms < least_excess(floor) || !is_notable || !is_tried(from.tried, one.effect)) {
       continue;
     }
     const Edge* const edge = find_edge(edges, outputs[one.output]);
     EffectFinding finding{
         .id = one.effect, .edge = edge == nullptr ? outputs[one.output] : edge->name, .parameters = one.parameters};
-    const bool alone = result.effects.empty();
-    gap = add_share(result.effects, gap, std::move(finding), 0.5 * rows * ratio * ratio);
+    gap = add_share(result.effects, gap, std::move(finding), closes);
     for (Rival& rival : result.rivals) {
       rival.effects.push_back(one.effect);
       rival.edges.push_back(result.effects.back().edge);

@@ -225,6 +225,20 @@ TEST(Candidates, ALagIsAVelocityWhereItsUnitIsOne) {
   EXPECT_FALSE(candidates(fmt::format(fmt::runtime(room), "(* @unit m/s *)"), "ROOM", friction).empty());
 }
 
+TEST(Candidates, ARippleIsOverAPositionByItsUnit) {
+  const CandidateOptions ripple{.effects = {"cogging"}};
+  std::set<std::string> signals;  // what it is periodic in: POS, or the signal itself
+  for (const Candidate& one : candidates(servo, "SERVO", ripple)) {
+    signals.insert(one.own().wires.empty() ? one.own().edge : one.own().wires.at(0).second);
+  }
+  EXPECT_THAT(signals, UnorderedElementsAre("REF", "POS.XOUT", "X"));
+  std::set<std::string> without;
+  for (const Candidate& one : candidates(without_units(servo), "SERVO", ripple)) {
+    without.insert(one.own().wires.empty() ? one.own().edge : one.own().wires.at(0).second);
+  }
+  EXPECT_THAT(without, testing::IsSupersetOf({"REF", "POS.XOUT", "VEL.XOUT", "FORCE"}));
+}
+
 TEST(Candidates, AnotherInputOrColumnMayCouple) {
   const auto inputs = candidates(whole_machine, "MACHINE", {.effects = {"cross_coupling"}});
   std::set<std::string> drivers;

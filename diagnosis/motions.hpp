@@ -1,0 +1,30 @@
+// Which signals of a diagram may be a velocity or a position, by their units and by the integrals on the way to them:
+// a friction depends on the one, a ripple on the other.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "codegen/graph/graph.hpp"
+
+namespace hysteron::diagnosis {
+
+/// Whether a unit is known and is none of a velocity: a position, a force, a voltage, a power. Angles have no
+/// dimension.
+[[nodiscard]] bool is_no_velocity(std::string_view unit);
+
+/// Whether a unit is known and is neither a length nor an angle, nor without dimension: a velocity, a current, a
+/// temperature.
+[[nodiscard]] bool is_no_position(std::string_view unit);
+
+/// Whether an output of a block may be a velocity at all: its main one, or the rate that it gives beside it. Of no
+/// block, whatever it is.
+[[nodiscard]] bool may_be_velocity(const Node* node, std::size_t output);
+
+/// Whether `driver` may be the velocity of what a force moves, where the node `changed` changes the signal `input` to
+/// that force. A friction opposes the motion that it slows: its velocity comes from what it changes, as the integral of
+/// that force and not as a position, the integral of the integral; and what it changes is neither that velocity nor a
+/// position.
+[[nodiscard]] bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed, const Wire& input);
+
+}  // namespace hysteron::diagnosis

@@ -35,8 +35,7 @@
 #include "diagnosis/shares.hpp"
 #include "diagnosis/start_state.hpp"
 #include "diagnosis/task.hpp"
-#include "diagnosis/uneven_steps.hpp"
-#include "diagnosis/varying_delay.hpp"
+#include "diagnosis/unrepeatable.hpp"
 #include "diagnosis/verdict.hpp"
 #include "diagnosis/where.hpp"
 
@@ -153,11 +152,8 @@ class Run {
     if (harmonics_) {
       choose_instead(task_, *harmonics_, searched->judgement);
     }
-    unrepeatable_ = with_uneven_steps(task_, found, floor_cost_, searched->judgement);
-    if (!unrepeatable_) {
-      budget_.at_least(0.2);  // what hides beside a delay takes a search of its own
-      unrepeatable_ = with_varying_delay(task_, result_.top, found, floor_cost_, search_options(), searched->judgement);
-    }
+    unrepeatable_ = unrepeatable(task_, result_.top, found, floor_cost_, search_options(), materiality_, budget_,
+                                 searched->judgement);
     if (unrepeatable_) {
       result_.warnings.push_back(unrepeatable_->remark);
     }

@@ -48,6 +48,9 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
   if (!task.scales.empty()) {
     rollout_->set_scales(task.scales);
   }
+  for (std::size_t output = 0; output < task.cells.size(); ++output) {
+    cells_.push_back(task.cells[output] / task.scales[output]);
+  }
 
   const Index count = rollout_->unknowns();
   start_.resize(count);
@@ -112,6 +115,7 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
       (jacobian != nullptr && !jacobian->allFinite())) {
     return false;
   }
+  forgive_within_cells(residuals, jacobian);
   for (const Index row : left_out_) {
     residuals[row] = 0.0;
     if (jacobian != nullptr) {
@@ -125,6 +129,17 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
     }
   }
   return true;
+}
+
+void Model::forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const {
+  for (Index row = 0; !cells_.empty() && row < rows(); ++row) {
+    const double cell = cells_[static_cast<std::size_t>(row * std::ssize(cells_) / rows())];
+    const double beyond = residuals[row] - std::clamp(residuals[row], -cell, cell);
+    residuals[row] = beyond;
+    if (beyond == 0.0 && cell > 0.0 && jacobian != nullptr) {
+      jacobian->row(row).setZero();
+    }
+  }
 }
 
 bool Model::smooth_jacobian(const VectorXd& x, MatrixXd& jacobian) {

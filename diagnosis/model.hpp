@@ -53,6 +53,7 @@ struct Task {
   std::shared_ptr<const Shooting> shooting{};    ///< null: each record from its start to its end
   std::vector<double> scales{};                  ///< of the residuals, by output
   std::vector<Index> left_out{};                 ///< rows that do not count: glitches
+  std::vector<double> cells{};                   ///< by output: half the step on which a sensor gives it; empty: none
   std::shared_ptr<const Whitening> whitening{};  ///< of the residuals; null: their rows are independent
 };
 
@@ -84,6 +85,7 @@ class Model {
   [[nodiscard]] std::vector<double> measured(std::size_t output) const;
 
   /// (model − measured)/scale, whitened where the task asks for it, and its derivatives; false where one is not finite.
+  /// Of an output with a cell only what lies farther than that from the measured value.
   /// Rounding hides from derivatives what lies before it; on average the rounded signal follows the signal. Derivatives
   /// are those of the diagram with its quanta off, and 0 for a quantum itself: what its error gains by shrinking says
   /// nothing of where it lies.
@@ -91,6 +93,7 @@ class Model {
 
  private:
   bool smooth_jacobian(const VectorXd& x, MatrixXd& jacobian);
+  void forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const;
 
   std::unique_ptr<OutputErrorProblem> problem_;  ///< the rollout keeps a reference to it
   std::unique_ptr<hysteron::detail::Rollout> rollout_;
@@ -101,6 +104,7 @@ class Model {
   VectorXd prior_{};
   std::vector<std::string> names_{};
   std::vector<Index> left_out_{};
+  std::vector<double> cells_{};  ///< in scales
   std::shared_ptr<const Whitening> whitening_{};
   std::vector<Index> quanta_{};  ///< the unknowns that round
   Index first_further_ = 0;

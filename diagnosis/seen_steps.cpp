@@ -1,7 +1,9 @@
 #include "diagnosis/seen_steps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "diagnosis/spectrum.hpp"
@@ -13,31 +15,37 @@ namespace {
 /// Of the noise floor, what the steps round off at least: where it is theirs, they are as any sensor's.
 constexpr double beyond_noise = 1.3;
 
-bool on_coarse_steps(const Signal& measured, const Signal& beyond, double floor) {
-  const double step = common_step(measured);
-  if (rounded_off(step) <= beyond_noise * floor) {
-    return false;
-  }
+/// 0 where it lies on none.
+double coarse_step(const Signal& measured, const Signal& beyond, double floor) {
   std::vector<double> foretold = measured;
   std::ranges::transform(measured, beyond, foretold.begin(), std::plus<>());
-  return alignment(foretold, step) < 0.5 * alignment(measured, step);
+  for (const double step : {common_step(measured), coarsest_step(measured)}) {
+    if (rounded_off(step) > beyond_noise * floor && alignment(foretold, step) < 0.5 * alignment(measured, step)) {
+      return step;
+    }
+  }
+  return 0.0;
 }
 
 }  // namespace
 
-bool shows_steps(const Task& task, const Explanation& calibrated) {
+std::vector<double> seen_steps(const Task& task, const Explanation& calibrated) {
+  std::vector<double> steps;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
     const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
-    bool on_steps = true;
-    for (std::size_t record = 0; on_steps && record < task.records.size(); ++record) {
+    double largest = std::numeric_limits<double>::infinity();
+    for (std::size_t record = 0; largest > 0.0 && record < task.records.size(); ++record) {
       const Signal& measured = task.records[record].column(task.outputs[output]).values;
-      on_steps = on_coarse_steps(measured, beyond[record], task.scales[output]);
+      const double step = coarse_step(measured, beyond[record], task.scales[output]);
+      largest = std::isinf(largest) || step == 0.0 ? step : std::max(largest, step);
     }
-    if (on_steps) {
-      return true;
-    }
+    steps.push_back(largest);
   }
-  return false;
+  return steps;
+}
+
+bool shows_steps(const Task& task, const Explanation& calibrated) {
+  return std::ranges::any_of(seen_steps(task, calibrated), [](double step) { return step > 0.0; });
 }
 
 }  // namespace hysteron::diagnosis

@@ -100,6 +100,17 @@ class Lattice {
     return found == 0 ? 0.0 : refined(found);
   }
 
+  /// The first peak on which nearly all lie, whatever finer one they lie on, too; 0 where there is none.
+  [[nodiscard]] double coarsest() const {
+    constexpr double nearly_all = 0.9;
+    for (std::size_t k = first + 1; k < last && !heights_.empty(); ++k) {
+      if (heights_[k] > nearly_all * count_ && heights_[k] >= heights_[k - 1] && heights_[k] > heights_[k + 1]) {
+        return refined(k);
+      }
+    }
+    return 0.0;
+  }
+
   /// The one that stands highest over its neighbours.
   [[nodiscard]] double faint() const {
     constexpr double over_chance = 5.0;  // times the RMS of as many places at random
@@ -208,6 +219,10 @@ std::vector<double> Periodogram::outstanding_lines(std::size_t count) const {
 
 double common_step(const std::vector<double>& values) {
   return Lattice(values).clear();
+}
+
+double coarsest_step(const std::vector<double>& values) {
+  return Lattice(values).coarsest();
 }
 
 double rounded_off(double step) {

@@ -30,6 +30,10 @@ class Periodogram {
 /// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
+/// The largest step with more than 0.9 in the place of 0.5, 0 where there is none: of values that were rounded twice
+/// the coarse one, where common_step() is the fine one.
+[[nodiscard]] double coarsest_step(const std::vector<double>& values);
+
 /// What rounding to a step takes off, RMS: step/√12.
 [[nodiscard]] double rounded_off(double step);
 

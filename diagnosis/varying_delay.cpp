@@ -45,7 +45,7 @@ constexpr double usual = 0.2;
 constexpr Index most_directions = 64;
 /// So many edges for a delay, each with hundreds of rollouts, and so many sets beside it on each.
 constexpr std::size_t most_edges = 3;
-constexpr std::size_t kept = 3;
+constexpr std::size_t most_kept = 3;
 /// For a delay and nothing else, and how often its variation and its mean are fitted in turn.
 constexpr std::size_t most_edges_alone = 6;
 constexpr int rounds_alone = 2;
@@ -271,7 +271,7 @@ class VaryingDelay {
       whitened.whitening = std::make_shared<const Whitening>(
           usual * mean_delay(task_, place.set) * place.response.columns, most_directions);
       std::vector<Explanation> found = one_more(whitened, place.set);
-      found.resize(std::min(found.size(), kept));
+      found.resize(std::min(found.size(), most_kept));
       for (Explanation& one : found) {
         if (set_plain(one)) {
           try_set(one);

@@ -14,7 +14,8 @@ namespace {
 /// Of an axis that was tuned to K = 0.5, where the machine has another gain and a load.
 Footing footing_of_axis(double gain, double load) {
   const std::string text = test::axis();
-  std::string machine = test::axis({fmt::format("HY_LOAD := (SIZE := {:f}, T_ON := 3.0, T_OFF := 6.0)", load), "FORCE"});
+  std::string machine =
+      test::axis({fmt::format("HY_LOAD := (SIZE := {:f}, T_ON := 3.0, T_OFF := 6.0)", load), "FORCE"});
   const std::string tuned = "K := 0.5";
   machine.replace(machine.find(tuned), tuned.size(), fmt::format("K := {:f}", gain));
   const DiagnosisInput input =

@@ -14,13 +14,14 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr double noise = 0.002;
-constexpr double leap = 40.0 * noise;
+constexpr double noise_of_speed = 0.002;
+constexpr double leap = 40.0 * noise_of_speed;
 
 /// How many glitches of ten stay, each a leap, where the explanation leaves as much in every so many samples.
 std::size_t stay_where_it_misses(std::size_t every) {
   const std::string text = test::axis();
-  records::Record record = test::measured(test::program_of(text), test::record_of("FORCE", test::rich_force()), noise);
+  records::Record record =
+      test::measured(test::program_of(text), test::record_of("FORCE", test::rich_force()), noise_of_speed);
   std::vector<double> speed = record.column("V").values;
   LeftOut glitches{.effect = "glitches", .rms = 1.0};
   for (std::size_t k = 103; k < speed.size() && glitches.glitches.size() < 10; k += 187) {
@@ -32,7 +33,7 @@ std::size_t stay_where_it_misses(std::size_t every) {
   }
   record.replace("V", std::move(speed));
   Task task = task_of(test::input_of(text, test::axis_parameters, {record}));
-  task.scales = {noise};
+  task.scales = {noise_of_speed};
   for (const std::size_t row : glitches.glitches) {
     task.left_out.push_back(static_cast<Index>(row));
   }

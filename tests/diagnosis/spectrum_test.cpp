@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -107,6 +108,21 @@ TEST(CommonStep, IsThatOfValuesWithLittleNoise) {
   EXPECT_NEAR(common_step(rounded_motion(0.0117, 0.001)), 0.0117, 1e-3 * 0.0117);
   EXPECT_EQ(common_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0) << "too faint to be sure of";
   EXPECT_EQ(common_step(rounded_motion(0.0, 0.001)), 0.0);
+}
+
+TEST(CoarsestStep, IsThatOfTheFirstRoundingOfTwo) {
+  constexpr double coarse = 1.4;
+  constexpr double fine = 0.057;
+  test::Noise white(1);
+  std::vector<double> values;
+  for (int k = 0; k < 4000; ++k) {
+    const double smooth = 9.0 * std::sin(0.01 * k) + 4.0 * std::sin(0.0237 * k);
+    values.push_back(fine * std::round((coarse * std::round(smooth / coarse) + 0.03 * white()) / fine));
+  }
+  EXPECT_NEAR(common_step(values), fine, 1e-3 * fine);
+  EXPECT_NEAR(coarsest_step(values), coarse, 1e-2 * coarse);
+  std::ranges::generate(values, [&] { return white(); });
+  EXPECT_EQ(coarsest_step(values), 0.0);
 }
 
 TEST(LikelyStep, IsSeenBehindNoiseOfItsOwnSize) {

@@ -21,7 +21,8 @@ struct Clock : PastSignal {
           "up to 1024 samples; where it would be longer it is held there, with ERROR. The step of the delay takes one "
           "sample, so that the result has a derivative by T_LOST.",
       .delay = "SKEW·t, and LOST more after T_LOST; the gain between samples as in HY_DEAD_TIME.",
-      .effect = "clock"};
+      .effect = "clock",
+      .of_record = true};
 
   template <class S>
   struct Params {

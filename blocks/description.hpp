@@ -183,6 +183,7 @@ struct About {
   /// equal bits while every further parameter that has an effect is at its neutral setting. Empty for none.
   std::string_view enriches{};
   bool rate_transition = false;  ///< may stand between two rates (@every)
+  bool of_record = false;        ///< its effect is the record's and not the machine's: at the ports of a diagram alone
 };
 
 /// The descriptions of one structure, as a plain array.

@@ -28,7 +28,8 @@ struct Relaxation {
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{
-          HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).means("share of a step that follows slowly"),
+          HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-1.0, 1.0).means(
+              "share of a step that follows slowly"),
           HY_FIELD(T1).in("s").at_least(0.0).otherwise(1.0).means("time constant"),
           HY_FIELD(SETTLED).otherwise(1.0).means("starts as if the first input had stood for ever; FALSE: as if 0 had"),
           HY_FIELD(SINCE_START)

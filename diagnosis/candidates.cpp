@@ -69,7 +69,7 @@ class Enumeration {
       }
       if (kind.change == Change::Insert) {
         for (const Edge& edge : edges_) {
-          if (!serves_effect(edge)) {
+          if (!serves_effect(edge) && (!kind.of_record || is_port(edge))) {
             insert(kind, edge);
           }
         }

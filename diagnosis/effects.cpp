@@ -90,6 +90,7 @@ void drop_gains(std::vector<EffectParameter>& parameters) {
 void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
   if (!block.about.effect.empty()) {
     EffectKind kind{.id = std::string(block.about.effect), .block = std::string(block.about.name)};
+    kind.of_record = block.about.of_record;
     bool has_input = false;
     for (const Field& input : block.inputs) {
       has_input = has_input || input.name == kind.input;

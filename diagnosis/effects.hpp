@@ -63,6 +63,7 @@ struct EffectKind {
   bool of_output = false;                     ///< its levels are those of the block's output, not of its input
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
   bool by_velocity = false;                   ///< and it is a velocity
+  bool of_record = false;                     ///< it acts at the ports of the whole diagram
   bool by_position = false;                   ///< periodic in a position: the auxiliary, or the signal itself
 };
 

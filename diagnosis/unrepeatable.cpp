@@ -25,6 +25,7 @@ std::optional<Unrepeatable> unrepeatable(const Task& task, const std::string& to
   }
   if (hidden && found) {
     hidden->set = std::move(found->set);  // the chosen one, which it keeps
+    hidden->remark = found->remark + " " + hidden->remark;
   }
   return hidden ? std::move(hidden) : std::move(found);
 }

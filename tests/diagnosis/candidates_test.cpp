@@ -239,6 +239,11 @@ TEST(Candidates, ARippleIsOverAPositionByItsUnit) {
   EXPECT_THAT(without, testing::IsSupersetOf({"REF", "POS.XOUT", "VEL.XOUT", "FORCE"}));
 }
 
+TEST(Candidates, AClockIsTheRecords) {
+  EXPECT_THAT(edges_in(candidates(whole_machine, "MACHINE", {.effects = {"clock"}})),
+              UnorderedElementsAre("U", "W", "SPEED.XOUT"));
+}
+
 TEST(Candidates, AnotherInputOrColumnMayCouple) {
   const auto inputs = candidates(whole_machine, "MACHINE", {.effects = {"cross_coupling"}});
   std::set<std::string> drivers;

@@ -21,8 +21,10 @@ void add_left_out(const Findings& findings, const LeftOutOfFits& from, const std
     const double closes = 0.5 * rows * ratio * ratio;
     const bool alone = result.effects.empty();
     result.warnings.push_back(one.remark);
-    const bool is_notable = alone || closes > least_gain(findings.search.calibrated.fit.cost, findings.floor_cost,
-                                                         result.effects.size() + 1);
+    // Beside two or more it would be there for what their formulas leave, as any other effect.
+    const bool is_notable =
+        result.effects.size() < 2 ||
+        closes > least_gain(findings.search.calibrated.fit.cost, findings.floor_cost, result.effects.size() + 1);
     if (one.rms < least_excess(floor) || !is_notable || !is_tried(from.tried, one.effect)) {
       continue;
     }

@@ -17,8 +17,8 @@ struct LeftOutOfFits {
   const std::vector<std::string>& tried;
 };
 
-/// An effect of its own where it is no small part of the noise, and beside others as much as the last of a set has to
-/// close; a remark in any case. By itself it makes the verdict.
+/// An effect of its own where it is no small part of the noise, and beside two or more others as much as a third one
+/// has to close; a remark in any case. By itself it makes the verdict.
 void add_left_out(const Findings& findings, const LeftOutOfFits& from, const std::vector<Edge>& edges,
                   Diagnosis& result);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "diagnosis/spectrum.hpp"
@@ -15,12 +16,27 @@ namespace {
 /// Of the noise floor, what the steps round off at least: where it is theirs, they are as any sensor's.
 constexpr double beyond_noise = 1.3;
 
+/// Whether values lie on enough of the steps: two levels at which a signal rests are on the steps of any part of their
+/// distance.
+bool visits_many(const Signal& values, double step) {
+  constexpr std::size_t fewest = 4;
+  constexpr double notable = 0.005;  // of the values
+  std::map<long long, std::size_t> counts;
+  for (const double value : values) {
+    ++counts[std::llround(value / step)];
+  }
+  const double least = notable * static_cast<double>(values.size());
+  return static_cast<std::size_t>(std::ranges::count_if(
+             counts, [&](const auto& level) { return static_cast<double>(level.second) > least; })) >= fewest;
+}
+
 /// 0 where it lies on none.
 double coarse_step(const Signal& measured, const Signal& beyond, double floor) {
   std::vector<double> foretold = measured;
   std::ranges::transform(measured, beyond, foretold.begin(), std::plus<>());
   for (const double step : {common_step(measured), coarsest_step(measured)}) {
-    if (rounded_off(step) > beyond_noise * floor && alignment(foretold, step) < 0.5 * alignment(measured, step)) {
+    if (rounded_off(step) > beyond_noise * floor && alignment(foretold, step) < 0.5 * alignment(measured, step) &&
+        visits_many(measured, step)) {
       return step;
     }
   }

@@ -10,8 +10,8 @@
 namespace hysteron::diagnosis {
 
 /// Of each output the step on which it lies, in every record, and on which what the explanation says of it does not
-/// lie; 0 where there is none. Steps that round off less than 1.3 times the noise floor do not count: a floor that
-/// holds the rounding of a sensor is as large.
+/// lie; 0 where there is none, or fewer than four of them hold values. Steps that round off less than 1.3 times the
+/// noise floor do not count: a floor that holds the rounding of a sensor is as large.
 [[nodiscard]] std::vector<double> seen_steps(const Task& task, const Explanation& calibrated);
 
 /// Whether an output has one.

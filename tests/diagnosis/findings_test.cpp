@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "diagnosis/left_out_findings.hpp"
 #include "diagnosis/shares.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
@@ -82,6 +84,31 @@ TEST(Shares, WithAnEffectOutsideOfTheGapTheyAreOfBoth) {
   EXPECT_DOUBLE_EQ(effects[1].share, 0.075);
   EXPECT_DOUBLE_EQ(effects[2].share, 0.25);
   EXPECT_NEAR(split(effects).open, 0.075, 1e-12) << "what was open of the 30 stays open";
+}
+
+TEST(LeftOutOfFits, AThirdEffectHasToCloseANotablePart) {
+  constexpr double gap = 1000.0;
+  const Task task{.outputs = {"Y"}, .scales = {1.0}};
+  Search search;
+  search.calibrated.fit.cost = gap;
+  search.calibrated.fit.residuals = VectorXd::Zero(200);
+  const Judgement judgement{.chosen = &search.calibrated};
+  const Findings findings{.task = task, .search = search, .judgement = judgement, .kept = search.calibrated};
+  const std::vector<NoiseFloor> floors{{.value = 1.0}};
+  const std::vector<double> noise{1.0};
+  const std::vector<std::string> all;
+  const auto effects_with = [&](std::vector<EffectFinding> others, double energy) {
+    Diagnosis result{.verdict = Verdict::Named, .effects = std::move(others), .gaps = {{.signal = "Y"}}};
+    const std::vector<LeftOut> glitches{
+        {.effect = "glitches", .rms = std::sqrt(2.0 * energy / 200.0), .remark = "few"}};
+    add_left_out(findings, {.left_out = glitches, .floors = floors, .noise = noise, .tried = all}, {}, result);
+    EXPECT_EQ(result.warnings, std::vector<std::string>{"few"});
+    return result.effects.size();
+  };
+  EXPECT_EQ(effects_with({}, 0.04 * gap), 1U);
+  EXPECT_EQ(effects_with({{.id = "lag"}}, 0.04 * gap), 2U);
+  EXPECT_EQ(effects_with({{.id = "lag"}, {.id = "drift"}}, 0.04 * gap), 2U);
+  EXPECT_EQ(effects_with({{.id = "lag"}, {.id = "drift"}}, 0.06 * gap), 3U);
 }
 
 TEST(Reasons, ASlowPeriodIsNamedWhereSomethingStaysOpen) {

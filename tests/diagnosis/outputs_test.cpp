@@ -63,16 +63,6 @@ TEST(GlitchShare, IsTheWholeGapWhereNothingElseIs) {
   EXPECT_EQ(found.rivals.at(0).improved_rms, found.gap.improved);
 }
 
-TEST(GlitchShare, AFewBesideAnEffectAreARemark) {
-  records::Record record = drifting_stack(0.08);
-  add_glitches(record, 0.35);  // together less than the noise
-  const Diagnosis found = diagnose(test::input_of(test::stack(), test::stack_parameters, {record}),
-                                   {.effects = {"drift", "offset", "glitches"}});
-  ASSERT_EQ(found.effects.size(), 1U) << found.summary;
-  EXPECT_EQ(found.effects[0].id, "drift");
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("6 single samples of Y")));
-}
-
 TEST(GlitchShare, ThoseThatALagHidesShowBesideIt) {
   std::vector<double> force(2000);
   for (std::size_t k = 0; k < force.size(); ++k) {

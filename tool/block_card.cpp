@@ -161,7 +161,8 @@ std::string card_text(const BlockType& block) {
     text += "\ndelay and gain\n" + wrapped(about.delay, 2);
   }
   if (!about.effect.empty()) {
-    text += fmt::format("\neffect\n  {}, between XIN and XOUT\n", about.effect);
+    text += "\neffect\n" +
+            wrapped(fmt::format("{}, between XIN and XOUT.{}", about.effect, limits_of_effect(block, "")), 2);
   }
   if (!about.enriches.empty()) {
     text += fmt::format("\ncan replace\n  {}, to the bit while every further effect is neutral\n", about.enriches);

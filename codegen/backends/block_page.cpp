@@ -125,23 +125,6 @@ std::string feedthrough(const BlockType& block) {
   return text;
 }
 
-/// Where a diagnosis tries the effect of a block, and with which values, if not anywhere with any.
-std::string limits_of_effect(const BlockType& block) {
-  std::string text;
-  if (block.about.of_record) {
-    text += " It is the record's: a diagnosis tries it at the inputs and outputs of a diagram alone.";
-  }
-  for (const Field& field : block.params) {
-    const bool low = std::isfinite(field.effect_minimum);
-    if (low || std::isfinite(field.effect_maximum)) {
-      text += fmt::format(" A diagnosis tries `{}`{}{} up to {}: beyond, it would be another effect.", field.name,
-                          low ? " from " : "", low ? number_text(field.effect_minimum) : "",
-                          number_text(field.effect_maximum));
-    }
-  }
-  return text;
-}
-
 /// A list such as `a; b; c`, one part a line.
 std::string lines_of(std::string_view parts) {
   std::string text;
@@ -169,6 +152,22 @@ std::string range_text(const Field& field) {
   return fmt::format("{}{}{}{}{}", low ? (field.above_minimum ? "above " : "at least ") : "",
                      low ? number_text(field.minimum) : "", low && high ? " and " : "", high ? "at most " : "",
                      high ? number_text(field.maximum) : "");
+}
+
+std::string limits_of_effect(const BlockType& block, std::string_view quote) {
+  std::string text;
+  if (block.about.of_record) {
+    text += " It is the record's: a diagnosis tries it at the inputs and outputs of a diagram alone.";
+  }
+  for (const Field& field : block.params) {
+    const bool low = std::isfinite(field.effect_minimum);
+    if (low || std::isfinite(field.effect_maximum)) {
+      text += fmt::format(" A diagnosis tries {}{}{}{}{} up to {}: beyond, it would be another effect.", quote,
+                          field.name, quote, low ? " from " : "", low ? number_text(field.effect_minimum) : "",
+                          number_text(field.effect_maximum));
+    }
+  }
+  return text;
 }
 
 std::string value_text(const Field& field, double value) {
@@ -204,7 +203,7 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
   if (!about.effect.empty()) {
     part("Effect", fmt::format("`{}`, between `XIN` and `XOUT`. With every parameter at its neutral setting the block "
                                "passes its input through unchanged.{}\n",
-                               about.effect, limits_of_effect(block)));
+                               about.effect, limits_of_effect(block, "`")));
   }
   if (!about.enriches.empty()) {
     part("Replaces",

@@ -15,6 +15,10 @@ namespace hysteron {
 /// A field's range in words: `above 0 and at most 1`; empty where everything is allowed.
 [[nodiscard]] std::string range_text(const Field& field);
 
+/// Where a diagnosis tries the effect of a block, and with which values, each sentence behind a blank; empty: anywhere,
+/// with any. A name stands between `quote`s.
+[[nodiscard]] std::string limits_of_effect(const BlockType& block, std::string_view quote);
+
 /// A value as the field's type writes it: `TRUE`, `0.5`.
 [[nodiscard]] std::string value_text(const Field& field, double value);
 

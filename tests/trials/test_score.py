@@ -193,7 +193,7 @@ class Verdicts(unittest.TestCase):
             with self.subTest(odd):
                 self.assertNotEqual(fault_of(named(["creep"]) | odd), "")
         for other in (None, [], "x", 3):
-            self.assertEqual(fault_of(other), "no JSON object")
+            self.assertEqual(fault_of(other), "a JSON object")
 
     def test_what_cannot_be_read_is_none(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
@@ -241,6 +241,15 @@ class CommandLine(unittest.TestCase):
         found = json.loads((self.top / "s" / "score.json").read_text(), parse_constant=self.fail)
         missing = next(f for f in found["figures"] if f["key"] == "missing")
         self.assertAlmostEqual(missing["value"], 1 / 3)
+
+    def test_what_was_not_worked_out_is_no_figure(self) -> None:
+        first = next(iter(self.key))
+        found = json.loads((self.top / "v" / first / "verdict.json").read_text())
+        (self.top / "v" / first / "verdict.json").write_text(json.dumps(found | {"verdict": "named", "effects": [{"id": "no such", "edge": "U"}], "rivals": [["no such"]]}))
+        done = self.score()
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("is worked out with --product", done.stdout)
+        self.assertNotIn("nearer to the machine", done.stdout)
 
     def test_no_opening_is_spent_on_a_slip(self) -> None:
         passphrase = ("--passphrase-file", str(self.top / "pass"))

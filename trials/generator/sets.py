@@ -69,6 +69,9 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
     labels = key.with_suffix(".labels")
     if is_made(key, plan) and all((cases / name).is_dir() for name in names):
         return len(names)
+    strange = {one.name.removesuffix(".part") for one in cases.iterdir()} - set(names) if cases.is_dir() else set()
+    if strange:
+        raise OtherSet(f"{cases} holds {min(strange)}, which is no case of this set")
     labels.mkdir(parents=True, exist_ok=True, mode=0o700)
     (labels / "plan.sha256").write_text(plan)
     cases.mkdir(parents=True, exist_ok=True, mode=0o700)  # a product that runs as another user sees its own case alone

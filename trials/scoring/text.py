@@ -83,6 +83,8 @@ def misses(score: Score) -> str:
         named = " + ".join(m["effects"]) or m["verdict"]
         apart = "–" if math.isnan(m["apart"]) else f"{m['apart']:.2f} of the noise"
         lines.append(f"{apart:>18s}{m['ratio']:6.1f}  {true + ', ' + m['plant']:44s}{named}")
+    if known and all(math.isnan(m["apart"]) for m in known):
+        return "\n".join([*lines, "How near their models are to the machine is worked out with --product"])
     near = sum(m["apart"] < 1.0 for m in known)
     very = sum(m["apart"] < 0.37 for m in known)
     return "\n".join([*lines, f"{near} of {len(known)} are nearer to the machine than the noise, {very} than 0.37 of it"])

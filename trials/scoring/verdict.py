@@ -46,7 +46,7 @@ def _is_effect(value: Any) -> bool:
 def fault_of(verdict: Any) -> str:
     """Why this is no verdict; empty where it is one."""
     if not isinstance(verdict, dict):
-        return "no JSON object"
+        return "a JSON object"
     gap = verdict.get("gap") or {}
     checks = {
         f"verdict: one of {', '.join(sorted(VERDICTS))}": verdict.get("verdict") in VERDICTS if isinstance(verdict.get("verdict"), str) else False,

@@ -18,6 +18,9 @@
 namespace hysteron::diagnosis {
 namespace {
 
+/// Seconds: what a search finds is not to depend on the machine, nor on a sanitizer.
+constexpr double unhurried = 1000.0;
+
 constexpr double sample_time = 0.005;
 constexpr double mean_delay = 0.03;
 constexpr double noise = 0.002;
@@ -123,7 +126,7 @@ TEST(Jitter, NoneWhereTheDelayIsConstant) {
 }
 
 TEST(Jitter, IsNotWhatInputsForetell) {
-  const DiagnosisOptions options{.effects = {"delay"}};
+  const DiagnosisOptions options{.effects = {"delay"}, .budget = unhurried};
   const DiagnosisInput constant = test::input_of(
       test::axis(), test::axis_parameters,
       {late_axis(0.0, {"HY_COULOMB_FRICTION := (LEVEL := 0.4, PRESLIDE := 0.001)", "FORCE", ", V := LATE.XOUT"})});
@@ -138,7 +141,8 @@ TEST(Jitter, HidesNoEffectBesideIt) {
   const DiagnosisInput both =
       test::input_of(test::axis(), test::axis_parameters,
                      {late_axis(0.012, {"HY_ODD_NONLINEARITY := (SIZE := -0.3, REFERENCE := 3.0)", "FORCE"})});
-  const Diagnosis found = diagnose(both, {.effects = {"delay", "odd_nonlinearity", "lag", "dead_zone", "saturation"}});
+  const Diagnosis found =
+      diagnose(both, {.effects = {"delay", "odd_nonlinearity", "lag", "dead_zone", "saturation"}, .budget = unhurried});
   std::vector<std::string> names;
   for (const EffectFinding& one : found.effects) {
     names.push_back(one.id);
@@ -168,7 +172,7 @@ TEST(Jitter, IsNotAnotherFilterInTheDelaysPlace) {
   records::Record record = test::record_of("FORCE", test::rich_force());
   record.add(test::measured(test::program_of(position_axis()), test::record_of("FORCE", filtered), 1e-3).column("V"));
   const Diagnosis diagnosis = diagnose(test::input_of(position_axis(), test::axis_parameters, {std::move(record)}),
-                                       {.effects = {"delay", "viscous_friction"}});
+                                       {.effects = {"delay", "viscous_friction"}, .budget = unhurried});
   EXPECT_THAT(diagnosis.warnings, testing::Not(testing::Contains(testing::HasSubstr("varies by"))))
       << diagnosis.summary;
 }
@@ -222,8 +226,8 @@ TEST(Jitter, CountsTheOutputsThatTheDelayDoesNotReach) {
   records::Record record = test::record_of("UX", force);
   record.add({.name = "UY", .unit = "", .values = late_force});
   record = test::measured(test::program_of(machine), std::move(record), noise);
-  const Diagnosis found =
-      diagnose(test::input_of(two_axes, two_axes_parameters, {std::move(record)}), {.effects = {"backlash", "delay"}});
+  const Diagnosis found = diagnose(test::input_of(two_axes, two_axes_parameters, {std::move(record)}),
+                                   {.effects = {"backlash", "delay"}, .budget = unhurried});
   ASSERT_FALSE(found.effects.empty()) << found.summary;
   EXPECT_EQ(found.effects.front().id, "backlash") << found.summary;
   EXPECT_THAT(found.warnings, testing::Not(testing::Contains(testing::HasSubstr("varies by"))));
@@ -235,8 +239,9 @@ TEST(Jitter, IsADelayAloneWhereItAddsUp) {
   record.add(
       test::measured(test::program_of(position_axis()), test::record_of("FORCE", late(test::rich_force(), 0.012)), 1e-3)
           .column("V"));
-  const Diagnosis found = diagnose(test::input_of(position_axis(), test::axis_parameters, {std::move(record)}),
-                                   {.effects = {"delay", "odd_nonlinearity", "cogging", "relaxation", "load"}});
+  const Diagnosis found =
+      diagnose(test::input_of(position_axis(), test::axis_parameters, {std::move(record)}),
+               {.effects = {"delay", "odd_nonlinearity", "cogging", "relaxation", "load"}, .budget = unhurried});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects[0].id, "delay");
   EXPECT_GT(found.effects[0].share, 0.9) << "what its variation does counts as explained";
@@ -247,8 +252,9 @@ TEST(Jitter, IsADelayAloneWhereItAddsUp) {
 /// Behind one integrator lines of a cogging follow the random walk that a varying delay leaves: the smaller set is the
 /// better one, although it leaves no quarter of what they do.
 TEST(Jitter, NeedsNoEffectBesideIt) {
-  const Diagnosis found = diagnose(test::input_of(test::axis(), test::axis_parameters, {late_axis(0.006)}),
-                                   {.effects = {"delay", "cogging", "periodic_disturbance", "load", "relaxation"}});
+  const Diagnosis found =
+      diagnose(test::input_of(test::axis(), test::axis_parameters, {late_axis(0.006)}),
+               {.effects = {"delay", "cogging", "periodic_disturbance", "load", "relaxation"}, .budget = unhurried});
   ASSERT_EQ(found.effects.size(), 1U) << found.summary;
   EXPECT_EQ(found.effects[0].id, "delay");
   EXPECT_NE(found.verdict, Verdict::Partial);

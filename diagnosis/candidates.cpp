@@ -285,7 +285,7 @@ class Enumeration {
       if (candidate.kind.of_output) {
         candidate.input = changed;
       }
-      if (!makes_sense(*candidate.variant.program, candidate, changed)) {
+      if (!makes_sense(candidate, changed)) {
         return true;
       }
     }
@@ -295,7 +295,8 @@ class Enumeration {
 
   /// What is fed back comes from what the effect changes; a coupling is of another signal than the one that is there
   /// already; what is periodic in the signal itself has a position there.
-  [[nodiscard]] static bool makes_sense(const Program& program, const Candidate& candidate, const Wire& changed) {
+  [[nodiscard]] static bool makes_sense(const Candidate& candidate, const Wire& changed) {
+    const Program& program = *candidate.variant.program;
     const Graph& graph = program.graph;
     if (candidate.kind.by_position && candidate.auxiliary.empty() &&
         is_no_position(units::Solution(graph, program.schedule).outputs()[changed.index].front())) {

@@ -102,7 +102,6 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       }
     }
     kind.parameters = searched(block.params);
-    kind.by_position = std::ranges::count(kind.parameters, Role::Period, &EffectParameter::role) > 0;
     std::ranges::copy_if(block.params, std::back_inserter(kind.choices), &Field::open);
     // A level at which something starts or stands, which the search leaves alone: X0, say.
     std::erase_if(kind.parameters, [](const EffectParameter& one) {
@@ -162,7 +161,6 @@ void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
   kind.output = outputs.front();
   kind.auxiliaries.assign(inputs.begin() + 1, inputs.end());
   kind.parameters = searched(parameters);
-  kind.by_position = std::ranges::count(kind.parameters, Role::Period, &EffectParameter::role) > 0;
   if (has_strength(kind)) {
     kinds.push_back(std::move(kind));
   }
@@ -179,6 +177,7 @@ std::vector<EffectKind> effect_kinds(const Definitions& definitions) {
     add_own(definition, kinds);
   }
   for (EffectKind& kind : kinds) {
+    kind.by_position = std::ranges::count(kind.parameters, Role::Period, &EffectParameter::role) > 0;
     for (EffectParameter& one : kind.parameters) {
       // With a velocity or a position beside it, it is the size of a force.
       if (one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0 &&

@@ -21,14 +21,8 @@ std::optional<Unrepeatable> hidden_by_steps(const Task& task, const Explanation&
   Task within = task;
   std::ranges::transform(steps, std::back_inserter(within.cells), [](double step) { return 0.5 * step; });
   Model model(within, *chosen.variant.program, chosen.variant.further);
-  VectorXd smooth = chosen.fit.x;
-  for (std::size_t k = 0; k < chosen.variant.further.size(); ++k) {
-    if (chosen.variant.further[k].rounds) {
-      smooth[model.first_further() + static_cast<Index>(k)] = 0.0;
-    }
-  }
   VectorXd beyond;
-  if (!model.residuals(smooth, beyond)) {
+  if (!model.residuals(model.smooth(chosen.fit.x), beyond)) {
     return std::nullopt;
   }
   Unrepeatable result{.residuals = chosen.fit.residuals};

@@ -88,6 +88,13 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
   }
 }
 
+VectorXd Model::smooth(VectorXd x) const {
+  for (const Index j : quanta_) {
+    x[j] = 0.0;
+  }
+  return x;
+}
+
 std::vector<std::size_t> Model::samples() const {
   std::vector<std::size_t> samples;
   for (const Experiment& experiment : problem_->experiments) {
@@ -143,12 +150,8 @@ void Model::forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const 
 }
 
 bool Model::smooth_jacobian(const VectorXd& x, MatrixXd& jacobian) {
-  VectorXd smooth = x;
-  for (const Index j : quanta_) {
-    smooth[j] = 0.0;
-  }
   VectorXd without(rows());
-  if (!rollout_->residuals(smooth, without, &jacobian)) {
+  if (!rollout_->residuals(smooth(x), without, &jacobian)) {
     return false;
   }
   for (const Index j : quanta_) {

@@ -79,6 +79,8 @@ class Model {
   [[nodiscard]] const VectorXd& prior() const { return prior_; }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const OutputErrorProblem& problem() const { return *problem_; }
+  /// x with its quanta off: nothing rounds.
+  [[nodiscard]] VectorXd smooth(VectorXd x) const;
   /// How many samples each record has.
   [[nodiscard]] std::vector<std::size_t> samples() const;
   /// An output as it was measured, of all records one after the other.

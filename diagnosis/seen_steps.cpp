@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <vector>
 
@@ -34,7 +33,7 @@ bool visits_many(const Signal& values, double step) {
 double coarse_step(const Signal& measured, const Signal& beyond, double floor) {
   std::vector<double> foretold = measured;
   std::ranges::transform(measured, beyond, foretold.begin(), std::plus<>());
-  for (const double step : {common_step(measured), coarsest_step(measured)}) {
+  for (const double step : clear_steps(measured)) {
     if (rounded_off(step) > beyond_noise * floor && alignment(foretold, step) < 0.5 * alignment(measured, step) &&
         visits_many(measured, step)) {
       return step;
@@ -43,19 +42,27 @@ double coarse_step(const Signal& measured, const Signal& beyond, double floor) {
   return 0.0;
 }
 
+/// The largest of all records; 0 where one lies on none.
+double coarse_step_of(const Task& task, const Explanation& calibrated, std::size_t output) {
+  const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
+  double largest = 0.0;
+  for (std::size_t record = 0; record < task.records.size(); ++record) {
+    const Signal& measured = task.records[record].column(task.outputs[output]).values;
+    const double step = coarse_step(measured, beyond[record], task.scales[output]);
+    if (step == 0.0) {
+      return 0.0;
+    }
+    largest = std::max(largest, step);
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::vector<double> seen_steps(const Task& task, const Explanation& calibrated) {
   std::vector<double> steps;
   for (std::size_t output = 0; output < task.outputs.size(); ++output) {
-    const RecordSignals beyond = by_record(task, calibrated.fit.residuals, output);
-    double largest = std::numeric_limits<double>::infinity();
-    for (std::size_t record = 0; largest > 0.0 && record < task.records.size(); ++record) {
-      const Signal& measured = task.records[record].column(task.outputs[output]).values;
-      const double step = coarse_step(measured, beyond[record], task.scales[output]);
-      largest = std::isinf(largest) || step == 0.0 ? step : std::max(largest, step);
-    }
-    steps.push_back(largest);
+    steps.push_back(coarse_step_of(task, calibrated, output));
   }
   return steps;
 }

@@ -111,6 +111,16 @@ class Lattice {
     return 0.0;
   }
 
+  /// Of those two the ones that there are, each once.
+  [[nodiscard]] std::vector<double> all_clear() const {
+    std::vector<double> steps{clear()};
+    if (const double first_of_two = coarsest(); first_of_two != steps.front()) {
+      steps.push_back(first_of_two);
+    }
+    std::erase(steps, 0.0);
+    return steps;
+  }
+
   /// The one that stands highest over its neighbours.
   [[nodiscard]] double faint() const {
     constexpr double over_chance = 5.0;  // times the RMS of as many places at random
@@ -221,18 +231,21 @@ double common_step(const std::vector<double>& values) {
   return Lattice(values).clear();
 }
 
-double coarsest_step(const std::vector<double>& values) {
-  return Lattice(values).coarsest();
-}
-
 double rounded_off(double step) {
   return step / std::sqrt(12.0);
 }
 
-double likely_step(const std::vector<double>& values) {
+std::vector<double> clear_steps(const std::vector<double>& values) {
+  return Lattice(values).all_clear();
+}
+
+std::vector<double> likely_steps(const std::vector<double>& values) {
   const Lattice lattice(values);
-  const double clear = lattice.clear();
-  return clear > 0.0 ? clear : lattice.faint();
+  std::vector<double> steps = lattice.all_clear();
+  if (const double faint = steps.empty() ? lattice.faint() : 0.0; faint > 0.0) {
+    steps.push_back(faint);
+  }
+  return steps;
 }
 
 double alignment(const std::vector<double>& values, double step) {

@@ -30,17 +30,17 @@ class Periodogram {
 /// noise of less than a tenth of the step show it.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
-/// The largest step with more than 0.9 in the place of 0.5, 0 where there is none: of values that were rounded twice
-/// the coarse one, where common_step() is the fine one.
-[[nodiscard]] double coarsest_step(const std::vector<double>& values);
+/// That step, and behind it the largest one with more than 0.9 in the place of 0.5 where that is another: of values
+/// that were rounded twice the first is the fine one and the second the coarse one. Empty where they lie on none.
+[[nodiscard]] std::vector<double> clear_steps(const std::vector<double>& values);
 
 /// What rounding to a step takes off, RMS: step/√12.
 [[nodiscard]] double rounded_off(double step);
 
-/// That step, or one that noise of up to a third of it hides: the peak of |Σ exp(2πi y/q)| that stands highest over the
-/// median about it, if six times as high. A start for a fit, no finding: where a machine rests now and then, its levels
-/// may lie on a step by chance.
-[[nodiscard]] double likely_step(const std::vector<double>& values);
+/// Those steps, or where there are none one that noise of up to a third of it hides: the peak of |Σ exp(2πi y/q)| that
+/// stands highest over the median about it, if six times as high. A start for a fit, no finding: where a machine rests
+/// now and then, its levels may lie on a step by chance.
+[[nodiscard]] std::vector<double> likely_steps(const std::vector<double>& values);
 
 /// The step next to a likely one of which the values are multiples: a step q that begins anywhere may be off by some of
 /// its own thousandths, and where the values are hundreds of steps from 0 that is a part of a step there. Their phase

@@ -208,12 +208,10 @@ Hints hints_of(const Task& task, const Eigen::VectorXd& residuals) {
   }
   for (const std::string& output : task.outputs) {
     const std::vector<double>& values = task.records.front().column(output).values;
-    for (const double step : {likely_step(values), coarsest_step(values)}) {
-      if (step > 0.0 && std::ranges::find(hints.quanta, step) == hints.quanta.end()) {
-        hints.quanta.push_back(step);
-        if (const double from_zero = step_from_zero(values, step); from_zero != step) {
-          hints.quanta.push_back(from_zero);
-        }
+    for (const double step : likely_steps(values)) {
+      hints.quanta.push_back(step);
+      if (const double from_zero = step_from_zero(values, step); from_zero != step) {
+        hints.quanta.push_back(from_zero);
       }
     }
   }

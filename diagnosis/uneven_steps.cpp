@@ -118,12 +118,9 @@ std::optional<Unrepeatable> uneven_steps(const Task& task, const Explanation& ch
     return std::nullopt;
   }
   Model model(task, *chosen.variant.program, further);
-  const Index at = model.first_further() + (rounding - further.begin());
-  const double quantum = chosen.fit.x[at];
-  VectorXd even = chosen.fit.x;
-  even[at] = 0.0;
+  const double quantum = chosen.fit.x[model.first_further() + (rounding - further.begin())];
   VectorXd smooth;
-  if (!(quantum > 0.0) || !model.residuals(even, smooth)) {
+  if (!(quantum > 0.0) || !model.residuals(model.smooth(chosen.fit.x), smooth)) {
     return std::nullopt;
   }
   Unrepeatable result{.residuals = chosen.fit.residuals};

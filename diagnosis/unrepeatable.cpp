@@ -20,14 +20,14 @@ std::optional<Unrepeatable> unrepeatable(const Task& task, const std::string& to
     return found;
   }
   std::optional<Unrepeatable> hidden = hidden_by_steps(task, search.calibrated, *judgement.chosen);
-  if (hidden && found && found->residuals.squaredNorm() < hidden->residuals.squaredNorm()) {
+  if (!hidden || (found && found->residuals.squaredNorm() < hidden->residuals.squaredNorm())) {
     return found;
   }
-  if (hidden && found) {
+  if (found) {
     hidden->set = std::move(found->set);  // the chosen one, which it keeps
     hidden->remark = found->remark + " " + hidden->remark;
   }
-  return hidden ? std::move(hidden) : std::move(found);
+  return hidden;
 }
 
 }  // namespace hysteron::diagnosis

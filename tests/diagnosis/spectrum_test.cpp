@@ -110,7 +110,7 @@ TEST(CommonStep, IsThatOfValuesWithLittleNoise) {
   EXPECT_EQ(common_step(rounded_motion(0.0, 0.001)), 0.0);
 }
 
-TEST(CoarsestStep, IsThatOfTheFirstRoundingOfTwo) {
+TEST(ClearSteps, AreThoseOfBothRoundings) {
   constexpr double coarse = 1.4;
   constexpr double fine = 0.057;
   test::Noise white(1);
@@ -120,16 +120,21 @@ TEST(CoarsestStep, IsThatOfTheFirstRoundingOfTwo) {
     values.push_back(fine * std::round((coarse * std::round(smooth / coarse) + 0.03 * white()) / fine));
   }
   EXPECT_NEAR(common_step(values), fine, 1e-3 * fine);
-  EXPECT_NEAR(coarsest_step(values), coarse, 1e-2 * coarse);
+  const std::vector<double> steps = clear_steps(values);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0], common_step(values));
+  EXPECT_NEAR(steps[1], coarse, 1e-2 * coarse);
   std::ranges::generate(values, [&] { return white(); });
-  EXPECT_EQ(coarsest_step(values), 0.0);
+  EXPECT_TRUE(clear_steps(values).empty());
 }
 
-TEST(LikelyStep, IsSeenBehindNoiseOfItsOwnSize) {
-  EXPECT_NEAR(likely_step(rounded_motion(0.0117, 0.0117 / 3.5)), 0.0117, 1e-3 * 0.0117);
-  EXPECT_EQ(likely_step(rounded_motion(0.0, 0.0117 / 3.5)), 0.0);
-  EXPECT_EQ(likely_step(std::vector<double>(40, 1.0)), 0.0);
-  EXPECT_EQ(likely_step(std::vector<double>(4000, 1.0)), 0.0);
+TEST(LikelySteps, IsSeenBehindNoiseOfItsOwnSize) {
+  const std::vector<double> steps = likely_steps(rounded_motion(0.0117, 0.0117 / 3.5));
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_NEAR(steps.front(), 0.0117, 1e-3 * 0.0117);
+  EXPECT_TRUE(likely_steps(rounded_motion(0.0, 0.0117 / 3.5)).empty());
+  EXPECT_TRUE(likely_steps(std::vector<double>(40, 1.0)).empty());
+  EXPECT_TRUE(likely_steps(std::vector<double>(4000, 1.0)).empty());
 }
 
 TEST(StepFromZero, IsTheOneWhoseMultiplesTheValuesAre) {

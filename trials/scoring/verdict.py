@@ -44,7 +44,7 @@ def _is_effect(value: Any) -> bool:
 
 
 def fault_of(verdict: Any) -> str:
-    """Why this is no verdict; empty where it is one."""
+    """What is wanted of a verdict that this has not; empty where it is one."""
     if not isinstance(verdict, dict):
         return "a JSON object"
     gap = verdict.get("gap") or {}

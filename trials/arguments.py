@@ -1,4 +1,4 @@
-"""What the command lines of the trial take: kinds of arguments with their refusals."""
+"""What the command lines of the trial take, kinds of arguments with their refusals, and how they count."""
 
 from __future__ import annotations
 
@@ -32,8 +32,13 @@ def seconds(text: str) -> float:
     return value
 
 
-def reason(text: str) -> str:
-    """A text that says something."""
+def filled(text: str) -> str:
+    """A text that is not empty, on one line."""
     if not text.strip():
-        raise argparse.ArgumentTypeError("write what for")
+        raise argparse.ArgumentTypeError("write some text; there is none")
     return " ".join(text.split())
+
+
+def counted(number: int, what: str) -> str:
+    """1 case, 2 cases."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"

@@ -27,7 +27,9 @@ class Refused(ValueError):
 
 
 def passphrase_of(file: Path) -> bytes:
-    """A passphrase from its file. Raises Refused where it is short, or where others than its owner can read it."""
+    """A passphrase from its file. Raises Refused where it is short, a folder, or where others than its owner can read it."""
+    if file.is_dir():
+        raise Refused(f"{file}: this is a folder; name the file that holds the passphrase")
     if file.stat().st_mode & 0o077:
         raise Refused(f"{file}: others can read this passphrase: chmod 600 {file}")
     text = file.read_bytes().strip()

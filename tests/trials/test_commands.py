@@ -39,7 +39,7 @@ class Generate(unittest.TestCase):
         return [str(ROOT / "trials" / "generate"), "--out", f"{folder}/cases", "--key", f"{folder}/key.json", "--seed", "a", *more]
 
     def test_what_makes_no_set_is_refused(self) -> None:
-        for more in (("--count", "0"), ("--count", "-3"), ("--jobs", "0"), ("--length", "nan"), ("--each", "0"), ("--stratum", "single=²"), ("--stratum", "none=2", "--count", "3"), ("--stratum", "none=2", "--each", "10")):
+        for more in (("--count", "0"), ("--count", "-3"), ("--jobs", "0"), ("--length", "nan"), ("--each", "0"), ("--stratum", "single=²"), ("--stratum", "none=2", "--count", "3"), ("--stratum", "none=2", "--each", "10"), ("--seed", " ")):
             with self.subTest(more), tempfile.TemporaryDirectory() as folder:
                 done = subprocess.run(self.generate(folder, *more), capture_output=True, text=True, check=False)
                 self.assertEqual(done.returncode, 2)
@@ -88,6 +88,16 @@ class Generate(unittest.TestCase):
             self.assertIn("holds 0123456789ab, which is no case of this set", done.stderr)
             self.assertEqual([one.name for one in (Path(folder) / "cases").iterdir()], ["0123456789ab"])
             self.assertFalse((Path(folder) / "key.labels").exists())
+
+    def test_what_cannot_begin_leaves_nothing(self) -> None:
+        for blocked, made in (("cases", "key.labels"), ("key.labels", "cases")):
+            with self.subTest(blocked), tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / blocked).write_text("")
+                done = subprocess.run(self.generate(folder, "--stratum", "none=2"), capture_output=True, text=True, check=False)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn(f"{folder}/{blocked}", done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
+                self.assertFalse((Path(folder) / made).exists())
 
     def test_what_another_set_has_begun_is_not_taken_for_this_one(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

@@ -48,6 +48,14 @@ class Statistics(unittest.TestCase):
         self.assertEqual(statistics.auroc([1.0, 3.0], [2.0, 2.0]), 0.5)
         self.assertEqual(statistics.auroc([2.0], [2.0]), 0.5)
 
+    def test_the_interval_of_an_area_has_a_width_however_clear_it_is(self) -> None:
+        one = statistics.auroc_interval([2.0], [1.0, 1.5])
+        many = statistics.auroc_interval([2.0] * 40, [1.0] * 50)
+        self.assertEqual((one[1], many[1]), (1.0, 1.0))
+        self.assertLess(one[0], 0.3)
+        self.assertAlmostEqual(many[0], statistics.Share(40, 40).interval[0])
+        self.assertTrue(all(math.isnan(x) for x in statistics.auroc_interval([], [1.0])))
+
     def test_recall_at_a_false_share(self) -> None:
         negative = [i / 100 for i in range(100)]
         self.assertEqual(statistics.recall_at([0.95, 0.94, 0.2], negative, 0.05).hits, 1)
@@ -180,7 +188,7 @@ ODD = (
     {"effects": None}, {"effects": {}}, {"effects": ["lag"]}, {"effects": 3}, {"effects": [{"id": "lag", "same_edges": None}]}, {"effects": [{"id": 3}]},
     {"rivals": None}, {"rivals": [1, 2]}, {"rivals": ["lag"]}, {"gap": [1]}, {"gap": "x"}, {"gap": {"improved_rms": 1e300}}, {"gap": {"closed": "much"}},
     {"confidence": 5}, {"confidence": -1}, {"confidence": "high"}, {"confidence": math.nan}, {"unknown_score": math.inf}, {"verdict": "guilty"}, {"verdict": ["none"]},
-    {"cannot_tell": "anything"},
+    {"cannot_tell": "anything"}, {"effects": []}, {"verdict": "group", "effects": []},
 )  # fmt: skip
 
 
@@ -242,6 +250,14 @@ class CommandLine(unittest.TestCase):
         missing = next(f for f in found["figures"] if f["key"] == "missing")
         self.assertAlmostEqual(missing["value"], 1 / 3)
 
+    def test_a_case_that_was_never_run_is_told(self) -> None:
+        first = next(iter(self.key))
+        shutil.rmtree(self.top / "v" / first)
+        done = self.score()
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(f"v/{first}: not run;", done.stderr)
+        self.assertEqual(done.stderr.count("not run"), 1)
+
     def test_what_was_not_worked_out_is_no_figure(self) -> None:
         first = next(iter(self.key))
         found = json.loads((self.top / "v" / first / "verdict.json").read_text())
@@ -262,7 +278,8 @@ class CommandLine(unittest.TestCase):
             passphrase, (*passphrase, "--purpose", " "), purpose, (*passphrase, *purpose, "--product", "/no/such"), (*passphrase, *purpose, "--floors", "/no/such"),
             (*passphrase, *purpose, "--peer", "sparse=empty"), (*passphrase, *purpose, "--peer", "sparse"), (*passphrase, *purpose, "--peer", "verdicts=v"),
             (*passphrase, *purpose, "--peer", "../x=v"), (*passphrase, *purpose, "--peer", "a=v", "--peer", "a=v"), (*passphrase, *purpose, "--out", "blocked"),
-            (*passphrase, *purpose, "--jobs", "0"),
+            (*passphrase, *purpose, "--jobs", "0"), (*passphrase, *purpose, "--out", "v"), (*passphrase, *purpose, "--peer", "twin=v", "--out", "v/s"),
+            ("--passphrase-file", str(self.top / "empty"), *purpose),
         ):  # fmt: skip
             with self.subTest(slip):
                 self.assertNotEqual(self.score(*slip, key="key.sealed").returncode, 0)

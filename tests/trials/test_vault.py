@@ -105,6 +105,8 @@ class Seal(unittest.TestCase):
         self.assertIn("fewer than 16", self.new(self.key).stderr)
         self.passphrase.unlink()
         self.assertEqual(self.new(self.key).returncode, 1)
+        self.passphrase.mkdir(mode=0o755)
+        self.assertIn("this is a folder", self.new(self.key).stderr)
         self.assertTrue(self.key.exists())
 
     def test_seeds(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -72,9 +73,14 @@ def make_set(seed: str, specifications: list[Specification], cases: Path, key: P
     strange = {one.name.removesuffix(".part") for one in cases.iterdir()} - set(names) if cases.is_dir() else set()
     if strange:
         raise OtherSet(f"{cases} holds {min(strange)}, which is no case of this set")
-    labels.mkdir(parents=True, exist_ok=True, mode=0o700)
-    (labels / "plan.sha256").write_text(plan)
     cases.mkdir(parents=True, exist_ok=True, mode=0o700)  # a product that runs as another user sees its own case alone
+    try:
+        labels.mkdir(parents=True, exist_ok=True, mode=0o700)
+        (labels / "plan.sha256").write_text(plan)
+    except OSError:
+        with contextlib.suppress(OSError):
+            cases.rmdir()  # what was begun here and holds nothing
+        raise
     missing = [i for i, name in enumerate(names) if not (labels / f"{name}.json").exists()]
     progress = Progress("generate", len(names), len(names) - len(missing), quiet)
     with ProcessPoolExecutor(jobs, initializer=finish_what_is_begun) as pool:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trials.scoring.judge import IN_LIBRARY, Judgement
-from trials.scoring.statistics import Share, auroc, quantile_interval, recall_at, share
+from trials.scoring.statistics import Share, auroc, auroc_interval, quantile_interval, recall_at, share
 from trials.scoring.verdict import ACCUSES
 
 
@@ -109,9 +109,8 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     out.append(_proportion("spurious", "spurious second effect beside a single one", share([len(set(c.effects) - set(c.truth)) > 0 and c.named_first for c in chosen]), None, False))
     positive = [c.unknown_score for c in of("outside") if not math.isnan(c.unknown_score)]
     negative = [c.unknown_score for c in of(*IN_LIBRARY, where=lambda c: c.ratio >= 2.0) if not math.isnan(c.unknown_score)]
-    area = auroc(positive, negative)
-    half = 1.96 * math.sqrt(max(area * (1 - area), 1e-4) / max(min(len(positive), len(negative)), 1)) if positive and negative else math.nan
-    out.append(Figure("auroc", "outside the library: AUROC of unknown_score", area, max(area - half, 0.0), min(area + half, 1.0), len(positive), 0.98, unit=""))
+    area, interval = auroc(positive, negative), auroc_interval(positive, negative)
+    out.append(Figure("auroc", "outside the library: AUROC of unknown_score", area, *interval, len(positive), 0.98, unit=""))
     out.append(_proportion("recall", "  recall at 5 % false unknown", recall_at(positive, negative, 0.05), 0.90))
     out.append(_proportion("outside_named", "  outside the library, yet a name given alone", share([c.verdict == "named" for c in of("outside")]), None, False))
     sure = [c for c in cases if c.confidence >= 0.9]

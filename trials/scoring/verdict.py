@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,7 @@ def fault_of(verdict: Any) -> str:
     checks = {
         f"verdict: one of {', '.join(sorted(VERDICTS))}": verdict.get("verdict") in VERDICTS if isinstance(verdict.get("verdict"), str) else False,
         "effects: a list of objects with id, edge and same_edges": isinstance(verdict.get("effects", []), list) and all(map(_is_effect, verdict.get("effects", []))),
+        "effects: one at least where the verdict names one": verdict.get("verdict") not in ("named", "group") or bool(verdict.get("effects")),
         "rivals: a list of lists of names": isinstance(verdict.get("rivals", []), list) and all(map(_are_names, verdict.get("rivals", []))),
         "cannot_tell: a list of sentences": _are_names(verdict.get("cannot_tell", [])),
         "confidence: 0 to 1": _is_share(verdict.get("confidence")),
@@ -81,6 +83,11 @@ def broken(verdicts: Path) -> list[str]:
     """By case a line for each file verdict.json that is no verdict."""
     found = {file.parent.name: fault_of(read_object(file)) for file in sorted(verdicts.glob("*/verdict.json"))}
     return [f"{name}: no verdict; wanted is {fault}" for name, fault in found.items() if fault]
+
+
+def not_run(verdicts: Path, names: Iterable[str]) -> list[str]:
+    """A line for each case of a set that was never run here; the score counts it as one without a verdict."""
+    return [f"{name}: not run; trials/run over the whole set goes on with it" for name in names if not (verdicts / name / "run.json").exists()]
 
 
 def hashes(verdicts: Path) -> str:

@@ -1,45 +1,19 @@
-// The diagnosis of the sim-to-real gap: where model and machine differ, which effect causes it, how far it shrinks.
-//
-//   const Diagnosis found = diagnose({.program = …, .text = …, .file = …, .records = …}, {});
-//
-// The method, step by step, with its figures: docs/diagnosis.md.
+// What a diagnosis answers: the verdict, the effects with their parameters, and all that the report shows of it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
-#include "diagnosis/candidates.hpp"
-#include "diagnosis/noise_floor.hpp"
-#include "records/record.hpp"
+#include "diagnosis/effects/candidates.hpp"
+#include "diagnosis/noise/noise_floor.hpp"
 
 namespace hysteron::diagnosis {
-
-struct DiagnosisInput {
-  Program program{};
-  std::string text{};  ///< of the diagram
-  parameters::ParameterFile file{};
-  std::vector<records::Record> records{};
-};
-
-struct DiagnosisOptions {
-  double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; noise_floor.hpp says the least
-  std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
-  int most_effects = 3;
-  double budget = 40.0;  ///< seconds after which no further effect is added
-  std::uint64_t seed = 1;
-  unsigned threads = 2;
-  std::function<void(double fraction, std::string_view text)> progress{};
-  /// Of the next experiment, by name: "U" the largest |value| of an input, "U.low", "U.high", "U.rate" its ends and
-  /// its fastest change a second. What is not named is taken from the records.
-  std::vector<std::pair<std::string, double>> limits{};
-};
 
 enum class Verdict : std::uint8_t { None, Calibration, Named, Group, Partial, Unknown };
 
@@ -206,9 +180,5 @@ struct Diagnosis {
   std::size_t tried = 0;
   double seconds = 0.0;
 };
-
-/// Deterministic for a seed, but for `seconds` and for a budget that runs out.
-/// @throws InputError where the diagram, the parameters and the records do not fit together.
-[[nodiscard]] Diagnosis diagnose(const DiagnosisInput& input, const DiagnosisOptions& options);
 
 }  // namespace hysteron::diagnosis

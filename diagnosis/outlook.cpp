@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/feedforward.hpp"
-#include "diagnosis/inverse.hpp"
-#include "diagnosis/loop_noise.hpp"
-#include "diagnosis/next_experiment.hpp"
+#include "diagnosis/remedy/feedforward.hpp"
+#include "diagnosis/remedy/inverse.hpp"
+#include "diagnosis/remedy/next_experiment.hpp"
+#include "diagnosis/search/loop_noise.hpp"
 
 namespace hysteron::diagnosis {
 namespace {

@@ -3,9 +3,10 @@
 #pragma once
 
 #include "diagnosis/diagnosis.hpp"
-#include "diagnosis/search.hpp"
-#include "diagnosis/task.hpp"
-#include "diagnosis/verdict.hpp"
+#include "diagnosis/model/input.hpp"
+#include "diagnosis/model/task.hpp"
+#include "diagnosis/search/search.hpp"
+#include "diagnosis/verdict/verdict.hpp"
 
 namespace hysteron::diagnosis {
 

@@ -1,3 +1,5 @@
+#include "diagnosis/diagnose.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,9 +16,8 @@
 
 #include "codegen/graph/definition.hpp"
 #include "codegen/parameters/apply.hpp"
-#include "diagnosis/diagnosis.hpp"
-#include "diagnosis/effects.hpp"
-#include "diagnosis/verdict_json.hpp"
+#include "diagnosis/effects/effects.hpp"
+#include "diagnosis/report/verdict_json.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"

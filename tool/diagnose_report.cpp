@@ -11,7 +11,7 @@
 
 #include "codegen/compile.hpp"
 #include "diagnosis/report/page.hpp"
-#include "diagnosis/verdict_json.hpp"
+#include "diagnosis/report/verdict_json.hpp"
 #include "records/csv.hpp"
 #include "support/errors.hpp"
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
+import shutil
+from pathlib import Path
 
 
 def whole(text: str) -> int:
@@ -37,6 +39,14 @@ def filled(text: str) -> str:
     if not text.strip():
         raise argparse.ArgumentTypeError("write some text; there is none")
     return " ".join(text.split())
+
+
+def program_of(program: str) -> str:
+    """A program by its path, or by its name in PATH."""
+    found = shutil.which(program)
+    if found is None:
+        raise SystemExit(f"{program}: no such program; build it, or name it with --product")
+    return str(Path(found).resolve())
 
 
 def counted(number: int, what: str) -> str:

@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from trials.arguments import program_of
 from trials.progress import Progress
 from trials.scoring.verdict import read_object
 
@@ -29,14 +30,6 @@ KEPT = ("verdict.json", "improved.st", "improved.toml")
 MOST_BYTES = 256 * 2**20
 """Of one file that a diagnoser may write."""
 GUARD = Path(__file__).resolve().with_name("guard.py")
-
-
-def resolve(program: str) -> str:
-    """A program by its path, or by its name in PATH."""
-    found = shutil.which(program)
-    if found is None:
-        raise SystemExit(f"{program}: no such program; build it, or name it with --product")
-    return str(Path(found).resolve())
 
 
 class Stopped(Exception):
@@ -83,7 +76,7 @@ def diagnoser(product: str, options: list[str], timeout: float, user: str | None
     for option in options:
         name, equals, value = option.partition("=")
         absolute.append(f"{name}={Path(value).resolve()}" if equals and "/" in value and Path(value).exists() else option)
-    return Diagnoser(resolve(product), tuple(absolute), timeout, user, keep)
+    return Diagnoser(program_of(product), tuple(absolute), timeout, user, keep)
 
 
 @dataclass

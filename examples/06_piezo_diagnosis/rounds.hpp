@@ -7,7 +7,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/diagnose.hpp"
 #include "records/record.hpp"
 #include "tuning/output_error.hpp"
 

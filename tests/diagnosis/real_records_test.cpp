@@ -11,7 +11,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
-#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/diagnose.hpp"
 #include "records/csv.hpp"
 #include "records/data_folder.hpp"
 #include "tests/support/measured_records.hpp"

@@ -17,8 +17,8 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/apply.hpp"
-#include "diagnosis/diagnosis.hpp"
-#include "diagnosis/edges.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/effects/edges.hpp"
 #include "records/record.hpp"
 #include "tuning/simulation.hpp"
 

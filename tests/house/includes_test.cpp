@@ -1,10 +1,14 @@
 // The rooms of the house and the arrows between them: which folder may include which.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tests/house/source_files.hpp"
 
@@ -25,7 +29,6 @@ const Arrows& allowed() {
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records"}},
       {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
-      {"docs", {"blocks", "codegen", "support"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records"}},
@@ -35,23 +38,58 @@ const Arrows& allowed() {
   return arrows;
 }
 
-/// The room that a line includes; empty where it includes none of ours.
-std::string included_room(std::string_view line) {
+/// The floors of the diagnosis, from the ground: a folder includes what lies below it, so that a fit knows nothing of
+/// verdicts, and a verdict nothing of the words that are made of it.
+const std::vector<std::string>& floors_of_diagnosis() {
+  static const std::vector<std::string> floors{"model",  "noise",   "effects",  "search", "faults",
+                                               "remedy", "verdict", "findings", "report"};
+  return floors;
+}
+
+/// The path that a line includes; empty where it includes nothing.
+std::string_view included_path(std::string_view line) {
   const auto hash = line.find_first_not_of(" \t");
   if (hash == std::string_view::npos || line[hash] != '#') {
-    return "";
+    return {};
   }
   const auto word = line.find_first_not_of(" \t", hash + 1);
   if (word == std::string_view::npos || !line.substr(word).starts_with("include")) {
-    return "";
+    return {};
   }
   const auto open = line.find_first_of("\"<", word);
-  const auto slash = line.find('/', word);
-  if (open == std::string_view::npos || slash == std::string_view::npos) {
-    return "";
-  }
-  std::string room(line.substr(open + 1, slash - open - 1));
+  const auto close = open == std::string_view::npos ? open : line.find_first_of("\">", open + 1);
+  return close == std::string_view::npos ? std::string_view{} : line.substr(open + 1, close - open - 1);
+}
+
+/// The room that a line includes; empty where it includes none of ours.
+std::string included_room(std::string_view line) {
+  const std::string_view path = included_path(line);
+  const auto slash = path.find('/');
+  std::string room(slash == std::string_view::npos ? "" : path.substr(0, slash));
   return allowed().contains(room) ? room : "";
+}
+
+/// The floor of a file of the diagnosis; the front door and what it answers lie on none.
+std::optional<std::size_t> floor_of(std::string_view path) {
+  const auto& floors = floors_of_diagnosis();
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    if (path.starts_with("diagnosis/" + floors[i] + "/")) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string arrows_up_the_stairs(const SourceText& file) {
+  const std::optional<std::size_t> own = floor_of(file.path);
+  std::string found;
+  for (std::size_t i = 0; own && i < file.lines.size(); ++i) {
+    const std::string_view path = included_path(file.lines[i]);
+    if (floor_of(path) > own || path == "diagnosis/diagnose.hpp") {
+      found += fmt::format("{}:{}: {} lies above {}\n", file.path, i + 1, path, floors_of_diagnosis()[*own]);
+    }
+  }
+  return found;
 }
 
 std::string forbidden_arrows(const SourceText& file) {
@@ -89,6 +127,22 @@ TEST(Includes, AForbiddenArrowIsFoundHoweverItIsWritten) {
   EXPECT_EQ(forbidden_arrows({.path = "blocks/x.hpp", .lines = {"#include \"support/numbers.hpp\""}}),
             "blocks/x.hpp:1: blocks may not include support\n");
   EXPECT_EQ(forbidden_arrows({.path = "tuning/x.hpp", .lines = {"#include \"records/csv.hpp\""}}), "");
+}
+
+TEST(Includes, LeadDownTheFloorsOfTheDiagnosis) {
+  std::string found;
+  for (const SourceText& file : source_files({"diagnosis"})) {
+    if (std::ranges::count(file.path, '/') > 1) {
+      EXPECT_TRUE(floor_of(file.path)) << file.path << " lies on no floor";
+    }
+    found += arrows_up_the_stairs(file);
+  }
+  EXPECT_EQ(found, "");
+  EXPECT_EQ(
+      arrows_up_the_stairs({.path = "diagnosis/noise/x.cpp", .lines = {"#include \"diagnosis/model/model.hpp\""}}), "");
+  EXPECT_EQ(
+      arrows_up_the_stairs({.path = "diagnosis/noise/x.cpp", .lines = {"#include \"diagnosis/search/sets.hpp\""}}),
+      "diagnosis/noise/x.cpp:1: diagnosis/search/sets.hpp lies above noise\n");
 }
 
 /// Every folder with sources is a room that the table knows.

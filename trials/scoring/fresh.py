@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from trials.arguments import program_of
 from trials.generator.case import from_label, table
 from trials.progress import Progress
-from trials.runner import resolve
 from trials.scoring.judge import Judgement
 
 
@@ -63,7 +63,7 @@ def checked(label: dict, verdict: str, product: str) -> tuple[float, float]:
 
 def run_fresh(cases: list[Judgement], verdicts: Path, product: str, jobs: int) -> None:
     """Fills in what the improved diagrams do, for every verdict that left one."""
-    program = resolve(product)
+    program = program_of(product)
     chosen = [c for c in cases if c.truth and (verdicts / c.name / "improved.st").exists()]
     progress = Progress("improved diagrams", len(chosen))
     with ProcessPoolExecutor(jobs) as pool:

@@ -1,0 +1,133 @@
+#include "diagnosis/effects/motions.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codegen/graph/unit.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// Whether a block is a linear one that gives the rate of its output beside it, of which of its outputs that is, and of
+/// how many states it is: 1 for a lag, 2 for a mass on a spring. The input one sample ago is no state of its own.
+struct Smoothing {
+  int order = 0;
+  std::size_t rate = 0;
+};
+Smoothing smoothing_of(const Node& node) {
+  if (node.block == nullptr || node.block->about.group != Group::Dynamics) {
+    return {};
+  }
+  const auto& outputs = node.block->outputs;
+  const auto rate = std::ranges::find(outputs, std::string_view("RATE"), &Field::name);
+  if (rate == outputs.end()) {
+    return {};
+  }
+  const auto order = std::ranges::count_if(
+      node.block->states, [](const Field& state) { return state.type == Type::Real && state.name != "X1"; });
+  return {.order = static_cast<int>(order), .rate = static_cast<std::size_t>(rate - outputs.begin())};
+}
+
+/// How often a block integrates its input on the way to one of its outputs: +1 for an integrator and for a lag, whose
+/// output follows its input as a speed follows a force, 2 for a mass on a spring, one less for the rates of these; −1
+/// for a block that gives the rate of change of its input, by the units of its description.
+int integrals_of(const Node& node, std::size_t output = 0) {
+  if (const Smoothing smoothing = smoothing_of(node); smoothing.order > 0) {
+    return output == smoothing.rate ? smoothing.order - 1 : smoothing.order;
+  }
+  if (node.block == nullptr || node.block->inputs.empty() || node.block->inputs.front().unit != "'x") {
+    return 0;
+  }
+  const std::string_view unit = node.block->outputs.front().unit;
+  return unit == "'x*s" ? 1 : unit == "'x/s" ? -1 : 0;
+}
+
+/// The fewest integrals on a way from a node's output to a signal that depends on it, rates taken off.
+int integrals_between(const Graph& graph, std::uint32_t node, const Wire& signal) {
+  constexpr int far = 1000;
+  std::vector<int> before(graph.nodes.size(), far);  // what drives a node: the fewest on a way to it
+  const auto behind = [&](const Wire& wire) {
+    if (wire.from != Wire::From::Node) {
+      return far;
+    }
+    if (wire.index == node) {
+      return 0;
+    }
+    return before[wire.index] == far
+               ? far
+               : std::max(0, before[wire.index] + integrals_of(graph.nodes[wire.index], wire.port));
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+      for (std::size_t pin = 0; i != node && pin < graph.nodes[i].wire_count; ++pin) {
+        const int here = behind(graph.wire(graph.nodes[i], pin));
+        if (here < before[i]) {
+          before[i] = here;
+          changed = true;
+        }
+      }
+    }
+  }
+  return behind(signal);
+}
+
+/// The powers of metre and second of a unit that is known.
+struct Motion {
+  bool is_other = false;  ///< there is another base unit
+  units::Fraction length{};
+  units::Fraction time{};
+};
+std::optional<Motion> motion_of(std::string_view text) {
+  constexpr std::size_t metres = 0;
+  constexpr std::size_t seconds = 2;
+  std::string reason;
+  const auto unit = text.empty() ? std::nullopt : units::parse_unit(text, reason);
+  if (!unit) {
+    return std::nullopt;
+  }
+  Motion result{.length = unit->powers[metres], .time = unit->powers[seconds]};
+  for (std::size_t i = 0; i < units::dimensions; ++i) {
+    result.is_other = result.is_other || (i != metres && i != seconds && !unit->powers[i].zero());
+  }
+  return result;
+}
+
+/// A length or an angle, by its power of metres.
+bool is_travel(const units::Fraction& length) {
+  return length.zero() || length.number() == 1.0;
+}
+
+}  // namespace
+
+bool is_no_velocity(std::string_view unit) {
+  const std::optional<Motion> motion = motion_of(unit);
+  const bool is_number = motion && !motion->is_other && motion->length.zero() && motion->time.zero();
+  return motion && !is_number && (motion->is_other || motion->time.number() != -1.0 || !is_travel(motion->length));
+}
+
+bool is_no_position(std::string_view unit) {
+  const std::optional<Motion> motion = motion_of(unit);
+  return motion && (motion->is_other || !motion->time.zero() || !is_travel(motion->length));
+}
+
+bool may_be_velocity(const Node* node, std::size_t output) {
+  if (node == nullptr || output == 0) {
+    return true;
+  }
+  const Smoothing smoothing = smoothing_of(*node);
+  return smoothing.order > 1 && output == smoothing.rate;
+}
+
+bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed, const Wire& input) {
+  if (integrals_between(graph, changed.index, driver) > 1 || input == driver) {
+    return false;
+  }
+  return input.from != Wire::From::Node || integrals_of(graph.nodes[input.index]) != 1 ||
+         graph.wire(graph.nodes[input.index], 0) != driver;
+}
+
+}  // namespace hysteron::diagnosis

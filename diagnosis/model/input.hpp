@@ -1,0 +1,37 @@
+// What a diagnosis is given, and how it is asked to work.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/parameters/parameter_file.hpp"
+#include "records/record.hpp"
+
+namespace hysteron::diagnosis {
+
+struct DiagnosisInput {
+  Program program{};
+  std::string text{};  ///< of the diagram
+  parameters::ParameterFile file{};
+  std::vector<records::Record> records{};
+};
+
+struct DiagnosisOptions {
+  double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; noise_floor.hpp says the least
+  std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
+  int most_effects = 3;
+  double budget = 40.0;  ///< seconds after which no further effect is added
+  std::uint64_t seed = 1;
+  unsigned threads = 2;
+  std::function<void(double fraction, std::string_view text)> progress{};
+  /// Of the next experiment, by name: "U" the largest |value| of an input, "U.low", "U.high", "U.rate" its ends and
+  /// its fastest change a second. What is not named is taken from the records.
+  std::vector<std::pair<std::string, double>> limits{};
+};
+
+}  // namespace hysteron::diagnosis

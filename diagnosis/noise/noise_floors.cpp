@@ -1,0 +1,40 @@
+#include "diagnosis/noise/noise_floors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/model/least_squares.hpp"
+#include "diagnosis/model/task.hpp"
+
+namespace hysteron::diagnosis {
+
+std::vector<NoiseFloor> noise_floors(Task task, const Program& program,
+                                     const std::vector<std::vector<Signal>>& others) {
+  task.scales.clear();
+  std::vector<NoiseFloor> floors;
+  {
+    const Model model(task, program);
+    for (std::size_t output = 0; output < task.outputs.size(); ++output) {
+      floors.push_back(noise_floor(model.problem().experiments, output, others));
+      task.scales.push_back(floors.back().value);
+    }
+  }
+  if (std::ranges::none_of(floors, [](const NoiseFloor& floor) { return floor.evidence == "dwells"; })) {
+    return floors;
+  }
+  // A gap need not be closed for this: all that counts is whether the machine rings as its model does.
+  Model model(task, program);
+  const Fit calibrated = fit(model, model.start(), {.iterations = 20});
+  if (!std::isfinite(calibrated.cost)) {
+    return floors;
+  }
+  const std::vector<Experiment>& experiments = model.problem().experiments;
+  for (std::size_t output = 0; output < floors.size(); ++output) {
+    if (floors[output].evidence == "dwells") {
+      floors[output] = noise_floor(experiments, output, others, by_record(task, calibrated.residuals, output));
+    }
+  }
+  return floors;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,168 @@
+#include "diagnosis/report/verdict_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace hysteron::diagnosis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers that JSON has no sign for become null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json parameters_of(const std::vector<ParameterFinding>& list) {
+  Json result = Json::object();
+  for (const ParameterFinding& one : list) {
+    result[one.name] = {
+        {"value", number(one.value)}, {"low", number(one.low)}, {"high", number(one.high)}, {"unit", one.unit}};
+  }
+  return result;
+}
+
+Json settings_of(const std::vector<SettingFinding>& list) {
+  Json result = Json::object();
+  for (const SettingFinding& one : list) {
+    result[one.name] = {{"value", number(one.value)}, {"unit", one.unit}};
+  }
+  return result;
+}
+
+Json sets_of(const std::vector<Rival>& list) {
+  Json result = Json::array();
+  for (const Rival& one : list) {
+    result.push_back({{"effects", one.effects},
+                      {"edges", one.edges},
+                      {"parameters", one.parameters},
+                      {"improved_rms", number(one.improved_rms)},
+                      {"support", number(one.support)},
+                      {"probability", number(one.probability)}});
+  }
+  return result;
+}
+
+Json gap_of(const GapFinding& gap) {
+  return {{"signal", gap.signal},
+          {"unit", gap.unit},
+          {"nominal_rms", number(gap.nominal)},
+          {"calibrated_rms", number(gap.calibrated)},
+          {"improved_rms", number(gap.improved)},
+          {"floor_rms", number(gap.floor.value)},
+          {"closed", number(gap.closed)},
+          {"closed_low", number(gap.closed_low)},
+          {"closed_high", number(gap.closed_high)},
+          {"floor_evidence", gap.floor.evidence}};
+}
+
+Json where_of(const Diagnosis& found) {
+  Json edges = Json::array();
+  for (const EdgeFinding& edge : found.edges) {
+    edges.push_back({{"edge", edge.edge}, {"share", number(edge.share)}, {"group", edge.group}});
+  }
+  Json cuts = Json::array();
+  for (const CutFinding& cut : found.cuts) {
+    cuts.push_back({{"signal", cut.signal}, {"agrees", cut.agrees}});
+  }
+  Json regions = Json::array();
+  Json bands = Json::array();
+  Json times = Json::array();
+  for (const MapFinding& map : found.maps) {
+    Json one = {{"over", map.over},     {"unit", map.unit},     {"share", number(map.share)},
+                {"places", map.places}, {"before", map.before}, {"after", map.after}};
+    (map.over == "frequency" ? bands : map.over == "run time" ? times : regions).push_back(std::move(one));
+  }
+  return {{"edges", std::move(edges)},
+          {"cuts", std::move(cuts)},
+          {"regions", std::move(regions)},
+          {"bands", std::move(bands)},
+          {"times", std::move(times)}};
+}
+
+Json split_of(const Diagnosis& found) {
+  Json result = {{"input_output", number(found.split.input_output)},
+                 {"plant", number(found.split.plant)},
+                 {"open", number(found.split.open)}};
+  if (found.controller) {
+    Json outputs = Json::object();
+    for (const ControllerFinding::Output& output : found.controller->outputs) {
+      outputs[output.name] = {{"unit", output.unit},
+                              {"difference_rms", number(output.difference_rms)},
+                              {"limited_rms", number(output.limited_rms)}};
+    }
+    result["controller"] = {
+        {"same_bits", found.controller->different == 0}, {"steps", found.controller->steps},
+        {"different", found.controller->different},      {"first_different", found.controller->first_different},
+        {"dropped", found.controller->dropped},          {"outputs", std::move(outputs)}};
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string verdict_json(const Diagnosis& found) {
+  Json effects = Json::array();
+  for (const EffectFinding& effect : found.effects) {
+    effects.push_back({{"id", effect.id},
+                       {"edge", effect.edge},
+                       {"same_edges", effect.same_edges},
+                       {"drivers", effect.drivers},
+                       {"share", number(effect.share)},
+                       {"invertible", effect.inverse == Inverse::Exact},
+                       {"parameters", parameters_of(effect.parameters)},
+                       {"settings", settings_of(effect.settings)}});
+  }
+  Json rivals = Json::array();
+  for (const Rival& rival : found.rivals) {
+    rivals.push_back(rival.effects);
+  }
+  Json next = Json::object();
+  if (!found.next.title.empty()) {
+    Json steps = Json::array();
+    for (const auto& [what, how] : found.next.steps) {
+      steps.push_back({{"what", what}, {"how", how}});
+    }
+    next = {{"title", found.next.title},
+            {"reason", found.next.reason},
+            {"input", found.next.input},
+            {"unit", found.next.unit},
+            {"separation", number(found.next.separation)},
+            {"steps", std::move(steps)}};
+  } else if (!found.next.reason.empty()) {
+    next = {{"reason", found.next.reason}};
+  }
+  Json gaps = Json::array();
+  for (const GapFinding& gap : found.gaps) {
+    gaps.push_back(gap_of(gap));
+  }
+  const Json verdict = {{"schema", "hysteron-verdict/1"},
+                        {"verdict", name_of(found.verdict)},
+                        {"effects", std::move(effects)},
+                        {"rivals", std::move(rivals)},
+                        {"confidence", number(found.confidence)},
+                        {"unknown_score", number(found.unknown_score)},
+                        {"gap", gap_of(found.gap)},
+                        {"where", where_of(found)},
+                        {"split", split_of(found)},
+                        {"cannot_tell", found.cannot_tell},
+                        {"next_experiment", std::move(next)},
+                        {"seconds", number(found.seconds)},
+                        {"summary", found.summary},
+                        {"refused", !found.refusals.empty()},
+                        {"refusals", found.refusals},
+                        {"warnings", found.warnings},
+                        {"calibration", parameters_of(found.calibration)},
+                        {"nominal", parameters_of(found.nominal)},
+                        {"rival_details", sets_of(found.rivals)},
+                        {"fitted", sets_of(found.fitted)},
+                        {"gaps", std::move(gaps)},
+                        {"tracking",
+                         {{"nominal_rms", number(found.tracking_nominal)},
+                          {"improved_rms", number(found.tracking_improved)},
+                          {"notes", found.feedforward_notes}}},
+                        {"candidates_tried", found.tried}};
+  return verdict.dump(2) + "\n";
+}
+
+}  // namespace hysteron::diagnosis

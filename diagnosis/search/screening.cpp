@@ -1,0 +1,496 @@
+#include "diagnosis/search/screening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "diagnosis/effects/grid_points.hpp"
+#include "diagnosis/search/superposition.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// Outputs within this share of twice the change at half the strength: linear in it.
+constexpr double linear_within = 0.05;
+
+/// Of the gap, what a start has to explain for its parameters to be narrowed down.
+constexpr double worth_narrowing = 0.2;
+
+class Screening {
+ public:
+  Screening(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at, const Background& background)
+      : grids_(grids), background_(background) {
+    screened_.candidate = std::move(candidate);
+    const Applied& own = screened_.candidate.own();
+    parameters_ = static_cast<Index>(own.parameters.size());
+    neutral_.resize(parameters_);
+    std::vector<Unknown> further = screened_.candidate.variant.further;
+    for (std::size_t j = 0; j < own.parameters.size(); ++j) {
+      if (std::isnan(grids.settings[j])) {
+        screened_.unknowns.push_back(unknown_of(own.parameters[j], own.paths[j], grids.parameters[j]));
+        further.push_back(screened_.unknowns.back());
+        free_.push_back(static_cast<Index>(j));
+        neutral_[static_cast<Index>(j)] =
+            own.parameters[j].strength ? own.parameters[j].field.neutral : screened_.unknowns.back().start;
+      } else {
+        screened_.candidate.variant.effects.back().settings.emplace_back(own.paths[j], grids.settings[j]);
+        neutral_[static_cast<Index>(j)] = grids.settings[j];
+      }
+    }
+    auto program = std::make_shared<Program>(*screened_.candidate.variant.program);
+    for (const auto& [path, value] : own.settings) {
+      set_parameter(program->graph, path, value);
+    }
+    screened_.candidate.variant.program = std::move(program);
+    model_.emplace(task, *screened_.candidate.variant.program, further);
+    first_ = model_->first_further() + static_cast<Index>(screened_.candidate.variant.further.size());
+    base_.resize(model_->unknowns());
+    base_.head(first_) = at.head(first_);
+    base_.tail(model_->unknowns() - first_ - std::ssize(free_)) = at.tail(at.size() - first_);
+  }
+
+  Screened run(std::size_t keep) {
+    std::vector<Start> starts;
+    if (screened_.candidate.own().has_end()) {
+      try_intervals(starts);
+    } else {
+      for (const VectorXd& shape : shapes_of(screened_.candidate.own(), grids_, neutral_)) {
+        try_shape(shape, starts);
+      }
+    }
+    narrow(starts);
+    return finished(std::move(starts), keep);
+  }
+
+  /// The points of the grid about the starts that a thinner one has found; all of a quantum's: what lies between two of
+  /// its points cannot be guessed from them.
+  Screened run_about(const std::vector<Start>& coarse, std::size_t stride, std::size_t keep) {
+    std::vector<Start> starts;
+    for (const Start& start : coarse) {
+      VectorXd values = neutral_;
+      for (Index k = 0; k < std::ssize(free_); ++k) {
+        values[free_[static_cast<std::size_t>(k)]] = start.values[k];
+      }
+      starts.push_back({.values = values, .gain = start.gain});
+      for (const Index j : free_) {
+        if (parameter(j).role != Role::Quantum || &start == &coarse.front()) {
+          try_neighbours(values, j, stride, starts);
+        }
+      }
+    }
+    return finished(std::move(starts), keep);
+  }
+
+ private:
+  /// The best starts, with the free parameters alone.
+  Screened finished(std::vector<Start> starts, std::size_t keep) {
+    for (Start& start : starts) {
+      start.measured = is_measured(start.values);
+    }
+    std::ranges::stable_sort(
+        starts, [](const Start& a, const Start& b) { return a.measured != b.measured ? a.measured : a.gain > b.gain; });
+    std::vector<Start> kept;
+    for (Start& start : starts) {
+      if ((kept.size() < keep || start.measured) &&
+          std::ranges::none_of(kept, [&](const Start& other) { return is_near(start.values, other.values); })) {
+        kept.push_back(std::move(start));
+      }
+    }
+    for (Start& start : kept) {
+      VectorXd values(std::ssize(free_));
+      for (Index k = 0; k < std::ssize(free_); ++k) {
+        values[k] = start.values[free_[static_cast<std::size_t>(k)]];
+      }
+      start.values = std::move(values);
+    }
+    std::ranges::stable_sort(kept, [](const Start& a, const Start& b) { return a.gain > b.gain; });
+    screened_.starts = std::move(kept);
+    return std::move(screened_);
+  }
+
+  /// What varies smoothly, between the points of its grid and by halves of their distance: an exponential that is off
+  /// by half its time constant, or a limit that cuts twice as much, leaves more of a gap than another effect at its
+  /// best.
+  void narrow(std::vector<Start>& starts) {
+    for (Index j = 0; j < parameters_ && !starts.empty(); ++j) {
+      const std::vector<double>& grid = points(j);
+      Start best = *std::ranges::max_element(starts, {}, &Start::gain);
+      if (!is_narrowed(j) || grid.size() < 3 || best.gain < worth_narrowing * background_.unexplained()) {
+        continue;
+      }
+      const std::size_t at = nearest(grid, best.values[j]);
+      double low = grid[at == 0 ? 0 : at - 1];
+      double high = grid[std::min(at + 1, grid.size() - 1)];
+      for (int halving = 0; halving < 3; ++halving) {
+        const double middle = best.values[j];
+        const double below = between(low, middle);
+        const double above = between(middle, high);
+        for (const double value : {below, above}) {
+          if (value != middle) {
+            try_moved(best.values, j, value, starts);
+          }
+        }
+        best = *std::ranges::max_element(starts, {}, &Start::gain);
+        low = best.values[j] == middle ? below : best.values[j] < middle ? low : middle;
+        high = best.values[j] == middle ? above : best.values[j] < middle ? middle : high;
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_narrowed(Index j) const {
+    const Role role = parameter(j).role;
+    return (role == Role::Duration && !parameter(j).strength) || role == Role::Instant ||
+           (parameter(j).strength && (role == Role::Level || role == Role::Rate) &&
+            std::isinf(parameter(j).field.neutral));
+  }
+
+  /// The middle, by ratio where both are positive: time constants and limits of a rate come by ratios.
+  [[nodiscard]] static double between(double low, double high) {
+    return low > 0.0 && high > 4.0 * low ? std::sqrt(low * high) : 0.5 * (low + high);
+  }
+
+  /// Whether a quantum is the step on which the measured values lie.
+  [[nodiscard]] bool is_measured(const VectorXd& values) const {
+    for (Index j = 0; j < parameters_; ++j) {
+      const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+      if (std::ranges::count(std::span(grid.values).first(grid.measured), values[j]) > 0) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// One parameter moved along its grid, the others where they are.
+  void try_neighbours(const VectorXd& values, Index j, std::size_t stride, std::vector<Start>& starts) {
+    const Grid& grid = grids_.parameters[static_cast<std::size_t>(j)];
+    const auto last = std::ssize(grid.values) - 1;
+    if (last < 1) {
+      return;
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(nearest(grid.values, values[j]));
+    const bool whole = parameter(j).role == Role::Quantum;
+    const auto reach = whole ? last : std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(stride) - 1);
+    for (auto k = std::max<std::ptrdiff_t>(0, middle - reach); k <= std::min(last, middle + reach); ++k) {
+      if (k == middle) {
+        continue;
+      }
+      try_moved(values, j, grid.values[static_cast<std::size_t>(k)], starts);
+    }
+  }
+
+  /// One parameter at another value; a new shape takes its strengths anew where the output is linear in them.
+  void try_moved(const VectorXd& values, Index j, double value, std::vector<Start>& starts) {
+    VectorXd moved = values;
+    moved[j] = value;
+    if (parameter(j).strength) {
+      try_point(moved, starts);
+      return;
+    }
+    VectorXd shape = moved;
+    for (const Index strength : strengths()) {
+      shape[strength] = neutral_[strength];
+    }
+    const std::size_t before = starts.size();
+    if (is_linear_there(shape)) {
+      try_shape(shape, starts);
+    }
+    if (starts.size() == before) {
+      try_point(moved, starts);
+    }
+  }
+
+  [[nodiscard]] const std::vector<double>& points(Index j) const {
+    return grids_.parameters[static_cast<std::size_t>(j)].values;
+  }
+  [[nodiscard]] const EffectParameter& parameter(Index j) const {
+    return screened_.candidate.own().parameters[static_cast<std::size_t>(j)];
+  }
+
+  /// The residuals at one setting of the effect's parameters; empty where the model has no value there.
+  VectorXd residuals_at(const VectorXd& values) {
+    VectorXd x = base_;
+    for (Index k = 0; k < std::ssize(free_); ++k) {
+      const double value = values[free_[static_cast<std::size_t>(k)]];
+      x[first_ + k] = std::clamp(value, model_->lower()[first_ + k], model_->upper()[first_ + k]);
+    }
+    VectorXd residuals;
+    return model_->residuals(x, residuals) ? residuals : VectorXd();
+  }
+
+  VectorXd change_at(const VectorXd& values) {
+    VectorXd residuals = residuals_at(values);
+    if (residuals.size() > 0) {
+      residuals -= background_.residuals();
+    }
+    return residuals;
+  }
+
+  [[nodiscard]] std::vector<Index> strengths() const {
+    std::vector<Index> list;
+    for (Index j = 0; j < parameters_; ++j) {
+      if (parameter(j).strength && !points(j).empty()) {
+        list.push_back(j);
+      }
+    }
+    return list;
+  }
+
+  /// Whether the change at twice a strength is twice the change: asked once for each strength.
+  bool is_linear(Index strength, const VectorXd& values, const VectorXd& change) {
+    if (!std::isfinite(parameter(strength).field.neutral)) {
+      return false;
+    }
+    VectorXd twice = values;
+    twice[strength] += values[strength] - parameter(strength).field.neutral;
+    const VectorXd double_change = change_at(twice);
+    return double_change.size() > 0 && (double_change - 2.0 * change).norm() <= linear_within * double_change.norm();
+  }
+
+  /// Whether the output is linear in all strengths, asked at the first shape.
+  bool is_linear_there(const VectorXd& shape) {
+    const std::vector<Index> list = strengths();
+    for (Index k = std::ssize(linear_); k < std::ssize(list); ++k) {
+      const Index j = list[static_cast<std::size_t>(k)];
+      VectorXd values = shape;
+      values[j] = points(j).front();
+      const VectorXd change = change_at(values);
+      linear_.push_back(change.size() > 0 && is_linear(j, values, change));
+    }
+    return std::ranges::all_of(linear_, [](bool one) { return one; });
+  }
+
+  void try_shape(const VectorXd& shape, std::vector<Start>& starts) {
+    const std::vector<Index> list = strengths();
+    const bool linear = is_linear_there(shape);
+    const bool amplitudes = are_amplitudes(list);
+    if (!linear && !amplitudes) {
+      try_grid(shape, list, starts);
+      return;
+    }
+    MatrixXd changes(background_.residuals().size(), std::ssize(list));
+    VectorXd small = shape;
+    for (Index k = 0; k < std::ssize(list); ++k) {
+      const Index j = list[static_cast<std::size_t>(k)];
+      const std::vector<double>& grid = points(j);
+      VectorXd values = shape;
+      values[j] = linear ? grid.front() : grid[grid.size() / 2];
+      small[j] = values[j];
+      const VectorXd change = change_at(values);
+      if (change.size() == 0) {
+        return;
+      }
+      changes.col(k) = change;
+    }
+    const bool kept = changes.squaredNorm() > 0.0 && try_linear(shape, small, list, changes, linear, starts);
+    // A short delay or lag is linear, and says nothing of a long one, as a friction that never holds says nothing of
+    // one that does: about parameters that are off it may even seem to make things worse.
+    if ((!amplitudes || !kept) && !std::exchange(grid_tried_, true)) {
+      try_grid(shape, list, starts);
+    }
+  }
+
+  /// What begins at one instant and ends at another, from small steps at each of them.
+  void try_intervals(std::vector<Start>& starts) {
+    constexpr std::size_t most = 4;
+    const Index begin = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && !is_end(j); });
+    const Index end = *std::ranges::find_if(free_, [&](Index j) { return is_instant(j) && is_end(j); });
+    const Index strength = strengths().front();
+    const std::vector<double>& instants = points(begin);
+    const double never = points(end).back();
+    const double small = points(strength).front();
+    VectorXd values = neutral_;
+    values[end] = never;
+    values[strength] = small;
+    MatrixXd steps = MatrixXd::Zero(background_.residuals().size(), std::ssize(instants));
+    for (Index k = 0; k < std::ssize(instants); ++k) {
+      values[begin] = instants[static_cast<std::size_t>(k)];
+      if (const VectorXd change = change_at(values); change.size() > 0) {
+        steps.col(k) = change;
+      }
+    }
+    const auto at = [&](Index k) { return k < std::ssize(instants) ? instants[static_cast<std::size_t>(k)] : never; };
+    for (const Superposition::Interval& one : Superposition(steps, background_).intervals(most)) {
+      values[begin] = at(one.begin);
+      values[end] = at(one.end);
+      for (const double share : {1.0, 0.3}) {
+        values[strength] = share * one.size * small;
+        if (try_point(values, starts) > 0.5 * one.gain) {
+          break;
+        }
+      }
+    }
+  }
+  [[nodiscard]] bool is_instant(Index j) const { return parameter(j).role == Role::Instant; }
+  [[nodiscard]] bool is_end(Index j) const { return std::isinf(parameter(j).field.preset); }
+
+  /// Whether all strengths are sizes of something that is added, so that a straight line is a guess for each of them.
+  [[nodiscard]] bool are_amplitudes(const std::vector<Index>& list) const {
+    return std::ranges::all_of(list, [&](Index j) {
+      const EffectParameter& one = parameter(j);
+      return std::isfinite(one.field.neutral) && !is_gap(one.role) && one.role != Role::Rate &&
+             one.role != Role::Duration;
+    });
+  }
+
+  /// Whether the diagram keeps a part of what the straight line promises.
+  bool try_linear(const VectorXd& shape, const VectorXd& small, const std::vector<Index>& list, const MatrixXd& changes,
+                  bool linear, std::vector<Start>& starts) {
+    VectorXd low(std::ssize(list));
+    VectorXd high(std::ssize(list));
+    for (Index k = 0; k < std::ssize(list); ++k) {
+      const Index j = list[static_cast<std::size_t>(k)];
+      const Field& field = parameter(j).field;
+      const double size = small[j] - field.neutral;
+      const double a = (field.minimum - field.neutral) / size;
+      const double b = (field.maximum - field.neutral) / size;
+      low[k] = std::min(a, b);
+      high[k] = std::max(a, b);
+    }
+    VectorXd alpha;
+    const double gain = background_.gain(changes, low, high, alpha);
+    VectorXd values = shape;
+    for (Index k = 0; k < std::ssize(list); ++k) {
+      const Index j = list[static_cast<std::size_t>(k)];
+      values[j] = parameter(j).field.neutral + alpha[k] * (small[j] - parameter(j).field.neutral);
+    }
+    // The promise is held against the diagram itself, there, short of there and, where the line is bent, beyond.
+    double best = 0.0;
+    for (const double share : linear ? std::vector{1.0, 0.3, 0.1} : std::vector{1.0, 0.5, 0.1, 1.5, 2.2}) {
+      VectorXd there = shape;
+      for (const Index j : list) {
+        there[j] += share * (values[j] - shape[j]);
+      }
+      best = std::max(best, try_point(there, starts));
+      if (best > 0.8 * gain) {
+        break;
+      }
+    }
+    return best > 0.3 * gain;
+  }
+
+  /// Each strength by itself over its grid; of limits also all of them at once, and each at its best.
+  void try_grid(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
+    const bool limits =
+        list.size() > 1 && std::ranges::all_of(list, [&](Index j) { return std::isinf(parameter(j).field.neutral); });
+    VectorXd each_at_its_best = shape;
+    for (const Index j : list) {
+      const std::vector<double>& grid = points(j);
+      double best = 0.0;
+      for (const double value : grid) {
+        VectorXd values = shape;
+        values[j] = value;
+        const double gain = try_point(values, starts);
+        if (gain > best) {
+          best = gain;
+          each_at_its_best[j] = value;
+        }
+        if (grid.size() < 5 && parameter(j).field.minimum < parameter(j).field.neutral) {
+          values[j] = 2.0 * parameter(j).field.neutral - value;
+          try_point(values, starts);
+        }
+      }
+    }
+    if (!limits) {
+      return;
+    }
+    try_point(each_at_its_best, starts);
+    try_together(shape, list, starts);
+  }
+
+  /// Limits to both sides are alike as a rule, and one of them alone lets an integrator run away: both at once, at one
+  /// level from point to point of the further one's grid in smaller steps, and by halves about the best of these. Of a
+  /// signal that stays on one side of 0, each along its own grid; rates in ratios, as a tenth more or less may hide
+  /// one.
+  void try_together(const VectorXd& shape, const std::vector<Index>& list, std::vector<Start>& starts) {
+    constexpr double narrow_ratio = 1.12;
+    constexpr double to_both_sides = 0.1;
+    const auto [low, high] = std::ranges::minmax(list, {}, [&](Index j) { return points(j).front(); });
+    const double least = points(low).front();
+    const double most = points(high).front();
+    const Index further = -least > most ? low : high;
+    const bool about_zero = std::min(-least, most) > to_both_sides * std::max(-least, most);
+    std::size_t longest = 0;
+    for (const Index j : list) {
+      longest = std::max(longest, points(j).size());
+    }
+    const double last = static_cast<double>(longest) - 1.0;
+    const bool rates = std::ranges::all_of(list, [&](Index j) { return parameter(j).role == Role::Rate; });
+    const double ratio = rates ? points(further).front() / points(further).back() : 1.0;
+    const double smaller = std::max(3.0, std::ceil(std::abs(std::log(ratio)) / (last * std::log(narrow_ratio))));
+    const auto gain_at = [&](double place) {
+      VectorXd values = shape;
+      for (const Index j : list) {
+        const std::vector<double>& grid = points(about_zero ? further : j);
+        const double here = std::clamp(place, 0.0, static_cast<double>(grid.size()) - 1.0);
+        const auto below = static_cast<std::size_t>(here);
+        const std::size_t above = std::min(below + 1, grid.size() - 1);
+        const double share = here - static_cast<double>(below);
+        const double value = rates ? grid[below] * std::pow(grid[above] / grid[below], share)
+                                   : std::lerp(grid[below], grid[above], share);
+        values[j] = about_zero ? std::copysign(value, points(j).front()) : value;
+      }
+      return try_point(values, starts);
+    };
+    double best = 0.0;
+    double gain = -std::numeric_limits<double>::infinity();
+    const auto consider = [&](double place) {
+      if (const double here = gain_at(place); here > gain) {
+        gain = here;
+        best = place;
+      }
+    };
+    for (double k = 0.0; k <= smaller * last; ++k) {
+      consider(k / smaller);
+    }
+    for (double step = 0.5 / smaller; gain > worth_narrowing * background_.unexplained() && step > 0.05; step *= 0.5) {
+      const double middle = best;
+      for (const double place : {middle - step, middle + step}) {
+        if (place > 0.0 && place < last) {
+          consider(place);
+        }
+      }
+    }
+  }
+
+  /// What the diagram gains there, which becomes a start; 0 where it has no value, or the effect does nothing.
+  double try_point(const VectorXd& values, std::vector<Start>& starts) {
+    const VectorXd change = change_at(values);
+    if (change.size() == 0 || change.squaredNorm() == 0.0) {
+      return 0.0;
+    }
+    const VectorXd one = VectorXd::Ones(1);
+    VectorXd alpha;
+    starts.push_back({.values = values, .gain = background_.gain(change, one, one, alpha)});
+    return starts.back().gain;
+  }
+
+  const Grids& grids_;
+  const Background& background_;
+  Screened screened_{};
+  std::optional<Model> model_{};
+  Index parameters_ = 0;
+  Index first_ = 0;             ///< of the effect's unknowns in the model
+  std::vector<Index> free_{};   ///< the parameters that are unknowns
+  VectorXd neutral_{};          ///< by parameter: neutral, default or setting
+  VectorXd base_{};             ///< of the model's unknowns
+  bool grid_tried_ = false;     ///< once, also where straight lines are tried for each shape
+  std::vector<bool> linear_{};  ///< by strength
+};
+
+}  // namespace
+
+Screened screened(const Task& task, Candidate candidate, const Grids& grids, const VectorXd& at,
+                  const Background& background, std::size_t keep) {
+  return Screening(task, std::move(candidate), grids, at, background).run(keep);
+}
+
+Screened screened_about(const std::vector<Start>& coarse, std::size_t stride, const Task& task, Candidate candidate,
+                        const Grids& grids, const VectorXd& at, const Background& background, std::size_t keep) {
+  return Screening(task, std::move(candidate), grids, at, background).run_about(coarse, stride, keep);
+}
+
+}  // namespace hysteron::diagnosis

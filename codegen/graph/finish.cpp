@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "support/errors.hpp"
+#include "support/names.hpp"
 
 namespace hysteron {
 namespace {

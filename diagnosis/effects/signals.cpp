@@ -46,7 +46,7 @@ Extent extent_of(const RecordSignals& values, double sample_time) {
   extent.begin = values.front().empty() ? 0.0 : values.front().front();
   std::vector<double> levels = percentiles(std::move(all));
   extent.usual = levels[99] - levels[1];
-  levels.erase(std::ranges::unique(levels).begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   extent.levels = levels.size();
   extent.rates = percentiles(std::move(rates));
   return extent;

@@ -88,7 +88,7 @@ class Placer {
   }
 
   void place_locked() {
-    for (LockLine& line : read_lock(request_.lock_file, request_.lock_text, diagnostics_)) {
+    for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, diagnostics_)) {
       const auto point = index_.find(line.name);
       const bool stays = point != index_.end() && points_[point->second].type == line.type &&
                          fits(points_[point->second], line.at.area);
@@ -98,7 +98,7 @@ class Placer {
       if (stays) {
         take(point->second, line.at, line.place);
       } else {
-        retire(std::move(line));
+        retire(line);
       }
     }
   }

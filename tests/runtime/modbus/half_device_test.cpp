@@ -108,9 +108,9 @@ TEST(HalfDevice, ABlockThatFailsKeepsNoOtherFromItsTurn) {
       for (int round = 0; round < 3; ++round) {
         EXPECT_TRUE(all_hold(++value, {})) << "the silent ones carry out what nobody hears of";
       }
-      for (std::size_t i = 0; i < read.size(); ++i) {
-        const auto before = half.asked(static_cast<std::uint16_t>(read[i]));
-        EXPECT_TRUE(soon([&] { return half.asked(static_cast<std::uint16_t>(read[i])) > before + 2; }));
+      for (const auto address : read) {
+        const auto before = half.asked(static_cast<std::uint16_t>(address));
+        EXPECT_TRUE(soon([&] { return half.asked(static_cast<std::uint16_t>(address)) > before + 2; }));
       }
       for (const std::uint32_t address : silent) {
         half.silent_at(static_cast<std::uint16_t>(address), false);

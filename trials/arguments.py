@@ -26,6 +26,14 @@ def above_zero(text: str) -> float:
     return value
 
 
+def length(text: str) -> float:
+    """A share of the usual number of samples: with fewer than a fifth no excitation is left that shows all effects."""
+    value = above_zero(text)
+    if not 0.2 <= value <= 20.0:
+        raise argparse.ArgumentTypeError(f"{text}: write a share from 0.2 to 20")
+    return value
+
+
 def seconds(text: str) -> float:
     """A time above 0, of a year at most."""
     value = above_zero(text)

@@ -49,12 +49,13 @@ class Diagnoser:
 
     @property
     def fingerprint(self) -> str:
-        """SHA-256 of its program, its options and the programs that these name; of a script with the modules beside it."""
+        """SHA-256 of its program, its user, its options and the programs that these name; of a script with the modules beside it."""
         content = Path(self.program).read_bytes()
         digest = hashlib.sha256(content)
         if content.startswith(b"#!"):
             for module in sorted(Path(self.program).parent.glob("*.py")):
                 digest.update(module.read_bytes())
+        digest.update((self.user or "").encode())
         for option in self.options:
             digest.update(option.encode())
             named = Path(option.partition("=")[2])
@@ -221,7 +222,7 @@ def run_set(cases: Path, out: Path, one: Diagnoser, jobs: int, again: bool = Fal
             raise SystemExit(f"Another trials/run fills {out}; wait for it, or name another folder with --out") from None
         whose, mark = one.fingerprint, out / "diagnoser.sha256"
         if mark.exists() and mark.read_text().strip() != whose:
-            raise SystemExit(f"The verdicts in {out} are of another {Path(one.program).name}, or of other options; remove the folder, or name another with --out")
+            raise SystemExit(f"The verdicts in {out} are of another {Path(one.program).name}, another user, or other options; remove the folder, or name another with --out")
         mark.write_text(whose + "\n")
         missing = [case for case in wanted if not has_run(out / case.name, again)]
         progress = Progress("run", len(wanted), len(wanted) - len(missing))

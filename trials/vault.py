@@ -42,7 +42,7 @@ def key_of(text: bytes, file: Path) -> dict:
     """A key that is open. Raises Refused where it is none."""
     try:
         key = json.loads(text)
-        if isinstance(key["cases"], dict) and key["cases"]:
+        if isinstance(key["cases"], dict) and key["cases"] and all(isinstance(one["stratum"], str) for one in key["cases"].values()):
             return key
     except (ValueError, KeyError, TypeError, RecursionError):
         pass

@@ -39,9 +39,9 @@ class Generate(unittest.TestCase):
         return [str(ROOT / "trials" / "generate"), "--out", f"{folder}/cases", "--key", f"{folder}/key.json", "--seed", "a", *more]
 
     def test_what_makes_no_set_is_refused(self) -> None:
-        for more in (("--count", "0"), ("--count", "-3"), ("--jobs", "0"), ("--length", "nan"), ("--each", "0"), ("--stratum", "single=²"), ("--stratum", "none=2", "--count", "3"), ("--stratum", "none=2", "--each", "10"), ("--seed", " ")):
+        for more in (("--count", "0"), ("--count", "-3"), ("--jobs", "0"), ("--length", "nan"), ("--each", "0"), ("--stratum", "single=²"), ("--stratum", "none=2", "--count", "3"), ("--stratum", "none=2", "--each", "10"), ("--seed", " "), ("--length", "0.1"), ("--stratum", "single=0"), ("--stratum", "single=99999999999999999999"), ("--substeps", "100000000000"), ("--out", "{folder}/key.labels/x")):
             with self.subTest(more), tempfile.TemporaryDirectory() as folder:
-                done = subprocess.run(self.generate(folder, *more), capture_output=True, text=True, check=False)
+                done = subprocess.run(self.generate(folder, *(one.format(folder=folder) for one in more)), capture_output=True, text=True, check=False)
                 self.assertEqual(done.returncode, 2)
                 self.assertNotIn("Traceback", done.stderr)
                 self.assertEqual(list(Path(folder).iterdir()), [])
@@ -79,6 +79,14 @@ class Generate(unittest.TestCase):
             self.assertEqual(subprocess.run(small, capture_output=True, check=False).returncode, 0)
             self.assertEqual(key.read_bytes(), made)
             self.assertEqual(len(list((Path(folder) / "cases").iterdir())), 2)
+
+    def test_no_open_key_is_laid_beside_a_sealed_one(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "key.sealed").write_text("")
+            done = subprocess.run(self.generate(folder, "--stratum", "none=1"), capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("key.sealed is there", done.stderr)
+            self.assertEqual([one.name for one in Path(folder).iterdir()], ["key.sealed"])
 
     def test_no_case_is_laid_among_others(self) -> None:
         with tempfile.TemporaryDirectory() as folder:

@@ -251,7 +251,7 @@ class Refused(Folder):
         (self.top / "empty").mkdir()
         (self.top / "file").write_text("x")
         for more in (
-            ("--jobs", "0"), ("--jobs", "-3"), ("--timeout", "0"), ("--timeout", "nan"), ("--timeout", "1e20"), ("--user", "no-such-user"),
+            ("--jobs", "0"), ("--jobs", "-3"), ("--timeout", "0"), ("--timeout", "nan"), ("--timeout", "1e20"), ("--user", "no-such-user"), ("--user", "nobody", "--jobs", "2"),
             ("--product", "/no/such"), ("--out", str(self.cases / "out")), ("--out", str(self.top / "file")),
         ):  # fmt: skip
             with self.subTest(more):

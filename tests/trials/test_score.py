@@ -206,7 +206,7 @@ class Verdicts(unittest.TestCase):
     def test_what_cannot_be_read_is_none(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "verdict.json"
-            for text in ("{", "[" * 100_000, "[]", '"x"', ""):
+            for text in ("{", "[" * 100_000, "[]", '"x"', "", json.dumps(named(["\ud800"]))):
                 file.write_text(text)
                 self.assertIsNone(read_verdict(file))
             file.unlink()
@@ -258,6 +258,17 @@ class CommandLine(unittest.TestCase):
         self.assertIn(f"v/{first}: not run;", done.stderr)
         self.assertEqual(done.stderr.count("not run"), 1)
 
+    def test_what_did_not_end_by_itself_has_no_verdict(self) -> None:
+        first = next(iter(self.key))
+        for run in ('{"seconds": 180, "exit": "time limit", "verdict": false}', '{"exit": 137}', "zz", '{"seconds": -5, "verdict": "true"}'):
+            with self.subTest(run):
+                (self.top / "v" / first / "run.json").write_text(run)
+                done = self.score()
+                self.assertIn(f"{first}: no verdict; by its run.json", done.stderr)
+                found = json.loads((self.top / "s" / "score.json").read_text())
+                self.assertAlmostEqual(next(f for f in found["figures"] if f["key"] == "missing")["value"], 1 / 3)
+                self.assertGreaterEqual(min(found["seconds"]), 0.0)
+
     def test_what_was_not_worked_out_is_no_figure(self) -> None:
         first = next(iter(self.key))
         found = json.loads((self.top / "v" / first / "verdict.json").read_text())
@@ -274,12 +285,15 @@ class CommandLine(unittest.TestCase):
         purpose = ("--purpose", "a test")
         (self.top / "blocked" / "score.txt").mkdir(parents=True)
         (self.top / "empty").mkdir()
+        for name, text in (("list", "[1]"), ("words", '{"floors": {"pair": "a"}}'), ("other", '{"flors": {"pair": 0.5}}'), ("none", "x")):
+            (self.top / name).write_text(text)
         for slip in (
             passphrase, (*passphrase, "--purpose", " "), purpose, (*passphrase, *purpose, "--product", "/no/such"), (*passphrase, *purpose, "--floors", "/no/such"),
             (*passphrase, *purpose, "--peer", "sparse=empty"), (*passphrase, *purpose, "--peer", "sparse"), (*passphrase, *purpose, "--peer", "verdicts=v"),
             (*passphrase, *purpose, "--peer", "../x=v"), (*passphrase, *purpose, "--peer", "a=v", "--peer", "a=v"), (*passphrase, *purpose, "--out", "blocked"),
             (*passphrase, *purpose, "--jobs", "0"), (*passphrase, *purpose, "--out", "v"), (*passphrase, *purpose, "--peer", "twin=v", "--out", "v/s"),
-            ("--passphrase-file", str(self.top / "empty"), *purpose),
+            ("--passphrase-file", str(self.top / "empty"), *purpose), (*passphrase, *purpose, "--product", "/bin/true"),
+            *((*passphrase, *purpose, "--floors", name) for name in ("list", "words", "other", "none")),
         ):  # fmt: skip
             with self.subTest(slip):
                 self.assertNotEqual(self.score(*slip, key="key.sealed").returncode, 0)

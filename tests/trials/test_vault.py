@@ -91,8 +91,13 @@ class Seal(unittest.TestCase):
         self.assertIn("key.sha256 is there already", self.new(self.key).stderr)
         self.assertFalse((self.top / "key.sealed").exists())
 
+    def test_no_key_seals_itself(self) -> None:
+        self.key.chmod(0o600)
+        self.assertIn("keep the two apart", self.seal("new", str(self.key), "--passphrase-file", str(self.key)).stderr)
+        self.assertEqual(self.key.read_text(), self.text)
+
     def test_what_is_no_key_is_left(self) -> None:
-        for text in ("", "notes", "[1]", '{"cases": {}}', '{"cases": 3}', "[" * 100_000):
+        for text in ("", "notes", "[1]", '{"cases": {}}', '{"cases": 3}', '{"cases": {"1f": 1}}', '{"cases": {"1f": {}}}', "[" * 100_000):
             self.key.write_text(text)
             self.assertIn("no key of a set", self.new(self.key).stderr)
             self.assertEqual(self.key.read_text(), text)

@@ -48,11 +48,15 @@ def fingerprint(specifications: list[Specification]) -> str:
 
 
 class OtherSet(Exception):
-    """A key, or the labels of a set that was interrupted, are of another plan."""
+    """A key, or the labels of a set that was interrupted, are of another plan, or the key is sealed."""
 
 
 def is_made(key: Path, plan: str) -> bool:
-    """Whether this set is there already. Raises OtherSet where the key, or what is begun of it, is of another one."""
+    """Whether this set is there already. Raises OtherSet where the key, or what is begun of it, is of another one,
+    or the key is sealed."""
+    sealed = next((key.with_suffix(end) for end in (".sealed", ".sha256") if key.with_suffix(end).exists()), None)
+    if sealed:
+        raise OtherSet(f"{sealed} is there: the key of this name is sealed, and an open one beside it would give it away")
     begun = key.with_suffix(".labels") / "plan.sha256"
     try:
         other = json.loads(key.read_text()).get("plan") if key.exists() else begun.read_text() if begun.exists() else plan

@@ -2,17 +2,34 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
 from trials.scoring.figures import Figure
 
 
+class NoFloors(ValueError):
+    """The file of floors is none."""
+
+
+def read_floors(text: str) -> dict[str, Any]:
+    """Floors as proposal() has them. Raises NoFloors."""
+    try:
+        found = json.loads(text)
+        floors = found["floors"]
+        if floors and all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in floors.values()):
+            return found
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        pass
+    raise NoFloors('no floors; wanted is {"floors": {"pair": 0.6}}, as --propose-floors prints them')
+
+
 def below(figures: list[Figure], floors: dict[str, Any]) -> list[str]:
     """What lies on the wrong side of its floor. A floor for a figure that has no cases is broken too."""
     known = {f.key: f for f in figures}
     found = []
-    for key, floor in floors.get("floors", {}).items():
+    for key, floor in floors["floors"].items():
         figure = known.get(key)
         if figure is None or math.isnan(figure.value):
             found.append(f"{key}: there is no such figure in this set")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from trials.scoring.verdict import NAMES, VERDICTS, number, read_object, read_verdict
+from trials.scoring.verdict import NAMES, VERDICTS, answered, number
 
 IN_LIBRARY = ("single", "cousin", "pair")
 CALIBRATION_NAMES = frozenset({"parameter_mismatch", "gain_error"})
@@ -143,7 +143,7 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         confidence=number(v.get("confidence")),
         unknown_score=number(v.get("unknown_score")),
         cannot_tell=bool(v.get("cannot_tell")),
-        seconds=number(run.get("seconds")),
+        seconds=seconds if (seconds := number(run.get("seconds"))) >= 0.0 else math.nan,
         right_edge=right_edge,
         listed_edge=listed_edge,
         listed_edges=len(listed),
@@ -159,7 +159,4 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
 
 def judged(labels: dict[str, dict[str, Any]], verdicts: Path) -> list[Judgement]:
     """A diagnoser's verdicts, as trials/run has left them, against the labels of a key."""
-    return [
-        judge(name, label, read_verdict(verdicts / name / "verdict.json"), read_object(verdicts / name / "run.json") or {})
-        for name, label in labels.items()
-    ]
+    return [judge(name, label, *answered(verdicts / name)) for name, label in labels.items()]

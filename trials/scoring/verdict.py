@@ -68,6 +68,7 @@ def read_object(path: Path) -> dict | None:
     """A JSON object; None where the file holds none."""
     try:
         found = json.loads(path.read_text())
+        json.dumps(found, ensure_ascii=False).encode()  # half of a surrogate pair is no text
     except (OSError, ValueError, RecursionError):
         return None
     return found if isinstance(found, dict) else None
@@ -79,10 +80,22 @@ def read_verdict(path: Path) -> dict | None:
     return None if fault_of(found) else found
 
 
+def answered(folder: Path) -> tuple[dict | None, dict]:
+    """A case's verdict and its run, as trials/run has left them: what did not end by itself has left none."""
+    run = read_object(folder / "run.json") or {}
+    return (read_verdict(folder / "verdict.json") if run.get("verdict") is True else None), run
+
+
 def broken(verdicts: Path) -> list[str]:
     """By case a line for each file verdict.json that is no verdict."""
-    found = {file.parent.name: fault_of(read_object(file)) for file in sorted(verdicts.glob("*/verdict.json"))}
-    return [f"{name}: no verdict; wanted is {fault}" for name, fault in found.items() if fault]
+    lines = []
+    for file in sorted(verdicts.glob("*/verdict.json")):
+        fault = fault_of(read_object(file))
+        if fault:
+            lines.append(f"{file.parent.name}: no verdict; wanted is {fault}")
+        elif answered(file.parent)[0] is None:
+            lines.append(f"{file.parent.name}: no verdict; by its run.json the run did not end by itself")
+    return lines
 
 
 def not_run(verdicts: Path, names: Iterable[str]) -> list[str]:

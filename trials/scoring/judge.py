@@ -129,6 +129,7 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
     floor2 = float(label["noise_rms"][output]) ** 2
     effect2 = float(label.get("effect_rms", [0.0, 0.0])[output]) ** 2
     nominal2, improved2 = number(gap.get("nominal_rms")) ** 2, number(gap.get("improved_rms")) ** 2
+    seconds = number(run.get("seconds"))
     closed_true = 1.0 - (improved2 - floor2) / (nominal2 - floor2) if nominal2 > 1.02 * floor2 else math.nan
     return Judgement(
         name=name,
@@ -143,7 +144,7 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         confidence=number(v.get("confidence")),
         unknown_score=number(v.get("unknown_score")),
         cannot_tell=bool(v.get("cannot_tell")),
-        seconds=seconds if (seconds := number(run.get("seconds"))) >= 0.0 else math.nan,
+        seconds=seconds if seconds >= 0.0 else math.nan,
         right_edge=right_edge,
         listed_edge=listed_edge,
         listed_edges=len(listed),

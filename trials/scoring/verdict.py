@@ -80,10 +80,15 @@ def read_verdict(path: Path) -> dict | None:
     return None if fault_of(found) else found
 
 
+def left_verdict(run: dict) -> bool:
+    """Whether trials/run has it that this run ended by itself, with a verdict."""
+    return run.get("verdict") is True
+
+
 def answered(folder: Path) -> tuple[dict | None, dict]:
     """A case's verdict and its run, as trials/run has left them: what did not end by itself has left none."""
     run = read_object(folder / "run.json") or {}
-    return (read_verdict(folder / "verdict.json") if run.get("verdict") is True else None), run
+    return (read_verdict(folder / "verdict.json") if left_verdict(run) else None), run
 
 
 def broken(verdicts: Path) -> list[str]:
@@ -93,7 +98,7 @@ def broken(verdicts: Path) -> list[str]:
         fault = fault_of(read_object(file))
         if fault:
             lines.append(f"{file.parent.name}: no verdict; wanted is {fault}")
-        elif answered(file.parent)[0] is None:
+        elif not left_verdict(read_object(file.with_name("run.json")) or {}):
             lines.append(f"{file.parent.name}: no verdict; by its run.json the run did not end by itself")
     return lines
 

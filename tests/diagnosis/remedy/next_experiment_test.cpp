@@ -17,27 +17,10 @@ namespace hysteron::diagnosis {
 namespace {
 
 TEST(Excitations, KeepToRangeRateAndLength) {
-  const std::vector<InputLimits> all{{.name = "U",
-                                      .unit = "V",
-                                      .low = 0.0,
-                                      .high = 3.6,
-                                      .rate = 12.0,
-                                      .sample_time = 0.005,
-                                      .duration = 80.0},
-                                     {.name = "U",
-                                      .unit = "V",
-                                      .low = -1.0,
-                                      .high = 1.0,
-                                      .rate = 400.0,
-                                      .sample_time = 1e-4,
-                                      .duration = 4.0},
-                                     {.name = "U",
-                                      .low = 20.0,
-                                      .high = 80.0,
-                                      .rate = 60.0,
-                                      .start = 20.0,
-                                      .sample_time = 1.0,
-                                      .duration = 4000.0}};
+  const std::vector<InputLimits> all{
+      {.name = "U", .unit = "V", .low = 0.0, .high = 3.6, .rate = 12.0, .sample_time = 0.005, .duration = 80.0},
+      {.name = "U", .unit = "V", .low = -1.0, .high = 1.0, .rate = 400.0, .sample_time = 1e-4, .duration = 4.0},
+      {.name = "U", .low = 20.0, .high = 80.0, .rate = 60.0, .start = 20.0, .sample_time = 1.0, .duration = 4000.0}};
   for (const InputLimits& limits : all) {
     const std::vector<Excitation> found = excitations(limits);
     EXPECT_GE(found.size(), 7U);
@@ -59,10 +42,8 @@ TEST(Excitations, KeepToRangeRateAndLength) {
 }
 
 TEST(Excitations, NoneWithoutRoom) {
-  EXPECT_TRUE(
-      excitations({.low = 1.0, .high = 1.0, .rate = 1.0, .sample_time = 0.1, .duration = 10.0}).empty());
-  EXPECT_TRUE(
-      excitations({.low = 0.0, .high = 1.0, .rate = 0.0, .sample_time = 0.1, .duration = 10.0}).empty());
+  EXPECT_TRUE(excitations({.low = 1.0, .high = 1.0, .rate = 1.0, .sample_time = 0.1, .duration = 10.0}).empty());
+  EXPECT_TRUE(excitations({.low = 0.0, .high = 1.0, .rate = 0.0, .sample_time = 0.1, .duration = 10.0}).empty());
 }
 
 constexpr double sample_time = 0.005;

@@ -13,10 +13,13 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/effects/candidates.hpp"
+#include "diagnosis/evidence/evidence.hpp"
+#include "diagnosis/evidence/explained.hpp"
 #include "diagnosis/faults/fast_clock.hpp"
 #include "diagnosis/faults/lagged_glitches.hpp"
 #include "diagnosis/faults/left_out.hpp"
 #include "diagnosis/faults/record_check.hpp"
+#include "diagnosis/findings/evidence_findings.hpp"
 #include "diagnosis/findings/findings.hpp"
 #include "diagnosis/findings/inner_signals.hpp"
 #include "diagnosis/findings/left_out_findings.hpp"
@@ -157,6 +160,7 @@ class Run {
     if (unrepeatable_) {
       result_.warnings.push_back(unrepeatable_->remark);
     }
+    weigh_evidence(*searched);
     forget_explained(left_out_, task_, *searched->judgement.chosen);
     const Judgement& judgement = searched->judgement;
     find_gap();
@@ -169,6 +173,28 @@ class Run {
     result_.edges = where(task_, found, result_.top, unused_, result_.effects, options_.threads);
     result_.maps =
         maps_of(task_, without_noise(found.calibrated, result_.top), without_noise(kept, result_.top), gap_output_);
+  }
+
+  /// Where the chosen set leaves more than noise, no set is true, and its likelihood says nothing of which effects are
+  /// there: that is asked of stretches which no fit has seen.
+  void weigh_evidence(Searched& searched) {
+    Judgement& judgement = searched.judgement;
+    const Explanation& calibrated = searched.search.calibrated;
+    if (!materiality_.is_left(unrepeatable_ ? unrepeatable_->residuals : judgement.chosen->fit.residuals)) {
+      return;
+    }
+    result_.evidence = evidence_of(
+        task_, result_.top, calibrated,
+        {.effects = options_.effects, .columns = unused_, .threads = options_.threads, .seed = options_.seed});
+    result_.tried += result_.evidence.tried;
+    if (!is_told(result_.evidence)) {
+      return;
+    }
+    related_ = true;
+    explained_ = explained(task_, result_.top, result_.evidence.sets.front(), calibrated, unused_);
+    choose_instead(task_, explained_ ? *explained_ : calibrated, judgement);
+    unrepeatable_.reset();
+    harmonics_.reset();
   }
 
   [[nodiscard]] SearchOptions search_options() {
@@ -351,7 +377,9 @@ class Run {
     unexplained_ = rms(residuals, gap_output_) / (floors_[gap_output_].value * noise_[gap_output_]);
     result_.unknown_score = unknown_score(left, probability_of_cause(judgement));
 
-    if (!related_) {
+    if (is_told(result_.evidence)) {
+      result_.verdict = Verdict::Partial;
+    } else if (!related_) {
       result_.verdict = Verdict::Unknown;
       result_.unknown_score = 1.0;
     } else if (has_effect && gap_calibrated) {
@@ -408,10 +436,14 @@ class Run {
     }
     result_.fitted = fitted_findings(findings);
     result_.confidence = confidence(findings, result_);
+    if (is_told(result_.evidence)) {
+      tell(result_.evidence, result_);
+    }
+    double most_confidence = 1.0;  // what speaks against a verdict holds whatever else is said of it
     if (result_.verdict != Verdict::Partial && result_.verdict != Verdict::Unknown) {  // they say it already
       for (std::string& far : far_parameters(task_, kept)) {
         result_.warnings.push_back(std::move(far));
-        result_.confidence = std::min(result_.confidence, sure_of_another_machine);
+        most_confidence = std::min(most_confidence, sure_of_another_machine);
       }
     }
     const std::vector<Edge> edges = edges_of_text(input_.text, result_.top);
@@ -419,12 +451,13 @@ class Run {
                  edges, result_);
     result_.split = split_of(result_.effects, edges, ports());
     if (one_motion_) {
-      result_.confidence = std::min(result_.confidence, sure_of_one_motion);
+      most_confidence = std::min(most_confidence, sure_of_one_motion);
     }
     if (std::string reason = unexplained_start(task_, *judgement.chosen); !reason.empty() && related_) {
       result_.warnings.push_back(std::move(reason));
-      result_.confidence = std::min(result_.confidence, sure_of_missed_start);
+      most_confidence = std::min(most_confidence, sure_of_missed_start);
     }
+    result_.confidence = std::min(result_.confidence, most_confidence);
     for (std::string& reason :
          structural_reasons(result_, given_->graph.sample_time(),
                             is_tried(options_.effects, "periodic_disturbance") ? longest_duration(task_) : 0.0)) {
@@ -447,7 +480,8 @@ class Run {
                  .options = options_,
                  .floor = floors_[gap_output_].value},
                 result_);
-    result_.summary = summary_of(result_, materiality_.is_too_small(kept.fit.residuals));
+    result_.summary = is_told(result_.evidence) ? sentence_of(result_)
+                                                : summary_of(result_, materiality_.is_too_small(kept.fit.residuals));
   }
 
   [[nodiscard]] std::vector<std::string> ports() const {
@@ -476,6 +510,7 @@ class Run {
   double floor_cost_ = 0.0;
   std::size_t gap_output_ = 0;              ///< see Findings
   std::optional<Explanation> harmonics_{};  ///< the chosen set, where its line has some
+  std::optional<Explanation> explained_{};  ///< the set of the evidence, where the diagram has a place for it
   std::optional<Unrepeatable> unrepeatable_{};
   double predictable_ = 0.0;  ///< see Findings
   double unexplained_ = 0.0;  ///< likewise

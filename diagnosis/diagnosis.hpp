@@ -11,6 +11,7 @@
 
 #include "codegen/parameters/parameter_file.hpp"
 #include "diagnosis/effects/candidates.hpp"
+#include "diagnosis/evidence/law_findings.hpp"
 #include "diagnosis/noise/noise_floor.hpp"
 
 namespace hysteron::diagnosis {
@@ -157,6 +158,7 @@ struct Diagnosis {
   std::vector<ParameterFinding> calibration{};  ///< known parameters, as refitted
   std::vector<ParameterFinding> nominal{};      ///< as they were given
   std::vector<Rival> rivals{};
+  Evidence evidence{};          ///< where effects leave more than noise: what is there, by families
   std::vector<Rival> fitted{};  ///< the best of all sets that were fitted, ruled out or not
   double confidence = 0.0;
   double unknown_score = 0.0;

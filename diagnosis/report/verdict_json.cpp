@@ -43,6 +43,43 @@ Json sets_of(const std::vector<Rival>& list) {
   return result;
 }
 
+Json families_of(const Evidence& evidence) {
+  Json result = Json::array();
+  for (const FamilyFinding& one : evidence.families) {
+    result.push_back({{"family", one.family},
+                      {"probability", number(one.probability)},
+                      {"closed", number(one.closed)},
+                      {"effect", one.effect},
+                      {"effect_probability", number(one.member)},
+                      {"edge", one.edge}});
+  }
+  return result;
+}
+
+Json law_sets_of(const Evidence& evidence) {
+  Json result = Json::array();
+  for (const SetFinding& set : evidence.sets) {
+    Json laws = Json::array();
+    for (const LawFinding& law : set.laws) {
+      Json values = Json::object();
+      for (const LawValue& value : law.values) {
+        values[value.name] = {{"value", number(value.value)}, {"error", number(value.error)}};
+      }
+      laws.push_back({{"effect", law.effect},
+                      {"family", law.family},
+                      {"edge", law.edge},
+                      {"drivers", law.drivers},
+                      {"closed", number(law.closed)},
+                      {"values", std::move(values)}});
+    }
+    result.push_back({{"probability", number(set.probability)},
+                      {"closed", number(set.closed)},
+                      {"compared_at", set.space},
+                      {"effects", std::move(laws)}});
+  }
+  return result;
+}
+
 Json gap_of(const GapFinding& gap) {
   return {{"signal", gap.signal},
           {"unit", gap.unit},
@@ -141,6 +178,8 @@ std::string verdict_json(const Diagnosis& found) {
                         {"effects", std::move(effects)},
                         {"rivals", std::move(rivals)},
                         {"confidence", number(found.confidence)},
+                        {"families", families_of(found.evidence)},
+                        {"evidence", law_sets_of(found.evidence)},
                         {"unknown_score", number(found.unknown_score)},
                         {"gap", gap_of(found.gap)},
                         {"where", where_of(found)},

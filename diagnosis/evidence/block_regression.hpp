@@ -1,0 +1,52 @@
+// Linear regression of a residual on responses, scored on blocks that the fit did not see.
+//
+//   minimise over δ, α   Σ_o Σ_k ((r + J δ + Σ D α)_ok / s_o)²
+//
+// J are the sensitivities of the known parameters D the responses of the laws of a set. For each
+// block the coefficients are found without it, and what they leave there is its held-out energy. The Gram matrices of
+// the blocks are formed once for a set, so that all these fits cost little more than one (Allen's PRESS, by blocks).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "diagnosis/evidence/blocks.hpp"
+#include "diagnosis/evidence/laws.hpp"
+
+namespace hysteron::diagnosis {
+
+class BlockRegression {
+ public:
+  struct Score {
+    bool allowed = false;  ///< no share lies out of its bounds
+    MatrixXd held_out{};   ///< Σr² by block and output, in squares of the task's scales
+    VectorXd shares{};     ///< of the terms, in the order of the laws
+    VectorXd known{};      ///< changes of the known parameters
+    VectorXd errors{};     ///< standard errors of the shares, by leaving blocks out (the jackknife)
+  };
+
+  /// Both are thinned.
+  BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known);
+
+  [[nodiscard]] Score with(std::span<const Law* const> laws) const;
+
+  [[nodiscard]] const VectorXd& residuals() const { return residuals_; }
+  [[nodiscard]] const MatrixXd& known() const { return known_; }
+
+  /// Divisors of the outputs: what the best set so far leaves of each.
+  void weigh(const MatrixXd& held_out);
+
+  /// Σ_o n_o ln(Σ_b w_b E_bo / Σ_b w_b n_b) / Σ n: the log of the mean square over the outputs, each in its own scale.
+  [[nodiscard]] double log_square(const MatrixXd& held_out, const VectorXd& weights) const;
+  [[nodiscard]] double log_square(const MatrixXd& held_out) const;
+
+ private:
+  const Blocks& blocks_;
+  VectorXd residuals_;
+  MatrixXd known_;
+  VectorXd weights_{};             ///< by output
+  std::vector<MatrixXd> grams_{};  ///< of `known`, by run, not weighted
+  MatrixXd counts_{};              ///< rows by block and output
+};
+
+}  // namespace hysteron::diagnosis

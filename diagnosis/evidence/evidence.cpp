@@ -1,0 +1,272 @@
+#include "diagnosis/evidence/evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "diagnosis/evidence/missing_space.hpp"
+#include "diagnosis/evidence/open_loop.hpp"
+#include "diagnosis/evidence/output_space.hpp"
+#include "diagnosis/evidence/set_search.hpp"
+#include "diagnosis/policy.hpp"
+#include "diagnosis/search/expansion.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// A space with its laws, and the sets of them that were fitted.
+struct Explored {
+  std::unique_ptr<Space> space{};
+  std::unique_ptr<Blocks> blocks{};
+  std::unique_ptr<std::vector<Law>> laws{};  ///< the search points into them
+  std::unique_ptr<BlockRegression> regression{};
+  std::unique_ptr<SetSearch> search{};
+  LawSet bare{};
+};
+
+Explored explored(const Task& task, const Explanation& calibrated, std::unique_ptr<Space> space,
+                  const EvidenceOptions& options) {
+  Explored result{.space = std::move(space)};
+  result.blocks =
+      std::make_unique<Blocks>(task, result.space->outputs(), static_cast<std::size_t>(policy::blocks.value),
+                               static_cast<std::size_t>(policy::rows.value));
+  result.laws = std::make_unique<std::vector<Law>>(laws_of(task, *result.space, calibrated, *result.blocks,
+                                                           {.effects = options.effects, .threads = options.threads}));
+  result.regression =
+      std::make_unique<BlockRegression>(*result.blocks, result.blocks->thinned(result.space->residuals()).col(0),
+                                        result.blocks->thinned(result.space->known()));
+  result.regression->weigh(result.regression->with({}).held_out);
+  result.search = std::make_unique<SetSearch>(*result.laws, *result.regression, options.threads);
+  result.bare = result.search->fitted({});
+  return result;
+}
+
+bool has_place(const Space& space, const std::string& edge) {
+  return std::ranges::any_of(space.places(), [&](const Space::Place& place) { return place.edge.name == edge; });
+}
+
+/// Whether a set acts behind the place where what is missing can be seen.
+bool is_elsewhere(const LawSet& set, const std::vector<Explored>& spaces) {
+  return set.space + 1 < spaces.size() && std::ranges::any_of(set.laws, [&](std::size_t law) {
+           return !has_place(*spaces.back().space, (*spaces[set.space].laws)[law].edge);
+         });
+}
+
+std::vector<LawSet> all_sets(std::vector<Explored>& spaces) {
+  std::vector<LawSet> result;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    for (LawSet& set : spaces[i].search->run()) {
+      set.space = i;
+      set.log_square -= spaces[i].bare.log_square;
+      const bool last = i + 1 == spaces.size();
+      if (set.laws.empty() ? last : last || is_elsewhere(set, spaces)) {
+        result.push_back(std::move(set));
+      }
+    }
+  }
+  return result;
+}
+
+/// Sets by how often each is the best; returns the same of families, and of the effects in them.
+struct Votes {
+  std::map<std::string, double> families{};
+  std::map<std::pair<std::string, std::string>, double> members{};
+};
+Votes vote(const std::vector<Explored>& spaces, std::vector<LawSet>& sets, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::exponential_distribution<double> weight(1.0);
+  std::normal_distribution<double> error(0.0, policy::model_error.value);
+  Votes votes;
+  const auto count = static_cast<int>(policy::draws.value);
+  const double one_vote = 1.0 / policy::draws.value;
+  for (int draw = 0; draw < count; ++draw) {
+    VectorXd weights(static_cast<Index>(spaces.front().blocks->count()));
+    std::ranges::generate(weights, [&] { return weight(random); });
+    std::vector<double> bare;
+    for (const Explored& one : spaces) {
+      bare.push_back(one.regression->log_square(one.bare.score.held_out, weights));
+    }
+    std::map<std::vector<std::string>, double> errors;  // of a formula: the same for all sets of the same families
+    LawSet* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (LawSet& set : sets) {
+      const Explored& there = spaces[set.space];
+      const auto [found, first] = errors.emplace(there.search->families_of(set), 0.0);
+      if (first) {
+        found->second = error(random);
+      }
+      const double here = there.regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
+                          policy::price.value * static_cast<double>(set.laws.size()) +
+                          (is_elsewhere(set, spaces) ? policy::another_place.value : 0.0);
+      if (here < least) {
+        least = here;
+        best = &set;
+      }
+    }
+    best->probability += one_vote;
+    for (const std::string& family : spaces[best->space].search->families_of(*best)) {
+      votes.families[family] += one_vote;
+    }
+    for (const std::size_t i : best->laws) {
+      const Law& law = (*spaces[best->space].laws)[i];
+      votes.members[{law.family, law.effect}] += one_vote;
+    }
+  }
+  return votes;
+}
+
+/// What a set closes of the held-out gap less what it closes without some of its laws.
+double closed_by(const Explored& there, const LawSet& set, const auto& is_dropped) {
+  std::vector<std::size_t> rest = set.laws;
+  std::erase_if(rest, [&](std::size_t i) { return is_dropped((*there.laws)[i]); });
+  const LawSet without = there.search->fitted(rest);
+  return std::min(1.0, std::exp(without.log_square - there.bare.log_square)) - std::exp(set.log_square);
+}
+
+SetFinding described(const Explored& there, const LawSet& set) {
+  SetFinding result{
+      .space = there.space->name(), .probability = set.probability, .closed = 1.0 - std::exp(set.log_square)};
+  Index at = 0;
+  for (const std::size_t i : set.laws) {
+    const Law& law = (*there.laws)[i];
+    LawFinding finding{.effect = law.effect, .family = law.family, .edge = law.edge, .drivers = law.drivers};
+    for (const auto& [name, value] : law.shape) {
+      finding.values.push_back({.name = name, .value = value});
+    }
+    for (const Law::Term& term : law.terms) {
+      if (!term.strength.empty()) {
+        finding.values.push_back({.name = term.strength,
+                                  .value = term.neutral + term.unit * set.score.shares[at],
+                                  .error = std::abs(term.unit) * set.score.errors[at]});
+      }
+      ++at;
+    }
+    finding.closed = closed_by(there, set, [&](const Law& other) { return &other == &law; });
+    result.laws.push_back(std::move(finding));
+  }
+  return result;
+}
+
+MissingPicture picture_of(const Explored& there, const LawSet& set, const std::string& family) {
+  MissingPicture result;
+  const auto own = std::ranges::find_if(set.laws, [&](std::size_t i) { return (*there.laws)[i].family == family; });
+  if (own == set.laws.end() || there.space->outputs() != 1) {
+    return result;
+  }
+  const Law& law = (*there.laws)[*own];
+  const Space::Place& place = there.space->places()[law.place];
+  const auto driver = std::ranges::find_if(there.space->drivers(), [&](const DriverSignal& one) {
+    return !law.drivers.empty() && one.name == law.drivers.front();
+  });
+  const bool driven = driver != there.space->drivers().end();
+  const RecordSignals& over = driven ? driver->values : place.carried;
+  Index rows = 0;
+  for (const Signal& one : over) {
+    rows += std::ssize(one);
+  }
+  VectorXd stacked(rows);
+  Index row = 0;
+  for (const Signal& one : over) {
+    stacked.segment(row, std::ssize(one)) = Eigen::Map<const VectorXd>(one.data(), std::ssize(one));
+    row += std::ssize(one);
+  }
+  const VectorXd places = there.blocks->thinned(stacked).col(0);
+  VectorXd missing = there.regression->residuals() + there.regression->known() * set.score.known;
+  VectorXd of_law = VectorXd::Zero(missing.size());
+  Index at = 0;
+  for (const std::size_t i : set.laws) {
+    for (Index k = 0; k < (*there.laws)[i].responses.cols(); ++k, ++at) {
+      (i == *own ? of_law : missing) += (*there.laws)[i].responses.col(k) * set.score.shares[at];
+    }
+  }
+  result = {.edge = there.space->name() == "outputs" ? law.edge : there.space->name(),
+            .unit = there.space->name() == "outputs" ? std::string() : there.space->places().front().unit,
+            .effect = law.effect,
+            .over = driven ? driver->name : place.edge.name,
+            .over_unit = driven ? driver->unit : place.unit};
+  result.places.assign(places.begin(), places.end());
+  for (Index k = 0; k < missing.size(); ++k) {
+    result.missing.push_back(missing[k]);
+    result.law.push_back(-of_law[k]);
+  }
+  return result;
+}
+
+}  // namespace
+
+Evidence evidence_of(const Task& task, const std::string& top, const Explanation& calibrated,
+                     const EvidenceOptions& options) {
+  const std::optional<OpenLoop> open = opened(task, top, calibrated.variant);
+  const Explanation plant = open ? footing_of(open->task, open->variant).nominal : Explanation();
+  const Task& asked = open ? open->task : task;
+  const Explanation& fitted = open ? plant : calibrated;
+  std::vector<Explored> spaces;
+  std::unique_ptr<MissingSpace> missing =
+      MissingSpace::of_bottleneck(asked, top, fitted, options.columns, options.threads);
+  if (!open || !missing) {
+    spaces.push_back(explored(
+        asked, fitted, std::make_unique<OutputSpace>(asked, top, fitted, options.columns, options.threads), options));
+  }
+  if (missing) {
+    spaces.push_back(explored(asked, fitted, std::move(missing), options));
+  }
+  std::vector<LawSet> sets = all_sets(spaces);
+  const Votes votes = vote(spaces, sets, options.seed);
+  std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
+
+  Evidence result;
+  for (const Explored& one : spaces) {
+    result.tried += one.laws->size();
+  }
+  for (const auto& [family, probability] : votes.families) {
+    FamilyFinding finding{.family = family, .probability = probability};
+    for (const auto& [member, share] : votes.members) {
+      if (member.first == family && share > finding.member * probability) {
+        finding.effect = member.second;
+        finding.member = share / probability;
+      }
+    }
+    const auto holds = [&](const LawSet& set) {
+      const std::vector<std::string> names = spaces[set.space].search->families_of(set);
+      return std::ranges::find(names, family) != names.end();
+    };
+    if (const auto set = std::ranges::find_if(sets, holds); set != sets.end()) {
+      const Explored& there = spaces[set->space];
+      finding.closed = closed_by(there, *set, [&](const Law& law) { return law.family == family; });
+      const auto law =
+          std::ranges::find_if(set->laws, [&](std::size_t i) { return (*there.laws)[i].family == family; });
+      finding.edge = (*there.laws)[*law].edge;
+    }
+    result.families.push_back(std::move(finding));
+  }
+  // What closes next to nothing is no cause, however surely it is there.
+  std::ranges::stable_sort(result.families, [](const FamilyFinding& a, const FamilyFinding& b) {
+    const auto weight = [](const FamilyFinding& one) {
+      return one.probability * std::min(1.0, std::max(0.0, one.closed) / (4.0 * policy::relevant.value));
+    };
+    return weight(a) > weight(b);
+  });
+  constexpr std::size_t most_told = 40;
+  for (const LawSet& set : sets) {
+    if (set.probability > 0.0 && result.sets.size() < most_told) {
+      result.sets.push_back(described(spaces[set.space], set));
+    }
+  }
+  if (!result.families.empty() && !sets.front().laws.empty()) {
+    const auto shown = std::ranges::find_if(sets, [&](const LawSet& set) {
+      const std::vector<std::string> names = spaces[set.space].search->families_of(set);
+      return std::ranges::find(names, result.families.front().family) != names.end();
+    });
+    if (shown != sets.end()) {
+      result.picture = picture_of(spaces[shown->space], *shown, result.families.front().family);
+    }
+  }
+  return result;
+}
+
+}  // namespace hysteron::diagnosis

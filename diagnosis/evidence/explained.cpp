@@ -1,0 +1,96 @@
+#include "diagnosis/evidence/explained.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "diagnosis/effects/starts.hpp"
+#include "diagnosis/model/refusal.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// The name of the wire that a driver of a law is, as a candidate has it: of a measured output what computes it.
+std::string wire_name(const Graph& graph, const std::string& driver) {
+  const Port* const output = find_port(graph.outputs, driver);
+  if (output == nullptr || output->wire.from != Wire::From::Node || graph.nodes[output->wire.index].block == nullptr) {
+    return driver;
+  }
+  const Node& node = graph.nodes[output->wire.index];
+  return node.path + "." + std::string(node.block->outputs[output->wire.port].name);
+}
+
+/// Of candidates the one on the law's edge with its drivers; of a driver that no wire carries, a rate, any.
+const Candidate* fitting(const std::vector<Candidate>& list, const Graph& graph, const LawFinding& law) {
+  const Candidate* best = nullptr;
+  int best_rank = 0;
+  for (const Candidate& one : list) {
+    const std::string edge = in_the_diagram(one.own().edge, one.variant.effects);
+    if (!language::same_name(edge, law.edge)) {
+      continue;
+    }
+    const bool driven = one.own().wires.empty() == law.drivers.empty();
+    const bool same = driven && (law.drivers.empty() || language::same_name(one.own().wires.front().second,
+                                                                            wire_name(graph, law.drivers.front())));
+    const int rank = same ? 2 : driven ? 1 : 0;
+    if (rank > best_rank) {
+      best_rank = rank;
+      best = &one;
+    }
+  }
+  return best;
+}
+
+double value_of(const LawFinding& law, const EffectParameter& parameter, double otherwise) {
+  const auto found = std::ranges::find(law.values, parameter.name, &LawValue::name);
+  return found == law.values.end() ? otherwise : found->value;
+}
+
+}  // namespace
+
+std::optional<Explanation> explained(const Task& task, const std::string& top, const SetFinding& set,
+                                     const Explanation& calibrated, const std::vector<std::string>& columns) {
+  Explanation result{.variant = calibrated.variant};
+  VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
+  for (const LawFinding& law : set.laws) {
+    const std::vector<Candidate> list =
+        candidates_of(result.variant, top, {.effects = {law.effect}, .columns = columns, .again = true});
+    const Candidate* const found = fitting(list, calibrated.variant.program->graph, law);
+    if (found == nullptr) {
+      continue;
+    }
+    Variant variant = found->variant;
+    Applied& own = variant.effects.back();
+    for (std::size_t j = 0; j < own.parameters.size(); ++j) {
+      const EffectParameter& parameter = own.parameters[j];
+      const double value =
+          value_of(law, parameter, parameter.strength ? parameter.field.neutral : parameter.field.preset);
+      if (parameter.role == Role::Reference || !std::isfinite(value)) {
+        own.settings.emplace_back(own.paths[j], value);
+        continue;
+      }
+      variant.further.push_back(unknown_of(parameter, own.paths[j], {.values = {value}}));
+      start.conservativeResize(start.size() + 1);
+      start[start.size() - 1] = value;
+    }
+    std::erase_if(own.settings, [](const auto& setting) { return !std::isfinite(setting.second); });
+    result.variant = std::move(variant);
+    result.variant.program = compiled(result.variant, top);
+  }
+  if (result.variant.effects.size() == calibrated.variant.effects.size()) {
+    return std::nullopt;
+  }
+  result = unless_refused([&] {
+    Explanation fitted = std::move(result);
+    Model model(task, *fitted.variant.program, fitted.variant.further);
+    const Index states = model.unknowns() - start.size();
+    start.conservativeResize(model.unknowns());
+    start.tail(states) = calibrated.fit.x.tail(states);
+    fitted.fit = fit(model, start, {.iterations = 25});
+    keep_starts(fitted, model);
+    finish(task, fitted, {.thoroughly = true});
+    return fitted;
+  });
+  return result.fit.cost < calibrated.fit.cost ? std::optional(std::move(result)) : std::nullopt;
+}
+
+}  // namespace hysteron::diagnosis

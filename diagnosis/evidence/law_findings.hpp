@@ -1,0 +1,62 @@
+// What the evidence tells: effects that may be there, alone, in sets and by families, each with its probability and
+// with the share of the gap that it closes on stretches which its fit did not see.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace hysteron::diagnosis {
+
+/// A number of an effect, and the standard error of it by leaving blocks out; 0 where it was given by a grid.
+struct LawValue {
+  std::string name{};
+  double value = 0.0;
+  double error = 0.0;
+};
+
+struct LawFinding {
+  std::string effect{};
+  std::string family{};
+  std::string edge{};
+  std::vector<std::string> drivers{};
+  std::vector<LawValue> values{};
+  double closed = 0.0;  ///< of the held-out gap, less what the set closes without it
+};
+
+struct SetFinding {
+  std::string space{};
+  std::vector<LawFinding> laws{};
+  double probability = 0.0;
+  double closed = 0.0;  ///< of the held-out gap
+};
+
+struct FamilyFinding {
+  std::string family{};
+  double probability = 0.0;
+  double closed = 0.0;   ///< by the most probable set that holds it, less what that set closes without it
+  std::string effect{};  ///< its most probable member
+  double member = 0.0;   ///< the probability of that one, of that of the family
+  std::string edge{};
+};
+
+/// What is missing beside all that is explained otherwise, over the signal that it is a function of, with the law.
+struct MissingPicture {
+  std::string edge{};
+  std::string unit{};
+  std::string effect{};
+  std::string over{};
+  std::string over_unit{};
+  std::vector<double> places{};
+  std::vector<double> missing{};
+  std::vector<double> law{};
+};
+
+struct Evidence {
+  std::vector<FamilyFinding> families{};  ///< most probable first
+  std::vector<SetFinding> sets{};         ///< most probable first
+  MissingPicture picture{};               ///< of the first family; empty where nothing is there
+  std::size_t tried = 0;                  ///< laws
+};
+
+}  // namespace hysteron::diagnosis

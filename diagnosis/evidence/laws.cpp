@@ -1,0 +1,488 @@
+#include "diagnosis/evidence/laws.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "diagnosis/effects/grid_points.hpp"
+#include "diagnosis/evidence/roles.hpp"
+#include "diagnosis/model/parallel.hpp"
+#include "diagnosis/noise/spectrum.hpp"
+#include "diagnosis/policy.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// A strength that the law is not linear in is as large as it was tried, but for what lies between two points of a
+/// grid.
+constexpr double share_low = 0.5;
+constexpr double share_high = 2.0;
+/// Points of a grid by samples of the records: each costs a pass over all of them.
+constexpr double strengths_by_samples = 2e5;
+constexpr std::size_t fewest_points = 8;
+constexpr std::size_t most_points = 30;
+
+/// A block by itself, on the signals that drive it.
+class Isolated {
+ public:
+  Isolated(const EffectKind& kind, const RecordSignals& input, std::vector<const RecordSignals*> drivers,
+           double sample_time)
+      : input_(input), drivers_(std::move(drivers)) {
+    std::string pins = fmt::format("{} : LREAL; ", kind.input);
+    std::string call = fmt::format("{} := {}", kind.input, kind.input);
+    for (std::size_t i = 0; i < drivers_.size(); ++i) {
+      pins += fmt::format("{} : LREAL; ", kind.auxiliaries[i]);
+      call += fmt::format(", {} := {}", kind.auxiliaries[i], kind.auxiliaries[i]);
+    }
+    program_ = compile_text(fmt::format("FUNCTION_BLOCK LAW VAR_INPUT {}END_VAR VAR_OUTPUT RESULT : LREAL; END_VAR VAR "
+                                        "E : {}; END_VAR E({}); RESULT := E.{}; END_FUNCTION_BLOCK",
+                                        pins, kind.block, call, kind.output),
+                            {.any_order = true});
+    machine_ = std::make_unique<Machine<double>>(program_, sample_time);
+  }
+
+  void set(std::string_view parameter, double value) {
+    const std::int64_t at = find_parameter(program_.graph, fmt::format("E.{}", parameter));
+    if (at >= 0) {
+      machine_->set_parameter(static_cast<std::size_t>(at), value);
+    }
+  }
+
+  /// What it adds to its input; empty where that is not finite.
+  [[nodiscard]] RecordSignals added() {
+    RecordSignals result;
+    for (std::size_t e = 0; e < input_.size(); ++e) {
+      machine_->reset();
+      result.emplace_back(input_[e].size());
+      for (std::size_t k = 0; k < input_[e].size(); ++k) {
+        machine_->set_input(0, input_[e][k]);
+        for (std::size_t i = 0; i < drivers_.size(); ++i) {
+          machine_->set_input(i + 1, (*drivers_[i])[e][k]);
+        }
+        machine_->step();
+        result.back()[k] = machine_->output(0) - input_[e][k];
+        if (!std::isfinite(result.back()[k])) {
+          return {};
+        }
+      }
+    }
+    return result;
+  }
+
+ private:
+  const RecordSignals& input_;
+  std::vector<const RecordSignals*> drivers_;
+  Program program_{};
+  std::unique_ptr<Machine<double>> machine_{};
+};
+
+RecordSignals combined(const RecordSignals& a, double share_a, const RecordSignals& b, double share_b) {
+  RecordSignals result = a;
+  for (std::size_t e = 0; e < a.size(); ++e) {
+    for (std::size_t k = 0; k < a[e].size(); ++k) {
+      result[e][k] = share_a * a[e][k] + share_b * b[e][k];
+    }
+  }
+  return result;
+}
+
+double energy(const RecordSignals& signal) {
+  double sum = 0.0;
+  for (const Signal& one : signal) {
+    for (const double value : one) {
+      sum += value * value;
+    }
+  }
+  return sum;
+}
+
+/// A law before its responses: the signals of its terms.
+struct Draft {
+  Law law{};
+  std::vector<RecordSignals> signals{};
+};
+
+/// All settings of one effect on one edge with one set of drivers.
+class Settings {
+ public:
+  Settings(const EffectKind& kind, const Candidate& candidate, const Grids& grids, Isolated& block, bool both_ways,
+           std::size_t points)
+      : kind_(kind), own_(candidate.own()), grids_(grids), block_(block), both_ways_(both_ways), points_(points) {
+    neutral_.resize(std::ssize(own_.parameters));
+    for (std::size_t j = 0; j < own_.parameters.size(); ++j) {
+      const EffectParameter& one = own_.parameters[j];
+      const bool set = !std::isnan(grids.settings[j]);
+      neutral_[static_cast<Index>(j)] = set ? grids.settings[j] : one.strength ? one.field.neutral : one.field.preset;
+      if (one.strength && !set && !grids.parameters[j].values.empty()) {
+        strengths_.push_back(static_cast<Index>(j));
+      }
+    }
+    for (const auto& [path, value] : own_.settings) {
+      block_.set(path.substr(path.rfind('.') + 1), value);
+    }
+  }
+
+  [[nodiscard]] std::vector<Draft> list() {
+    std::vector<Draft> result;
+    for (const VectorXd& shape : shapes_of(own_, grids_, neutral_)) {
+      if (auto linear = linear_at(shape)) {
+        if (!linear->signals.empty()) {
+          result.push_back(std::move(*linear));
+        }
+      } else {
+        points_at(shape, result);
+      }
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] const EffectParameter& parameter(Index j) const { return own_.parameters[static_cast<std::size_t>(j)]; }
+  [[nodiscard]] const std::vector<double>& points(Index j) const {
+    return grids_.parameters[static_cast<std::size_t>(j)].values;
+  }
+
+  [[nodiscard]] RecordSignals at(const VectorXd& values) {
+    for (Index j = 0; j < values.size(); ++j) {
+      block_.set(parameter(j).name, values[j]);
+    }
+    return block_.added();
+  }
+
+  [[nodiscard]] Draft draft(const VectorXd& values) const {
+    Draft result{.law = {.effect = kind_.id, .edge = own_.edge}};
+    for (Index j = 0; j < values.size(); ++j) {
+      result.law.shape.emplace_back(parameter(j).name, values[j]);
+    }
+    return result;
+  }
+
+  /// Nothing where the law is not linear in all of its strengths; no signals where it does nothing.
+  std::optional<Draft> linear_at(const VectorXd& shape) {
+    Draft result = draft(shape);
+    for (const Index j : strengths_) {
+      const Field& field = parameter(j).field;
+      if (!std::isfinite(field.neutral) || is_gap(parameter(j).role) || parameter(j).role == Role::Duration ||
+          parameter(j).role == Role::Rate) {
+        return std::nullopt;
+      }
+      const double step = points(j).back() - field.neutral;
+      VectorXd values = shape;
+      values[j] = field.neutral + step;
+      RecordSignals once = at(values);
+      values[j] = field.neutral + 0.5 * step;
+      const RecordSignals half = at(values);
+      if (once.empty() || half.empty()) {
+        return std::nullopt;
+      }
+      if (energy(once) == 0.0) {
+        continue;
+      }
+      if (energy(combined(once, 1.0, half, -2.0)) > policy::linear.value * policy::linear.value * energy(once)) {
+        return std::nullopt;
+      }
+      const double a = (std::max(field.minimum, field.effect_minimum) - field.neutral) / step;
+      const double b = (std::min(field.maximum, field.effect_maximum) - field.neutral) / step;
+      Law::Term term{.strength = parameter(j).name,
+                     .unit = step,
+                     .neutral = field.neutral,
+                     .lowest = both_ways_ ? -std::numeric_limits<double>::infinity() : std::min(a, b),
+                     .highest = both_ways_ ? std::numeric_limits<double>::infinity() : std::max(a, b)};
+      std::erase_if(result.law.shape, [&](const auto& one) { return one.first == term.strength; });
+      result.law.terms.push_back(std::move(term));
+      result.signals.push_back(std::move(once));
+    }
+    return result;
+  }
+
+  void point(const VectorXd& values, std::vector<Draft>& result) {
+    RecordSignals signal = at(values);
+    if (signal.empty() || energy(signal) == 0.0) {
+      return;
+    }
+    Draft one = draft(values);
+    one.law.terms.push_back({.strength = "", .unit = 1.0, .lowest = share_low, .highest = share_high});
+    one.signals.push_back(std::move(signal));
+    result.push_back(std::move(one));
+  }
+
+  /// Each strength by itself over its grid, and all of them at once.
+  void points_at(const VectorXd& shape, std::vector<Draft>& result) {
+    for (const Index j : strengths_) {
+      const std::vector<double>& grid = points(j);
+      const std::size_t step = std::max<std::size_t>(1, (grid.size() + points_ - 1) / points_);
+      for (std::size_t k = 0; k < grid.size(); k += step) {
+        VectorXd values = shape;
+        values[j] = grid[k];
+        point(values, result);
+      }
+    }
+    if (strengths_.size() > 1) {
+      std::size_t longest = 0;
+      for (const Index j : strengths_) {
+        longest = std::max(longest, points(j).size());
+      }
+      for (std::size_t k = 0; k < longest; ++k) {
+        VectorXd values = shape;
+        for (const Index j : strengths_) {
+          values[j] = points(j)[std::min(k, points(j).size() - 1)];
+        }
+        point(values, result);
+      }
+    }
+  }
+
+  const EffectKind& kind_;
+  const Applied& own_;
+  const Grids& grids_;
+  Isolated& block_;
+  bool both_ways_;
+  std::size_t points_;
+  VectorXd neutral_{};
+  std::vector<Index> strengths_{};
+};
+
+/// Whether two laws of one effect cannot be told apart in this space: on two edges with nothing but a gain between
+/// them.
+bool do_the_same(const Law& a, const Law& b) {
+  constexpr double same = 1e-8;
+  if (a.effect != b.effect || a.drivers != b.drivers || a.terms.size() != b.terms.size()) {
+    return false;
+  }
+  for (Index k = 0; k < a.responses.cols(); ++k) {
+    const double both = a.responses.col(k).dot(b.responses.col(k));
+    if (both <= 0.0 ||
+        both * both < (1.0 - same) * a.responses.col(k).squaredNorm() * b.responses.col(k).squaredNorm()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What settles within a small part of a block is a lag by another name.
+std::string family_at(const EffectKind& kind, const Law& law, double block) {
+  const auto time = std::ranges::find_if(law.shape, [](const auto& one) { return one.first == "T1"; });
+  const std::string family = family_of(kind.id);
+  return family == "slow_memory" && time != law.shape.end() && time->second < policy::quick.value * block
+             ? "linear_dynamics"
+             : family;
+}
+
+/// Of a signal's energy about its mean, what a sine of that frequency explains, within the resolution of the record.
+double share_of_line(const RecordSignals& values, double frequency, double sample_time) {
+  double best = 0.0;
+  for (const Signal& one : values) {
+    const auto n = static_cast<double>(one.size());
+    const double mean = std::accumulate(one.begin(), one.end(), 0.0) / std::max(n, 1.0);
+    double whole = 0.0;
+    for (const double value : one) {
+      whole += (value - mean) * (value - mean);
+    }
+    for (const double off : {-0.5, 0.0, 0.5}) {
+      const double angle = 2.0 * std::numbers::pi * (frequency + off / (n * sample_time)) * sample_time;
+      double sine = 0.0;
+      double cosine = 0.0;
+      for (std::size_t k = 0; k < one.size(); ++k) {
+        sine += (one[k] - mean) * std::sin(angle * static_cast<double>(k));
+        cosine += (one[k] - mean) * std::cos(angle * static_cast<double>(k));
+      }
+      best = std::max(best, whole > 0.0 ? 2.0 * (sine * sine + cosine * cosine) / (n * whole) : 0.0);
+    }
+  }
+  return best;
+}
+
+/// Time constants and dead times by ratios of a third of a decade less: nothing is fitted between them.
+Grids with_finer_durations(const Applied& effect, Grids grids) {
+  for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+    if (effect.parameters[j].role != Role::Duration) {
+      continue;
+    }
+    std::vector<double>& values = grids.parameters[j].values;
+    std::vector<double> finer;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      finer.push_back(values[k]);
+      for (const double part : {1.0 / 3.0, 2.0 / 3.0}) {
+        if (k + 1 < values.size() && values[k] > 0.0) {
+          finer.push_back(values[k] * std::pow(values[k + 1] / values[k], part));
+        }
+      }
+    }
+    values = std::move(finer);
+  }
+  return grids;
+}
+
+/// Takes off the lines that a driver has, or has a whole fraction of: what it drives repeats with it, and a disturbance
+/// in time would stand for any law of it.
+void bar_lines_of(const std::vector<DriverSignal>& drivers, double sample_time, std::vector<double>& frequencies) {
+  constexpr int harmonics = 6;
+  std::erase_if(frequencies, [&](double frequency) {
+    return std::ranges::any_of(drivers, [&](const DriverSignal& driver) {
+      for (int k = 1; k <= harmonics; ++k) {
+        if (share_of_line(driver.values, frequency / k, sample_time) > policy::line_of_driver.value) {
+          return true;
+        }
+      }
+      return false;
+    });
+  });
+}
+
+struct Job {
+  const EffectKind* kind = nullptr;
+  std::size_t place = 0;
+  std::vector<const DriverSignal*> drivers{};
+};
+
+}  // namespace
+
+std::string family_of(const std::string& effect) {
+  static const std::map<std::string, std::string> names{{"backlash", "play"},
+                                                        {"dead_zone", "static"},
+                                                        {"coulomb_friction", "dry_friction"},
+                                                        {"stribeck_friction", "dry_friction"},
+                                                        {"viscous_friction", "viscous"},
+                                                        {"cogging", "periodic_in_place"},
+                                                        {"cross_coupling", "coupling"},
+                                                        {"creep", "slow_memory"},
+                                                        {"relaxation", "slow_memory"},
+                                                        {"delay", "linear_dynamics"},
+                                                        {"lag", "linear_dynamics"},
+                                                        {"resonance", "linear_dynamics"},
+                                                        {"drift", "slow_change"},
+                                                        {"gain_drift", "slow_change"},
+                                                        {"thermal_drift", "slow_change"},
+                                                        {"load", "slow_change"},
+                                                        {"even_nonlinearity", "static"},
+                                                        {"odd_nonlinearity", "static"},
+                                                        {"saturation", "static"},
+                                                        {"periodic_disturbance", "periodic_in_time"}};
+  const auto found = names.find(effect);
+  return found == names.end() ? effect : found->second;
+}
+
+std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation& fitted, const Blocks& blocks,
+                         const LawOptions& options) {
+  Diagnostics none;  // the text compiled before
+  const auto source = std::make_shared<const language::SourceFile>(language::parse("text", fitted.variant.text, none));
+  const std::vector<EffectKind> kinds = effect_kinds(define(source, none));
+  const double sample_time = task.records.front().sample_time();
+  const std::vector<Space::Place>& places = space.places();
+  const std::vector<DriverSignal>& drivers = space.drivers();
+  const Hints hints = hints_of(task, fitted.fit.residuals);
+  Hints free_hints = hints;
+  bar_lines_of(drivers, sample_time, free_hints.frequencies);
+  std::vector<Job> jobs;
+  for (const EffectKind& kind : kinds) {
+    if (kind.change != Change::Insert || !is_tried(options.effects, kind.id) || kind.id == "quantization" ||
+        kind.id == "gain_error" || kind.id == "clock" || find_block_type(kind.block) == nullptr) {
+      continue;
+    }
+    for (std::size_t place = 0; place < places.size(); ++place) {
+      const bool oscillates = std::ranges::count(kind.parameters, Role::Frequency, &EffectParameter::role) > 0;
+      if (!may_act_on(kind, places[place]) || (oscillates && free_hints.frequencies.empty()) ||
+          (is_static(kind) && carries_velocity(places[place], drivers))) {
+        continue;
+      }
+      if (kind.auxiliaries.empty()) {
+        jobs.push_back({.kind = &kind, .place = place});
+        continue;
+      }
+      for (const DriverSignal& signal : drivers) {
+        if (may_drive(kind, signal, places[place])) {
+          jobs.push_back({.kind = &kind, .place = place, .drivers = {&signal}});
+        }
+      }
+    }
+  }
+  std::size_t samples = 0;
+  for (const records::Record& record : task.records) {
+    samples += record.size();
+  }
+  const std::size_t points = std::clamp(static_cast<std::size_t>(strengths_by_samples / static_cast<double>(samples)),
+                                        fewest_points, most_points);
+  std::vector<std::vector<Law>> found(jobs.size());
+  in_parallel(jobs.size(), options.threads, [&](std::size_t i) {
+    const Job& job = jobs[i];
+    const Space::Place& place = places[job.place];
+    // What the edge carries as the diagram runs, never a measured output: that would explain itself.
+    const RecordSignals& input = place.carried;
+    const Extent extent = extent_of(input, sample_time);
+    if (!(extent.range() > 0.0)) {
+      return;
+    }
+    Candidate candidate{.kind = *job.kind};
+    Applied applied{.effect = job.kind->id, .block = job.kind->block, .edge = place.edge.name, .instance = "E"};
+    applied.parameters = job.kind->parameters;
+    for (const EffectParameter& one : applied.parameters) {
+      applied.paths.push_back("E." + one.name);
+    }
+    candidate.variant.effects.push_back(std::move(applied));
+    const Extent* const auxiliary = job.drivers.empty() ? nullptr : &job.drivers.front()->extent;
+    std::vector<Candidate> guesses = other_guesses(candidate, extent, auxiliary);
+    guesses.insert(guesses.begin(), candidate);
+    std::vector<const RecordSignals*> signals;
+    std::vector<std::string> names;
+    for (const DriverSignal* one : job.drivers) {
+      signals.push_back(&one->values);
+      names.push_back(one->name);
+    }
+    const bool imposed = job.kind->by_velocity && !job.drivers.empty() && job.drivers.front()->is_imposed();
+    for (const Candidate& guess : guesses) {
+      std::vector<double> periods;
+      if (guess.own().has(Role::Period)) {
+        periods = strongest_periods(fitted.fit.residuals, signals.empty() ? input : *signals.front(), 8);
+      }
+      const Grids grids = with_finer_durations(
+          guess.own(),
+          grids_of(guess, extent, auxiliary, guess.own().has(Role::Frequency) ? free_hints : hints, periods));
+      Isolated block(*job.kind, input, signals, sample_time);
+      std::vector<Draft> drafts = Settings(*job.kind, guess, grids, block, imposed, points).list();
+      std::vector<RecordSignals> all;
+      for (Draft& draft : drafts) {
+        std::ranges::move(draft.signals, std::back_inserter(all));
+      }
+      if (all.empty()) {
+        continue;
+      }
+      const MatrixXd changed = space.of(job.place, all);
+      if (changed.size() == 0) {
+        continue;
+      }
+      const MatrixXd thin = blocks.thinned(changed);
+      Index column = 0;
+      for (Draft& draft : drafts) {
+        draft.law.drivers = names;
+        draft.law.place = job.place;
+        draft.law.family = family_at(*job.kind, draft.law, hints.duration / static_cast<double>(blocks.count()));
+        draft.law.responses = thin.middleCols(column, std::ssize(draft.law.terms));
+        column += std::ssize(draft.law.terms);
+        if (draft.law.responses.squaredNorm() > 0.0) {
+          found[i].push_back(std::move(draft.law));
+        }
+      }
+    }
+  });
+  std::vector<Law> result;
+  for (std::vector<Law>& list : found) {
+    for (Law& law : list) {
+      if (std::ranges::none_of(result, [&](const Law& other) { return do_the_same(law, other); })) {
+        result.push_back(std::move(law));
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,149 @@
+#include "diagnosis/evidence/output_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/units.hpp"
+#include "codegen/parameters/apply.hpp"
+#include "diagnosis/model/parallel.hpp"
+#include "tuning/machine_dual.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr std::size_t lanes = 8;
+using Lanes = Dual<static_cast<int>(lanes)>;
+
+}  // namespace
+
+Program with_values(const Task& task, const Program& program, const VectorXd& known) {
+  Program result = program;
+  parameters::apply(task.file, result.graph);
+  for (std::size_t j = 0; j < task.known.size(); ++j) {
+    set_parameter(result.graph, task.known[j].path, known[static_cast<Index>(j)]);
+  }
+  return result;
+}
+
+std::string unit_of_sum(const Program& program, const std::string& instance) {
+  const auto at = find_node(program.graph, instance) - program.graph.nodes.data();
+  return units::Solution(program.graph, program.schedule).outputs()[static_cast<std::size_t>(at)].front();
+}
+
+bool is_port(const Graph& graph, const Edge& edge) {
+  const auto is_named = [&](const Port& port) {
+    return language::same_name(edge.name, port.name) ||
+           std::ranges::any_of(edge.aliases,
+                               [&](const std::string& alias) { return language::same_name(alias, port.name); });
+  };
+  return std::ranges::any_of(graph.inputs, is_named) || std::ranges::any_of(graph.outputs, is_named);
+}
+
+OutputSpace::OutputSpace(const Task& task, const std::string& top, const Explanation& fitted,
+                         const std::vector<std::string>& unused, unsigned threads)
+    : task_(task), fitted_(fitted) {
+  const std::vector<Edge> edges = edges_of_text(fitted.variant.text, top);
+  const VectorXd known = fitted.fit.x.head(std::ssize(task.known));
+  std::vector<std::optional<SummedEdge>> added(edges.size());
+  std::vector<Place> places(edges.size());
+  in_parallel(edges.size(), threads, [&](std::size_t i) {
+    if (!edges[i].prefix.empty()) {
+      return;
+    }
+    added[i] = with_sum(fitted.variant.text, edges[i], top, fitted.variant);
+    if (!added[i] || added[i]->before.from == Wire::From::Nothing) {
+      added[i].reset();
+      return;
+    }
+    places[i] = {.edge = edges[i],
+                 .carried = wire_signals(task, *added[i]->program, {added[i]->before}, known).front(),
+                 .unit = unit_of_sum(*added[i]->program, added[i]->instance),
+                 .is_port = is_port(fitted.variant.program->graph, edges[i])};
+  });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (added[i]) {
+      places_.push_back(std::move(places[i]));
+      added_.push_back(std::move(*added[i]));
+    }
+  }
+  // As the diagram runs: a measured output that drives a law would explain itself.
+  const Program& program = *fitted.variant.program;
+  Task inputs_only = task;
+  inputs_only.outputs.clear();
+  drivers_ = measured_signals(inputs_only, program, unused);
+  InnerSignals inner = inner_signals(task, program);
+  for (const std::string& output : task.outputs) {
+    const Port& port = *find_port(program.graph.outputs, output);
+    inner.wires.push_back(port.wire);
+    inner.names.push_back(port.name);
+    inner.units.push_back(port.unit);
+  }
+  add_inner(drivers_, inner, wire_signals(task, program, inner.wires, known), task.records.front().sample_time());
+}
+
+MatrixXd OutputSpace::of(std::size_t place, std::span<const RecordSignals> signals) const {
+  const SummedEdge& added = added_[place];
+  const Program program = with_values(task_, *added.program, fitted_.fit.x.head(std::ssize(task_.known)));
+  const Graph& graph = program.graph;
+  const auto input = static_cast<std::size_t>(find_port(graph.inputs, added.input) - graph.inputs.data());
+  std::vector<std::size_t> outputs;
+  for (const std::string& name : task_.outputs) {
+    outputs.push_back(static_cast<std::size_t>(find_port(graph.outputs, name) - graph.outputs.data()));
+  }
+  Index rows = 0;
+  for (const records::Record& record : task_.records) {
+    rows += static_cast<Index>(record.size());
+  }
+  MatrixXd result(rows * std::ssize(task_.outputs), std::ssize(signals));
+  const Index first_state = std::ssize(task_.known) + std::ssize(fitted_.variant.further);
+  for (std::size_t begin = 0; begin < signals.size(); begin += lanes) {
+    const std::size_t width = std::min(lanes, signals.size() - begin);
+    Index first = 0;
+    for (std::size_t e = 0; e < task_.records.size(); ++e) {
+      Diagnostics diagnostics;  // the record was read by this diagram before
+      Program here = program;
+      settle_sample_time(task_.records[e], here, diagnostics);
+      const Drive drive = drive_from(task_.records[e], here, {}, diagnostics);
+      Machine<Lanes> machine(here, drive.sample_time);
+      machine.reset();
+      for (std::size_t s = 0; s < task_.initial_states.size(); ++s) {
+        const auto at = first_state + static_cast<Index>(e * task_.initial_states.size() + s);
+        if (at < fitted_.fit.x.size()) {
+          *machine.real_state(task_.initial_states[s]) = Lanes(fitted_.fit.x[at]);
+        }
+      }
+      for (std::size_t step = 0; step < drive.steps; ++step) {
+        for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
+          if (i != input && (step == 0 || drive.inputs[i].size() > 1)) {
+            machine.set_input(i, Lanes(at_step(drive.inputs[i], step)));
+          }
+        }
+        Lanes::Gradient seeds{};
+        for (std::size_t k = 0; k < width; ++k) {
+          seeds[k] = signals[begin + k][e][step];
+        }
+        machine.set_input(input, Lanes(0.0, seeds));
+        machine.step();
+        for (std::size_t o = 0; o < outputs.size(); ++o) {
+          const Lanes y = machine.output(outputs[o]);
+          const double scale = task_.scales.empty() ? 1.0 : task_.scales[o];
+          const Index row = static_cast<Index>(o) * rows + first + static_cast<Index>(step);
+          for (std::size_t k = 0; k < width; ++k) {
+            result(row, static_cast<Index>(begin + k)) = y.derivative(static_cast<int>(k)) / scale;
+          }
+        }
+      }
+      first += static_cast<Index>(drive.steps);
+    }
+  }
+  for (const Index row : task_.left_out) {
+    result.row(row).setZero();
+  }
+  return result.allFinite() ? result : MatrixXd();
+}
+
+}  // namespace hysteron::diagnosis

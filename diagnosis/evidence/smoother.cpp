@@ -1,0 +1,110 @@
+#include "diagnosis/evidence/smoother.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace hysteron::diagnosis {
+
+Smoother::Smoother(const LinearSystem& system, double step) : system_(system) {
+  const Index n = system.states;
+  const Index z = n + 1;
+  const Index p = system.outputs;
+  const Index steps = system.steps();
+  gains_.resize(z, p * steps);
+  inverses_.resize(p, p * steps);
+  covariances_.resize(z, z * steps);
+  predicted_.resize(z, steps);
+  innovations_.resize(p, steps);
+  VectorXd at = VectorXd::Zero(z);
+  at.head(n) = system.first;
+  MatrixXd covariance = system.spread.array().square().matrix().asDiagonal();
+  MatrixXd forward = MatrixXd::Identity(z, z);
+  double squares = 0.0;
+  double determinants = 0.0;
+  for (Index k = 0; k < steps; ++k) {
+    const auto slopes = system.a.middleCols(k * z, z);
+    const auto shows = slopes.bottomRows(p);
+    predicted_.col(k) = at;
+    covariances_.middleCols(k * z, z) = covariance;
+    const VectorXd innovation = system.measured.col(k) - system.constants.col(k).tail(p) - shows * at;
+    MatrixXd spread = shows * covariance * shows.transpose();
+    spread.diagonal() += system.noise;
+    const MatrixXd inverse = spread.inverse();
+    const MatrixXd gain = covariance * shows.transpose() * inverse;
+    innovations_.col(k) = innovation;
+    inverses_.middleCols(k * p, p) = inverse;
+    gains_.middleCols(k * p, p) = gain;
+    squares += innovation.dot(inverse * innovation);
+    determinants += std::log(std::max(spread.determinant(), 1e-300));
+    at += gain * innovation;
+    covariance -= gain * spread * gain.transpose();
+    forward.topRows(n) = slopes.topRows(n);
+    at = forward * at;
+    at.head(n) += system.constants.col(k).head(n);
+    covariance = forward * covariance * forward.transpose();
+    covariance(n, n) += step * step;
+    covariance = 0.5 * (covariance + covariance.transpose().eval());
+  }
+  const auto samples = static_cast<double>(steps * p);
+  log_likelihood_ = -0.5 * determinants - 0.5 * samples * std::log(std::max(squares / samples, 1e-300));
+}
+
+MatrixXd Smoother::smoothed() const {
+  const Index n = system_.states;
+  const Index z = n + 1;
+  const Index p = system_.outputs;
+  MatrixXd result(z, system_.steps());
+  VectorXd adjoint = VectorXd::Zero(z);
+  MatrixXd forward = MatrixXd::Identity(z, z);
+  for (Index k = system_.steps() - 1; k >= 0; --k) {
+    const auto slopes = system_.a.middleCols(k * z, z);
+    const auto shows = slopes.bottomRows(p);
+    forward.topRows(n) = slopes.topRows(n);
+    if (k + 1 < system_.steps()) {
+      adjoint = forward.transpose() * adjoint;  // from the prediction of step k + 1
+    }
+    const VectorXd weighed = inverses_.middleCols(k * p, p) * innovations_.col(k);
+    const VectorXd taken = gains_.middleCols(k * p, p).transpose() * adjoint;
+    adjoint -= shows.transpose() * (weighed + taken);
+    result.col(k) = predicted_.col(k) - covariances_.middleCols(k * z, z) * adjoint;
+  }
+  return result;
+}
+
+MatrixXd Smoother::missing_for(const MatrixXd& ways, const MatrixXd& signals) const {
+  const Index n = system_.states;
+  const Index z = n + 1;
+  const Index p = system_.outputs;
+  const Index steps = system_.steps();
+  const Index m = signals.cols();
+  MatrixXd innovations(p, m * steps);
+  MatrixXd missing(steps, m);
+  MatrixXd at = MatrixXd::Zero(z, m);
+  MatrixXd forward = MatrixXd::Identity(z, z);
+  for (Index k = 0; k < steps; ++k) {
+    const auto slopes = system_.a.middleCols(k * z, z);
+    auto innovation = innovations.middleCols(k * m, m);
+    innovation.noalias() = -(slopes.bottomRows(p) * at);
+    innovation.noalias() -= ways.col(k).tail(p) * signals.row(k);
+    missing.row(k) = at.row(n);
+    at.noalias() += gains_.middleCols(k * p, p) * innovation;
+    forward.topRows(n) = slopes.topRows(n);
+    at = (forward * at).eval();
+    at.topRows(n).noalias() += ways.col(k).head(n) * signals.row(k);
+  }
+  MatrixXd adjoint = MatrixXd::Zero(z, m);
+  for (Index k = steps - 1; k >= 0; --k) {
+    const auto slopes = system_.a.middleCols(k * z, z);
+    forward.topRows(n) = slopes.topRows(n);
+    if (k + 1 < steps) {
+      adjoint = (forward.transpose() * adjoint).eval();
+    }
+    const MatrixXd weighed = inverses_.middleCols(k * p, p) * innovations.middleCols(k * m, m) +
+                             gains_.middleCols(k * p, p).transpose() * adjoint;
+    adjoint.noalias() -= slopes.bottomRows(p).transpose() * weighed;
+    missing.row(k).noalias() -= covariances_.middleCols(k * z, z).row(n) * adjoint;
+  }
+  return missing;
+}
+
+}  // namespace hysteron::diagnosis

@@ -1,0 +1,130 @@
+#include "diagnosis/findings/evidence_findings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/policy.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+constexpr double more_probable_than_not = 0.5;
+/// Of a normal distribution, to both sides.
+constexpr double in_95_percent = 1.96;
+/// A set that is seldom the best is no rival.
+constexpr double least_rival = 0.02;
+
+/// The set that holds the first family.
+const SetFinding& first_set(const Evidence& evidence) {
+  const std::string& family = evidence.families.front().family;
+  const auto found = std::ranges::find_if(evidence.sets, [&](const SetFinding& set) {
+    return std::ranges::find(set.laws, family, &LawFinding::family) != set.laws.end();
+  });
+  return found == evidence.sets.end() ? evidence.sets.front() : *found;
+}
+
+EffectFinding finding_of(const LawFinding& law) {
+  EffectFinding result{
+      .id = law.effect, .edge = law.edge, .drivers = law.drivers, .share = std::clamp(law.closed, 0.0, 1.0)};
+  for (const LawValue& value : law.values) {
+    if (value.error > 0.0) {
+      result.parameters.push_back({.name = value.name,
+                                   .value = value.value,
+                                   .low = value.value - in_95_percent * value.error,
+                                   .high = value.value + in_95_percent * value.error});
+    } else if (std::isfinite(value.value)) {
+      result.settings.push_back({.name = value.name, .value = value.value});
+    }
+  }
+  return result;
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.0f} %", 100.0 * std::clamp(share, 0.0, 1.0));
+}
+
+std::string capitalised(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+}  // namespace
+
+bool is_told(const Evidence& evidence) {
+  return !evidence.families.empty() && !evidence.sets.empty() &&
+         evidence.families.front().probability > more_probable_than_not &&
+         evidence.families.front().closed > policy::relevant.value;
+}
+
+std::string words_of_family(const std::string& family) {
+  std::string words = family;
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+void tell(const Evidence& evidence, Diagnosis& result) {
+  const SetFinding& first = first_set(evidence);
+  std::vector<EffectFinding> effects;
+  for (const LawFinding& law : first.laws) {
+    if (law.closed < policy::relevant.value && first.laws.size() > 1) {
+      continue;  // significant, and not relevant
+    }
+    EffectFinding finding = finding_of(law);
+    const auto fitted = std::ranges::find_if(
+        result.effects, [&](const EffectFinding& one) { return one.id == finding.id && one.edge == finding.edge; });
+    if (fitted != result.effects.end()) {
+      fitted->share = finding.share;
+      finding = *fitted;
+    }
+    effects.push_back(std::move(finding));
+  }
+  const std::string& family = evidence.families.front().family;
+  const auto in_front = [&](const EffectFinding& one) {
+    const auto law = std::ranges::find(first.laws, one.id, &LawFinding::effect);
+    return law != first.laws.end() && law->family == family;
+  };
+  std::ranges::stable_sort(effects, [](const EffectFinding& a, const EffectFinding& b) { return a.share > b.share; });
+  (void)std::stable_partition(effects.begin(), effects.end(), in_front);
+  result.effects = std::move(effects);
+  result.rivals.clear();
+  for (const SetFinding& set : evidence.sets) {
+    Rival rival{.support = std::log(std::max(set.probability, 1e-12) / std::max(first.probability, 1e-12)),
+                .probability = set.probability};
+    for (const LawFinding& law : set.laws) {
+      rival.effects.push_back(law.effect);
+      rival.edges.push_back(law.edge);
+    }
+    if (set.probability >= least_rival || &set == &first) {
+      result.rivals.push_back(std::move(rival));
+    }
+  }
+  result.confidence = std::min(evidence.families.front().probability, 0.99);
+}
+
+std::string sentence_of(const Diagnosis& found) {
+  const Evidence& evidence = found.evidence;
+  const SetFinding& first = first_set(evidence);
+  const FamilyFinding& family = evidence.families.front();
+  std::string text = fmt::format("{} at {} ({}, probability {:.2f}) closes {} of the gap on stretches not fitted",
+                                 capitalised(words_of_family(family.family)), family.edge, family.effect,
+                                 family.probability, percent(family.closed));
+  std::vector<std::string> beside;
+  for (const FamilyFinding& one : evidence.families) {
+    if (&one != &family && one.probability > more_probable_than_not && one.closed > policy::relevant.value) {
+      beside.push_back(fmt::format("{} at {} ({}, {:.2f})", words_of_family(one.family), one.edge, percent(one.closed),
+                                   one.probability));
+    }
+  }
+  if (!beside.empty()) {
+    text += fmt::format("; beside it {}", fmt::join(beside, ", "));
+  }
+  return fmt::format("{}. Together {}; the rest, {}, no effect of the library explains.", text, percent(first.closed),
+                     percent(1.0 - first.closed));
+}
+
+}  // namespace hysteron::diagnosis

@@ -6,9 +6,9 @@ import math
 import unittest
 from typing import Any
 
-from trials.scoring.causes import Cause, Mark, judged, of_all
+from trials.scoring.causes import Cause, Mark, mark_of, of_all
 from trials.scoring.claim import claim
-from trials.scoring.families import FAMILIES, family_of
+from trials.families import FAMILIES, family_of
 
 RUN = {"seconds": 3.0, "exit": 0, "verdict": True}
 
@@ -37,7 +37,7 @@ CAUSES = (DRY, OFFSET)
 
 def mark(verdict: dict[str, Any] | None, run: dict[str, Any] | None = None, causes: tuple[Cause, ...] = CAUSES) -> Mark:
     """Read and judged."""
-    return judged(claim(verdict, RUN if run is None else run), causes)
+    return mark_of(claim(verdict, RUN if run is None else run), causes)
 
 
 class Tree(unittest.TestCase):

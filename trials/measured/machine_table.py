@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trials.measured.machines import ALL, Case
-from trials.scoring.causes import Mark, judged
+from trials.scoring.causes import Mark, mark_of
 from trials.scoring.claim import STATED, SURE, Claim, claim
 from trials.scoring.statistics import Share, share
 from trials.scoring.verdict import answered, read_object
@@ -45,7 +45,7 @@ def lines_of(labels: dict[str, dict[str, Any]], verdicts: Path, cases: tuple[Cas
         if one.kind in ("refused", "missing"):
             refusals = (read_object(verdicts / name / "verdict.json") or {}).get("refusals") or [run.get("messages") or f"ended with {run.get('exit', 'nothing')}"]
             reason = " ".join(str(refusals[0]).split())[:150]
-        found.append(Line(case, one, judged(one, case.causes), int(label["rows"]), float(label["tune"]["seconds"]), reason))
+        found.append(Line(case, one, mark_of(one, case.causes), int(label["rows"]), float(label["tune"]["seconds"]), reason))
     return found
 
 

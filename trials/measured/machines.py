@@ -2,7 +2,7 @@
 
 The records stay outside of the project, in HYSTERON_DATA (default ../shared/data): the folder `machines`, each with a README
 that names source and cause, and the older records that the other tables use too. A cause is a family and the members that
-are right in it (trials/scoring/families.py); `beside` is what else was published of the machine, and makes up little of
+are right in it (trials/families.py); `beside` is what else was published of the machine, and makes up little of
 the gap; twins are effects of other families that write the same signal in that record.
 """
 

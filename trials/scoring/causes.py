@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from trials.scoring.claim import Claim
-from trials.scoring.families import FAMILIES
+from trials.families import FAMILIES
 from trials.scoring.statistics import Share, share
 
 
@@ -34,7 +34,7 @@ class Mark:
     """What a verdict is worth against the causes of its record."""
 
     family: str
-    """first, twin, set, beside, rival, open, wrong, refused, missing; see `judged`."""
+    """first, twin, set, beside, rival, open, wrong, refused, missing; see `mark_of`."""
     member: bool
     """The effect that stands first is a member as published."""
     probability: float
@@ -56,7 +56,7 @@ class Mark:
         return self.family in ("set", "rival", "wrong") and self.probability >= at_least
 
 
-def judged(claim: Claim, causes: tuple[Cause, ...]) -> Mark:
+def mark_of(claim: Claim, causes: tuple[Cause, ...]) -> Mark:
     """The mark of a claim, at the level of the family:
 
     first:   a family of the causes stands first; without any cause, no effect is named

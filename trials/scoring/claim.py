@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from trials.scoring.families import family_of, plain
+from trials.families import family_of, plain
 from trials.scoring.verdict import NAMES, number
 
 STATED = 0.5

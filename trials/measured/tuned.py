@@ -94,5 +94,5 @@ def make_set(title: str, jobs: list[Job], product: str, cases: Path, key: Path, 
         for job, label in zip(jobs, pool.map(one, jobs)):
             labels[case_name(job)] = label
     key.touch(mode=0o600)
-    key.write_text(json.dumps({"schema": "hysteron-trial-machines/1", "set": title, "cases": labels}, indent=1))
+    key.write_text(json.dumps({"schema": "hysteron-trial-machines/1", "set": title, "folder": str(cases.resolve()), "cases": labels}, indent=1))
     return len(jobs)

@@ -8,7 +8,7 @@ from typing import Any
 
 from trials.scoring.causes import Cause, Mark, mark_of, of_all
 from trials.scoring.claim import claim
-from trials.families import FAMILIES, family_of
+from trials.families import FAMILIES, OTHER_NAMES, family_of, stated_family
 
 RUN = {"seconds": 3.0, "exit": 0, "verdict": True}
 
@@ -54,7 +54,12 @@ class Tree(unittest.TestCase):
     def test_what_the_tree_has_not_is_of_the_family_that_is_stated_or_of_none(self) -> None:
         self.assertEqual(family_of("elastoplastic", "dry friction"), "dry_friction")
         self.assertEqual(family_of("elastoplastic"), "elastoplastic")
-        self.assertEqual(family_of("coulomb_friction", "slow"), "dry_friction")
+        self.assertEqual(family_of("coulomb_friction", "slow_change"), "dry_friction")
+
+    def test_other_names_of_families_lead_into_the_tree(self) -> None:
+        self.assertEqual(stated_family("Periodic in place"), "periodic_over_position")
+        self.assertTrue(set(OTHER_NAMES.values()) <= set(FAMILIES))
+        self.assertFalse(set(OTHER_NAMES) & set(FAMILIES))
 
     def test_a_cause_is_of_the_tree(self) -> None:
         with self.assertRaisesRegex(ValueError, "no family; the tree has dry_friction"):
@@ -76,8 +81,14 @@ class Claims(unittest.TestCase):
         self.assertEqual(one.stated, {"dry_friction", "offset"})
         self.assertEqual(one.rival_families, {"dry_friction", "offset", "play"})
 
+    def test_an_effect_that_another_tree_sorts_otherwise(self) -> None:
+        one = claim(newer("named", {"static_curve": 0.8}, ("dead_zone", "static_curve", 0.6)), RUN)
+        self.assertEqual((one.first_family, one.family_probability, one.member_probability), ("play", 0.8, 0.6))
+        self.assertFalse(one.strange)
+        self.assertEqual(claim(newer("named", {"rust": 0.8}, ("corrosion", "rust", 0.6)), RUN).strange, {"rust"})
+
     def test_a_family_without_a_member_may_stand_first(self) -> None:
-        one = claim(newer("group", {"slow": 0.2, "dry_friction": 0.8}), RUN)
+        one = claim(newer("group", {"slow_change": 0.2, "dry_friction": 0.8}), RUN)
         self.assertEqual((one.first_family, one.family_probability), ("dry_friction", 0.8))
         self.assertTrue(math.isnan(one.member_probability))
         self.assertIsNone(claim(newer("unknown", {"dry_friction": 0.4}), RUN).first)
@@ -109,7 +120,7 @@ class Worth(unittest.TestCase):
             (older("named", "lag"), "wrong", False),
             (older("unknown"), "open", False),
             (older("none"), "open", False),
-            (newer("partial", {"slow": 0.9, "dry_friction": 0.8}, ("creep", "slow", 0.9)), "set", False),
+            (newer("partial", {"slow_change": 0.9, "dry_friction": 0.8}, ("drift", "slow_change", 0.9)), "set", False),
             (newer("group", {"dry_friction": 0.8}), "first", False),
             (None, "missing", False),
         ):

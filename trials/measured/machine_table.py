@@ -115,5 +115,8 @@ def whole(lines: list[Line], head: str) -> str:
     rule = "-" * len(HEAD)
     seconds = sorted(one.claim.seconds for one in lines if not math.isnan(one.claim.seconds))
     time = f"seconds of a diagnosis: median {seconds[len(seconds) // 2]:.0f}, longest {seconds[-1]:.0f}" if seconds else ""
+    strange = sorted(frozenset().union(*(one.claim.strange for one in lines)))
+    if strange:
+        time += f"\nnot in the tree of families (trials/families.py), and so right for no cause: {', '.join(strange)}"
     notes = "* the record tells the family alone\nfirst, twin: right; beside: published, but little of the gap; set: right, though not first; rival: not ruled out; open: no name"
     return "\n".join([head, "", HEAD, rule, *map(_line, lines), "", *(one.text() for one in totals(lines)), time, "", notes, ""])

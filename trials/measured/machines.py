@@ -35,9 +35,12 @@ DRY = Cause.of("dry_friction", "coulomb_friction", "asymmetric_friction")
 GROWING = Cause.of("dry_friction", "load_friction")
 EITHER = Cause.of("dry_friction", "coulomb_friction", "load_friction", "presliding_friction")
 LATE = Cause.of("linear_dynamics", "delay", "lag", beside=True)
-CURVE = Cause.of("static", "saturation", "soft_saturation")
-BLIND = Cause.of("static", "absolute_value", "even_nonlinearity")
-HARMONICS = Cause.of("periodic_position")
+CURVE = Cause.of("static_curve", "saturation", "saturating_curve")
+BLIND = Cause.of("static_curve", "blind_to_direction", "even_nonlinearity")
+HARMONICS = Cause.of("periodic_over_position")
+
+STACK = (Cause.of("hysteresis"), Cause.of("linear_dynamics", "delay", "lag"), Cause.of("slow_memory", twins=("drift", "thermal_drift")))
+WEATHER = Cause.of("slow_change", "drift", "thermal_drift", twins=("load",))
 
 
 def emps(diagram: str, *logs: Log, rewrite: tuple[tuple[str, str], ...] = ()) -> Folder:
@@ -100,15 +103,15 @@ MACHINES = (
     Case("resolver", "resolver", plain("resolver"), (HARMONICS, LATE), True, "four periods a turn, several turns, two speeds, both ways"),
     Case("hot end", "hot end", plain("hotend"),
          (Cause.of("linear_dynamics", "lag", "second_lag", "delay"),
-          Cause.of("slow", "gain_drift", "drift", "thermal_drift", twins=("load", "cross_coupling", "scheduled_gain"), beside=True)), False, FURTHER),
+          Cause.of("slow_change", twins=("load", "cross_coupling", "scheduled_gain", "cutout"), beside=True)), False, FURTHER),
     Case("mr damper", "mr damper", plain("mr-damper"),
-         (Cause.of("dry_friction", twins=("saturation", "soft_saturation")), Cause.of("loop_memory", beside=True)), False,
+         (Cause.of("dry_friction", twins=("saturation", "saturating_curve")), Cause.of("hysteresis", beside=True)), False,
          "over a measured speed a limit of that speed writes the same yield as a friction that is smooth at rest"),
     *(Case(f"coupled drives, log {number}", "coupled drives", plain("coupled-drives", log), (BLIND,), False, TURNED)
       for number, log in enumerate(DRIVES, 1)),
     Case("coupled drives, all three", "coupled drives", plain("coupled-drives", *DRIVES), (BLIND,), False, TURNED),
     Case("made up: cogging", "made up", made("cogging"),
-         (Cause.of("periodic_position", twins=("periodic_disturbance",)),), True, "one turn at constant speed: place and time run alike"),
+         (Cause.of("periodic_over_position", twins=("periodic_disturbance",)),), True, "one turn at constant speed: place and time run alike"),
     Case("made up: late", "made up", made("late"), (HARMONICS, Cause.of("linear_dynamics", "delay")), True, "4 periods a turn of 1.5 deg, 35 ms"),
     Case("made up: random binary signal", "made up", made("prbs"),
          (Cause.of("linear_dynamics", "delay"),), True, "three samples late, begun in mid-motion"),
@@ -117,16 +120,16 @@ MACHINES = (
 
 FROM_THE_OLDER: dict[str, tuple[str, tuple[Cause, ...], bool, str]] = {
     "piezo stack, 10 cycles, the paper's model": ("piezo stack",
-        (Cause.of("loop_memory"), Cause.of("linear_dynamics", "delay", "lag"), Cause.of("slow", "creep", "relaxation")), False,
+        STACK, False,
         "one frequency: asymmetry, creep and lag close the gap alike"),
     "piezo stack, minor loops and rests": ("piezo stack",
-        (Cause.of("loop_memory"), Cause.of("linear_dynamics", "delay", "lag"), Cause.of("slow", "creep", "relaxation")), False,
+        STACK, False,
         "several published causes, of which none stands out"),
-    "two heaters, one diagram": ("heaters", (Cause.of("coupling"), Cause.of("slow", "drift", "thermal_drift", twins=("load",))), True, "both heaters move"),
-    "heater 1 alone": ("heaters", (Cause.of("coupling"), Cause.of("slow", "drift", "thermal_drift", twins=("load",))), True, "both heaters move"),
-    "heater 2 alone": ("heaters", (Cause.of("coupling"), Cause.of("slow", "drift", "thermal_drift", twins=("load",))), True, "both heaters move"),
-    "silverbox, a linear oscillator": ("silverbox", (Cause.of("static", "odd_nonlinearity"),), True, "a random multisine, noise of a thousandth"),
-    "cascaded tanks": ("tanks", (Cause.of("static", "saturation"),), False, "48 samples of overflow"),
+    "two heaters, one diagram": ("heaters", (Cause.of("coupling"), WEATHER), True, "both heaters move"),
+    "heater 1 alone": ("heaters", (Cause.of("coupling"), WEATHER), True, "both heaters move"),
+    "heater 2 alone": ("heaters", (Cause.of("coupling"), WEATHER), True, "both heaters move"),
+    "silverbox, a linear oscillator": ("silverbox", (Cause.of("static_curve", "odd_nonlinearity"),), True, "a random multisine, noise of a thousandth"),
+    "cascaded tanks": ("tanks", (Cause.of("static_curve", "saturation"),), False, "48 samples of overflow"),
     "fine steering mirror, gains at rest": ("mirror", (Cause.of("linear_dynamics", "resonance", "second_resonance"),), True, "a multisine over the modes"),
 }  # fmt: skip
 """What the authors of the older records name, by the names that these have among the measured records."""

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from trials.families import family_of, plain
+from trials.families import FAMILIES, family_of, plain, stated_family
 from trials.scoring.verdict import NAMES, number
 
 STATED = 0.5
@@ -27,6 +27,8 @@ class Named:
     family: str
     edge: str
     probability: float
+    stated_family: str = ""
+    """As the verdict has it, whose tree may sort an effect otherwise."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +62,20 @@ class Claim:
     @property
     def family_probability(self) -> float:
         """How sure the verdict is of the family that it puts first."""
-        return self.probability_of(self.first_family) if self.first else math.nan
+        if not self.first:
+            return math.nan
+        stated = dict(self.families)
+        return stated.get(self.first.stated_family, self.probability_of(self.first_family))
 
     @property
     def member_probability(self) -> float:
         """How sure it is of the effect that it puts first."""
         return self.first.probability if self.first and self.first.effect else math.nan
+
+    @property
+    def strange(self) -> frozenset[str]:
+        """Families that the tree has not: it and the verdict's have grown apart."""
+        return (frozenset(one.family for one in self.named) | {family for family, _ in self.families}) - set(FAMILIES)
 
     @property
     def stated(self) -> frozenset[str]:
@@ -100,12 +110,13 @@ def claim(verdict: dict[str, Any] | None, run: dict[str, Any]) -> Claim:
         return Claim("missing", seconds=seconds)
     kind, confidence = str(v.get("verdict", "missing")), _probability(v.get("confidence"), 0.0)
     named = tuple(
-        Named(plain(one.get("id")), family_of(one.get("id"), one.get("family")), str(one.get("edge", "")), _probability(one.get("probability"), confidence))
+        Named(plain(one.get("id")), family_of(one.get("id"), one.get("family")), str(one.get("edge", "")), _probability(one.get("probability"), confidence),
+              stated_family(one.get("family") or ""))
         for one in (v.get("effects") or []) if kind in NAMES
     )  # fmt: skip
     families: dict[str, float] = {}
     for one in v.get("families") or []:
         if isinstance(one, dict) and one.get("family"):
-            families.setdefault(plain(one["family"]), _probability(one.get("probability"), 0.0))
+            families.setdefault(stated_family(one["family"]), _probability(one.get("probability"), 0.0))
     rivals = tuple(frozenset(plain(x) for x in one) for one in v.get("rivals") or [])
     return Claim(kind, named, tuple(families.items()), rivals, seconds)

@@ -6,7 +6,7 @@ import math
 import unittest
 from typing import Any
 
-from trials.scoring.causes import Cause, Mark, mark_of, of_all
+from trials.scoring.causes import Cause, Mark, mark_of, of_all, reliability
 from trials.scoring.claim import claim
 from trials.families import FAMILIES, OTHER_NAMES, family_of, stated_family
 
@@ -146,6 +146,13 @@ class Worth(unittest.TestCase):
         ]  # fmt: skip
         found = {name: one.hits for name, one in of_all(marks, 0.7).items()}
         self.assertEqual(found, {"family": 3, "member": 2, "family_sure": 2, "member_sure": 1, "family_sure_wrong": 1, "member_sure_wrong": 2})
+
+    def test_reliability_counts_each_class_by_itself(self) -> None:
+        marks = [mark(older("named", effect, confidence=p)) for effect, p in (("coulomb_friction", 0.95), ("lag", 0.95), ("coulomb_friction", 1.0), ("lag", 0.2), ("offset", 0.2))]
+        printed = reliability([*marks, mark(older("unknown"))])
+        self.assertRegex(printed, r"0\.9 … 1\.0, mean 0\.97 +2 of 3 +67 %")
+        self.assertRegex(printed, r"0\.1 … 0\.3, mean 0\.20 +0 of 1 +0 %")
+        self.assertEqual(printed.count("\n"), 2)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trials.measured.machines import ALL, Case
-from trials.scoring.causes import Mark, mark_of
+from trials.scoring.causes import Mark, mark_of, reliability
 from trials.scoring.claim import STATED, SURE, Claim, claim
 from trials.scoring.statistics import Share, share
 from trials.scoring.verdict import answered, read_object
@@ -119,4 +119,4 @@ def whole(lines: list[Line], head: str) -> str:
     if strange:
         time += f"\nnot in the tree of families (trials/families.py), and so right for no cause: {', '.join(strange)}"
     notes = "* the record tells the family alone\nfirst, twin: right; beside: published, but little of the gap; set: right, though not first; rival: not ruled out; open: no name"
-    return "\n".join([head, "", HEAD, rule, *map(_line, lines), "", *(one.text() for one in totals(lines)), time, "", notes, ""])
+    return "\n".join([head, "", HEAD, rule, *map(_line, lines), "", *(one.text() for one in totals(lines)), time, "", reliability([one.mark for one in lines]), "", notes, ""])

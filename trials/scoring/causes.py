@@ -101,3 +101,21 @@ def of_all(marks: list[Mark], sure: float) -> dict[str, Share]:
         "family_sure_wrong": share([one.another(sure) for one in marks]),
         "member_sure_wrong": share([not one.member and one.family != "beside" and one.member_probability >= sure for one in marks]),
     }
+
+
+EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
+"""Of the classes of stated probability."""
+
+
+def reliability(marks: list[Mark]) -> str:
+    """How often the family that stands first is right, by classes of the probability that is stated of it. What is there but
+    makes up little of the gap is left out: it is no error, and not what was asked."""
+    lines = ["stated P of the family first     right"]
+    for low, high in zip(EDGES[:-1], EDGES[1:]):
+        inside = [one for one in marks if one.family != "beside" and (low <= one.probability < high or one.probability == high == 1.0)]
+        if inside:
+            right = share([one.right for one in inside])
+            mean = sum(one.probability for one in inside) / len(inside)
+            lines.append("{:.1f} … {:.1f}, mean {:.2f}   {:3d} of {:<3d} {:4.0f} %   {:.0f} … {:.0f} %".format(
+                low, high, mean, right.hits, right.count, 100.0 * right.value, *(100.0 * end for end in right.interval)))  # fmt: skip
+    return "\n".join(lines)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from trials.scoring.causes import of_all
+from trials.scoring.causes import reliability as reliability_of_families
 from trials.scoring.claim import SURE
 from trials.scoring.judge import IN_LIBRARY, Judgement
 from trials.scoring.statistics import Share, auroc, auroc_interval, quantile_interval, recall_at, share
@@ -62,6 +63,7 @@ class Score:
     misses: list[dict[str, Any]] = field(default_factory=list)
     messy: list[dict[str, Any]] = field(default_factory=list)
     """Every messy machine."""
+    messy_reliability: str = ""
 
 
 def _proportion(key: str, title: str, one: Share, goal: float | None, at_least: bool = True, **more: Any) -> Figure:
@@ -251,4 +253,5 @@ def score(cases: list[Judgement]) -> Score:
     return Score(
         with_decidable(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())},
         [c.seconds for c in cases if not math.isnan(c.seconds)], misses(cases), messy(cases),
+        reliability_of_families([c.mark for c in cases if c.stratum == "messy" and c.mark]),
     )  # fmt: skip

@@ -113,7 +113,7 @@ def whole(score: Score, head: str) -> str:
     """All tables that have something to say."""
     parts = [head, table(score)]
     if score.messy:
-        parts.append(messy(score))
+        parts += [messy(score), score.messy_reliability]
     if set(score.strata) != {"messy"}:
         parts += [effects(score), plants(score), confusions(score), misses(score)]
     return "\n\n".join([*parts, "verdicts by stratum\n" + strata(score)]) + "\n"

@@ -96,6 +96,9 @@ class Claims(unittest.TestCase):
     def test_effects_of_a_verdict_that_names_none_are_no_names(self) -> None:
         self.assertIsNone(claim(older("unknown", "lag"), RUN).first)
 
+    def test_calibration_is_no_effect(self) -> None:
+        self.assertEqual(claim(older("partial", "gain_error", "lag"), RUN).first_family, "linear_dynamics")
+
     def test_refused_or_missing(self) -> None:
         self.assertEqual(claim(None, {"exit": 2, "seconds": 0.1}).kind, "refused")
         self.assertEqual(claim(older("unknown") | {"refused": True}, RUN).kind, "refused")

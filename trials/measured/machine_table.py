@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from trials.measured.machines import ALL, Case
+from trials.measured.machines import ALL, MADE_UP, Case
+from trials.measured.sources import Own
 from trials.scoring.causes import Mark, mark_of, reliability
 from trials.scoring.claim import STATED, SURE, Claim, claim
 from trials.scoring.statistics import Share, share
@@ -85,6 +86,12 @@ class Total:
         return f"{self.title:60s}{share_of:>6s}   {interval:13s}{self.value.hits:3d} of {self.value.count:<4d}{goal:8s}{reached}".rstrip()
 
 
+def _groups(lines: list[Line]) -> list[tuple[str, list[Line]]]:
+    older = [one for one in lines if isinstance(one.case.source, Own)]
+    made = [one for one in lines if one.case.machine == MADE_UP]
+    return [("real machines of the folder", [one for one in lines if one not in older + made]), ("made-up records", made), ("older records", older)]
+
+
 def totals(lines: list[Line]) -> list[Total]:
     """The figures to reach, over cases, and the first of them over machines."""
 
@@ -98,6 +105,7 @@ def totals(lines: list[Line]) -> list[Total]:
         machines.setdefault(one.case.machine, []).append(one.mark.right)
     return [
         Total("right family first", of(lambda one: one.mark.right), GOALS["family"]),
+        *(Total(f"  {group}", of(lambda one: one.mark.right, among)) for group, among in _groups(lines) if among and len(among) < len(lines)),
         Total("  of these under the name of a twin", of(lambda one: one.mark.family == "twin", right)),
         Total("  first, or in the set that is named", of(lambda one: one.mark.in_set)),
         Total("  machines on which it is first in all cases", share([all(flags) for flags in machines.values()])),

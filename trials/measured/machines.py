@@ -63,6 +63,7 @@ def made(name: str) -> Folder:
     return Folder("machines/made", f"{name}.st", f"{name}.toml", (Log(f"{name}.csv"),))
 
 
+MADE_UP = "made up"
 EMPS = Log("log.csv")
 EMPS_ROWS = 24841
 HALVES = EMPS.halves(EMPS_ROWS)
@@ -110,10 +111,10 @@ MACHINES = (
     *(Case(f"coupled drives, log {number}", "coupled drives", plain("coupled-drives", log), (BLIND,), False, TURNED)
       for number, log in enumerate(DRIVES, 1)),
     Case("coupled drives, all three", "coupled drives", plain("coupled-drives", *DRIVES), (BLIND,), False, TURNED),
-    Case("made up: cogging", "made up", made("cogging"),
-         (Cause.of("periodic_over_position", twins=("periodic_disturbance",)),), True, "one turn at constant speed: place and time run alike"),
-    Case("made up: late", "made up", made("late"), (HARMONICS, Cause.of("linear_dynamics", "delay")), True, "4 periods a turn of 1.5 deg, 35 ms"),
-    Case("made up: random binary signal", "made up", made("prbs"),
+    Case("made up: cogging", MADE_UP, made("cogging"),
+         (Cause.of("periodic_over_position", twins=("periodic_disturbance",)),), False, "one turn at constant speed: place and time run alike"),
+    Case("made up: late", MADE_UP, made("late"), (HARMONICS, Cause.of("linear_dynamics", "delay")), True, "4 periods a turn of 1.5 deg, 35 ms"),
+    Case("made up: random binary signal", MADE_UP, made("prbs"),
          (Cause.of("linear_dynamics", "delay"),), True, "three samples late, begun in mid-motion"),
 )  # fmt: skip
 """The folder `machines`."""

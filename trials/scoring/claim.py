@@ -112,7 +112,7 @@ def claim(verdict: dict[str, Any] | None, run: dict[str, Any]) -> Claim:
     named = tuple(
         Named(plain(one.get("id")), family_of(one.get("id"), one.get("family")), str(one.get("edge", "")), _probability(one.get("probability"), confidence),
               stated_family(one.get("family") or ""))
-        for one in (v.get("effects") or []) if kind in NAMES
+        for one in (v.get("effects") or []) if kind in NAMES and family_of(one.get("id")) != "calibration"
     )  # fmt: skip
     families: dict[str, float] = {}
     for one in v.get("families") or []:

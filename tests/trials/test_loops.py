@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.trials.test_stiction import DISTURBED, STICKS
-from trials.measured.loop_table import PEERS, PRODUCT, Line, line, lines_of, receiver, whole
+from trials.measured.loop_table import ANYWHERE, PEERS, PRODUCT, Line, line, lines_of, receiver, whole
 from trials.measured.loops import Loop, loops_in, signals
 from trials.measured.sources import Folder
 from trials.scoring.stiction import probability
@@ -80,6 +80,10 @@ class Valve(unittest.TestCase):
             with self.subTest(verdict):
                 self.assertAlmostEqual(probability(verdict, RUN), wanted)
 
+    def test_the_right_effect_in_the_wrong_place(self) -> None:
+        behind = older("named", (0.8, (("backlash", "PROC.XOUT"),)), (0.2, (("lag", "OP"),)))
+        self.assertEqual((probability(behind, RUN), probability(behind, RUN, anywhere=True)), (0.0, 0.8))
+
     def test_of_stated_families(self) -> None:
         for effects, dry, wanted in (
             ([], 0.8, 0.8),
@@ -113,7 +117,7 @@ class Table(unittest.TestCase):
                 (verdicts / loop / "run.json").write_text(json.dumps(RUN))
             lines = lines_of({"A": {"name": "A"}, "B": {"name": "B"}}, verdicts, loops_in(data), data)
             printed = whole(lines, "head")
-        self.assertRegex(printed, r"(?m)^A .*stiction +1\.00\+ +0\.\d\d\+ .*named backlash at OP$")
+        self.assertRegex(printed, r"(?m)^A .*stiction +1\.00\+ +1\.00\+ +0\.\d\d\+ .*named backlash at OP$")
         self.assertRegex(printed, r"(?m)^hysteron +1\.00 .* 2 of 2 .* 0 +1 +1 +1 +1$")
         self.assertRegex(printed, r"(?m)^correlation +1\.00 .* 2 of 2 ")
         self.assertIn("no false alarm: reached", printed)
@@ -126,7 +130,7 @@ class Table(unittest.TestCase):
         self.assertEqual(receiver(lines, PRODUCT), [(0, 0), (0, 1), (1, 2), (2, 2), (2, 3)])
 
     def test_a_false_alarm_misses_the_goal(self) -> None:
-        scores = {name: 0.5 for name in PEERS}
+        scores = {name: 0.5 for name in (*PEERS, ANYWHERE)}
         lines = [Line(Loop(f"{k}", "none" if k else "stiction", "", Folder("", "", "", ())), "", 0.0, {PRODUCT: 0.9 if k < 2 else 0.0} | scores) for k in range(30)]
         printed = whole(lines, "head")
         self.assertIn("29 of 30", printed)

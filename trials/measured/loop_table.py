@@ -15,6 +15,8 @@ from trials.scoring.stiction import probability
 from trials.scoring.verdict import answered
 
 PRODUCT = "hysteron"
+ANYWHERE = "anywhere"
+"""The product again, where a sticking behind the process counts, too."""
 SURE = 0.5
 """From here on a loop counts as told to stick by the product."""
 GOAL = 0.95
@@ -23,7 +25,7 @@ PEERS: dict[str, tuple[Callable[..., float], float]] = {
     "correlation": (correlation.score, correlation.SURE), "shape": (shape.score, shape.SURE), "bicoherence": (bicoherence.score, bicoherence.SURE),
 }  # fmt: skip
 """Each with the score from which on its paper calls stiction."""
-THRESHOLDS = {PRODUCT: SURE, **{name: sure for name, (_, sure) in PEERS.items()}}
+THRESHOLDS = {PRODUCT: SURE, ANYWHERE: SURE, **{name: sure for name, (_, sure) in PEERS.items()}}
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ def line(loop: Loop, log: str, verdict: dict[str, Any] | None, run: dict[str, An
     read = claim(verdict, run)
     first = f" {read.first.effect or read.first.family} at {read.first.edge}" if read.first else ""
     op, pv = signals(log)
-    scores = {PRODUCT: probability(verdict, run)} | {name: score(op, pv, loop.integrating) for name, (score, _) in PEERS.items()}
+    scores = {PRODUCT: probability(verdict, run), ANYWHERE: probability(verdict, run, anywhere=True)} | {name: score(op, pv, loop.integrating) for name, (score, _) in PEERS.items()}
     return Line(loop, read.kind + first, read.seconds, scores)
 
 

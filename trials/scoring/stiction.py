@@ -19,19 +19,20 @@ def sticks(effect: str, stated: object = None) -> bool:
     return family_of(effect, stated) == "dry_friction" or plain(effect) == "backlash"
 
 
-def _at_valve(edge: str, same: list[str]) -> bool:
-    return any(edge_name(one) not in BEHIND for one in (edge, *same))
+def _counts(edge: str, same: list[str], anywhere: bool) -> bool:
+    return anywhere or any(edge_name(one) not in BEHIND for one in (edge, *same))
 
 
-def probability(verdict: dict[str, Any] | None, run: dict[str, Any]) -> float:
-    """That the valve sticks, as far as a verdict says it; 0 where there is none.
+def probability(verdict: dict[str, Any] | None, run: dict[str, Any], anywhere: bool = False) -> float:
+    """That the valve sticks, as far as a verdict says it; 0 where there is none. `anywhere` counts what is named behind the
+    process, too: the right effect in the wrong place.
 
     Where the verdict states families, it is that of dry friction, or of an effect that it names at the valve. Else it is the sum
     over the sets that are not ruled out, each with its probability, of those that have such an effect ahead of the process.
     """
     read, v = claim(verdict, run), verdict or {}
     effects = [one for one in v.get("effects") or [] if sticks(one["id"], one.get("family"))]
-    at_valve = [one for one in effects if _at_valve(str(one.get("edge", "")), one.get("same_edges") or [])]
+    at_valve = [one for one in effects if _counts(str(one.get("edge", "")), one.get("same_edges") or [], anywhere)]
     if read.families:
         own = [_share(one.get("probability"), read.probability_of(family_of(one["id"], one.get("family")))) for one in at_valve]
         unplaced = [] if effects and not at_valve else [read.probability_of("dry_friction")]
@@ -40,7 +41,7 @@ def probability(verdict: dict[str, Any] | None, run: dict[str, Any]) -> float:
         return 0.0
     if not v.get("rival_details"):
         return read.named[0].probability if at_valve else 0.0
-    return min(sum(_share(one.get("probability"), 0.0) for one in v["rival_details"] if _has_it(one)), 1.0)
+    return min(sum(_share(one.get("probability"), 0.0) for one in v["rival_details"] if _has_it(one, anywhere)), 1.0)
 
 
 def _share(value: Any, otherwise: float) -> float:
@@ -48,6 +49,6 @@ def _share(value: Any, otherwise: float) -> float:
     return found if 0.0 <= found <= 1.0 else otherwise
 
 
-def _has_it(one: dict[str, Any]) -> bool:
+def _has_it(one: dict[str, Any], anywhere: bool) -> bool:
     pairs = zip(one.get("effects") or [], one.get("edges") or [])
-    return any(sticks(effect) and _at_valve(str(edge), []) for effect, edge in pairs)
+    return any(sticks(effect) and _counts(str(edge), [], anywhere) for effect, edge in pairs)

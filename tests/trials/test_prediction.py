@@ -6,12 +6,11 @@ import json
 import math
 import os
 import tempfile
-import tomllib
 import unittest
 from pathlib import Path
 
 from trials.measured.machines import Fold
-from trials.measured.prediction import calibrated_text, lines_of, stated_interval, whole
+from trials.measured.prediction import lines_of, stated_interval, whole
 from trials.measured.sources import Folder, Log
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,13 +39,8 @@ def parameters(gain: float) -> str:
     return f"[parameters.G]\nK = {gain}\n[fit.G]\nK = {{}}\n"
 
 
-class Texts(unittest.TestCase):
-    """Parameter files and stated intervals."""
-
-    def test_calibrated_values_go_over_tuned_ones(self) -> None:
-        tuned = "[parameters]\nZERO = 1.5\n[parameters.G]\nK = 2.0\nN = 3\n[fit.G]\nK = {}\n"
-        found = tomllib.loads(calibrated_text(tuned, {"G.K": {"value": 2.5}, "ZERO": {"value": -1.0}, "G.N": {"value": None}}))
-        self.assertEqual(found, {"parameters": {"ZERO": -1.0, "G": {"K": 2.5, "N": 3}}})
+class Stated(unittest.TestCase):
+    """Stated intervals."""
 
     def test_an_interval_is_of_its_signal(self) -> None:
         one = {"signal": "Y", "rms": 1.0, "low": 0.5, "high": 2.0}
@@ -57,7 +51,7 @@ class Texts(unittest.TestCase):
 
 
 class Folds(unittest.TestCase):
-    """A fold of a plant whose true gain is 3: nominal 1, calibrated 2, improved 2.9."""
+    """A fold of a plant whose true gain is 3: drawn with 1, tuned to 2, improved to 2.9."""
 
     def setUp(self) -> None:
         held = tempfile.TemporaryDirectory()
@@ -68,13 +62,15 @@ class Folds(unittest.TestCase):
             folder.mkdir(parents=True)
         (self.data / "m" / "a.csv").write_text("t,u,y\n" + "".join(f"{k * 0.01:.2f},1.0,3.0\n" for k in range(50)))
         (cases / "0" / "plant.st").write_text(PLANT)
-        (cases / "0" / "params.toml").write_text(parameters(1.0))
+        (self.data / "m" / "plant.st").write_text(PLANT)
+        (self.data / "m" / "start.toml").write_text("[fit.G]\nK = {}\n")
+        (cases / "0" / "params.toml").write_text(parameters(2.0))
         (self.verdicts / "0" / "improved.st").write_text(PLANT)
         (self.verdicts / "0" / "improved.toml").write_text(parameters(2.9))
         (self.verdicts / "0" / "run.json").write_text(json.dumps(RUN))
         self.verdict = {
             "verdict": "named", "effects": [{"id": "lag", "edge": "U"}], "rivals": [["lag"]], "confidence": 0.5,
-            "gap": {"signal": "Y", "improved_rms": 0.07}, "calibration": {"G.K": {"value": 2.0}},
+            "gap": {"signal": "Y", "improved_rms": 0.07},
         }  # fmt: skip
         whole_one = Folder("m", "plant.st", "start.toml", (Log("a.csv"),))
         self.folds = (Fold("machine, without a", "machine", whole_one, whole_one),)
@@ -86,13 +82,20 @@ class Folds(unittest.TestCase):
 
     def test_what_each_diagram_leaves(self) -> None:
         (one,) = self.lines()
-        self.assertAlmostEqual(one.nominal, 2.0, places=9)
-        self.assertAlmostEqual(one.calibrated, 1.0, places=9)
+        self.assertAlmostEqual(one.drawn, 2.0, places=9)
+        self.assertAlmostEqual(one.tuned, 1.0, places=9)
         self.assertAlmostEqual(one.improved, 0.1, places=9)
         self.assertIsNone(one.inside)
         printed = whole([one], "head")
-        self.assertIn("than by the nominal one: 1 of 1", printed)
+        self.assertIn("than by the tuned one, by a tenth or more: 1 of 1", printed)
         self.assertIn("no verdict states an interval", printed)
+
+    def test_a_line_for_each_output_and_the_tuned_diagram_where_nothing_improves_it(self) -> None:
+        (self.verdicts / "0" / "improved.st").unlink()
+        found = self.lines(gaps=[{"signal": "Y", "improved_rms": 0.07}, {"signal": "U", "improved_rms": 0.5}])
+        self.assertEqual([one.signal for one in found], ["Y", "U"])
+        self.assertAlmostEqual(found[0].improved, found[0].tuned)
+        self.assertTrue(math.isnan(found[1].improved))  # the plant has no output U
 
     def test_the_stated_interval(self) -> None:
         for low, high, inside in ((0.05, 0.2, True), (0.0, 0.09, False), (0.11, 0.2, False)):
@@ -104,7 +107,7 @@ class Folds(unittest.TestCase):
         (self.verdicts / "0" / "run.json").write_text(json.dumps({"exit": -9, "seconds": 1.0, "verdict": False}))
         (one,) = lines_of(self.key, self.verdicts, self.data, TOOL, self.folds)
         self.assertTrue(math.isnan(one.improved))
-        self.assertIn("than by the nominal one: 0 of 1", whole([one], "head"))
+        self.assertIn("than by the tuned one, by a tenth or more: 0 of 1", whole([one], "head"))
 
     def test_a_key_of_another_list(self) -> None:
         with self.assertRaisesRegex(SystemExit, "has no such fold"):

@@ -44,7 +44,8 @@ def line(loop: Loop, log: str, verdict: dict[str, Any] | None, run: dict[str, An
     read = claim(verdict, run)
     first = f" {read.first.effect or read.first.family} at {read.first.edge}" if read.first else ""
     op, pv = signals(log)
-    scores = {PRODUCT: probability(verdict, run), ANYWHERE: probability(verdict, run, anywhere=True)} | {name: score(op, pv, loop.integrating) for name, (score, _) in PEERS.items()}
+    own = {PRODUCT: probability(verdict, run), ANYWHERE: probability(verdict, run, anywhere=True)}
+    scores = own | {name: score(op, pv, loop.integrating) for name, (score, _) in PEERS.items()}
     return Line(loop, read.kind + first, read.seconds, scores)
 
 

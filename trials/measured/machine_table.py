@@ -126,5 +126,6 @@ def whole(lines: list[Line], head: str) -> str:
     strange = sorted(frozenset().union(*(one.claim.strange for one in lines)))
     if strange:
         time += f"\nnot in the tree of families (trials/families.py), and so right for no cause: {', '.join(strange)}"
-    notes = "* the record tells the family alone\nfirst, twin: right; beside: published, but little of the gap; set: right, though not first; rival: not ruled out; open: no name"
+    marks = "first, twin: right; beside: published, but little of the gap; set: right, though not first; rival: not ruled out; open: no name"
+    notes = f"* the record tells the family alone\n{marks}"
     return "\n".join([head, "", HEAD, rule, *map(_line, lines), "", *(one.text() for one in totals(lines)), time, "", reliability([one.mark for one in lines]), "", notes, ""])

@@ -1,18 +1,16 @@
 """One record of each machine is kept out: the rest is tuned and diagnosed, and the improved diagram is run on the one that was
-kept. What it leaves there, beside what the nominal and the calibrated diagram leave, is the proof of a diagnosis."""
+kept. What it leaves there, beside what the diagram leaves as drawn and as tuned, is the proof of a diagnosis."""
 
 from __future__ import annotations
 
 import math
 import tempfile
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trials.generator.plant import numbers
 from trials.measured.machines import FOLDS, Fold
 from trials.scoring.claim import claim
 from trials.scoring.fresh import outputs
@@ -25,7 +23,7 @@ GOAL = 0.90
 
 @dataclass(frozen=True)
 class Line:
-    """One fold."""
+    """One output of a fold."""
 
     name: str
     told: str
@@ -33,10 +31,11 @@ class Line:
     rows: int
     rest: float
     """RMS that the improved diagram leaves of the records that it was fitted to."""
-    nominal: float
-    calibrated: float
+    drawn: float
+    tuned: float
     improved: float
-    """RMS that each leaves of the kept record; not a number where it does not run."""
+    """RMS that the diagram leaves of the kept record with the values that it was drawn with, as tuned to the rest, and with what
+    the diagnosis of the rest added; not a number where it does not run."""
     stated: tuple[float, float] | None
     """The interval that the verdict states for a further record."""
 
@@ -44,25 +43,6 @@ class Line:
     def inside(self) -> bool | None:
         """Whether the kept record's RMS lies in it; None where none is stated."""
         return None if self.stated is None else self.stated[0] <= self.improved <= self.stated[1]
-
-
-def calibrated_text(parameters: str, calibration: dict[str, Any]) -> str:
-    """A parameter file with the calibrated values of a verdict, by INSTANCE.PARAMETER."""
-    known = tomllib.loads(parameters).get("parameters", {})
-    values: dict[str, dict[str, float]] = {}
-    for name, value in known.items():
-        group, entries = (name, value) if isinstance(value, dict) else ("", {name: value})
-        values.setdefault(group, {}).update(entries)
-    for name, found in calibration.items():
-        instance, _, parameter = name.rpartition(".")
-        value = number((found or {}).get("value"))
-        if not math.isnan(value):
-            values.setdefault(instance, {})[parameter] = value
-    lines = []
-    for instance in sorted(values):
-        lines += [f"[parameters.{instance}]" if instance else "[parameters]"]
-        lines += [f"{name} = {numbers(value) if isinstance(value, float) else value}" for name, value in values[instance].items()]
-    return "\n".join([*lines, ""])
 
 
 def stated_interval(verdict: dict[str, Any], signal: str) -> tuple[float, float] | None:
@@ -90,26 +70,28 @@ def left(product: str, diagram: Path, parameters: Path, log: Path, signal: str) 
     return math.nan if model is None or len(model) != len(measured) else float(np.sqrt(np.mean((measured - model[:, 0]) ** 2)))
 
 
-def line(fold: Fold, case: Path, verdicts: Path, data: Path, product: str) -> Line:
-    """Runs the diagrams of a fold on its kept record."""
+def lines(fold: Fold, case: Path, verdicts: Path, data: Path, product: str) -> list[Line]:
+    """Runs the diagrams of a fold on its kept record: a line for each output that the verdict speaks of, one without figures
+    where there is no verdict. Where a verdict leaves no improved diagram, the tuned one is what it has."""
     verdict, run = answered(verdicts)
     read, v = claim(verdict, run), verdict or {}
-    gap = v.get("gap") or {}
-    signal = str(gap.get("signal", ""))
     told = read.kind + (f" {read.first.effect or read.first.family}" if read.first else "") + ("+" if len(read.named) > 1 else "")
+    gaps = {str(one["signal"]): number(one.get("improved_rms")) for one in (*(v.get("gaps") or []), v.get("gap") or {}) if one.get("signal")}
     kept = fold.kept.logs_of(data)[0]
     rows = kept.count("\n") - 1
-    if not signal:
-        return Line(fold.name, told, "", rows, math.nan, math.nan, math.nan, math.nan, None)
+    if read.kind in ("refused", "missing") or not gaps:
+        return [Line(fold.name, told, "", rows, math.nan, math.nan, math.nan, math.nan, None)]
+    found = []
     with tempfile.TemporaryDirectory(prefix="kept-") as name:
-        scratch = Path(name)
-        log, calibrated = scratch / "kept.csv", scratch / "calibrated.toml"
+        log, start = Path(name) / "kept.csv", Path(name) / "start.toml"
         log.write_text(kept)
-        calibrated.write_text(calibrated_text((case / "params.toml").read_text(), v.get("calibration") or {}))
-        nominal = left(product, case / "plant.st", case / "params.toml", log, signal)
-        after = left(product, case / "plant.st", calibrated, log, signal)
-        improved = left(product, verdicts / "improved.st", verdicts / "improved.toml", log, signal) if (verdicts / "improved.st").exists() else after
-    return Line(fold.name, told, signal, rows, number(gap.get("improved_rms")), nominal, after, improved, stated_interval(v, signal))
+        start.write_text(fold.rest.files(data)["params.toml"])
+        for signal, rest in gaps.items():
+            drawn = left(product, case / "plant.st", start, log, signal)
+            tuned = left(product, case / "plant.st", case / "params.toml", log, signal)
+            improved = left(product, verdicts / "improved.st", verdicts / "improved.toml", log, signal) if (verdicts / "improved.st").exists() else tuned
+            found.append(Line(fold.name, told, signal, rows, rest, drawn, tuned, improved, stated_interval(v, signal)))
+    return found
 
 
 def lines_of(key: dict[str, Any], verdicts: Path, data: Path, product: str, folds: tuple[Fold, ...] = FOLDS) -> list[Line]:
@@ -120,7 +102,7 @@ def lines_of(key: dict[str, Any], verdicts: Path, data: Path, product: str, fold
         raise SystemExit(f"{missing[0]}: the list of machines has no such fold; its key is of another version, make the set again")
     if not all((cases / name / "plant.st").exists() for name in key["cases"]):
         raise SystemExit(f"{cases}: the cases of this set are gone; make the set again")
-    return [line(listed[label["name"]], cases / name, verdicts / name, data, product) for name, label in key["cases"].items()]
+    return [one for name, label in key["cases"].items() for one in lines(listed[label["name"]], cases / name, verdicts / name, data, product)]
 
 
 def _amount(value: float) -> str:
@@ -130,22 +112,24 @@ def _amount(value: float) -> str:
 def _row(one: Line) -> str:
     stated = f"{_amount(one.stated[0])} … {_amount(one.stated[1])}" if one.stated else "not stated"
     inside = {True: "inside", False: "outside", None: ""}[one.inside]
-    amounts = "".join(f"{_amount(value):>11s}" for value in (one.nominal, one.calibrated, one.improved, one.rest))
+    amounts = "".join(f"{_amount(value):>11s}" for value in (one.drawn, one.tuned, one.improved, one.rest))
     return f"{one.name[:44]:45s}{one.signal:8s}{one.rows:6d}{amounts}  {stated:20s}{inside:9s}{one.told}".rstrip()
 
 
 def whole(lines: list[Line], head: str) -> str:
     """The table and what it sums up to."""
-    title = f"{'kept record':45s}{'signal':8s}{'rows':>6s}{'nominal':>11s}{'calibrated':>11s}{'improved':>11s}{'the rest':>11s}  {'stated interval':20s}{'':9s}told of the rest"
-    ran = [one for one in lines if not math.isnan(one.nominal) and not math.isnan(one.improved)]
-    ratios = sorted(one.improved / one.nominal for one in ran)
+    title = f"{'kept record':45s}{'signal':8s}{'rows':>6s}{'as drawn':>11s}{'tuned':>11s}{'improved':>11s}{'the rest':>11s}  {'stated interval':20s}{'':9s}told of the rest"
+    ran = [one for one in lines if not math.isnan(one.tuned) and not math.isnan(one.improved)]
+    ratios = sorted(one.improved / one.tuned for one in ran)
     stated = share([bool(one.inside) for one in lines if one.inside is not None])
     low, high = stated.interval
     reached = "" if not stated.count else ("reached" if stated.value >= GOAL else "missed")
     summary = [
-        f"kept record nearer by the improved diagram than by the nominal one: {sum(x < 1.0 for x in ratios)} of {len(lines)}; farther by a tenth or more: {sum(x > 1.1 for x in ratios)}",
-        f"improved over nominal, RMS on the kept record: median {ratios[len(ratios) // 2]:.2f}, {ratios[0]:.2f} … {ratios[-1]:.2f}" if ratios else "no diagram has run",
+        f"kept record nearer by the improved diagram than by the tuned one, by a tenth or more: {sum(x < 0.9 for x in ratios)} of {len(lines)}"
+        f"; farther by as much: {sum(x > 1.1 for x in ratios)}",
+        f"improved over tuned, RMS on the kept record: median {ratios[len(ratios) // 2]:.2f}, {ratios[0]:.2f} … {ratios[-1]:.2f}" if ratios else "no diagram has run",
         f"within the stated interval: {stated.hits} of {stated.count} ({100 * low:.0f} … {100 * high:.0f} %), goal ≥ {100 * GOAL:.0f} % {reached}" if stated.count
         else "no verdict states an interval for a further record",
     ]  # fmt: skip
-    return "\n".join([head, "", "RMS that each diagram leaves of the record that was kept out, and the improved one of the rest", title, "-" * len(title), *map(_row, lines), "", *summary, ""])
+    what = "RMS that each diagram leaves of the record that was kept out, and the improved one of the rest"
+    return "\n".join([head, "", what, title, "-" * len(title), *map(_row, lines), "", *summary, ""])

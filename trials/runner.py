@@ -23,7 +23,9 @@ from trials.arguments import program_of
 from trials.progress import Progress
 from trials.scoring.verdict import read_object
 
-VISIBLE = ("plant.st", "params.toml", "log.csv", "log2.csv")
+LOGS = ("log.csv", *(f"log{number}.csv" for number in range(2, 10)))
+"""Records of one machine."""
+VISIBLE = ("plant.st", "params.toml", *LOGS)
 """What a case consists of; nothing else is copied."""
 KEPT = ("verdict.json", "improved.st", "improved.toml")
 """What is kept of an answer."""
@@ -174,7 +176,7 @@ def run_case(case: Path, out: Path, one: Diagnoser, running: Running | None = No
         else:
             if one.user:
                 shutil.chown(scratch, one.user)
-            logs = [part for file in ("log.csv", "log2.csv") if (scratch / file).exists() for part in ("--log", file)]
+            logs = [part for file in LOGS if (scratch / file).exists() for part in ("--log", file)]
             command = [one.program, "diagnose", "plant.st", *logs, "--params", "params.toml", "--out", "result", *one.options]
             notes = call(command, scratch, one, running)
         left = scratch / "result"

@@ -124,6 +124,8 @@ class Trial(unittest.TestCase):
         for options in (
             ("--fixed", "--each"), ("--real", "--peers"), ("--real", "--controls"), ("--each", "--controls"), ("--each", "--count", "5"),
             ("--controls", "--passphrase-file", __file__), ("--passphrase-file", "/no/such/file"), ("--seed",), ("--nonsense",),
+            ("--machines", "--seed", "a"), ("--machines", "--count", "5"), ("--machines", "--real"), ("--only", "emps"), ("--real", "--jobs", "2"),
+            ("--loops", "--user", "nobody"), ("--predict", "--seed", "a"), ("--loops", "--messy"), ("--messy", "--controls"), ("--messy", "--only", "x"),
         ):  # fmt: skip
             with self.subTest(options):
                 done = subprocess.run([str(ROOT / "scripts" / "trial"), "--no-build", *options], capture_output=True, text=True, check=False, timeout=60)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from trials.generator import excitation, noise
+from trials.generator import excitation, messy, noise
 from trials.generator.grid import Grid
 from trials.generator.piezo import Piezo
 from trials.generator.plant import Injection, Plant, numbers
@@ -45,6 +45,8 @@ class Specification:
     """Kind of noise, where it is prescribed."""
     length: float = 1.0
     """Share of the plant's usual number of samples."""
+    share: float = 0.0
+    """Of the gap's energy that the first effect has, in the stratum messy."""
 
 
 @dataclass
@@ -154,6 +156,7 @@ class Builder:
         self.sensitivity = sensitivities(plant)
         self.noises = [noise.draw(rng, self.grid.samples, specification.noise or None) for _ in plant.outputs]
         self.sigma = float(np.ptp(self.base[:, 0]) * 10.0 ** rng.uniform(-3.4, -2.5))
+        self.share = 0.0
         self.current_gain = 0.0
         if isinstance(plant, ClosedLoop):
             self.current_gain = self._noise_gain(plant)
@@ -187,10 +190,14 @@ class Builder:
             return disturbed - self.base - (plant.chattering_model(plant.truth, injections) - self.base)
         return plant.simulate(plant.truth, injections) - self.base
 
+    def in_noises(self, change: np.ndarray, sigma: float) -> np.ndarray:
+        """What a refit leaves of a change, each output in units of its noise."""
+        levels = self.noise_levels(sigma)
+        return after_refit(change, self.sensitivity, 1.0 / levels) / levels
+
     def ratio(self, change: np.ndarray, sigma: float) -> float:
         """Effect-to-noise ratio: the largest over the outputs, after refit."""
-        levels = self.noise_levels(sigma)
-        return float(np.max(rms(after_refit(change, self.sensitivity, 1.0 / levels)) / levels))
+        return float(np.max(rms(self.in_noises(change, sigma))))
 
     def size(self, one: Injection, wanted: float) -> float:
         """Searches the size that gives the wanted ratio at the present noise; returns the ratio reached."""
@@ -202,21 +209,29 @@ class Builder:
         one.size, reached = find_size(reached_by, wanted, one.size, one.realisation.smallest, one.realisation.largest)
         return reached
 
+    def sites(self, effect: str) -> tuple[str, ...]:
+        """Where an effect may act on this plant."""
+        if effect.startswith(("outside:", "beyond:")):
+            return self.plant.outside_sites or ("U",)
+        return self.plant.sites[effect]
+
     def inject(self) -> list[Injection]:
         """Draws the injections and scales size, then noise, to the wanted ratio."""
         injections = []
         reached = []
+        messy_one = self.specification.stratum == "messy"
         for effect, name in self.specification.effects:
             choices = self.plant.realisations(effect)
             named = [one for one in choices if one.name == name] or [one for one in choices if not one.cousin] or list(choices)
             edge = self.specification.edge
             if not edge:
-                sites = self.plant.outside_sites if effect.startswith("outside:") else self.plant.sites[effect]
-                edge = str(self.rng.choice(sites))
+                edge = str(self.rng.choice(self.sites(effect)))
             one = Injection(effect, edge, named[0], named[0].start, int(self.rng.integers(2**31)))
-            if effect != "sensor_gain":  # a refit takes it over whole, so that it has no ratio
+            if effect != "sensor_gain" and not messy_one:  # a refit takes it over whole, so that it has no ratio
                 reached.append(self.size(one, self.specification.ratio))
             injections.append(one)
+        if messy_one:
+            self.share = messy.mix(self, injections)
         if reached:
             least, most = 1e-5 * np.ptp(self.base[:, 0]), 3e-2 * np.ptp(self.base[:, 0])
             self.sigma = float(np.clip(self.sigma * min(reached) / self.specification.ratio, least, most))
@@ -274,8 +289,8 @@ class Builder:
         plant, specification = self.plant, self.specification
         injections = self.inject()
         change = self.change(injections) if injections else np.zeros_like(self.base)
-        off = self.deviations()
         scale = scales(plant)
+        off = messy.tune(self, self.base + change, scale) if specification.stratum == "messy" else self.deviations()
         start = {name: value + off[name] * scale[name] for name, value in plant.tuned().items()}
         log, clean = self.record(plant, injections)
         files = {"plant.st": plant.diagram(), "params.toml": parameter_file(start, plant), "log.csv": table(self.grid, log)}
@@ -295,23 +310,26 @@ class Builder:
             "deviation_ratio": self.deviation_ratio(off, levels),
             "deviations": off,
             "answers": list(specification.answers),
-            "effects": [
-                {
-                    "id": one.effect,
-                    "edge": one.edge,
-                    "edges": plant.admissible_edges(one.effect, one.edge),
-                    "same_as": {name: list(edges) for name, edges in plant.same_as(one.effect, one.edge).items()},
-                    "realisation": one.realisation.name,
-                    "cousin": one.realisation.cousin,
-                    "size": one.size,
-                    "parameters": one.notes,
-                    "ratio": self.ratio(self.change([one]), self.sigma) if len(injections) > 1 else None,
-                }
-                for one in injections
-            ],
+            "effects": [self.described(one, len(injections) > 1) for one in injections],
             "effect_rms": [float(x) for x in rms(after_refit(change, self.sensitivity, 1.0 / levels))],
         }
+        if specification.stratum == "messy":
+            label.update(messy.label(label, self.share))
         return Case(files, label, plant, injections, clean, log)
+
+    def described(self, one: Injection, among_others: bool) -> dict[str, object]:
+        """An injection in a label; among others with its own ratio."""
+        return {
+            "id": one.effect,
+            "edge": one.edge,
+            "edges": self.plant.admissible_edges(one.effect, one.edge),
+            "same_as": {name: list(edges) for name, edges in self.plant.same_as(one.effect, one.edge).items()},
+            "realisation": one.realisation.name,
+            "cousin": one.realisation.cousin,
+            "size": one.size,
+            "parameters": one.notes,
+            "ratio": self.ratio(self.change([one]), self.sigma) if among_others else None,
+        }
 
     def deviation_ratio(self, off: dict[str, float], levels: np.ndarray) -> float:
         """RMS over noise of what the parameters' deviations change, to first order."""

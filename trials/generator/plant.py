@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from trials.generator import effects, outside
+from trials.generator import beyond, effects, outside
 from trials.generator.effects import TIME_INVARIANT_LINEAR, Context, Realisation
 from trials.generator.grid import Grid
 
@@ -81,7 +81,7 @@ class Plant(ABC):
 
     def realisations(self, effect: str) -> tuple[Realisation, ...]:
         """All realisations of an effect on this plant."""
-        return self.internal(effect) or effects.CATALOGUE.get(effect, ()) or outside.CATALOGUE.get(effect, ())
+        return self.internal(effect) or effects.CATALOGUE.get(effect, ()) or outside.CATALOGUE.get(effect, ()) or beyond.CATALOGUE.get(effect, ())
 
     def tuned(self) -> dict[str, float]:
         """Values that a perfect tuning of the diagram would find."""

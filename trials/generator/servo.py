@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from trials.generator import friction as fr
+from trials.generator.beyond import IN_A_LOOP
 from trials.generator.effects import Realisation
 from trials.generator.grid import Grid
 from trials.generator.plant import Injection, Plant, literal
@@ -381,9 +382,9 @@ class Amplifier:
         elif one.effect == "dead_zone":
             self.width = size * span
             one.notes = {"WIDTH": self.width}
-        elif one.effect in ("offset", "gain_drift", "periodic_disturbance", "load", "cross_coupling"):
+        elif one.effect in ("offset", "gain_drift", "periodic_disturbance", "load", "cross_coupling", IN_A_LOOP):
             # What is added to the current, or multiplies it, by the catalogue's own operator on a constant.
-            base = 1.0 if one.effect == "gain_drift" else 0.0
+            base = 1.0 if one.effect in ("gain_drift", IN_A_LOOP) else 0.0
             context = loop.context(one, grid, 1.0 if base else span)
             made = one.realisation.apply(np.full(len(grid.fine), base), context, size, rng)
             made = np.append(made, np.full(grid.substeps, made[-1]))

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
 
-from trials.generator import outside
+from trials.generator import beyond, outside
+from trials.generator.beyond import IN_A_LOOP
 from trials.generator.case import PLANTS, Specification
 from trials.generator.effects import CATALOGUE
 from trials.generator.piezo import CHATTER
 from trials.generator.piezo import INTERNAL as IN_THE_LOOP
 from trials.generator.servo import INTERNAL as IN_THE_AXIS
 from trials.generator.servo import PLAIN
+from trials.families import family_of
 
 FULL = {"single": 620, "cousin": 420, "pair": 200, "none": 140, "calibration": 80, "outside": 140, "ambiguous": 100}
 """The full set: 1,700 cases."""
+MORE = ("messy",)
+"""Strata that a set has only where they are asked for."""
 RATIOS = (1.0, 3.0, 10.0, 30.0)
+MESSY_RATIOS = (100.0, 200.0, 400.0)
+"""The dominant effect over the noise of 1e-4 of the stroke: 1 to 4 % of the stroke."""
 
 HOMES: dict[str, tuple[str, ...]] = {
     effect: ("piezo",) for effect in (*IN_THE_LOOP, "branch_chatter", "creep", "relaxation", "dead_zone", "backlash")
@@ -125,7 +132,36 @@ def plan(seed: str, sizes: dict[str, int], **more: float) -> list[Specification]
         add("outside", plant, ((effect, outside.CATALOGUE[effect][0].name),), (10.0, 30.0)[number % 2])
     for plant, effect, name, edge, excitation, answers in _turns(rng, list(AMBIGUOUS), sizes.get("ambiguous", 0)):
         add("ambiguous", plant, ((effect, name),), 10.0, plan=excitation, edge=edge, answers=answers)
+    used: Counter[str] = Counter()
+    for number, plant in enumerate(_turns(rng, list(PLANTS), sizes.get("messy", 0))):
+        mixture = messy_effects(rng, plant, used)
+        add("messy", plant, mixture, MESSY_RATIOS[number % 3], share=float(rng.uniform(0.62, 0.93)))
     return [cases[i] for i in rng.permutation(len(cases))]
+
+
+ONE_LAW = frozenset({"coulomb_friction", "stribeck_friction", "viscous_friction"})
+"""Of these an axis has one."""
+
+
+def messy_effects(rng: np.random.Generator, plant: str, used: Counter[str]) -> tuple[tuple[str, str], ...]:
+    """A dominant effect, the one that came least often, two to five small ones of other families, and what is beyond any
+    library; each by any of its formulas."""
+    there = [effect for effect, homes in HOMES.items() if plant in homes and effect != "branch_chatter"]
+    least = min(used[effect] for effect in there)
+    dominant = str(rng.choice([effect for effect in there if used[effect] == least]))
+    used[dominant] += 1
+    chosen = [dominant]
+    wanted = int(rng.integers(2, 6))
+    for effect in rng.permutation(there).tolist():
+        other_law = not (effect in ONE_LAW and ONE_LAW & set(chosen))
+        if len(chosen) <= wanted and family_of(effect) != family_of(dominant) and other_law:
+            chosen.append(effect)
+    formulas = []
+    for effect in chosen:
+        names = [name for cousin in (False, True) for name, homes in forms(effect, cousin) if plant in homes]
+        formulas.append((effect, str(rng.choice(names))))
+    discrepancy = IN_A_LOOP if plant == "closed_loop" else str(rng.choice(list(beyond.CATALOGUE)))
+    return (*formulas, (discrepancy, beyond.CATALOGUE[discrepancy][0].name))
 
 
 def each(seed: str, ratio: float, **more: float) -> list[Specification]:

@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from trials.scoring.causes import of_all
+from trials.scoring.causes import reliability as reliability_of_families
+from trials.scoring.claim import SURE
 from trials.scoring.judge import IN_LIBRARY, Judgement
 from trials.scoring.statistics import Share, auroc, auroc_interval, quantile_interval, recall_at, share
 from trials.scoring.verdict import ACCUSES
@@ -58,6 +61,9 @@ class Score:
     seconds: list[float]
     """Of every case that has a run time."""
     misses: list[dict[str, Any]] = field(default_factory=list)
+    messy: list[dict[str, Any]] = field(default_factory=list)
+    """Every messy machine."""
+    messy_reliability: str = ""
 
 
 def _proportion(key: str, title: str, one: Share, goal: float | None, at_least: bool = True, **more: Any) -> Figure:
@@ -134,11 +140,32 @@ def figures(cases: list[Judgement]) -> list[Figure]:
     listed = share([c.listed_edge for c in chosen])
     out.append(_proportion("listed_edge", "  or one that the verdict cannot tell from it", listed, 0.95))
     out.append(_mean("listed_edges", "  mean number of these", [c.listed_edges for c in chosen], None))
+    out += messy_figures(of("messy"))
     seconds = [c.seconds for c in cases if not math.isnan(c.seconds)]
     out.append(_quantile("seconds", "seconds a case, median", seconds, 0.5, None, False, "s"))
     out.append(_quantile("seconds_max", "  slowest", seconds, 1.0, 60.0, False, "s"))
     out.append(_proportion("missing", "no verdict at all", share([c.verdict in ("missing", "refused") for c in cases]), 0.0, False))
     return out
+
+
+MESSY_LINES: tuple[tuple[str, str, float | None, bool], ...] = (
+    ("family", "messy machines: family of the dominant effect first", 0.90, True),
+    ("member", "  the dominant effect itself", 0.90, True),
+    ("family_sure", f"  right and sure of the family, P ≥ {SURE}", 0.70, True),
+    ("member_sure", "  right and sure of the effect", 0.70, True),
+    ("family_sure_wrong", "  sure of a family that is not there", 0.02, False),
+    ("member_sure_wrong", "  sure of an effect that is not there", 0.02, False),
+)
+
+
+def messy_figures(cases: list[Judgement]) -> list[Figure]:
+    """The figures of the stratum messy; none where a set has none of it."""
+    if not cases:
+        return []
+    shares = of_all([c.mark for c in cases if c.mark], SURE)
+    out = [_proportion(f"messy_{key}", title, shares[key], goal, at_least) for key, title, goal, at_least in MESSY_LINES]
+    fresh = [c.fresh for c in cases if not math.isnan(c.fresh)]
+    return [*out, _quantile("messy_fresh", "  gap closed on a fresh record of the machine, median", fresh, 0.5, None)]
 
 
 def by_effect(cases: list[Judgement]) -> dict[str, dict[str, Any]]:
@@ -199,6 +226,16 @@ def misses(cases: list[Judgement]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
+def messy(cases: list[Judgement]) -> list[dict[str, Any]]:
+    """What was there on each messy machine, and what of it was told."""
+    return [
+        {"case": c.name, "plant": c.plant, "dominant": c.truth[0], "realisation": c.realisations[0], "share": c.label["share"],
+         "ratio": c.ratio, "beside": [one["id"] for one in c.label["beside"]], "verdict": c.verdict, "effects": list(c.effects),
+         "family": c.mark.family, "member": c.mark.member, "probability": c.mark.probability, "closed": c.closed, "fresh": c.fresh}
+        for c in sorted(cases, key=lambda c: (c.plant, c.truth, c.name)) if c.stratum == "messy" and c.mark
+    ]  # fmt: skip
+
+
 def with_decidable(cases: list[Judgement]) -> list[Figure]:
     """The figures, each beside its value without the wrong verdicts that no record could mend."""
     found = figures(cases)
@@ -215,5 +252,6 @@ def score(cases: list[Judgement]) -> Score:
         strata.setdefault(c.stratum, Counter())[c.verdict] += 1
     return Score(
         with_decidable(cases), by_effect(cases), by_plant(cases), confusion(cases), reliability(cases), {k: dict(v) for k, v in sorted(strata.items())},
-        [c.seconds for c in cases if not math.isnan(c.seconds)], misses(cases),
+        [c.seconds for c in cases if not math.isnan(c.seconds)], misses(cases), messy(cases),
+        reliability_of_families([c.mark for c in cases if c.stratum == "messy" and c.mark]),
     )  # fmt: skip

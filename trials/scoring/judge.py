@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from trials.families import family_of
+from trials.scoring.causes import Cause, Mark, mark_of
+from trials.scoring.claim import claim
 from trials.scoring.verdict import NAMES, VERDICTS, answered, number
 
 IN_LIBRARY = ("single", "cousin", "pair")
@@ -51,6 +54,8 @@ class Judgement:
     answers: tuple[str, ...] = ()
     realisations: tuple[str, ...] = ()
     label: dict[str, Any] = field(default_factory=dict)
+    mark: Mark | None = None
+    """At the level of families and members."""
 
     @property
     def first(self) -> str:
@@ -155,7 +160,14 @@ def judge(name: str, label: dict[str, Any], verdict: dict[str, Any] | None, run:
         answers=tuple(label.get("answers", ())),
         realisations=tuple(e["realisation"] for e in label["effects"]),
         label=label,
+        mark=mark_of(claim(verdict, run), causes_of(label)),
     )
+
+
+def causes_of(label: dict[str, Any]) -> tuple[Cause, ...]:
+    """The effects of a label as causes; of a messy machine, what stands beside the dominant one."""
+    parts = [(one, False) for one in label["effects"]] + [(one, True) for one in label.get("beside", ())]
+    return tuple(Cause(family_of(one["id"]), frozenset({one["id"]}), frozenset(one.get("same_as", ())), beside) for one, beside in parts)
 
 
 def judged(labels: dict[str, dict[str, Any]], verdicts: Path) -> list[Judgement]:

@@ -40,6 +40,8 @@ def table(score: Score) -> str:
     """The figures in columns."""
     lines = [f"{'figure':52s}{'value':>9s}   {'95 % interval':17s}{'cases':>6s}   {'goal':10s} {'':9s}decidable", "-" * 116]
     for f in score.figures:
+        if f.count == 0 and set(score.strata) == {"messy"}:
+            continue  # the other strata's
         interval = f"{amount(f.low, f.unit)} … {amount(f.high, f.unit)}"
         lines.append(f"{f.title:52s}{amount(f.value, f.unit):>9s}   {interval:17s}{f.count:6d}   {goal(f):10s} {mark(f):7s}{decidable(f):>11s}".rstrip())
     left = sum(m["apart"] < 1.0 for m in score.misses)
@@ -95,6 +97,23 @@ def strata(score: Score) -> str:
     return "\n".join(f"{name:14s}" + ", ".join(f"{kind} {n}" for kind, n in sorted(line.items())) for name, line in score.strata.items())
 
 
+def messy(score: Score) -> str:
+    """The messy machines, each with its dominant effect and what stands beside it."""
+    lines = [f"{'messy machine':16s}{'dominant, its share of the gap':36s}{'gap':>6s}  {'named first, + more':28s}{'P':>5s}  {'family':8s}{'member':7s}beside"]
+    for m in score.messy:
+        first = (m["effects"][0] if m["effects"] else m["verdict"]) + ("+" if len(m["effects"]) > 1 else "")
+        p = "" if math.isnan(m["probability"]) else f"{m['probability']:.2f}"
+        dominant = f"{m['realisation']}, {100 * m['share']:.0f} %"
+        worth = f"{m['family']:8s}{'right' if m['member'] else 'no':7s}"
+        lines.append(f"{m['plant']:16s}{dominant[:35]:36s}{m['ratio']:6.0f}  {first[:27]:28s}{p:>5s}  {worth}{', '.join(m['beside'])}")
+    return "\n".join(lines)
+
+
 def whole(score: Score, head: str) -> str:
-    """All tables."""
-    return "\n\n".join([head, table(score), effects(score), plants(score), confusions(score), misses(score), "verdicts by stratum\n" + strata(score)]) + "\n"
+    """All tables that have something to say."""
+    parts = [head, table(score)]
+    if score.messy:
+        parts += [messy(score), score.messy_reliability]
+    if set(score.strata) != {"messy"}:
+        parts += [effects(score), plants(score), confusions(score), misses(score)]
+    return "\n\n".join([*parts, "verdicts by stratum\n" + strata(score)]) + "\n"

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hysteron::diagnosis {
@@ -26,7 +27,7 @@ BlockRegression::BlockRegression(const Blocks& blocks, VectorXd residuals, Matri
   }
 }
 
-BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws) const {
+BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, bool bounded) const {
   const Index fixed = known_.cols();
   Index size = fixed;
   for (const Law* law : laws) {
@@ -39,8 +40,8 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws) c
   for (const Law* law : laws) {
     columns.middleCols(at, law->responses.cols()) = law->responses;
     for (const Law::Term& term : law->terms) {
-      low[at] = term.lowest;
-      high[at] = term.highest;
+      low[at] = bounded ? term.lowest : -std::numeric_limits<double>::infinity();
+      high[at] = bounded ? term.highest : std::numeric_limits<double>::infinity();
       ++at;
     }
   }

@@ -28,7 +28,8 @@ class BlockRegression {
   /// Both are thinned.
   BlockRegression(const Blocks& blocks, VectorXd residuals, MatrixXd known);
 
-  [[nodiscard]] Score with(std::span<const Law* const> laws) const;
+  /// Of shares within their bounds, or of any.
+  [[nodiscard]] Score with(std::span<const Law* const> laws, bool bounded = true) const;
 
   [[nodiscard]] const VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const MatrixXd& known() const { return known_; }

@@ -124,7 +124,7 @@ Votes vote(const std::vector<Explored>& spaces, std::vector<LawSet>& sets, std::
 double closed_by(const Explored& there, const LawSet& set, const auto& is_dropped) {
   std::vector<std::size_t> rest = set.laws;
   std::erase_if(rest, [&](std::size_t i) { return is_dropped((*there.laws)[i]); });
-  const LawSet without = there.search->fitted(rest);
+  const LawSet without = there.search->fitted(rest, false);
   return std::min(1.0, std::exp(without.log_square - there.bare.log_square)) - std::exp(set.log_square);
 }
 

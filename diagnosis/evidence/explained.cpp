@@ -1,10 +1,12 @@
 #include "diagnosis/evidence/explained.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "diagnosis/effects/starts.hpp"
 #include "diagnosis/model/refusal.hpp"
+#include "diagnosis/policy.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -51,7 +53,14 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
                                      const Explanation& calibrated, const std::vector<std::string>& columns) {
   Explanation result{.variant = calibrated.variant};
   VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
+  for (std::size_t j = 0; j < std::min(task.known.size(), set.known.size()); ++j) {
+    const auto at = static_cast<Index>(j);
+    start[at] = std::clamp(start[at] + set.known[j], task.known[j].lower, task.known[j].upper);
+  }
   for (const LawFinding& law : set.laws) {
+    if (law.closed < policy::relevant.value && set.laws.size() > 1) {
+      continue;
+    }
     const std::vector<Candidate> list =
         candidates_of(result.variant, top, {.effects = {law.effect}, .columns = columns, .again = true});
     const Candidate* const found = fitting(list, calibrated.variant.program->graph, law);
@@ -90,7 +99,10 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
     finish(task, fitted, {.thoroughly = true});
     return fitted;
   });
-  return result.fit.cost < calibrated.fit.cost ? std::optional(std::move(result)) : std::nullopt;
+  // A fit over whole records that falls far short of what the stretches promise has lost its way.
+  constexpr double kept_promise = 0.5;
+  const double closed = 1.0 - result.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm();
+  return closed > kept_promise * set.closed ? std::optional(std::move(result)) : std::nullopt;
 }
 
 }  // namespace hysteron::diagnosis

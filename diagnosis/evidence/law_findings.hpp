@@ -28,7 +28,8 @@ struct SetFinding {
   std::string space{};
   std::vector<LawFinding> laws{};
   double probability = 0.0;
-  double closed = 0.0;  ///< of the held-out gap
+  double closed = 0.0;          ///< of the held-out gap
+  std::vector<double> known{};  ///< changes of the known parameters that go with it
 };
 
 struct FamilyFinding {

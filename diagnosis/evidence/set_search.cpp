@@ -80,12 +80,12 @@ std::vector<std::string> SetSearch::families_of(const LawSet& one) const {
   return {names.begin(), names.end()};
 }
 
-LawSet SetSearch::fitted(std::vector<std::size_t> list) const {
+LawSet SetSearch::fitted(std::vector<std::size_t> list, bool bounded) const {
   std::vector<const Law*> laws;
   for (const std::size_t i : list) {
     laws.push_back(&laws_[i]);
   }
-  LawSet result{.laws = std::move(list), .score = regression_.with(laws)};
+  LawSet result{.laws = std::move(list), .score = regression_.with(laws, bounded)};
   result.log_square =
       result.score.allowed ? regression_.log_square(result.score.held_out) : std::numeric_limits<double>::infinity();
   return result;

@@ -26,7 +26,7 @@ class SetSearch {
   /// first.
   [[nodiscard]] std::vector<LawSet> run() const;
 
-  [[nodiscard]] LawSet fitted(std::vector<std::size_t> list) const;
+  [[nodiscard]] LawSet fitted(std::vector<std::size_t> list, bool bounded = true) const;
   [[nodiscard]] std::vector<std::string> families_of(const LawSet& one) const;
 
  private:

@@ -54,6 +54,8 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   const std::string gap = report::gap_section(diagnosis);
   html += fmt::format("<div class=\"{}\">\n{}{}</div>\n", gap.empty() ? "head" : "head two",
                       report::verdict_section(diagnosis), gap);
+  html += report::missing_section(diagnosis);
+  html += report::families_section(diagnosis);
   html += report::effects_section(diagnosis);
   html += report::split_section(diagnosis);
   html += report::where_section(diagnosis, improved.graph);

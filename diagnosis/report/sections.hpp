@@ -9,6 +9,10 @@ namespace hysteron::diagnosis::report {
 
 /// The verdict as a sentence, its confidence, refusals and warnings.
 [[nodiscard]] std::string verdict_section(const Diagnosis& diagnosis);
+/// The missing signal over what it is a function of; nothing where there is no such picture.
+[[nodiscard]] std::string missing_section(const Diagnosis& diagnosis);
+/// Families with their probabilities; nothing where no evidence was asked for.
+[[nodiscard]] std::string families_section(const Diagnosis& diagnosis);
 /// Each effect with its edge, its parameters and whether a feedforward can take it back.
 [[nodiscard]] std::string effects_section(const Diagnosis& diagnosis);
 /// The gap by controller, inputs and outputs, and plant; and on which side of a measured inner signal it lies.

@@ -83,6 +83,9 @@ pre { background: var(--card); border: 1px solid var(--line); padding: .8rem; ov
 svg text { fill: var(--ink); font: 12px system-ui, "DejaVu Sans", sans-serif; }
 rect.nominal { fill: var(--nominal); } rect.before { fill: var(--before); } rect.after { fill: var(--after); }
 rect.rest { fill: var(--grid); }
+svg.missing { width: 100%; max-width: 720px; display: block; }
+svg.missing .grid { stroke: var(--line); } svg.missing .dots { fill: var(--before); opacity: .45; }
+svg.missing .law { fill: none; stroke: var(--after); stroke-width: 2.5; }
 svg.gap { width: 100%; max-width: 560px; display: block; }
 svg.gap text { font-size: 13px; }
 svg.gap .row { text-anchor: end; } svg.gap .value { font-weight: 600; }

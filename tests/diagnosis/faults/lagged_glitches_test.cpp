@@ -54,7 +54,7 @@ records::Record sensed(std::vector<double> speed) {
   return record;
 }
 
-Diagnosis found_in(const records::Record& record, std::vector<std::string> effects) {
+Diagnosis found_behind_lag(const records::Record& record, std::vector<std::string> effects) {
   return diagnose(test::input_of(test::axis(), test::axis_parameters, {record}), {.effects = std::move(effects)});
 }
 
@@ -64,7 +64,7 @@ TEST(LaggedGlitches, AreNamedBesideTheLag) {
   std::vector<double> speed = speed_of_axis();
   add_spikes(speed, 1.0);
   const Diagnosis found =
-      found_in(sensed(lagged(std::move(speed))), {"glitches", "lag", "delay", "relaxation", "load"});
+      found_behind_lag(sensed(lagged(std::move(speed))), {"glitches", "lag", "delay", "relaxation", "load"});
   ASSERT_EQ(found.effects.size(), 2U) << found.summary;
   EXPECT_THAT(found.warnings, taken_off);
   EXPECT_THAT(found.verdict, testing::AnyOf(Verdict::Named, Verdict::Group));
@@ -86,7 +86,7 @@ TEST(LaggedGlitches, AreNamedBesideTheLag) {
 TEST(LaggedGlitches, AreNoneIfTheyAreNotAskedFor) {
   std::vector<double> speed = speed_of_axis();
   add_spikes(speed, 1.0);
-  EXPECT_THAT(found_in(sensed(lagged(std::move(speed))), {"lag", "delay"}).warnings, Not(taken_off));
+  EXPECT_THAT(found_behind_lag(sensed(lagged(std::move(speed))), {"lag", "delay"}).warnings, Not(taken_off));
 }
 
 TEST(LaggedGlitches, AreNoSlowSignalNorOneThatGrowsAndVanishes) {
@@ -103,7 +103,7 @@ TEST(LaggedGlitches, AreNoSlowSignalNorOneThatGrowsAndVanishes) {
   for (const std::vector<double>& disturbance : {growing, slow}) {
     std::vector<double> disturbed = speed;
     std::ranges::transform(disturbed, disturbance, disturbed.begin(), std::plus<>());
-    const Diagnosis found = found_in(sensed(lagged(std::move(disturbed))), {"glitches", "lag"});
+    const Diagnosis found = found_behind_lag(sensed(lagged(std::move(disturbed))), {"glitches", "lag"});
     EXPECT_THAT(found.warnings, Not(taken_off));
     EXPECT_GT(found.gap.improved, 2.0 * speed_noise);
   }

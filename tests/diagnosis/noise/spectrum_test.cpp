@@ -12,21 +12,21 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr Eigen::Index count = 2000;
+constexpr Eigen::Index spectrum_samples = 2000;
 constexpr double spectrum_sample_time = 0.005;
-constexpr double bin = 1.0 / (count * spectrum_sample_time);
+constexpr double bin = 1.0 / (spectrum_samples * spectrum_sample_time);
 
 Eigen::VectorXd sine(double frequency, double amplitude, double phase = 0.4) {
-  Eigen::VectorXd values(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
+  Eigen::VectorXd values(spectrum_samples);
+  for (Eigen::Index k = 0; k < spectrum_samples; ++k) {
     values[k] = amplitude * std::sin(test::two_pi * frequency * spectrum_sample_time * static_cast<double>(k) + phase);
   }
   return values;
 }
 
 Eigen::VectorXd white_noise(double deviation) {
-  const auto values = test::Noise(3).white(count, deviation);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), count);
+  const auto values = test::Noise(3).white(spectrum_samples, deviation);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), spectrum_samples);
 }
 
 TEST(StrongestLines, ALineBetweenBinsWithinATenthOfOne) {
@@ -47,7 +47,7 @@ TEST(StrongestLines, ComeStrongestFirst) {
 
 TEST(StrongestLines, AnOffsetIsNone) {
   const auto lines =
-      Periodogram(Eigen::VectorXd::Constant(count, 100.0) + sine(20.0, 0.1), spectrum_sample_time).strongest_lines(1);
+      Periodogram(Eigen::VectorXd::Constant(spectrum_samples, 100.0) + sine(20.0, 0.1), spectrum_sample_time).strongest_lines(1);
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_NEAR(lines[0], 20.0, 0.1 * bin);
 }
@@ -57,10 +57,10 @@ TEST(StrongestLines, TooFewSamplesHaveNone) {
 }
 
 TEST(OutstandingLines, AreSeenBelowWhatIsSlowAndAThousandTimesAsStrong) {
-  Eigen::VectorXd slow(count);
+  Eigen::VectorXd slow(spectrum_samples);
   const Eigen::VectorXd steps = white_noise(1.0);
   double sum = 0.0;
-  for (Eigen::Index k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < spectrum_samples; ++k) {
     slow[k] = sum += 0.01 * steps[k];
   }
   const Eigen::VectorXd values = 300.0 * slow + sine(31.0, 0.05 * 300.0 * 0.1);
@@ -78,9 +78,9 @@ TEST(OutstandingLines, NoiseHasNone) {
 TEST(StrongestPeriods, ARippleOverThePositionNotOverTime) {
   // The position goes to and fro at a changing rate, so that the ripple has no line in time.
   std::vector<double> position;
-  Eigen::VectorXd ripple(count);
+  Eigen::VectorXd ripple(spectrum_samples);
   constexpr double period = 1.7;
-  for (Eigen::Index k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < spectrum_samples; ++k) {
     const double t = spectrum_sample_time * static_cast<double>(k);
     position.push_back(10.0 * std::sin(0.7 * t + 0.05 * t * t) + 3.0 * std::sin(2.1 * t));
     ripple[k] = 0.2 * std::sin(test::two_pi * position.back() / period + 1.0);
@@ -149,7 +149,7 @@ TEST(StepFromZero, IsTheOneWhoseMultiplesTheValuesAre) {
 }
 
 TEST(StrongestPeriods, ASignalThatStandsHasNone) {
-  EXPECT_TRUE(strongest_periods(white_noise(1.0), {std::vector<double>(count, 2.0)}, 3).empty());
+  EXPECT_TRUE(strongest_periods(white_noise(1.0), {std::vector<double>(spectrum_samples, 2.0)}, 3).empty());
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+#include "diagnosis/evidence/block_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <limits>
+
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+Task one_output(std::size_t samples) {
+  Task task;
+  task.records.push_back(records::Record::even(0.0, 0.01, samples));
+  task.outputs = {"Y"};
+  return task;
+}
+
+Law free_law(VectorXd response) {
+  Law law{.effect = "offset"};
+  law.terms.push_back({.strength = "BIAS",
+                       .lowest = -std::numeric_limits<double>::infinity(),
+                       .highest = std::numeric_limits<double>::infinity()});
+  law.responses = std::move(response);
+  return law;
+}
+
+TEST(BlockRegression, TheHeldOutEnergyIsThatOfAFitWithoutTheBlock) {
+  constexpr std::size_t samples = 90;
+  const Task task = one_output(samples);
+  const Blocks blocks(task, 1, 6, 1000);
+  test::Noise noise(11);
+  const auto column = [&] {
+    const std::vector<double> values = noise.white(samples, 1.0);
+    return VectorXd(Eigen::Map<const VectorXd>(values.data(), samples));
+  };
+  const VectorXd residuals = column();
+  const MatrixXd known = column();
+  const Law law = free_law(column());
+  const Law* const laws[] = {&law};
+  const BlockRegression regression(blocks, residuals, known);
+  const BlockRegression::Score score = regression.with(laws);
+  ASSERT_TRUE(score.allowed);
+  ASSERT_EQ(score.held_out.rows(), 6);
+  MatrixXd both(samples, 2);
+  both << known, law.responses;
+  for (const Blocks::Run& run : blocks.runs()) {
+    MatrixXd rest = both;
+    VectorXd right = residuals;
+    rest.middleRows(run.first, run.size).setZero();
+    right.segment(run.first, run.size).setZero();
+    const VectorXd c = -rest.colPivHouseholderQr().solve(right);
+    const double left =
+        (residuals.segment(run.first, run.size) + both.middleRows(run.first, run.size) * c).squaredNorm();
+    EXPECT_NEAR(score.held_out(static_cast<Index>(run.block), 0), left, 1e-6 * left);
+  }
+}
+
+TEST(BlockRegression, ALawOfTheWrongSignIsNotAllowed) {
+  const Task task = one_output(60);
+  const Blocks blocks(task, 1, 5, 1000);
+  const VectorXd ones = VectorXd::Ones(60);
+  Law law = free_law(ones);
+  law.terms.front().lowest = 0.0;
+  const Law* const laws[] = {&law};
+  EXPECT_TRUE(BlockRegression(blocks, -ones, MatrixXd(60, 0)).with(laws).allowed);
+  EXPECT_FALSE(BlockRegression(blocks, ones, MatrixXd(60, 0)).with(laws).allowed);
+  EXPECT_TRUE(BlockRegression(blocks, ones, MatrixXd(60, 0)).with(laws, false).allowed);
+}
+
+TEST(BlockRegression, OutputsCountByWhatTheyLeave) {
+  Task task = one_output(60);
+  task.outputs = {"Y", "Z"};
+  const Blocks blocks(task, 2, 5, 1000);
+  VectorXd residuals(120);
+  residuals << VectorXd::Constant(60, 1e-3), VectorXd::Constant(60, 1e3);
+  BlockRegression regression(blocks, residuals, MatrixXd(120, 0));
+  const BlockRegression::Score score = regression.with({});
+  EXPECT_NEAR(regression.log_square(score.held_out), 0.5 * (std::log(1e-6) + std::log(1e6)), 1e-9);
+}
+
+TEST(Blocks, EveryRecordHasAtLeastOneAndNoSampleIsInTwo) {
+  Task task = one_output(100);
+  task.records.push_back(records::Record::even(0.0, 0.01, 7));
+  const Blocks blocks(task, 1, 10, 50);
+  EXPECT_EQ(blocks.stride(), 3U);
+  EXPECT_EQ(blocks.rows(), 33 + 2);
+  Index next = 0;
+  for (const Blocks::Run& run : blocks.runs()) {
+    EXPECT_EQ(run.first, next);
+    next += run.size;
+  }
+  EXPECT_EQ(next, blocks.rows());
+  VectorXd rising(107);
+  for (Index k = 0; k < 107; ++k) {
+    rising[k] = static_cast<double>(k < 100 ? k : k - 100);
+  }
+  const MatrixXd thin = blocks.thinned(rising);
+  EXPECT_DOUBLE_EQ(thin(0, 0), 1.0);
+  EXPECT_DOUBLE_EQ(thin(33, 0), 1.0);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

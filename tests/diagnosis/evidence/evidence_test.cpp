@@ -1,0 +1,202 @@
+#include "diagnosis/evidence/evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/evidence/open_loop.hpp"
+#include "diagnosis/evidence/summed_edge.hpp"
+#include "diagnosis/model/task.hpp"
+#include "diagnosis/search/expansion.hpp"
+#include "tests/diagnosis/simulated_machine.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+/// A mass with viscous friction, driven by a voltage; its speed is measured.
+constexpr std::string_view axis = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
+  VAR_INPUT
+    U : LREAL;  (* @unit V *)
+  END_VAR
+  VAR_OUTPUT
+    V : LREAL;  (* @unit m/s *)
+  END_VAR
+  VAR
+    DRIVE : HY_GAIN := (K := 0.4);
+    DAMP  : HY_GAIN := (K := 2.0);
+    SPEED : HY_INTEGRAL_FORWARD;
+  END_VAR
+  DRIVE(XIN := U);
+  DAMP(XIN := SPEED.XOUT);
+  V := SPEED.XOUT;
+  SPEED(XIN := DRIVE.XOUT - DAMP.XOUT);
+END_FUNCTION_BLOCK
+)";
+
+struct Measured {
+  std::vector<double> input{};
+  std::vector<double> output{};
+};
+
+/// The same machine with dry friction, with a bend and a wandering gain that no effect of the library is, and a sensor
+/// that resolves a ten-thousandth of its stroke.
+Measured messy_axis(double dry, std::uint64_t seed) {
+  constexpr std::size_t samples = 3000;
+  constexpr int substeps = 20;
+  constexpr double step = 0.005 / substeps;
+  test::Noise noise(seed);
+  Measured result;
+  double v = 0.0;
+  double wander = 0.0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double t = 0.005 * static_cast<double>(k);
+    const double u = 3.0 * std::sin(2.1 * t) + 1.5 * std::sin(5.3 * t + 1.0);
+    result.input.push_back(u);
+    result.output.push_back(std::round((v + 2e-5 * noise()) / 1e-4) * 1e-4);
+    wander = 0.995 * wander + 0.003 * noise();
+    for (int i = 0; i < substeps; ++i) {
+      const double force = 0.4 * (1.0 + wander) * u - 2.0 * v - 0.06 * std::atan(9.0 * v * v * v);
+      v += step * (force - dry * std::tanh(v / 1e-3));
+    }
+  }
+  return result;
+}
+
+struct Asked {
+  Task task{};
+  Footing footing{};
+  Evidence evidence{};
+};
+
+Asked asked(const Measured& measured, std::string text, double to_unit = 1.0) {
+  Asked result;
+  DiagnosisInput input{.program = compile_text(text, {.any_order = true}), .text = std::move(text)};
+  input.file =
+      parameters::parse_parameter_file("start.toml", "[fit.DRIVE]\nK = {min = 0.0}\n[fit.DAMP]\nK = {min = 0.0}\n");
+  records::Record record = records::Record::even(0.0, 0.005, measured.input.size());
+  record.add({.name = "u", .values = measured.input});
+  std::vector<double> output = measured.output;
+  for (double& value : output) {
+    value *= to_unit;
+  }
+  record.add({.name = "v", .values = std::move(output)});
+  input.records.push_back(std::move(record));
+  result.task = task_of(input);
+  result.task.scales = {1e-4 * to_unit};
+  result.footing = footing_of(result.task, {.text = input.text, .program = std::make_shared<Program>(input.program)});
+  result.evidence = evidence_of(result.task, "AXIS", result.footing.calibrated, {});
+  return result;
+}
+
+double level_of(const Evidence& evidence) {
+  for (const SetFinding& set : evidence.sets) {
+    for (const LawFinding& law : set.laws) {
+      for (const LawValue& value : law.values) {
+        if (law.effect == "coulomb_friction" && value.name == "LEVEL") {
+          return value.value;
+        }
+      }
+    }
+  }
+  return 0.0;
+}
+
+TEST(Evidence, DryFrictionIsSureBesideWhatNoEffectExplains) {
+  const Asked found = asked(messy_axis(0.2, 1), std::string(axis));
+  ASSERT_FALSE(found.evidence.families.empty());
+  EXPECT_EQ(found.evidence.families.front().family, "dry_friction");
+  EXPECT_GT(found.evidence.families.front().probability, 0.9);
+  EXPECT_GT(found.evidence.families.front().closed, 0.5);
+  EXPECT_NEAR(level_of(found.evidence), 0.2, 0.03);
+  EXPECT_EQ(found.evidence.picture.over, "V");
+  EXPECT_EQ(found.evidence.picture.places.size(), found.evidence.picture.missing.size());
+}
+
+TEST(Evidence, WithoutFrictionNoneIsSure) {
+  const Asked found = asked(messy_axis(0.0, 2), std::string(axis));
+  for (const FamilyFinding& one : found.evidence.families) {
+    if (one.family == "dry_friction") {
+      EXPECT_LT(one.probability * one.closed, 0.35);
+    }
+  }
+}
+
+TEST(Evidence, AnotherUnitOrAnotherSeedIsTheSameEvidence) {
+  const Measured measured = messy_axis(0.2, 3);
+  const Asked first = asked(measured, std::string(axis));
+  std::string millimetres(axis);
+  millimetres.replace(millimetres.find("@unit m/s"), 9, "@unit mm/s");
+  millimetres.replace(millimetres.find("K := 0.4"), 8, "K := 400.0");
+  const Asked second = asked(measured, millimetres, 1000.0);
+  EXPECT_EQ(first.evidence.families.front().family, second.evidence.families.front().family);
+  EXPECT_NEAR(first.evidence.families.front().closed, second.evidence.families.front().closed, 0.02);
+  EXPECT_NEAR(1000.0 * level_of(first.evidence), level_of(second.evidence), 5.0);
+  const Evidence other = evidence_of(first.task, "AXIS", first.footing.calibrated, {.seed = 17});
+  EXPECT_EQ(other.families.front().family, first.evidence.families.front().family);
+  EXPECT_NEAR(other.families.front().probability, first.evidence.families.front().probability, 0.05);
+}
+
+TEST(Evidence, IsBitForBitTheSameOnOneThreadAndOnThree) {
+  const Asked first = asked(messy_axis(0.2, 4), std::string(axis));
+  const Evidence one = evidence_of(first.task, "AXIS", first.footing.calibrated, {.threads = 1});
+  const Evidence three = evidence_of(first.task, "AXIS", first.footing.calibrated, {.threads = 3});
+  ASSERT_EQ(one.sets.size(), three.sets.size());
+  for (std::size_t i = 0; i < one.sets.size(); ++i) {
+    EXPECT_EQ(one.sets[i].probability, three.sets[i].probability);
+    EXPECT_EQ(one.sets[i].closed, three.sets[i].closed);
+  }
+}
+
+TEST(Bottleneck, IsWhereForcesAreSummedBeforeTheFirstIntegral) {
+  const Asked found = asked(messy_axis(0.2, 5), std::string(axis));
+  const auto bottleneck = bottleneck_of(found.task, "AXIS", found.footing.calibrated.variant, {"U"}, 1);
+  ASSERT_TRUE(bottleneck);
+  EXPECT_EQ(bottleneck->edge.edge.name, "SPEED.XIN");
+}
+
+TEST(Bottleneck, AStaticDiagramHasNone) {
+  const std::string text = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
+  VAR_INPUT U : LREAL; END_VAR
+  VAR_OUTPUT V : LREAL; END_VAR
+  VAR DRIVE : HY_GAIN := (K := 0.4); DAMP : HY_GAIN := (K := 2.0); END_VAR
+  DRIVE(XIN := U);
+  DAMP(XIN := DRIVE.XOUT);
+  V := DAMP.XOUT;
+END_FUNCTION_BLOCK
+)";
+  const Asked found = asked(messy_axis(0.2, 6), text);
+  EXPECT_FALSE(bottleneck_of(found.task, "AXIS", found.footing.calibrated.variant, {"U"}, 1));
+}
+
+TEST(OpenLoop, APlantWhoseEffortWasMeasuredIsTakenOutOfItsLoop) {
+  const std::string text = R"(FUNCTION_BLOCK LOOP  (* @ts 5ms *)
+  VAR_INPUT REF : LREAL; END_VAR
+  VAR_OUTPUT U : LREAL; V : LREAL; END_VAR
+  VAR LATE : HY_DELAY; P : HY_GAIN := (K := 5.0); SPEED : HY_INTEGRAL_FORWARD; END_VAR
+  P(XIN := REF - LATE.XOUT);
+  U := P.XOUT;
+  SPEED(XIN := U);
+  V := SPEED.XOUT;
+  LATE(XIN := SPEED.XOUT);
+END_FUNCTION_BLOCK
+)";
+  DiagnosisInput input{.program = compile_text(text, {.any_order = true}), .text = text};
+  records::Record record = records::Record::even(0.0, 0.005, 100);
+  for (const char* name : {"ref", "u", "v"}) {
+    record.add({.name = name, .values = std::vector<double>(100, 1.0)});
+  }
+  input.records.push_back(record);
+  const Task task = task_of(input);
+  const auto open = opened(task, "LOOP", {.text = text, .program = std::make_shared<Program>(input.program)});
+  ASSERT_TRUE(open);
+  EXPECT_EQ(open->cut, "U");
+  EXPECT_EQ(open->task.outputs, std::vector<std::string>{"V"});
+  // Driven by its own input, the integral of 1 is the time, whatever the reference does.
+  const std::vector<Signal> outputs = simulate(*open->variant.program, open->task.records.front());
+  const auto at = static_cast<std::size_t>(find_port(open->variant.program->graph.outputs, "V") -
+                                           open->variant.program->graph.outputs.data());
+  EXPECT_NEAR(outputs[at][99], 99 * 0.005, 1e-9);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

@@ -49,14 +49,18 @@ inline constexpr Threshold quick{"quick", 0.05, "1", "convention: it settles wit
                                  "which slow memory is a lag by another name"};
 inline constexpr Threshold linear{"linear", 0.02, "1", "mathematics: rounding and bends",
                                   "which strengths are a factor"};
-inline constexpr Threshold sure{"sure", 0.7, "1", "convention: the design's",
-                                "from which probability a family is named"};
+inline constexpr Threshold named{"named", 0.5, "1", "convention: more probable than not",
+                                 "from which probability a family is named"};
+inline constexpr Threshold rival{"rival", 0.02, "1", "convention: one draw in fifty",
+                                 "from which probability a set is told as a rival"};
+inline constexpr Threshold kept_promise{"kept promise", 0.5, "1", "convention: half of it",
+                                        "what part of the promised closure a fit over whole records has to keep"};
 inline constexpr Threshold relevant{"relevant", 0.05, "1", "convention: the twentieth part",
                                     "what share of the gap an effect has to close to be named"};
 
-inline constexpr std::array all{blocks,         rows,        price,    model_error, another_place,
-                                draws,          quiet_slope, follower, same_signal, at_once,
-                                line_of_driver, quick,       linear,   sure,        relevant};
+inline constexpr std::array all{blocks,      rows,     price,       model_error,  another_place,  draws,
+                                quiet_slope, follower, same_signal, at_once,      line_of_driver, quick,
+                                linear,      named,    rival,       kept_promise, relevant};
 
 }  // namespace policy
 }  // namespace hysteron::diagnosis

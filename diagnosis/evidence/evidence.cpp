@@ -1,6 +1,7 @@
 #include "diagnosis/evidence/evidence.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -120,17 +121,58 @@ Votes vote(const std::vector<Explored>& spaces, std::vector<LawSet>& sets, std::
   return votes;
 }
 
-/// What a set closes of the held-out gap less what it closes without some of its laws.
-double closed_by(const Explored& there, const LawSet& set, const auto& is_dropped) {
-  std::vector<std::size_t> rest = set.laws;
-  std::erase_if(rest, [&](std::size_t i) { return is_dropped((*there.laws)[i]); });
-  const LawSet without = there.search->fitted(rest, false);
-  return std::min(1.0, std::exp(without.log_square - there.bare.log_square)) - std::exp(set.log_square);
+/// What some of a set's laws close of the held-out gap by themselves; of shares out of their bounds, too.
+double closed_by(const Explored& there, std::vector<std::size_t> laws) {
+  const LawSet part = there.search->fitted(std::move(laws), false);
+  return 1.0 - std::exp(part.log_square - there.bare.log_square);
+}
+
+/// What the laws of one group close, in the mean over all orders in which the groups of the set may come (Shapley).
+double share_of(const Explored& there, const LawSet& set, const std::vector<std::string>& group_of_law,
+                const std::string& group) {
+  std::vector<std::string> groups = group_of_law;
+  std::ranges::sort(groups);
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  std::erase(groups, group);
+  const std::size_t others = groups.size();
+  double share = 0.0;
+  for (std::size_t chosen = 0; chosen < (std::size_t{1} << others); ++chosen) {
+    std::vector<std::size_t> without;
+    std::vector<std::size_t> with;
+    for (std::size_t k = 0; k < set.laws.size(); ++k) {
+      const auto at = static_cast<std::size_t>(std::ranges::find(groups, group_of_law[k]) - groups.begin());
+      const bool own = at == others;
+      if (own || ((chosen >> at) & 1U) != 0) {
+        with.push_back(set.laws[k]);
+        if (!own) {
+          without.push_back(set.laws[k]);
+        }
+      }
+    }
+    const auto before = static_cast<double>(std::popcount(chosen));
+    const auto all = static_cast<double>(others + 1);
+    // before! (all − before − 1)! / all!
+    const double weight = std::exp(std::lgamma(before + 1.0) + std::lgamma(all - before) - std::lgamma(all + 1.0));
+    share += weight * (closed_by(there, with) - closed_by(there, without));
+  }
+  return share;
+}
+
+std::vector<std::string> families_by_law(const Explored& there, const LawSet& set) {
+  std::vector<std::string> result;
+  for (const std::size_t i : set.laws) {
+    result.push_back((*there.laws)[i].family);
+  }
+  return result;
 }
 
 SetFinding described(const Explored& there, const LawSet& set) {
   SetFinding result{
       .space = there.space->name(), .probability = set.probability, .closed = 1.0 - std::exp(set.log_square)};
+  std::vector<std::string> numbered;  // each law a group of its own
+  for (std::size_t k = 0; k < set.laws.size(); ++k) {
+    numbered.push_back(std::to_string(k));
+  }
   Index at = 0;
   for (const std::size_t i : set.laws) {
     const Law& law = (*there.laws)[i];
@@ -146,7 +188,7 @@ SetFinding described(const Explored& there, const LawSet& set) {
       }
       ++at;
     }
-    finding.closed = closed_by(there, set, [&](const Law& other) { return &other == &law; });
+    finding.closed = share_of(there, set, numbered, numbered[result.laws.size()]);
     result.laws.push_back(std::move(finding));
   }
   return result;
@@ -237,7 +279,10 @@ Evidence evidence_of(const Task& task, const std::string& top, const Explanation
     };
     if (const auto set = std::ranges::find_if(sets, holds); set != sets.end()) {
       const Explored& there = spaces[set->space];
-      finding.closed = closed_by(there, *set, [&](const Law& law) { return law.family == family; });
+      finding.closed = share_of(there, *set, families_by_law(there, *set), family);
+      std::vector<std::size_t> own = set->laws;
+      std::erase_if(own, [&](std::size_t i) { return (*there.laws)[i].family != family; });
+      finding.alone = closed_by(there, std::move(own));
       const auto law =
           std::ranges::find_if(set->laws, [&](std::size_t i) { return (*there.laws)[i].family == family; });
       finding.edge = (*there.laws)[*law].edge;

@@ -52,6 +52,7 @@ double value_of(const LawFinding& law, const EffectParameter& parameter, double 
 std::optional<Explanation> explained(const Task& task, const std::string& top, const SetFinding& set,
                                      const Explanation& calibrated, const std::vector<std::string>& columns) {
   Explanation result{.variant = calibrated.variant};
+  std::vector<Index> travels;  // of frictions: how far they give
   VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
   for (std::size_t j = 0; j < std::min(task.known.size(), set.known.size()); ++j) {
     const auto at = static_cast<Index>(j);
@@ -80,6 +81,9 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
       variant.further.push_back(unknown_of(parameter, own.paths[j], {.values = {value}}));
       start.conservativeResize(start.size() + 1);
       start[start.size() - 1] = value;
+      if (parameter.unit == "'v*s") {
+        travels.push_back(start.size() - 1);
+      }
     }
     std::erase_if(own.settings, [](const auto& setting) { return !std::isfinite(setting.second); });
     result.variant = std::move(variant);
@@ -88,21 +92,36 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
   if (result.variant.effects.size() == calibrated.variant.effects.size()) {
     return std::nullopt;
   }
-  result = unless_refused([&] {
-    Explanation fitted = std::move(result);
-    Model model(task, *fitted.variant.program, fitted.variant.further);
-    const Index states = model.unknowns() - start.size();
-    start.conservativeResize(model.unknowns());
-    start.tail(states) = calibrated.fit.x.tail(states);
-    fitted.fit = fit(model, start, {.iterations = 25});
-    keep_starts(fitted, model);
-    finish(task, fitted, {.thoroughly = true});
-    return fitted;
-  });
+  // A friction that lets go within a step has no derivative that would lead a fit: softer ones are tried, too.
+  Explanation best{};
+  for (const double softer : {1.0, 10.0, 100.0}) {
+    Explanation one = unless_refused([&] {
+      Explanation fitted = result;
+      Model model(task, *fitted.variant.program, fitted.variant.further);
+      VectorXd from = start;
+      for (const Index j : travels) {
+        from[j] *= softer;
+      }
+      from.conservativeResize(model.unknowns());
+      from.tail(model.unknowns() - start.size()) = calibrated.fit.x.tail(model.unknowns() - start.size());
+      fitted.fit = fit(model, from, {.iterations = 25});
+      keep_starts(fitted, model);
+      finish(task, fitted, {.thoroughly = true});
+      return fitted;
+    });
+    if (one.fit.cost < best.fit.cost) {
+      best = std::move(one);
+    }
+    if (travels.empty()) {
+      break;
+    }
+  }
+  if (!std::isfinite(best.fit.cost)) {
+    return std::nullopt;
+  }
   // A fit over whole records that falls far short of what the stretches promise has lost its way.
-  constexpr double kept_promise = 0.5;
-  const double closed = 1.0 - result.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm();
-  return closed > kept_promise * set.closed ? std::optional(std::move(result)) : std::nullopt;
+  const double closed = 1.0 - best.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm();
+  return closed > policy::kept_promise.value * set.closed ? std::optional(std::move(best)) : std::nullopt;
 }
 
 }  // namespace hysteron::diagnosis

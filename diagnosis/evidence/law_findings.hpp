@@ -21,7 +21,7 @@ struct LawFinding {
   std::string edge{};
   std::vector<std::string> drivers{};
   std::vector<LawValue> values{};
-  double closed = 0.0;  ///< of the held-out gap, less what the set closes without it
+  double closed = 0.0;  ///< of the held-out gap, by Shapley's share in the set
 };
 
 struct SetFinding {
@@ -35,7 +35,8 @@ struct SetFinding {
 struct FamilyFinding {
   std::string family{};
   double probability = 0.0;
-  double closed = 0.0;   ///< by the most probable set that holds it, less what that set closes without it
+  double closed = 0.0;   ///< of the held-out gap, by Shapley's share in the most probable set that holds it
+  double alone = 0.0;    ///< and by itself
   std::string effect{};  ///< its most probable member
   double member = 0.0;   ///< the probability of that one, of that of the family
   std::string edge{};

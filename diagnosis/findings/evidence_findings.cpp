@@ -13,11 +13,8 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr double more_probable_than_not = 0.5;
 /// Of a normal distribution, to both sides.
 constexpr double in_95_percent = 1.96;
-/// A set that is seldom the best is no rival.
-constexpr double least_rival = 0.02;
 
 /// The set that holds the first family.
 const SetFinding& first_set(const Evidence& evidence) {
@@ -57,7 +54,7 @@ std::string capitalised(std::string text) {
 
 bool is_told(const Evidence& evidence) {
   return !evidence.families.empty() && !evidence.sets.empty() &&
-         evidence.families.front().probability > more_probable_than_not &&
+         evidence.families.front().probability > policy::named.value &&
          evidence.families.front().closed > policy::relevant.value;
 }
 
@@ -99,7 +96,7 @@ void tell(const Evidence& evidence, Diagnosis& result) {
       rival.effects.push_back(law.effect);
       rival.edges.push_back(law.edge);
     }
-    if (set.probability >= least_rival || &set == &first) {
+    if (set.probability >= policy::rival.value || &set == &first) {
       result.rivals.push_back(std::move(rival));
     }
   }
@@ -110,21 +107,22 @@ std::string sentence_of(const Diagnosis& found) {
   const Evidence& evidence = found.evidence;
   const SetFinding& first = first_set(evidence);
   const FamilyFinding& family = evidence.families.front();
-  std::string text = fmt::format("{} at {} ({}, probability {:.2f}) closes {} of the gap on stretches not fitted",
-                                 capitalised(words_of_family(family.family)), family.edge, family.effect,
-                                 family.probability, percent(family.closed));
+  std::string text =
+      fmt::format("{} at {} ({}, probability {:.2f}) closes {} of the gap by itself, on stretches not fitted",
+                  capitalised(words_of_family(family.family)), family.edge, family.effect, family.probability,
+                  percent(family.alone));
   std::vector<std::string> beside;
   for (const FamilyFinding& one : evidence.families) {
-    if (&one != &family && one.probability > more_probable_than_not && one.closed > policy::relevant.value) {
-      beside.push_back(fmt::format("{} at {} ({}, {:.2f})", words_of_family(one.family), one.edge, percent(one.closed),
-                                   one.probability));
+    if (&one != &family && one.probability > policy::named.value && one.closed > policy::relevant.value) {
+      beside.push_back(
+          fmt::format("{} at {} (probability {:.2f})", words_of_family(one.family), one.edge, one.probability));
     }
   }
   if (!beside.empty()) {
-    text += fmt::format("; beside it {}", fmt::join(beside, ", "));
+    text += fmt::format(", with {} {}", fmt::join(beside, " and "), percent(first.closed));
   }
-  return fmt::format("{}. Together {}; the rest, {}, no effect of the library explains.", text, percent(first.closed),
-                     percent(1.0 - first.closed));
+  return fmt::format("{}. The rest, {}, no effect of the library explains.", text,
+                     percent(1.0 - (beside.empty() ? family.alone : first.closed)));
 }
 
 }  // namespace hysteron::diagnosis

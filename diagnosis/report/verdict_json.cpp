@@ -49,6 +49,7 @@ Json families_of(const Evidence& evidence) {
     result.push_back({{"family", one.family},
                       {"probability", number(one.probability)},
                       {"closed", number(one.closed)},
+                      {"closed_alone", number(one.alone)},
                       {"effect", one.effect},
                       {"effect_probability", number(one.member)},
                       {"edge", one.edge}});

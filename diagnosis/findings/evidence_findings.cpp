@@ -100,7 +100,10 @@ void tell(const Evidence& evidence, Diagnosis& result) {
       result.rivals.push_back(std::move(rival));
     }
   }
-  result.confidence = std::min(evidence.families.front().probability, 0.99);
+  // √closed is the correlation of what the set predicts with what is missing: of a gap that is mostly open, a cause that
+  // no effect of the library is may be all there is.
+  const double correlation = std::sqrt(std::clamp(first.closed, 0.0, 1.0));
+  result.confidence = std::min(evidence.families.front().probability * correlation, 0.99);
 }
 
 std::string sentence_of(const Diagnosis& found) {

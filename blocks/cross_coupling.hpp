@@ -26,9 +26,10 @@ struct CrossCoupling {
     S Z_REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
-                        HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
-                        HY_FIELD(Z_REFERENCE).in("'z").otherwise(0.0).means("Z that adds nothing")};
+      return std::tuple{
+          HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
+          HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
+          HY_FIELD(Z_REFERENCE).role(FieldRole::ReferenceSize).in("'z").otherwise(0.0).means("Z that adds nothing")};
     }
   };
   template <class S>

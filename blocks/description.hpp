@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "blocks/roles.hpp"
 #include "blocks/scalar.hpp"
 
 namespace hysteron {
@@ -41,6 +42,8 @@ struct Field {
   bool required = false;       ///< an input that has no default: it must be connected
   bool above_minimum = false;  ///< the minimum itself is out of range
   bool open = false;           ///< a choice of the machine's past, which a record does not show
+  FieldRole role = FieldRole::Number;
+  std::string_view shapes{};  ///< the parameter of the same block whose effect it shapes; empty for none
 
   [[nodiscard]] constexpr bool has_neutral() const { return neutral == neutral; }
 };
@@ -95,6 +98,18 @@ struct BoundField : Field {
   [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
     auto copy = *this;
     copy.Field::effect = identifier;
+    return copy;
+  }
+  /// What it is for, where its unit does not tell.
+  [[nodiscard]] constexpr BoundField role(FieldRole what) const {
+    auto copy = *this;
+    copy.Field::role = what;
+    return copy;
+  }
+  /// It says how another parameter, which has an effect of its own, takes effect.
+  [[nodiscard]] constexpr BoundField shapes(std::string_view name_of_other) const {
+    auto copy = *this;
+    copy.Field::shapes = name_of_other;
     return copy;
   }
   /// A choice of what was before a record began, which the record does not tell: a diagnosis tries it both ways.
@@ -182,6 +197,8 @@ struct About {
   /// The block that this one can replace: it has the same ports and parameters of the same meaning and more, and gives
   /// equal bits while every further parameter that has an effect is at its neutral setting. Empty for none.
   std::string_view enriches{};
+  /// An effect with fewer parameters, of the same names, that may be meant where this one was found. Empty for none.
+  std::string_view simpler{};
   bool rate_transition = false;  ///< may stand between two rates (@every)
   bool of_record = false;        ///< its effect is the record's and not the machine's: at the ports of a diagram alone
 };

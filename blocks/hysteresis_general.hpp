@@ -64,11 +64,13 @@ struct HysteresisGeneral {
                   .effect("curve_shape")
                   .means("slope of Bouc and Wen's element where it begins, over C1"),
               HY_FIELD(BOUC_WEN_TRAVEL)
+                  .shapes("BOUC_WEN")
                   .in("'x")
                   .above(0.0)
                   .otherwise(1.0)
                   .means("what that element reaches at most, and over which it does so"),
               HY_FIELD(BOUC_WEN_SKEW)
+                  .shapes("BOUC_WEN")
                   .in("1")
                   .within(0.0, 0.9)
                   .otherwise(0.5)

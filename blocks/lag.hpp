@@ -41,9 +41,12 @@ struct Lag {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
-          HY_FIELD(X0).in("'x").otherwise(0.0).means("output at a reset, and at the start if not SETTLED")};
+      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
+                        HY_FIELD(X0)
+                            .role(FieldRole::StartValue)
+                            .in("'x")
+                            .otherwise(0.0)
+                            .means("output at a reset, and at the start if not SETTLED")};
     }
   };
   template <class S>
@@ -53,7 +56,7 @@ struct Lag {
     using Self = Out;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(XOUT).in("'x").means("lagged signal"),
-                        HY_FIELD(RATE).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
+                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
     }
   };
 

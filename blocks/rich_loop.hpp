@@ -62,12 +62,15 @@ struct RichParams : Enriched {
                 .effect("asymmetry")
                 .means("C2 is larger by this share upwards and smaller downwards"),
             HY_FIELD(ASYMMETRY_EXPONENT)
+                .shapes("ASYMMETRY")
                 .in("1")
                 .within(-0.9, 0.9)
                 .otherwise(0.0)
                 .neutral_at(0.0)
                 .means("C3 is larger by this upwards and smaller downwards"),
             HY_FIELD(ASYMMETRY_REFERENCE)
+                .shapes("ASYMMETRY")
+                .role(FieldRole::ReferenceSize)
                 .in(momentum_unit)
                 .above(0.0)
                 .otherwise(1.0)
@@ -79,6 +82,8 @@ struct RichParams : Enriched {
                 .effect("rate_dependence")
                 .means(joined<"share by which C2 grows per decade of ", rate>),
             HY_FIELD(RATE_REFERENCE)
+                .shapes("RATE")
+                .role(FieldRole::ReferenceSize)
                 .in(rate_unit)
                 .above(0.0)
                 .otherwise(1.0)
@@ -91,6 +96,8 @@ struct RichParams : Enriched {
                 .means(joined<"share by which the slopes are larger on a branch whose middle is BIAS_REFERENCE above ",
                               origin>),
             HY_FIELD(BIAS_REFERENCE)
+                .shapes("BIAS")
+                .role(FieldRole::ReferenceSize)
                 .in(distance_unit)
                 .above(0.0)
                 .otherwise(1.0)
@@ -102,6 +109,8 @@ struct RichParams : Enriched {
                 .effect("bias_dependence")
                 .means(joined<"share by which the slope is larger where the input is DUHEM_REFERENCE above ", origin>),
             HY_FIELD(DUHEM_REFERENCE)
+                .shapes("DUHEM")
+                .role(FieldRole::ReferenceSize)
                 .in(distance_unit)
                 .above(0.0)
                 .otherwise(1.0)
@@ -115,6 +124,8 @@ struct RichParams : Enriched {
                               "HARDENING_REFERENCE above ",
                               origin>),
             HY_FIELD(HARDENING_REFERENCE)
+                .shapes("HARDENING")
+                .role(FieldRole::ReferenceSize)
                 .in(distance_unit)
                 .above(0.0)
                 .otherwise(1.0)
@@ -127,6 +138,7 @@ struct RichParams : Enriched {
                 .effect("curve_shape")
                 .means("share of C1 by which the slope is larger far from the branching point"),
             HY_FIELD(SHAPE_DEPTH)
+                .shapes("SHAPE")
                 .in(momentum_unit)
                 .above(0.0)
                 .otherwise(1.0)

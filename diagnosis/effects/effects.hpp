@@ -1,8 +1,8 @@
 // The effects that are tried: every block with an effect and a neutral setting, from the catalogue and from the user's
 // own file, and what the search needs to know of their parameters.
 //
-// Nothing here names a block. What a parameter is follows from its description: neutral or not, and its unit relative
-// to the signal ('x), which says what a sensible size is.
+// Nothing here names a block or a parameter. What a parameter is follows from its description: neutral or not, its
+// role, and its unit relative to the signal ('x), which says what a sensible size is.
 #pragma once
 
 #include <string>
@@ -54,6 +54,7 @@ struct EffectKind {
   std::string id{};     ///< creep
   std::string block{};  ///< HY_CREEP
   Change change = Change::Insert;
+  std::string simpler{};  ///< the effect with fewer parameters that may be meant where this one was found
   std::string input = "XIN";
   std::string output = "XOUT";
   std::string enriches{};                     ///< Enrich: the block that it can stand for; Free: the block itself

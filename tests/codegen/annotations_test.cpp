@@ -43,9 +43,19 @@ TEST(Annotations, OfARangeAreInOrder) {
 TEST(Annotations, ThatDoNotFitAreToldThoseThatDo) {
   EXPECT_THAT(refusal(with("", "", "(* @min 0 *)")),
               AllOf(HasSubstr("@min is not an annotation that fits here"), HasSubstr("Known here: @unit, @doc.")));
-  EXPECT_THAT(refusal(with("", "(* @every 4 *)")), HasSubstr("Known here: @unit, @min, @max, @param, @neutral, @doc."));
+  EXPECT_THAT(refusal(with("", "(* @every 4 *)")),
+              HasSubstr("Known here: @unit, @min, @max, @param, @neutral, @role, @doc."));
   EXPECT_THAT(refusal(with("", "", "", "(* @unit V *)")), HasSubstr("Known here: @every, @phase, @doc."));
   EXPECT_THAT(refusal(with("(* @unit V *)", "")), HasSubstr("Known here: @ts, @effect, @doc."));
+}
+
+TEST(Annotations, ARoleIsOneOfThoseThatAParameterCanHave) {
+  EXPECT_THAT(refusal(with("", "(* @param @role begin *)")),
+              AllOf(HasSubstr("'begin' is not a role"), HasSubstr("start, reference_size, centre")));
+  EXPECT_THAT(refusal(with("", "(* @param @role lower_bound *)")), HasSubstr("'lower_bound' is not a role"));
+  EXPECT_THAT(refusal(with("", "(* @role start *)")), HasSubstr("'U' has a @role and is no parameter"));
+  EXPECT_EQ(refusal(with("", "(* @role Start @param *)")), "accepted");
+  EXPECT_EQ(refusal(with("", "(* @neutral 0.0 *) (* @role quantum *)")), "accepted");
 }
 
 TEST(Annotations, APhaseBelowZeroIsToldFromWhereItCounts) {

@@ -21,6 +21,7 @@ struct Backlash {
           "contacts.",
       .source = "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, 1989, play operator",
       .effect = "backlash",
+      .family = Family::Play,
       .simpler = "dead_zone"};
 
   template <class S>

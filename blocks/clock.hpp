@@ -22,6 +22,7 @@ struct Clock : PastSignal {
           "sample, so that the result has a derivative by T_LOST.",
       .delay = "SKEW·t, and LOST more after T_LOST; the gain between samples as in HY_DEAD_TIME.",
       .effect = "clock",
+      .family = Family::Logging,
       .of_record = true};
 
   template <class S>

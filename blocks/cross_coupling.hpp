@@ -17,7 +17,8 @@ struct CrossCoupling {
           "What another axis, a temperature or any second signal Z adds, behind a first-order lag (ramp-invariant, as "
           "HY_LAG; T1 = 0 for none). Z is that of the step before, so that the block closes loops; in the first step "
           "nothing is added, and the lag starts as if the first Z had stood for ever.",
-      .effect = "cross_coupling"};
+      .effect = "cross_coupling",
+      .family = Family::Coupling};
 
   template <class S>
   struct Params {

@@ -19,7 +19,8 @@ struct DeadTime : PastSignal {
           "DEAD_TIME; between samples, at the fraction f, the gain falls to |1 − f + f·exp(−jw)|: at the worst, f = "
           "½, cos(w/2) at w = ωTS.",
       .source = "linear interpolation of the sampled signal",
-      .effect = "delay"};
+      .effect = "delay",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {

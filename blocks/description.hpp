@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "blocks/families.hpp"
 #include "blocks/roles.hpp"
 #include "blocks/scalar.hpp"
 
@@ -30,7 +31,8 @@ struct Field {
   std::string_view name;
   std::string_view unit;
   std::string_view meaning;
-  std::string_view effect;  ///< the physical effect that this parameter switches on by itself; empty for none
+  std::string_view effect;       ///< the physical effect that this parameter switches on by itself; empty for none
+  Family family = Family::None;  ///< of that effect
   double effect_minimum = -std::numeric_limits<double>::infinity();  ///< below it, the block is another effect
   double effect_maximum = std::numeric_limits<double>::infinity();   ///< above it, likewise
   double preset = 0.0;
@@ -95,9 +97,10 @@ struct BoundField : Field {
     return copy;
   }
   /// The effect that the parameter switches on by itself, away from its neutral setting.
-  [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
+  [[nodiscard]] constexpr BoundField effect(std::string_view identifier, Family of) const {
     auto copy = *this;
     copy.Field::effect = identifier;
+    copy.family = of;
     return copy;
   }
   /// What it is for, where its unit does not tell.
@@ -194,6 +197,7 @@ struct About {
   std::string_view delay{};     ///< delay and gain curve over frequency, where they matter
   std::string_view source{};    ///< standard, paper or book that defines it
   std::string_view effect{};    ///< identifier of the physical effect that it adds between XIN and XOUT; empty for none
+  Family family = Family::None;  ///< of that effect
   /// The block that this one can replace: it has the same ports and parameters of the same meaning and more, and gives
   /// equal bits while every further parameter that has an effect is at its neutral setting. Empty for none.
   std::string_view enriches{};

@@ -18,14 +18,14 @@ struct IntegralBounds {
                           .in("'x*s")
                           .otherwise(-unbounded)
                           .neutral_at(-unbounded)
-                          .effect("saturation")
+                          .effect("saturation", Family::StaticCurve)
                           .means("lower bound"),
                       HY_FIELD(MX)
                           .role(FieldRole::UpperBound)
                           .in("'x*s")
                           .otherwise(unbounded)
                           .neutral_at(unbounded)
-                          .effect("saturation")
+                          .effect("saturation", Family::StaticCurve)
                           .means("upper bound")};
   }
 

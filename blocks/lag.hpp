@@ -19,7 +19,8 @@ struct Lag {
           "input: to close a loop, put HY_DELAY in it.",
       .delay = "T1 at low frequency; gain 1/√(1 + (ωT1)²) up to factors (sin(ωTS/2)/(ωTS/2))² of the straight line.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed.",
-      .effect = "lag"};
+      .effect = "lag",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {

@@ -17,6 +17,7 @@ struct Limit : Stateless {
           "MN is above MX, MX wins. For bounds that are signals use HY_MIN and HY_MAX.",
       .source = "IEC 61131-3, LIMIT",
       .effect = "saturation",
+      .family = Family::StaticCurve,
       .simpler = "saturation"};
 
   template <class S>

@@ -17,7 +17,8 @@ struct Load : OfClockTime {
           "A load that is put on at T_ON and taken off at T_OFF: a force on an actuator, a torque on a drive, a level "
           "on a signal. A sample counts the part of the interval before it in which the load was on, so that the "
           "result has a derivative by both times. t is 0 in the first step. T_OFF before T_ON is no load at all.",
-      .effect = "load"};
+      .effect = "load",
+      .family = Family::SlowChange};
 
   template <class S>
   struct Params {

@@ -28,7 +28,7 @@ struct LoopParams {
             .at_least(0.0)
             .otherwise(0.0)
             .neutral_at(0.0)
-            .effect("branch_chatter")
+            .effect("branch_chatter", Family::Hysteresis)
             .means("dead band of the branching detector"),
         HY_FIELD(START).within(-1.0, 1.0).otherwise(0.0).means(
             "0: on the skeleton; 1, -1: on a rising, falling branch"),

@@ -18,7 +18,8 @@ struct Quantizer : Stateless {
                                    "With SPREAD each threshold is spread evenly over the share SPREAD of a quantum to "
                                    "either side, and the output is the mean, a ramp in place of a jump: what a "
                                    "converter with uneven codes, or with noise in front of it, gives in the mean.",
-                               .effect = "quantization"};
+                               .effect = "quantization",
+                               .family = Family::Logging};
 
   template <class S>
   struct Params {

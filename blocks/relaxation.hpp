@@ -18,6 +18,7 @@ struct Relaxation {
           "HY_CREEP has all time scales. Exact for an input that runs straight between its samples.",
 
       .effect = "relaxation",
+      .family = Family::SlowMemory,
       .simpler = "lag"};
 
   template <class S>

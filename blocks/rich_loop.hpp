@@ -59,7 +59,7 @@ struct RichParams : Enriched {
                 .within(-1.0, 1.0)
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("asymmetry")
+                .effect("asymmetry", Family::Hysteresis)
                 .means("C2 is larger by this share upwards and smaller downwards"),
             HY_FIELD(ASYMMETRY_EXPONENT)
                 .shapes("ASYMMETRY")
@@ -79,7 +79,7 @@ struct RichParams : Enriched {
                 .in("1")
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("rate_dependence")
+                .effect("rate_dependence", Family::Hysteresis)
                 .means(joined<"share by which C2 grows per decade of ", rate>),
             HY_FIELD(RATE_REFERENCE)
                 .shapes("RATE")
@@ -92,7 +92,7 @@ struct RichParams : Enriched {
                 .in("1")
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("bias_dependence")
+                .effect("bias_dependence", Family::Hysteresis)
                 .means(joined<"share by which the slopes are larger on a branch whose middle is BIAS_REFERENCE above ",
                               origin>),
             HY_FIELD(BIAS_REFERENCE)
@@ -106,7 +106,7 @@ struct RichParams : Enriched {
                 .in("1")
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("bias_dependence")
+                .effect("bias_dependence", Family::Hysteresis)
                 .means(joined<"share by which the slope is larger where the input is DUHEM_REFERENCE above ", origin>),
             HY_FIELD(DUHEM_REFERENCE)
                 .shapes("DUHEM")
@@ -119,7 +119,7 @@ struct RichParams : Enriched {
                 .in("1")
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("bias_dependence")
+                .effect("bias_dependence", Family::Hysteresis)
                 .means(joined<"share by which the growth of the slope, C2*p^C3, is larger where the input is "
                               "HARDENING_REFERENCE above ",
                               origin>),
@@ -135,7 +135,7 @@ struct RichParams : Enriched {
                 .within(-1.0, 4.0)
                 .otherwise(0.0)
                 .neutral_at(0.0)
-                .effect("curve_shape")
+                .effect("curve_shape", Family::Hysteresis)
                 .means("share of C1 by which the slope is larger far from the branching point"),
             HY_FIELD(SHAPE_DEPTH)
                 .shapes("SHAPE")

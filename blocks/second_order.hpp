@@ -23,7 +23,8 @@ struct SecondOrder {
           "2·ZETA·T at low frequency; gain K/√((1 − (ωT)²)² + (2·ZETA·ωT)²) up to factors (sin(ωTS/2)/(ωTS/2))² of "
           "the straight line.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed.",
-      .effect = "resonance"};
+      .effect = "resonance",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {

@@ -21,6 +21,7 @@ struct StribeckFriction {
 
       .source = "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083",
       .effect = "stribeck_friction",
+      .family = Family::DryFriction,
       .simpler = "coulomb_friction"};
 
   template <class S>

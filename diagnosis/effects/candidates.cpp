@@ -117,7 +117,7 @@ class Enumeration {
   /// the diagram, a column of the records that nothing uses.
   [[nodiscard]] std::vector<std::string> drivers(const EffectKind& kind, const Edge& edge) const {
     std::vector<std::string> result;
-    if (kind.id == "cross_coupling") {
+    if (kind.family == name_of(Family::Coupling)) {
       if (!edge.prefix.empty()) {
         return result;
       }

@@ -99,6 +99,7 @@ void drop_gains(std::vector<EffectParameter>& parameters) {
 void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
   if (!block.about.effect.empty()) {
     EffectKind kind{.id = std::string(block.about.effect), .block = std::string(block.about.name)};
+    kind.family = name_of(block.about.family);
     kind.simpler = block.about.simpler;
     kind.of_record = block.about.of_record;
     bool has_input = false;
@@ -123,6 +124,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       continue;
     }
     EffectKind kind{.id = std::string(field.effect),
+                    .family = std::string(name_of(field.family)),
                     .block = std::string(block.about.name),
                     .change = block.about.enriches.empty() ? Change::Free : Change::Enrich,
                     .enriches = std::string(block.about.enriches.empty() ? block.about.name : block.about.enriches)};
@@ -144,7 +146,9 @@ void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
   if (definition.effect.empty() || !definition.usable) {
     return;
   }
-  EffectKind kind{.id = definition.effect, .block = std::string(definition.block->name.text)};
+  EffectKind kind{.id = definition.effect,
+                  .family = definition.family.empty() ? definition.effect : definition.family,
+                  .block = std::string(definition.block->name.text)};
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
   std::vector<Field> parameters;

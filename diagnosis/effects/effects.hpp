@@ -51,8 +51,9 @@ enum class Change : std::uint8_t {
 };
 
 struct EffectKind {
-  std::string id{};     ///< creep
-  std::string block{};  ///< HY_CREEP
+  std::string id{};      ///< creep
+  std::string family{};  ///< slow_memory; of an effect of the user's own that states none, its id
+  std::string block{};   ///< HY_CREEP
   Change change = Change::Insert;
   std::string simpler{};  ///< the effect with fewer parameters that may be meant where this one was found
   std::string input = "XIN";

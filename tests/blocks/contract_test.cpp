@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -102,6 +103,31 @@ TEST(Contract, OnlyEffectsHaveANeutralSetting) {
       }
     }
   });
+}
+
+TEST(Contract, EveryEffectIsOfAFamily) {
+  std::map<std::string_view, Family> families;
+  const auto expect = [&](std::string_view effect, Family family) {
+    EXPECT_EQ(effect.empty(), family == Family::None) << effect;
+    EXPECT_EQ(families.try_emplace(effect, family).first->second, family) << effect << " is of two families";
+  };
+  for_each_block([&]<class B> {
+    expect(B::about.effect, B::about.family);
+    for (const Field& field : fields_of<DoubleParams<B>>()) {
+      expect(field.effect, field.family);
+    }
+  });
+  EXPECT_EQ(families.at("creep"), families.at("relaxation"));
+}
+
+TEST(Families, AreNamedAndSaidWhatTheyAre) {
+  std::set<std::string_view> names;
+  for (const FamilyText& one : family_texts) {
+    EXPECT_TRUE(names.insert(one.name).second);
+    EXPECT_EQ(name_of(one.family), one.name);
+    EXPECT_GE(one.meaning.size(), 10U) << one.name;
+  }
+  EXPECT_EQ(name_of(Family::None), "");
 }
 
 TEST(Contract, AParameterShapesAnEffectOfItsOwnBlock) {

@@ -82,6 +82,19 @@ TEST(EffectKinds, AParameterOfTheUsersOwnHasTheRoleThatItStates) {
   EXPECT_EQ(sag(own("@param @role start")).parameters.size(), 1U) << "where a block starts is not searched";
 }
 
+TEST(EffectKinds, HaveAFamily) {
+  const auto kinds = effect_kinds({});
+  for (const EffectKind& kind : kinds) {
+    EXPECT_TRUE(std::ranges::any_of(family_texts, [&](const FamilyText& one) { return one.name == kind.family; }))
+        << kind.id;
+  }
+  EXPECT_EQ(std::ranges::find(kinds, "asymmetry", &EffectKind::id)->family, "hysteresis");
+  EXPECT_EQ(sag(own("@param")).family, "sag") << "one by itself";
+  std::string stated = own("@param");
+  stated.replace(stated.find("@effect sag"), 11, "@effect sag @family static_curve");
+  EXPECT_EQ(sag(stated).family, "static_curve");
+}
+
 TEST(EffectKinds, OnlyADescriptionSaysWhatIsSimpler) {
   std::string longer =
       own("@param", "@neutral 0 *) LEVEL : LREAL := 0.0; (* @neutral 0 *) PRESLIDE : LREAL; (* @param");

@@ -203,6 +203,7 @@ struct About {
   std::string_view enriches{};
   /// An effect with fewer parameters, of the same names, that may be meant where this one was found. Empty for none.
   std::string_view simpler{};
+  std::string_view untried{};    ///< why a diagnosis tries the effect only where it is asked for it; empty: it does
   bool rate_transition = false;  ///< may stand between two rates (@every)
   bool of_record = false;        ///< its effect is the record's and not the machine's: at the ports of a diagram alone
 };

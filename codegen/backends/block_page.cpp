@@ -199,6 +199,10 @@ std::string limits_of_effect(const BlockType& block, std::string_view quote) {
   if (block.about.of_record) {
     text += " It is the record's: a diagnosis tries it at the inputs and outputs of a diagram alone.";
   }
+  if (!block.about.untried.empty()) {
+    text += fmt::format(" A diagnosis tries it where it is asked for it ({}--effects{}): {}.", quote, quote,
+                        block.about.untried);
+  }
   for (const Field& field : block.params) {
     const bool low = std::isfinite(field.effect_minimum);
     if (low || std::isfinite(field.effect_maximum)) {
@@ -262,8 +266,7 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
 std::string family_index(std::string_view folder) {
   std::string text =
       "### Effects by family\n\nA family is what a record tells before it tells the member. A diagram's own effect "
-      "names "
-      "its\nfamily by `@family`.\n\n| family | what it is | effects |\n| --- | --- | --- |\n";
+      "names its\nfamily by `@family`.\n\n| family | what it is | effects |\n| --- | --- | --- |\n";
   for (const FamilyText& one : family_texts) {
     text += fmt::format("| `{}` | {} | {} |\n", one.name, escaped(one.meaning), members_of(one.family, folder));
   }

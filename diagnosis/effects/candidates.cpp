@@ -64,7 +64,7 @@ class Enumeration {
 
   std::vector<Candidate> list() {
     for (const EffectKind& kind : effect_kinds(definitions_)) {
-      if (!is_tried(options_.effects, kind.id)) {
+      if (!is_tried(options_.effects, kind.id) || (options_.effects.empty() && !kind.untried.empty())) {
         continue;
       }
       if (kind.change == Change::Insert) {

@@ -101,6 +101,7 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
     EffectKind kind{.id = std::string(block.about.effect), .block = std::string(block.about.name)};
     kind.family = name_of(block.about.family);
     kind.simpler = block.about.simpler;
+    kind.untried = block.about.untried;
     kind.of_record = block.about.of_record;
     bool has_input = false;
     for (const Field& input : block.inputs) {

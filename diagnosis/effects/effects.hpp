@@ -62,6 +62,7 @@ struct EffectKind {
   std::vector<EffectParameter> parameters{};  ///< those that are searched
   std::vector<Field> choices{};               ///< of what was before the record: tried both ways
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
+  std::string untried{};                      ///< why it is tried only where it is asked for; empty: it is tried
   bool of_output = false;                     ///< its levels are those of the block's output, not of its input
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
   bool by_velocity = false;                   ///< and it is a velocity

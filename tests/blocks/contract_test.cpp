@@ -113,6 +113,7 @@ TEST(Contract, EveryEffectIsOfAFamily) {
   };
   for_each_block([&]<class B> {
     expect(B::about.effect, B::about.family);
+    EXPECT_TRUE(B::about.untried.empty() || !B::about.effect.empty());
     for (const Field& field : fields_of<DoubleParams<B>>()) {
       expect(field.effect, field.family);
     }

@@ -56,7 +56,7 @@ END_FUNCTION_BLOCK
 TEST(Candidates, EveryEffectOfTheCatalogueIsTried) {
   std::set<std::string> catalogue;
   for (const BlockType& block : block_types()) {
-    if (!block.about.effect.empty()) {
+    if (!block.about.effect.empty() && block.about.untried.empty()) {
       catalogue.emplace(block.about.effect);
     }
     for (const Field& field : block.params) {
@@ -67,6 +67,17 @@ TEST(Candidates, EveryEffectOfTheCatalogueIsTried) {
   }
   ASSERT_GE(catalogue.size(), 28U);
   EXPECT_EQ(effects_in(candidates(whole_machine, "MACHINE")), catalogue);
+}
+
+TEST(Candidates, AnEffectThatIsNotTriedByItselfIsTriedWhereItIsAskedFor) {
+  const std::set<std::string> tried = effects_in(candidates(whole_machine, "MACHINE"));
+  for (const BlockType& block : block_types()) {
+    if (!block.about.untried.empty()) {
+      const std::string effect(block.about.effect);
+      EXPECT_THAT(tried, Not(Contains(effect)));
+      EXPECT_THAT(effects_in(candidates(whole_machine, "MACHINE", {.effects = {effect}})), ElementsAre(effect));
+    }
+  }
 }
 
 TEST(Candidates, AnEffectIsTriedOnEachEdge) {

@@ -229,7 +229,7 @@ TEST(OutputError, AParameterMayHaveAValueForEachRecord) {
   const std::string settings = "[fit.BODY]\nT1 = {}\n[fit.record]\nZERO = {min = -5.0}\n";
   const auto problem = problem_of(zeroed, settings, days);
   const auto fit = fit_output_error(problem);
-  ASSERT_THAT(fit.names, testing::ElementsAre("BODY.T1", "ZERO of record 1", "ZERO of record 2"));
+  ASSERT_THAT(fit.names, ::testing::ElementsAre("BODY.T1", "ZERO of record 1", "ZERO of record 2"));
   EXPECT_NEAR(fit.solution.x[0], 35.0, 1e-6);
   EXPECT_NEAR(fit.solution.x[1], 0.4, 1e-6);
   EXPECT_NEAR(fit.solution.x[2], -1.6, 1e-6);
@@ -241,8 +241,8 @@ TEST(OutputError, AParameterMayHaveAValueForEachRecord) {
   const auto tuned = tuned_file(file, problem, fit);
   EXPECT_NEAR(std::get<double>(tuned.find("ZERO")->value), -0.6, 1e-6) << "the mean, for runs";
   EXPECT_THAT(tuned_heading(problem, fit),
-              testing::AllOf(HasSubstr("ZERO of record 1: 0.4"), HasSubstr("ZERO of record 2: -1.6"),
-                             testing::Not(HasSubstr("T1"))));
+              ::testing::AllOf(HasSubstr("ZERO of record 1: 0.4"), HasSubstr("ZERO of record 2: -1.6"),
+                             ::testing::Not(HasSubstr("T1"))));
   const auto text = parameters::parameter_text(tuned, tuned_remarks(problem, fit));
   EXPECT_THAT(text, HasSubstr("[fit.record]\nZERO = {min = -5.0}"));
 
@@ -253,7 +253,7 @@ TEST(OutputError, AParameterMayHaveAValueForEachRecord) {
 TEST(OutputError, ASingleRecordHasOneValueOfEach) {
   const std::vector<Record> day{two_days().front()};
   const auto fit = fit_output_error(problem_of(zeroed, "[fit.record]\nZERO = {}\n[fit.record.BODY]\nT1 = {}\n", day));
-  EXPECT_THAT(fit.names, testing::ElementsAre("ZERO", "BODY.T1"));
+  EXPECT_THAT(fit.names, ::testing::ElementsAre("ZERO", "BODY.T1"));
   EXPECT_NEAR(fit.solution.x[0], 0.4, 1e-6);
 }
 

@@ -12,8 +12,7 @@ struct Gain {
       .group = Group::Arithmetic,
       .equation = "XOUT = K·XIN",
       .meaning = "Multiplies a signal by a constant. K carries the unit of the output over that of the input.",
-      .effect = "gain_error",
-      .family = Family::LinearDynamics};
+      .effect = "gain_error"};
 
   template <class S>
   struct Params {

@@ -14,8 +14,7 @@ struct Offset : Stateless {
       .equation = "XOUT = XIN + BIAS",
       .meaning = "Adds a constant: the zero error of a sensor, of an amplifier or of a mounting.",
 
-      .effect = "offset",
-      .family = Family::Offset};
+      .effect = "offset"};
 
   template <class S>
   struct Params {

@@ -17,9 +17,7 @@ struct Relaxation {
           "GAIN·(1 − exp(−t/T1))). One exponential, of a viscoelastic mount or of an amplifier's thermal tail; "
           "HY_CREEP has all time scales. Exact for an input that runs straight between its samples.",
 
-      .effect = "relaxation",
-      .family = Family::SlowMemory,
-      .simpler = "lag"};
+      .effect = "relaxation"};
 
   template <class S>
   struct Params {

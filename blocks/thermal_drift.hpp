@@ -15,8 +15,7 @@ struct ThermalDrift : OfClockTime {
                                .meaning =
                                    "Adds what a machine drifts as it warms up after the start: an exponential of the "
                                    "clock time t, also while nothing moves. t is 0 in the first step.",
-                               .effect = "thermal_drift",
-                               .family = Family::SlowChange};
+                               .effect = "thermal_drift"};
 
   template <class S>
   struct Params {

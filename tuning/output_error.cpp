@@ -287,11 +287,6 @@ class Fitter {
     }
   }
 
-  [[nodiscard]] double cost_at(const VectorXd& x) {
-    VectorXd residuals(rollout_.residual_count());
-    return rollout_.residuals(x, residuals, nullptr) ? 0.5 * residuals.squaredNorm() : infinity;
-  }
-
   /// Again, with each output in units of the error that it was left with.
   void weight_by_noise() {
     std::vector<double> scales = rollout_.scales();
@@ -304,8 +299,7 @@ class Fitter {
     }
     rollout_.set_scales(scales);
     LeastSquaresProblem problem = least_squares_;
-    // By the new weights the start may be the better one of the two.
-    problem.start = cost_at(least_squares_.start) < cost_at(fit_.solution.x) ? least_squares_.start : fit_.solution.x;
+    problem.start = fit_.solution.x;
     const int iterations = fit_.solution.iterations;
     fit_.solution = solve(problem, solver_options(fit_.best_start));
     fit_.solution.iterations += iterations;
@@ -360,31 +354,12 @@ OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputE
   return Fitter(problem, options).run();
 }
 
-namespace {
-
-/// The value of a parameter; of one that each record has for itself, the mean of all of them.
-double mean_over_records(const OutputErrorProblem& problem, const OutputErrorFit& fit, std::size_t parameter) {
-  const FreeParameter& wanted = problem.parameters[parameter];
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const FreeParameter& free = problem.parameters[j];
-    if (free.parameter == wanted.parameter && free.element == wanted.element) {
-      sum += fit.solution.x[static_cast<Index>(j)];
-      count += 1.0;
-    }
-  }
-  return sum / count;
-}
-
-}  // namespace
-
 parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
                                      const OutputErrorFit& fit) {
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     const FreeParameter& free = problem.parameters[j];
     const Parameter& parameter = problem.program.graph.parameters[free.parameter];
-    const double value = mean_over_records(problem, fit, j);
+    const double value = fit.solution.x[static_cast<Index>(j)];
     auto found = std::ranges::find_if(file.values, [&](const parameters::ParameterValue& given) {
       return equal_ignoring_case(given.path, parameter.path);
     });
@@ -413,10 +388,7 @@ std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFi
     files.push_back(experiment.name);
   }
   std::string text = fmt::format("{}{}.\n{}", tuned_by, fmt::join(files, ", "), fit.solution.message);
-  for (std::size_t j = 0; files.size() > 1 && j < fit.names.size(); ++j) {
-    if (j < problem.parameters.size() && !problem.parameters[j].record) {
-      continue;  // the same in all records, and a value of the file
-    }
+  for (std::size_t j = problem.parameters.size(); files.size() > 1 && j < fit.names.size(); ++j) {
     text += fmt::format("\n{}: {}", fit.names[j], number_text(fit.solution.x[static_cast<Index>(j)]));
   }
   return text;
@@ -428,8 +400,7 @@ parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const Outpu
     const FreeParameter& free = problem.parameters[j];
     const Parameter& parameter = problem.program.graph.parameters[free.parameter];
     parameters::Remark remark{.unit = free.unit, .meaning = std::string(parameter.field.meaning)};
-    if (parameter.value.size() == 1 && !free.record &&
-        std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
+    if (parameter.value.size() == 1 && std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
       remark.standard_error = fit.covariance.standard_errors[static_cast<Index>(j)];
     }
     remarks[in_capitals("parameters." + parameter.path)] = std::move(remark);

@@ -99,22 +99,7 @@ class Builder {
                          .place = fit.place,
                          .start = fit.start ? fit.start->value : parameter.value[element]};
       set_bounds(free, fit, field);
-      add_for_records(std::move(free), fit);
-    }
-  }
-
-  /// Once, or once for each record.
-  void add_for_records(FreeParameter free, const FitSetting& fit) {
-    free.record = fit.record;
-    if (!fit.by_record || records_.size() < 2) {
       problem_.parameters.push_back(std::move(free));
-      return;
-    }
-    for (std::size_t record = 0; record < records_.size(); ++record) {
-      FreeParameter own = free;
-      own.record = record;
-      own.name += fmt::format(" of record {}", record + 1);
-      problem_.parameters.push_back(std::move(own));
     }
   }
 
@@ -188,11 +173,7 @@ class Builder {
         problem_.outputs.push_back(i);
       }
     }
-    if (outputs.empty()) {
-      diagnostics_.error(error::no_measured_output, {.file = graph().source ? graph().source->path : std::string()},
-                         fmt::format("{} has no output that a record could hold.", graph().name),
-                         "declare one in VAR_OUTPUT, named as the record's column.");
-    } else if (problem_.outputs.empty()) {
+    if (problem_.outputs.empty()) {
       const std::vector<std::string> names = names_of(outputs);
       diagnostics_.error(
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},

@@ -37,10 +37,6 @@ S seeded(double value, Index column, std::span<const Index> columns) {
   return S(value);
 }
 
-bool acts_in(const FreeParameter& free, std::size_t experiment) {
-  return !free.record || *free.record == experiment;
-}
-
 double plain_value(double value) {
   return value;
 }
@@ -117,20 +113,12 @@ bool Rollout::restarts(Machine<S>& machine, const VectorXd& x, std::size_t exper
 }
 
 template <class S>
-void Rollout::set_parameters(Machine<S>& machine, const VectorXd& parameters, std::size_t experiment,
-                             std::span<const Index> columns) {
+void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
   for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
     const FreeParameter& free = problem_.parameters[j];
     const auto column = static_cast<Index>(j);
-    if (acts_in(free, experiment)) {
-      machine.set_parameter(free.parameter, seeded<S>(parameters[column], column, columns), free.element);
-    }
+    machine.set_parameter(free.parameter, seeded<S>(x[column], column, columns), free.element);
   }
-}
-
-template <class S>
-void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
-  set_parameters(machine, x, experiment, columns);
   machine.reset();
   load_states(machine, x, experiment, 0, columns);
 }
@@ -189,20 +177,18 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
     jacobian->setZero();
   }
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
-    std::vector<Index> columns;
-    for (std::size_t j = 0; jacobian != nullptr && j < problem_.parameters.size(); ++j) {
-      if (acts_in(problem_.parameters[j], e)) {
-        columns.push_back(static_cast<Index>(j));
-      }
-    }
-    for (std::size_t state = 0; jacobian != nullptr && state < problem_.initial_states.size(); ++state) {
-      columns.push_back(state_column(e, 0, state));
-    }
-    if (columns.empty()) {  // also where derivatives are asked for, and there is nothing to derive by
+    if (jacobian == nullptr) {
       if (!pass<double>(plain_, x, e, {}, residuals, nullptr)) {
         return false;
       }
       continue;
+    }
+    std::vector<Index> columns;
+    for (Index j = 0; j < std::ssize(problem_.parameters); ++j) {
+      columns.push_back(j);
+    }
+    for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
+      columns.push_back(state_column(e, 0, state));
     }
     const std::span<const Index> all(columns);
     for (std::size_t begin = 0; begin < all.size();) {
@@ -245,15 +231,17 @@ std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) 
 }
 
 std::vector<double> Rollout::own_states(const VectorXd& parameters) {
+  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
+    const FreeParameter& free = problem_.parameters[j];
+    plain_.set_parameter(free.parameter, parameters[static_cast<Index>(j)], free.element);
+  }
   std::vector<double> values;
   const auto keep = [&] {
     for (const FreeState& state : problem_.initial_states) {
       values.push_back(*plain_.real_state(state.path));
     }
   };
-  for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
-    const Experiment& experiment = problem_.experiments[e];
-    set_parameters<double>(plain_, parameters, e, {});
+  for (const Experiment& experiment : problem_.experiments) {
     plain_.reset();
     keep();
     std::size_t step = 0;

@@ -16,7 +16,6 @@ namespace hysteron::diagnosis {
 /// An effect that is part of a diagram.
 struct Applied {
   std::string effect{};              ///< creep
-  std::string simpler{};             ///< as EffectKind has it
   std::string block{};               ///< HY_CREEP
   std::string edge{};                ///< HYST.XOUT; of a richer block, its output
   bool at_port = false;              ///< that edge is an input or an output of the diagram
@@ -35,9 +34,7 @@ struct Applied {
   /// By one of its paths.
   [[nodiscard]] const EffectParameter& parameter(const std::string& path) const;
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
-  /// Of the parameter of a role; empty where there is none.
-  [[nodiscard]] std::string path_of(FieldRole role) const;
-  /// Whether the other one is a simpler formula of this, as the description of its block says.
+  /// Whether the other one is a simpler formula of this: its parameters are some of these.
   [[nodiscard]] bool holds(const Applied& other) const;
 };
 

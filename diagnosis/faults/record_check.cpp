@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string_view>
 #include <vector>
 
 #include "diagnosis/faults/sensor_faults.hpp"
-#include "diagnosis/model/task.hpp"
 #include "support/median.hpp"
-#include "support/numbers.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
@@ -344,26 +341,26 @@ class Check {
       }
       const std::string where = problem_.experiments.size() > 1 ? " of " + experiment.name : "";
       for (const SensorFault& fault : find_sensor_faults(measured, model, glitches)) {
-        const auto [from, to] =
-            distinct_texts(experiment.time[fault.rows.first], experiment.time[fault.rows.last - 1], 6);
+        const double from = experiment.time[fault.rows.first];
+        const double to = experiment.time[fault.rows.last - 1];
         switch (fault.kind) {
           case SensorFault::Kind::Stuck:
             texts.push_back(
-                fmt::format("{} stands at exactly {:.4g} {} from {} to {} s{}, and is noisy elsewhere: "
+                fmt::format("{} stands at exactly {:.4g} {} from {:.6g} to {:.6g} s{}, and is noisy elsewhere: "
                             "the sensor is stuck",
                             port.name, fault.value, port.unit, from, to, where));
             break;
           case SensorFault::Kind::Dropout:
             texts.push_back(
-                fmt::format("{} leaps to exactly {:.4g} {} from {} to {} s{} and back: its readings "
+                fmt::format("{} leaps to exactly {:.4g} {} from {:.6g} to {:.6g} s{} and back: its readings "
                             "drop out",
                             port.name, fault.value, port.unit, from, to, where));
             break;
           case SensorFault::Kind::Leap:
-            warn(
-                fmt::format("{} leaps by {:.3g} {} at {} s{}, far more than it or the model ever does from one sample "
-                            "to the next: a piece of the record may be missing there. Cut it there into two records.",
-                            port.name, fault.value, port.unit, from, where));
+            warn(fmt::format(
+                "{} leaps by {:.3g} {} at {:.6g} s{}, far more than it or the model ever does from one sample "
+                "to the next: a piece of the record may be missing there. Cut it there into two records.",
+                port.name, fault.value, port.unit, from, where));
             continue;
         }
         spoilt += fault.rows.size();
@@ -454,10 +451,7 @@ std::vector<std::string> absurd_samples(const Task& task, const Graph& graph) {
 }
 
 RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal) {
-  RecordCheck result = Check(task, model, nominal).run();
-  // No fault of a record, but what the nominal rests on as well.
-  std::ranges::move(remarks_on_bounds(task), std::back_inserter(result.warnings));
-  return result;
+  return Check(task, model, nominal).run();
 }
 
 }  // namespace hysteron::diagnosis

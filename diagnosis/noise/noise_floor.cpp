@@ -40,36 +40,15 @@ double share_of_whole_steps(const std::vector<double>& values, double step) {
 /// The least for an estimate, in samples.
 constexpr std::size_t fewest = 60;
 
-/// How far a signal that was measured too may flicker while it rests: by its noise, or by a step of its sensor. 0 where
-/// that is no small part of its range: then it is what moves the machine.
-double flicker_of(const Signal& signal) {
-  constexpr double deviations = 4.0;
-  constexpr double small = 0.002;  // of the range
-  constexpr double fine = 0.001;
-  if (signal.size() < fewest) {
-    return 0.0;
-  }
-  const auto [low, high] = std::ranges::minmax(signal);
-  const auto if_below = [&](double share, double size) { return size < share * (high - low) ? size : 0.0; };
-  return std::max(deviations * if_below(small, noise_by_differences(signal)),
-                  if_below(fine, 1.001 * smallest_step(signal)));
-}
-
-/// A signal, and by how much it may flicker.
-struct Watched {
-  const Signal* signal = nullptr;
-  double flicker = 0.0;
-};
-
 /// Rows in which no signal moves.
-std::vector<records::RowRange> rests_of(const std::vector<Watched>& signals, std::size_t steps) {
+std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signals, std::size_t steps) {
   constexpr std::size_t shortest = 40;
   constexpr std::size_t longest = 600;  // of what a cubic is taken off
   std::vector<records::RowRange> result;
   std::size_t first = 0;
   for (std::size_t k = 1; k <= steps; ++k) {
-    const bool moved = k == steps || std::ranges::any_of(signals, [&](const Watched& one) {
-                         return std::abs(at_step(*one.signal, k) - at_step(*one.signal, first)) > one.flicker;
+    const bool moved = k == steps || std::ranges::any_of(signals, [&](const Signal* signal) {
+                         return at_step(*signal, k) != at_step(*signal, k - 1);
                        });
     if (!moved) {
       continue;
@@ -95,13 +74,12 @@ std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experimen
     std::size_t samples = 0;
     result.clear();
     for (std::size_t e = 0; e < experiments.size(); ++e) {
-      std::vector<Watched> signals;
-      const auto watch = [&](const Signal& signal) {
-        signals.push_back({.signal = &signal, .flicker = flicker_of(signal)});
-      };
-      std::ranges::for_each(experiments[e].drive.inputs, watch);
+      std::vector<const Signal*> signals;
+      for (const Signal& input : experiments[e].drive.inputs) {
+        signals.push_back(&input);
+      }
       for (std::size_t i = 0; with_others && e < others.size() && i < others[e].size(); ++i) {
-        watch(others[e][i]);
+        signals.push_back(&others[e][i]);
       }
       result.push_back(rests_of(signals, experiments[e].drive.steps));
       for (const records::RowRange& rest : result.back()) {
@@ -228,8 +206,10 @@ double noise_off_steps(const std::vector<double>& values) {
   if (!(step > 0.0) || share_of_whole_steps(values, step) > rounded_last) {
     return 0.0;
   }
-  // Values on the steps themselves, but for the digits of a file, say nothing of noise.
-  const double off = deviation_off_steps(step, alignment(values, step));
+  // Of a normal deviation σ the mean of the turned values is exp(−2π²σ²/step²) long. Values on the steps themselves,
+  // but for the digits of a file, say nothing of noise.
+  const double length = std::min(1.0, alignment(values, step));
+  const double off = step * std::sqrt(-2.0 * std::log(std::max(length, 1e-6))) * 0.5 * std::numbers::inv_pi;
   constexpr double of_digits = 0.02;
   return off > of_digits * step ? off : 0.0;
 }
@@ -277,12 +257,6 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
   const double rounding = quanta.empty() ? 0.0 : rounded_off(*std::ranges::min_element(quanta));
   const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
-  // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
-  // noise, however slow.
-  constexpr double smoothest_noise = 30.0;  // times its fast part
-  if (floor.dwells > smoothest_noise * std::max(floor.differences, least)) {
-    floor.dwells = 0.0;
-  }
   // Differences of a fast signal see such a quantum as noise, too.
   const bool of_rounding = rounding > most_rounding * range && floor.differences < 1.5 * rounding;
   floor.value = of_rounding ? least : std::max(floor.differences, least);

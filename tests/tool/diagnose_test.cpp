@@ -220,10 +220,8 @@ END_FUNCTION_BLOCK
 TEST_F(Diagnose, WhatClosesALoopIsTakenByEveryCommandAndItsExperimentIsReadyToBePlayed) {
   std::string machine = cooled;
   machine.replace(machine.find("XIN := FORCE"), 12, "XIN := DRAG.XOUT");
-  machine.replace(machine.find("  END_VAR\n\n"), 0,
-                  "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n    LATE : HY_DELAY;\n");
-  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0,
-                  "  DRAG(XIN := FORCE, V := LATE.XOUT);\n  LATE(XIN := SPEED.XOUT);\n");
+  machine.replace(machine.find("  END_VAR\n\n"), 0, "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n    LATE : HY_DELAY;\n");
+  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0, "  DRAG(XIN := FORCE, V := LATE.XOUT);\n  LATE(XIN := SPEED.XOUT);\n");
   records::Record drive = test::record_of("FORCE", test::rich_force(1200));
   drive.add({.name = "WIND", .values = std::vector<double>(1200, 0.25)});
   bench.write("plant.st", cooled);
@@ -282,35 +280,6 @@ TEST_F(Diagnose, ALimitIsHeldAgainstTheDiagram) {
     EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("HY730 error: "), HasSubstr(one.cause), HasSubstr(one.mend)));
     EXPECT_FALSE(bench.has("bad"));
   }
-}
-
-TEST_F(Diagnose, AColumnThatIsIgnoredIsNoCause) {
-  bench.write("log.csv", records::csv_text(test::warm_sensor()));
-  const std::string line =
-      "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects cross_coupling,drift --most 1 ";
-  ASSERT_EQ(bench.shell(line).code, 0);
-  EXPECT_EQ(json::parse(bench.read("found/verdict.json"))["effects"][0]["id"], "cross_coupling");
-  const auto ignored = bench.shell(line + "--ignore temp");
-  ASSERT_EQ(ignored.code, 0) << ignored.err;
-  EXPECT_THAT(bench.read("found/verdict.json"), Not(HasSubstr("cross_coupling")));
-  EXPECT_THAT(bench.read("found/improved.toml"), HasSubstr("ignore = [\"temp\"]"));
-
-  bench.write("q.toml", std::string(test::axis_parameters) + "[diagnose]\nignore = [\"TEMP\"]\n");
-  const auto listed = bench.shell(
-      "hysteron diagnose plant.st --log log.csv --params q.toml --out other --effects cross_coupling --most 1");
-  ASSERT_EQ(listed.code, 0) << listed.err;
-  EXPECT_THAT(bench.read("other/verdict.json"), Not(HasSubstr("cross_coupling")));
-
-  const auto slip = bench.shell(line + "--ignore tmep");
-  EXPECT_EQ(slip.code, 2);
-  EXPECT_THAT(slip.err, AllOf(HasSubstr("HY502 error: "), HasSubstr("did you mean temp?")));
-}
-
-TEST_F(Diagnose, AParameterThatWasTunedIntoItsBoundIsRemarkedOn) {
-  bench.write("p.toml", "[parameters.MASS]\nK = 0.5\n[fit.MASS]\nK = {max = 0.5}\n");
-  const auto outcome = bench.shell(command);
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("note: MASS.K = 0.5 lies on the upper bound of its fit"));
 }
 
 TEST_F(Diagnose, ABudgetThatCutTheSearchIsTold) {

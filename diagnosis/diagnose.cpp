@@ -180,7 +180,8 @@ class Run {
   void weigh_evidence(Searched& searched) {
     Judgement& judgement = searched.judgement;
     const Explanation& calibrated = searched.search.calibrated;
-    if (!materiality_.is_left(unrepeatable_ ? unrepeatable_->residuals : judgement.chosen->fit.residuals)) {
+    if (!related_ ||
+        !materiality_.is_left(unrepeatable_ ? unrepeatable_->residuals : judgement.chosen->fit.residuals)) {
       return;
     }
     result_.evidence = evidence_of(
@@ -190,7 +191,6 @@ class Run {
     if (!is_told(result_.evidence)) {
       return;
     }
-    related_ = true;
     explained_ = explained(task_, result_.top, result_.evidence.sets.front(), calibrated, unused_);
     choose_instead(task_, explained_ ? *explained_ : calibrated, judgement);
     unrepeatable_.reset();

@@ -21,9 +21,12 @@ TEST(MeasuredRecords, AllLoad) {
   }
   std::size_t read = 0;
   for (const auto& entry : fs::recursive_directory_iterator(*folder)) {
-    if (entry.path().extension() == ".csv") {
+    const auto within = fs::relative(entry.path(), *folder);
+    // Shapes of logs are to be read or refused one by one, and raw ones have the uneven times of their logger (HY507).
+    const bool other = *within.begin() == "log-shapes" || within.filename().string().starts_with("raw_");
+    if (entry.path().extension() == ".csv" && !other) {
       SCOPED_TRACE(entry.path());
-      EXPECT_GT(read_csv(entry.path().string()).size(), 1000U);
+      EXPECT_GT(read_csv(entry.path().string()).size(), *within.begin() == "machines" ? 100U : 1000U);
       ++read;
     }
   }

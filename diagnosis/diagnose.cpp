@@ -21,6 +21,7 @@
 #include "diagnosis/faults/record_check.hpp"
 #include "diagnosis/findings/evidence_findings.hpp"
 #include "diagnosis/findings/findings.hpp"
+#include "diagnosis/findings/gaps.hpp"
 #include "diagnosis/findings/inner_signals.hpp"
 #include "diagnosis/findings/left_out_findings.hpp"
 #include "diagnosis/findings/maps.hpp"
@@ -114,14 +115,7 @@ class Run {
       left_out_.push_back(std::move(clock->finding));
     }
     simulate_nominal();
-    for (std::size_t output = 0; output < floors_.size(); ++output) {
-      if (floors_[output].evidence == "differences") {
-        result_.warnings.push_back(fmt::format(
-            "The noise floor of {} rests on its fast part alone: no input repeats or dwells. Slow noise would "
-            "count as a gap.",
-            task_.outputs[output]));
-      }
-    }
+    std::ranges::move(remarks_on_floors(task_, floors_), std::back_inserter(result_.warnings));
   }
 
   void find_floors() {
@@ -163,7 +157,7 @@ class Run {
     weigh_evidence(*searched);
     forget_explained(left_out_, task_, *searched->judgement.chosen);
     const Judgement& judgement = searched->judgement;
-    find_gap();
+    gap_output_ = largest_gap(task_, floors_, nominal_);
     decide(found, judgement);
     // What the user gets as improved.st: effects that the verdict does not name are not in it.
     const Explanation& kept = named() ? *judgement.chosen : found.calibrated;
@@ -322,37 +316,19 @@ class Run {
     return rms_of(task_, residuals, output);
   }
 
-  /// The output whose nominal gap is the largest, in floors.
-  void find_gap() {
-    for (std::size_t output = 1; output < task_.outputs.size(); ++output) {
-      if (rms(nominal_, output) / floors_[output].value > rms(nominal_, gap_output_) / floors_[gap_output_].value) {
-        gap_output_ = output;
-      }
-    }
-  }
-
   void describe_gap(const Explanation& calibrated, const Explanation& kept, const Judgement& judgement) {
-    const auto before = by_blocks(task_, nominal_);
-    const auto after = by_blocks(task_, &kept == judgement.chosen ? judgement.held_out : held_out(task_, kept));
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const Port& port = *find_port(input_.program.graph.outputs, task_.outputs[output]);
-      GapFinding gap{.signal = port.name,
-                     .unit = port.unit,
-                     .nominal = rms(nominal_, output),
-                     .calibrated = rms(calibrated.fit.residuals, output),
-                     .improved = rms(kept.fit.residuals, output),
-                     .floor = floors_[output]};
-      const double left = gap.improved / task_.scales[output];
-      const Closure share = closure(before[output], after[output], left * left, noise_range(left), options_.seed);
-      gap.closed = share.closed;
-      gap.closed_low = share.low;
-      gap.closed_high = share.high;
+    const VectorXd unseen = &kept == judgement.chosen ? judgement.held_out : held_out(task_, kept);
+    result_.gaps = gaps_of(
+        task_, input_.program.graph,
+        {.nominal = nominal_, .calibrated = calibrated.fit.residuals, .kept = kept.fit.residuals, .held_out = unseen},
+        floors_, options_.seed);
+    for (std::size_t output = 0; output < result_.gaps.size(); ++output) {
+      const GapFinding& gap = result_.gaps[output];
       const bool refit_is_worse = materiality_.matters(gap.calibrated, gap.nominal, output);
       const bool effects_are_worse = named() && materiality_.matters(gap.improved, gap.nominal, output);
       if (refit_is_worse || effects_are_worse) {
         result_.warnings.push_back(warning_of_worse(gap, refit_is_worse, effects_are_worse));
       }
-      result_.gaps.push_back(gap);
     }
     result_.gap = result_.gaps[gap_output_];
     if (named() && materiality_.was_taken_for_noise(calibrated.fit.residuals, kept.fit.residuals)) {
@@ -392,7 +368,8 @@ class Run {
       }
     } else if (gap_calibrated && left.size > least_above() && (left.is_predictable || left.size > far_above)) {
       result_.verdict = Verdict::Unknown;
-    } else if (gap_before && calibration_matters(found.calibrated)) {
+    } else if (gap_before &&
+               calibration_matters(task_, floors_, options_.material, nominal_, found.calibrated.fit.residuals)) {
       result_.verdict = Verdict::Calibration;
     } else {
       result_.verdict = Verdict::None;
@@ -402,19 +379,6 @@ class Run {
   /// Less above the noise is no claim that something is unknown.
   [[nodiscard]] double least_above() const {
     return floors_[gap_output_].evidence == "repeats" ? suspicious_from : hidden_noise;
-  }
-
-  /// Whether the refit closed something material.
-  [[nodiscard]] bool calibration_matters(const Explanation& calibrated) const {
-    for (std::size_t output = 0; output < task_.outputs.size(); ++output) {
-      const double before = rms(nominal_, output);
-      const double after = rms(calibrated.fit.residuals, output);
-      const double closed = std::sqrt(std::max(0.0, before * before - after * after));
-      if (closed > std::max(0.25 * floors_[output].value, options_.material)) {
-        return true;
-      }
-    }
-    return false;
   }
 
   void describe(const Search& found, const Judgement& judgement, const Explanation& kept) {

@@ -20,7 +20,9 @@ struct Backlash {
           "plays, of WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + SPREAD): the gap closes by and by, as with soft or worn "
           "contacts.",
       .source = "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, 1989, play operator",
-      .effect = "backlash"};
+      .effect = "backlash",
+      .family = Family::Play,
+      .simpler = "dead_zone"};
 
   template <class S>
   struct Params : GapParams<S> {

@@ -31,7 +31,7 @@ struct Branch {
                             .at_least(0.0)
                             .otherwise(0.0)
                             .neutral_at(0.0)
-                            .effect("branch_chatter")
+                            .effect("branch_chatter", Family::Hysteresis)
                             .means("dead band: a return up to this is no reversal")};
     }
   };

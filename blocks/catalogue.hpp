@@ -2,7 +2,9 @@
 #pragma once
 
 #include "blocks/absolute.hpp"
+#include "blocks/absolute_sensor.hpp"
 #include "blocks/arctangent.hpp"
+#include "blocks/asymmetric_friction.hpp"
 #include "blocks/backlash.hpp"
 #include "blocks/blink.hpp"
 #include "blocks/branch.hpp"
@@ -13,6 +15,10 @@
 #include "blocks/coulomb_friction.hpp"
 #include "blocks/creep.hpp"
 #include "blocks/cross_coupling.hpp"
+#include "blocks/cutout.hpp"
+#include "blocks/cyclic_error.hpp"
+#include "blocks/cyclic_force.hpp"
+#include "blocks/dahl_friction.hpp"
 #include "blocks/dead_band.hpp"
 #include "blocks/dead_time.hpp"
 #include "blocks/delay.hpp"
@@ -29,6 +35,7 @@
 #include "blocks/gain_drift.hpp"
 #include "blocks/greater.hpp"
 #include "blocks/greater_equal.hpp"
+#include "blocks/held.hpp"
 #include "blocks/hold.hpp"
 #include "blocks/hyperbolic_tangent.hpp"
 #include "blocks/hysteresis_general.hpp"
@@ -45,6 +52,7 @@
 #include "blocks/less_equal.hpp"
 #include "blocks/limit.hpp"
 #include "blocks/load.hpp"
+#include "blocks/load_friction.hpp"
 #include "blocks/logarithm.hpp"
 #include "blocks/logic_and.hpp"
 #include "blocks/logic_not.hpp"
@@ -80,6 +88,8 @@
 #include "blocks/rising_edge.hpp"
 #include "blocks/sample.hpp"
 #include "blocks/sample_and_hold.hpp"
+#include "blocks/saturating_curve.hpp"
+#include "blocks/scheduled_gain.hpp"
 #include "blocks/second_order.hpp"
 #include "blocks/set_dominant_latch.hpp"
 #include "blocks/sign.hpp"
@@ -97,6 +107,7 @@
 #include "blocks/triangle_wave.hpp"
 #include "blocks/up_counter.hpp"
 #include "blocks/up_down_counter.hpp"
+#include "blocks/valve_stiction.hpp"
 #include "blocks/viscous_friction.hpp"
 
 namespace hysteron {
@@ -134,8 +145,10 @@ using Catalogue = BlockList<
     Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, IntegralBounded, IntegralForwardBounded,
     Delay, DeadTime, Lag, LeadLag, SecondOrder,
     // effects: what a machine does and its model does not
-    Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, ViscousFriction,
-    Cogging, PeriodicError, EvenNonlinearity, OddNonlinearity, PeriodicDisturbance, CrossCoupling, Load, Clock,
+    Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, DahlFriction,
+    AsymmetricFriction, LoadFriction, ViscousFriction, ValveStiction, Cogging, CyclicForce, PeriodicError, CyclicError,
+    EvenNonlinearity, OddNonlinearity, SaturatingCurve, AbsoluteSensor, PeriodicDisturbance, CrossCoupling,
+    ScheduledGain, Cutout, Load, Clock, Held,
     // borders between rates
     Sample, Hold>;
 

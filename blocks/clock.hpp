@@ -22,6 +22,7 @@ struct Clock : PastSignal {
           "sample, so that the result has a derivative by T_LOST.",
       .delay = "SKEW·t, and LOST more after T_LOST; the gain between samples as in HY_DEAD_TIME.",
       .effect = "clock",
+      .family = Family::Logging,
       .of_record = true};
 
   template <class S>
@@ -35,7 +36,12 @@ struct Clock : PastSignal {
           HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-0.1, 0.1).means(
               "seconds lost per second, or won"),
           HY_FIELD(LOST).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost at once"),
-          HY_FIELD(T_LOST).in("s").at_least(0.0).otherwise(0.0).means("time at which they are lost")};
+          HY_FIELD(T_LOST)
+              .role(FieldRole::Instant)
+              .in("s")
+              .at_least(0.0)
+              .otherwise(0.0)
+              .means("time at which they are lost")};
     }
   };
   template <class S>
@@ -48,12 +54,13 @@ struct Clock : PastSignal {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(PAST).in("'x").otherwise(0.0).means("past samples, in a ring"),
-                        HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
-                        HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
-                        HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
-                        HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
+      return std::tuple{
+          HY_FIELD(PAST).role(FieldRole::PastInputs).in("'x").otherwise(0.0).means("past samples, in a ring"),
+          HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
+          HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
+          HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
+          HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
+          HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
     }
   };
   template <class S>

@@ -17,7 +17,8 @@ struct Cogging {
           "pitch error of a screw. POS is that of the step before, so that the block closes the loop of force and "
           "position; it begins with 0. An error over the measured position itself is HY_PERIODIC_ERROR.",
 
-      .effect = "cogging"};
+      .effect = "cogging",
+      .family = Family::PeriodicOverPosition};
 
   template <class S>
   using Params = RippleParams<S, "'p", "period in the position">;

@@ -19,7 +19,8 @@ struct CoulombFriction {
           "HY_DELAY before V closes the loop. A PRESLIDE of less than some steps of travel lets the friction jump.",
 
       .source = "L. Prandtl, ZAMM 8 (1928) 85: Ein Gedankenmodell zur kinetischen Theorie der festen Körper",
-      .effect = "coulomb_friction"};
+      .effect = "coulomb_friction",
+      .family = Family::DryFriction};
 
   template <class S>
   struct Params {

@@ -27,7 +27,8 @@ struct Creep {
       .source =
           "log(1 + t/T) as an integral of exponentials over ln τ with the weight exp(−T/τ), by the trapezoidal rule; "
           "H. Jung, J. Y. Shim, D. Gweon, Rev. Sci. Instrum. 71 (2000) 3436, for the law",
-      .effect = "creep"};
+      .effect = "creep",
+      .family = Family::SlowMemory};
 
   static constexpr std::size_t lags = 13;
   /// τ_i/T_ONSET, two a decade.

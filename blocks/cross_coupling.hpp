@@ -17,7 +17,8 @@ struct CrossCoupling {
           "What another axis, a temperature or any second signal Z adds, behind a first-order lag (ramp-invariant, as "
           "HY_LAG; T1 = 0 for none). Z is that of the step before, so that the block closes loops; in the first step "
           "nothing is added, and the lag starts as if the first Z had stood for ever.",
-      .effect = "cross_coupling"};
+      .effect = "cross_coupling",
+      .family = Family::Coupling};
 
   template <class S>
   struct Params {
@@ -26,9 +27,10 @@ struct CrossCoupling {
     S Z_REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
-                        HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
-                        HY_FIELD(Z_REFERENCE).in("'z").otherwise(0.0).means("Z that adds nothing")};
+      return std::tuple{
+          HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
+          HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
+          HY_FIELD(Z_REFERENCE).role(FieldRole::ReferenceSize).in("'z").otherwise(0.0).means("Z that adds nothing")};
     }
   };
   template <class S>

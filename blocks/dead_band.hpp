@@ -16,7 +16,8 @@ struct DeadBand : Stateless {
           "at the ends of the band. As a model it is a valve that overlaps; in a controller it keeps a loop quiet "
           "near its set point. With SPREAD it is the mean of three bands, of WIDTH*(1 - SPREAD), WIDTH and WIDTH*(1 + "
           "SPREAD): its edges are soft.",
-      .effect = "dead_zone"};
+      .effect = "dead_zone",
+      .family = Family::StaticCurve};
 
   template <class S>
   using Params = GapParams<S>;

@@ -21,7 +21,11 @@ struct Delay {
     S X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X0).in("'x").otherwise(0.0).means("output in the first sample and at a reset")};
+      return std::tuple{HY_FIELD(X0)
+                            .role(FieldRole::StartValue)
+                            .in("'x")
+                            .otherwise(0.0)
+                            .means("output in the first sample and at a reset")};
     }
   };
   template <class S>

@@ -14,6 +14,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "blocks/families.hpp"
+#include "blocks/roles.hpp"
 #include "blocks/scalar.hpp"
 
 namespace hysteron {
@@ -29,7 +31,8 @@ struct Field {
   std::string_view name;
   std::string_view unit;
   std::string_view meaning;
-  std::string_view effect;  ///< the physical effect that this parameter switches on by itself; empty for none
+  std::string_view effect;       ///< the physical effect that this parameter switches on by itself; empty for none
+  Family family = Family::None;  ///< of that effect
   double effect_minimum = -std::numeric_limits<double>::infinity();  ///< below it, the block is another effect
   double effect_maximum = std::numeric_limits<double>::infinity();   ///< above it, likewise
   double preset = 0.0;
@@ -41,6 +44,8 @@ struct Field {
   bool required = false;       ///< an input that has no default: it must be connected
   bool above_minimum = false;  ///< the minimum itself is out of range
   bool open = false;           ///< a choice of the machine's past, which a record does not show
+  FieldRole role = FieldRole::Number;
+  std::string_view shapes{};  ///< the parameter of the same block whose effect it shapes; empty for none
 
   [[nodiscard]] constexpr bool has_neutral() const { return neutral == neutral; }
 };
@@ -92,9 +97,22 @@ struct BoundField : Field {
     return copy;
   }
   /// The effect that the parameter switches on by itself, away from its neutral setting.
-  [[nodiscard]] constexpr BoundField effect(std::string_view identifier) const {
+  [[nodiscard]] constexpr BoundField effect(std::string_view identifier, Family of) const {
     auto copy = *this;
     copy.Field::effect = identifier;
+    copy.family = of;
+    return copy;
+  }
+  /// What it is for, where its unit does not tell.
+  [[nodiscard]] constexpr BoundField role(FieldRole what) const {
+    auto copy = *this;
+    copy.Field::role = what;
+    return copy;
+  }
+  /// It says how another parameter, which has an effect of its own, takes effect.
+  [[nodiscard]] constexpr BoundField shapes(std::string_view name_of_other) const {
+    auto copy = *this;
+    copy.Field::shapes = name_of_other;
     return copy;
   }
   /// A choice of what was before a record began, which the record does not tell: a diagnosis tries it both ways.
@@ -179,9 +197,13 @@ struct About {
   std::string_view delay{};     ///< delay and gain curve over frequency, where they matter
   std::string_view source{};    ///< standard, paper or book that defines it
   std::string_view effect{};    ///< identifier of the physical effect that it adds between XIN and XOUT; empty for none
+  Family family = Family::None;  ///< of that effect
   /// The block that this one can replace: it has the same ports and parameters of the same meaning and more, and gives
   /// equal bits while every further parameter that has an effect is at its neutral setting. Empty for none.
   std::string_view enriches{};
+  /// An effect with fewer parameters, of the same names, that may be meant where this one was found. Empty for none.
+  std::string_view simpler{};
+  std::string_view untried{};    ///< why a diagnosis tries the effect only where it is asked for it; empty: it does
   bool rate_transition = false;  ///< may stand between two rates (@every)
   bool of_record = false;        ///< its effect is the record's and not the machine's: at the ports of a diagram alone
 };

@@ -16,7 +16,8 @@ struct Drift : OfClockTime {
                                    "Adds what grows evenly with the clock time t, also while nothing moves: the drift "
                                    "of an amplifier or of a zero. t is 0 in the first step and is counted in steps, so "
                                    "that no rounding adds up; it stands still after 2^31 − 1 steps.",
-                               .effect = "drift"};
+                               .effect = "drift",
+                               .family = Family::SlowChange};
 
   template <class S>
   struct Params {

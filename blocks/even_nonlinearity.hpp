@@ -15,7 +15,8 @@ struct EvenNonlinearity : Nonlinearity {
                                    "signal upwards or downwards. SIZE is the error at the distance REFERENCE from "
                                    "CENTRE. It is static: the same upwards and downwards, at every rate.",
 
-                               .effect = "even_nonlinearity"};
+                               .effect = "even_nonlinearity",
+                               .family = Family::StaticCurve};
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

@@ -1,5 +1,5 @@
-// What the frictions share: the force that drives and the velocity; for the dry ones, HY_COULOMB_FRICTION and
-// HY_STRIBECK_FRICTION, the stop operator, which does not chatter.
+// What the frictions share: the force that drives and the velocity; for the dry ones, HY_COULOMB_FRICTION and its like,
+// the stop operator, which does not chatter.
 #pragma once
 
 #include "blocks/ports.hpp"
@@ -31,14 +31,24 @@ struct DryFrictionState {
   }
 };
 
+/// Why a diagnosis does not try every friction by itself.
+inline constexpr std::string_view beside_its_family =
+    "one dry friction stands for the family until the record tells its members apart";
+
+/// The travel of a sample. What a friction does in it is right on average with the velocity in the middle of the step,
+/// (3·V(k) − V(k−1))/2 (J. C. Adams' extrapolation). With that of the beginning a reversal would come half a step late,
+/// and an axis at rest would swing about it, undamped.
+template <class S>
+S travel_of_sample(const DryFrictionState<S>& state, const S& velocity, const S& ts) {
+  return (S(1.5) * velocity - S(0.5) * state.V1) * ts;
+}
+
 /// The part of the dry friction that acts, −1 to 1. It follows the travel ∫V dt with the slope 1/preslide, and stops at
 /// ±1 (L. Prandtl's elasto-plastic element): at rest it holds any force up to the whole friction, and a reversal turns
-/// it over within a travel of 2·preslide. What it does in a step is right on average with the velocity in the middle of
-/// the step, (3·V(k) − V(k−1))/2 (J. C. Adams' extrapolation). With that of the beginning a reversal would come half a
-/// step late, and an axis at rest would swing about it, undamped.
+/// it over within a travel of 2·preslide.
 template <class S>
 S stop_operator(const DryFrictionState<S>& state, const S& velocity, const S& preslide, const S& ts) {
-  return max(min(state.STOP + (S(1.5) * velocity - S(0.5) * state.V1) * ts / preslide, S(1.0)), S(-1.0));
+  return max(min(state.STOP + travel_of_sample(state, velocity, ts) / preslide, S(1.0)), S(-1.0));
 }
 
 }  // namespace hysteron

@@ -12,7 +12,8 @@ struct Gain {
       .group = Group::Arithmetic,
       .equation = "XOUT = K·XIN",
       .meaning = "Multiplies a signal by a constant. K carries the unit of the output over that of the input.",
-      .effect = "gain_error"};
+      .effect = "gain_error",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {

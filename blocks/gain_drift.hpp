@@ -19,7 +19,8 @@ struct GainDrift : OfClockTime {
                                    "A gain that changes with the clock time t, evenly or, as an amplifier does that "
                                    "warms up, less and less: 1 in the first step, where t is 0. At XIN = 0 nothing "
                                    "drifts, which tells it from HY_DRIFT.",
-                               .effect = "gain_drift"};
+                               .effect = "gain_drift",
+                               .family = Family::SlowChange};
 
   template <class S>
   struct Params {

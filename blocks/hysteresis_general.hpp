@@ -61,14 +61,16 @@ struct HysteresisGeneral {
                   .within(-1.0, 1.0)
                   .otherwise(0.0)
                   .neutral_at(0.0)
-                  .effect("curve_shape")
+                  .effect("curve_shape", Family::Hysteresis)
                   .means("slope of Bouc and Wen's element where it begins, over C1"),
               HY_FIELD(BOUC_WEN_TRAVEL)
+                  .shapes("BOUC_WEN")
                   .in("'x")
                   .above(0.0)
                   .otherwise(1.0)
                   .means("what that element reaches at most, and over which it does so"),
               HY_FIELD(BOUC_WEN_SKEW)
+                  .shapes("BOUC_WEN")
                   .in("1")
                   .within(0.0, 0.9)
                   .otherwise(0.5)
@@ -78,7 +80,7 @@ struct HysteresisGeneral {
                   .within(0.0, 1.0)
                   .otherwise(0.0)
                   .neutral_at(0.0)
-                  .effect("return_point_memory")
+                  .effect("return_point_memory", Family::Hysteresis)
                   .means("0: remembers the last branching point; 1: resumes a branch when the loop in it closes")});
     }
   };

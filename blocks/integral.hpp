@@ -32,10 +32,11 @@ struct Integral {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal to be integrated"),
-                        HY_FIELD(RUN).otherwise(1.0).means("integrates while TRUE, holds while FALSE"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset, dominant: loads X0"),
-                        HY_FIELD(X0).in("'x*s").otherwise(0.0).means("value that a reset loads")};
+      return std::tuple{
+          HY_FIELD(XIN).in("'x").means("signal to be integrated"),
+          HY_FIELD(RUN).otherwise(1.0).means("integrates while TRUE, holds while FALSE"),
+          HY_FIELD(R1).otherwise(0.0).means("reset, dominant: loads X0"),
+          HY_FIELD(X0).role(FieldRole::StartValue).in("'x*s").otherwise(0.0).means("value that a reset loads")};
     }
   };
   template <class S>

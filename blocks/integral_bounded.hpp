@@ -13,9 +13,20 @@ struct IntegralBounds {
   using Self = IntegralBounds;
   static constexpr auto fields() {
     constexpr double unbounded = std::numeric_limits<double>::infinity();
-    return std::tuple{
-        HY_FIELD(MN).in("'x*s").otherwise(-unbounded).neutral_at(-unbounded).effect("saturation").means("lower bound"),
-        HY_FIELD(MX).in("'x*s").otherwise(unbounded).neutral_at(unbounded).effect("saturation").means("upper bound")};
+    return std::tuple{HY_FIELD(MN)
+                          .role(FieldRole::LowerBound)
+                          .in("'x*s")
+                          .otherwise(-unbounded)
+                          .neutral_at(-unbounded)
+                          .effect("saturation", Family::StaticCurve)
+                          .means("lower bound"),
+                      HY_FIELD(MX)
+                          .role(FieldRole::UpperBound)
+                          .in("'x*s")
+                          .otherwise(unbounded)
+                          .neutral_at(unbounded)
+                          .effect("saturation", Family::StaticCurve)
+                          .means("upper bound")};
   }
 
   [[nodiscard]] Bool<S> below(const CompensatedSum<S>& sum) const { return sum.high < MN; }

@@ -19,7 +19,8 @@ struct Lag {
           "input: to close a loop, put HY_DELAY in it.",
       .delay = "T1 at low frequency; gain 1/√(1 + (ωT1)²) up to factors (sin(ωTS/2)/(ωTS/2))² of the straight line.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed.",
-      .effect = "lag"};
+      .effect = "lag",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {
@@ -41,9 +42,12 @@ struct Lag {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
-          HY_FIELD(X0).in("'x").otherwise(0.0).means("output at a reset, and at the start if not SETTLED")};
+      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
+                        HY_FIELD(X0)
+                            .role(FieldRole::StartValue)
+                            .in("'x")
+                            .otherwise(0.0)
+                            .means("output at a reset, and at the start if not SETTLED")};
     }
   };
   template <class S>
@@ -53,7 +57,7 @@ struct Lag {
     using Self = Out;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(XOUT).in("'x").means("lagged signal"),
-                        HY_FIELD(RATE).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
+                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
     }
   };
 

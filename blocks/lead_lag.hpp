@@ -47,7 +47,7 @@ struct LeadLag {
     using Self = Out;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(XOUT).in("'x").means("signal with lead and lag"),
-                        HY_FIELD(RATE).in("'x/s").means("rate of the input behind the lag T2")};
+                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of the input behind the lag T2")};
     }
   };
 

@@ -16,7 +16,9 @@ struct Limit : Stateless {
           "tell when a bound is at work, for example to stop an integral. A bound that is not set is infinite; where "
           "MN is above MX, MX wins. For bounds that are signals use HY_MIN and HY_MAX.",
       .source = "IEC 61131-3, LIMIT",
-      .effect = "saturation"};
+      .effect = "saturation",
+      .family = Family::StaticCurve,
+      .simpler = "saturation"};
 
   template <class S>
   struct Params {
@@ -25,8 +27,18 @@ struct Limit : Stateless {
     using Self = Params;
     static constexpr auto fields() {
       constexpr double unbounded = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(MN).in("'x").otherwise(-unbounded).neutral_at(-unbounded).means("lower bound"),
-                        HY_FIELD(MX).in("'x").otherwise(unbounded).neutral_at(unbounded).means("upper bound")};
+      return std::tuple{HY_FIELD(MN)
+                            .role(FieldRole::LowerBound)
+                            .in("'x")
+                            .otherwise(-unbounded)
+                            .neutral_at(-unbounded)
+                            .means("lower bound"),
+                        HY_FIELD(MX)
+                            .role(FieldRole::UpperBound)
+                            .in("'x")
+                            .otherwise(unbounded)
+                            .neutral_at(unbounded)
+                            .means("upper bound")};
     }
   };
   template <class S>

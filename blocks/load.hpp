@@ -17,7 +17,8 @@ struct Load : OfClockTime {
           "A load that is put on at T_ON and taken off at T_OFF: a force on an actuator, a torque on a drive, a level "
           "on a signal. A sample counts the part of the interval before it in which the load was on, so that the "
           "result has a derivative by both times. t is 0 in the first step. T_OFF before T_ON is no load at all.",
-      .effect = "load"};
+      .effect = "load",
+      .family = Family::SlowChange};
 
   template <class S>
   struct Params {
@@ -27,8 +28,14 @@ struct Load : OfClockTime {
     using Self = Params;
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("what the load takes off"),
-                        HY_FIELD(T_ON).in("s").at_least(0.0).otherwise(0.0).means("clock time at which it is put on"),
+                        HY_FIELD(T_ON)
+                            .role(FieldRole::Instant)
+                            .in("s")
+                            .at_least(0.0)
+                            .otherwise(0.0)
+                            .means("clock time at which it is put on"),
                         HY_FIELD(T_OFF)
+                            .role(FieldRole::Instant)
                             .in("s")
                             .at_least(0.0)
                             .otherwise(std::numeric_limits<double>::infinity())

@@ -28,12 +28,16 @@ struct LoopParams {
             .at_least(0.0)
             .otherwise(0.0)
             .neutral_at(0.0)
-            .effect("branch_chatter")
+            .effect("branch_chatter", Family::Hysteresis)
             .means("dead band of the branching detector"),
         HY_FIELD(START).within(-1.0, 1.0).otherwise(0.0).means(
             "0: on the skeleton; 1, -1: on a rising, falling branch"),
-        HY_FIELD(U0).in(u).otherwise(0.0).means(joined<input, " at the origin of the skeleton or of the first branch">),
-        HY_FIELD(Y0).in(y).otherwise(0.0).means(joined<output, " at that origin">)};
+        HY_FIELD(U0)
+            .role(FieldRole::StartValue)
+            .in(u)
+            .otherwise(0.0)
+            .means(joined<input, " at the origin of the skeleton or of the first branch">),
+        HY_FIELD(Y0).role(FieldRole::StartValue).in(y).otherwise(0.0).means(joined<output, " at that origin">)};
   }
   [[nodiscard]] LoopConstants<S> loop() const { return {.c1 = C1, .c2 = C2, .c3 = C3}; }
 };

@@ -28,9 +28,10 @@ struct MemIn {
   S P0;
   using Self = MemIn;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XIN).in("'x").means(meaning),
-                      HY_FIELD(R1).otherwise(0.0).means("reset: the momentum begins anew at P0"),
-                      HY_FIELD(P0).in(joined<u, "*s">).otherwise(0.0).means("momentum after a reset")};
+    return std::tuple{
+        HY_FIELD(XIN).in("'x").means(meaning),
+        HY_FIELD(R1).otherwise(0.0).means("reset: the momentum begins anew at P0"),
+        HY_FIELD(P0).role(FieldRole::StartValue).in(joined<u, "*s">).otherwise(0.0).means("momentum after a reset")};
   }
   /// What the momentum inside sees: the resets, and the element's own input as its rate.
   [[nodiscard]] Momentum::In<S> of_momentum(const S& rate) const { return {.XIN = rate, .R1 = R1, .P0 = P0}; }

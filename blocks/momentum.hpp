@@ -39,9 +39,10 @@ struct Momentum {
     S P0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("rate of the input"),
-                        HY_FIELD(R1).otherwise(0.0).means("branching point: the momentum begins anew at P0"),
-                        HY_FIELD(P0).in("'x*s").otherwise(0.0).means("momentum after a reset")};
+      return std::tuple{
+          HY_FIELD(XIN).in("'x").means("rate of the input"),
+          HY_FIELD(R1).otherwise(0.0).means("branching point: the momentum begins anew at P0"),
+          HY_FIELD(P0).role(FieldRole::StartValue).in("'x*s").otherwise(0.0).means("momentum after a reset")};
     }
   };
   template <class S>

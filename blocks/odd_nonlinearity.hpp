@@ -15,7 +15,8 @@ struct OddNonlinearity : Nonlinearity {
                                    "or softens towards the ends. SIZE is the error at the distance REFERENCE from "
                                    "CENTRE. It is static: the same upwards and downwards, at every rate.",
 
-                               .effect = "odd_nonlinearity"};
+                               .effect = "odd_nonlinearity",
+                               .family = Family::StaticCurve};
 
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& /*state*/, const In<S>& in, const S& /*ts*/) {

@@ -14,7 +14,8 @@ struct Offset : Stateless {
       .equation = "XOUT = XIN + BIAS",
       .meaning = "Adds a constant: the zero error of a sensor, of an amplifier or of a mounting.",
 
-      .effect = "offset"};
+      .effect = "offset",
+      .family = Family::Offset};
 
   template <class S>
   struct Params {

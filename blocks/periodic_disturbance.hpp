@@ -18,7 +18,8 @@ struct PeriodicDisturbance {
                                    "unbalanced spindle, a pump. It goes on while the machine rests. The phase is kept "
                                    "in twice the working precision and does not drift. t is 0 in the first step.",
 
-                               .effect = "periodic_disturbance"};
+                               .effect = "periodic_disturbance",
+                               .family = Family::PeriodicInTime};
 
   template <class S>
   struct Params {

@@ -16,7 +16,8 @@ struct PeriodicError : Stateless {
                                    "error of an encoder, the nonlinearity of an interferometer. Where the position is "
                                    "another signal, a motor's torque over its angle, HY_COGGING has an input for it.",
 
-                               .effect = "cogging"};
+                               .effect = "cogging",
+                               .family = Family::PeriodicOverPosition};
 
   template <class S>
   using Params = RippleParams<S, "'x", "period of the error in XIN">;

@@ -42,8 +42,8 @@ struct Pid {
               "reset time of the integral; infinite: no integral"),
           HY_FIELD(TD).in("s").otherwise(0.0).at_least(0.0).means("derivative time; 0: no derivative"),
           HY_FIELD(N).in("1").otherwise(10.0).above(0.0).means("derivative gain limit: the filter's time is TD/N"),
-          HY_FIELD(MN).in("'u").otherwise(-unbounded).means("lower bound of the output"),
-          HY_FIELD(MX).in("'u").otherwise(unbounded).means("upper bound of the output")};
+          HY_FIELD(MN).role(FieldRole::LowerBound).in("'u").otherwise(-unbounded).means("lower bound of the output"),
+          HY_FIELD(MX).role(FieldRole::UpperBound).in("'u").otherwise(unbounded).means("upper bound of the output")};
     }
   };
   template <class S>

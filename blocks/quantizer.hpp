@@ -18,7 +18,8 @@ struct Quantizer : Stateless {
                                    "With SPREAD each threshold is spread evenly over the share SPREAD of a quantum to "
                                    "either side, and the output is the mean, a ramp in place of a jump: what a "
                                    "converter with uneven codes, or with noise in front of it, gives in the mean.",
-                               .effect = "quantization"};
+                               .effect = "quantization",
+                               .family = Family::Logging};
 
   template <class S>
   struct Params {
@@ -26,10 +27,19 @@ struct Quantizer : Stateless {
     S SPREAD;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(QUANTUM).in("'x").otherwise(0.0).at_least(0.0).neutral_at(0.0).means("step of the output"),
-          HY_FIELD(SPREAD).in("1").within(0.0, 0.4).otherwise(0.0).means(
-              "share of QUANTUM by which thresholds lie lower or higher; 0 for even steps")};
+      return std::tuple{HY_FIELD(QUANTUM)
+                            .role(FieldRole::Quantum)
+                            .in("'x")
+                            .otherwise(0.0)
+                            .at_least(0.0)
+                            .neutral_at(0.0)
+                            .means("step of the output"),
+                        HY_FIELD(SPREAD)
+                            .role(FieldRole::Softness)
+                            .in("1")
+                            .within(0.0, 0.4)
+                            .otherwise(0.0)
+                            .means("share of QUANTUM by which thresholds lie lower or higher; 0 for even steps")};
     }
   };
   template <class S>

@@ -14,7 +14,8 @@ struct RateLimit {
                                    "Follows a signal no faster than RISE upwards and FALL downwards: the slew rate of "
                                    "an amplifier, or a gentle set point. The first sample passes as it is. A rate that "
                                    "is not set is infinite; a rate of 0 holds the output in that direction.",
-                               .effect = "rate_limit"};
+                               .effect = "rate_limit",
+                               .family = Family::RateLimit};
 
   template <class S>
   struct Params {

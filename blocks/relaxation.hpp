@@ -17,7 +17,9 @@ struct Relaxation {
           "GAIN·(1 − exp(−t/T1))). One exponential, of a viscoelastic mount or of an amplifier's thermal tail; "
           "HY_CREEP has all time scales. Exact for an input that runs straight between its samples.",
 
-      .effect = "relaxation"};
+      .effect = "relaxation",
+      .family = Family::SlowMemory,
+      .simpler = "lag"};
 
   template <class S>
   struct Params {

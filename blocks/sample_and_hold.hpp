@@ -20,7 +20,11 @@ struct SampleAndHold {
     S X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X0).in("'x").otherwise(0.0).means("output before the first tracked sample")};
+      return std::tuple{HY_FIELD(X0)
+                            .role(FieldRole::StartValue)
+                            .in("'x")
+                            .otherwise(0.0)
+                            .means("output before the first tracked sample")};
     }
   };
   template <class S>

@@ -23,7 +23,8 @@ struct SecondOrder {
           "2·ZETA·T at low frequency; gain K/√((1 − (ωT)²)² + (2·ZETA·ωT)²) up to factors (sin(ωTS/2)/(ωTS/2))² of "
           "the straight line.",
       .source = "ramp-invariant discretisation; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed.",
-      .effect = "resonance"};
+      .effect = "resonance",
+      .family = Family::LinearDynamics};
 
   template <class S>
   struct Params {
@@ -53,7 +54,7 @@ struct SecondOrder {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
+      return std::tuple{HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
                         HY_FIELD(DEVIATION1).in("'x").otherwise(0.0).means("deviation one sample ago"),
                         HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate one sample ago"),
                         HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
@@ -66,9 +67,13 @@ struct SecondOrder {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0, at rest"),
-          HY_FIELD(X0).in("'y").otherwise(0.0).means("output at a reset, and at the start if not SETTLED")};
+      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
+                        HY_FIELD(R1).otherwise(0.0).means("reset: loads X0, at rest"),
+                        HY_FIELD(X0)
+                            .role(FieldRole::StartValue)
+                            .in("'y")
+                            .otherwise(0.0)
+                            .means("output at a reset, and at the start if not SETTLED")};
     }
   };
   template <class S>
@@ -80,7 +85,7 @@ struct SecondOrder {
     static constexpr auto fields() {
       return std::tuple{HY_FIELD(XOUT).in("'y").means("response"),
                         HY_FIELD(DEVIATION).in("'x").means("how far XOUT/K is from XIN"),
-                        HY_FIELD(RATE).in("'x/s").means("rate of change of XOUT/K")};
+                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of change of XOUT/K")};
     }
   };
 

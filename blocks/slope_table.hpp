@@ -16,9 +16,10 @@ struct SlopeTableParams {
   Int<S> COUNT;
   using Self = SlopeTableParams;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(P_TABLE).in("'p").means("momentum of each point, rising"),
-                      HY_FIELD(M_TABLE).in("'y/'u").means("slope at each point"),
-                      HY_FIELD(COUNT).within(2, slope_table_capacity).means("number of points")};
+    return std::tuple{
+        HY_FIELD(P_TABLE).in("'p").means("momentum of each point, rising"),
+        HY_FIELD(M_TABLE).in("'y/'u").means("slope at each point"),
+        HY_FIELD(COUNT).role(FieldRole::PointCount).within(2, slope_table_capacity).means("number of points")};
   }
 };
 

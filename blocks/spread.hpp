@@ -31,8 +31,12 @@ struct GapParams {
     return std::tuple{
         HY_FIELD(WIDTH).in("'x").otherwise(0.0).at_least(0.0).neutral_at(0.0).means(
             "whole width of the gap, half of it on either side"),
-        HY_FIELD(SPREAD).in("1").within(0.0, 1.0).otherwise(0.0).means(
-            "share of WIDTH by which a third of the gap is narrower and a third wider; 0 for sharp edges")};
+        HY_FIELD(SPREAD)
+            .role(FieldRole::Softness)
+            .in("1")
+            .within(0.0, 1.0)
+            .otherwise(0.0)
+            .means("share of WIDTH by which a third of the gap is narrower and a third wider; 0 for sharp edges")};
   }
   [[nodiscard]] OfThree<S> widths() const {
     return {.middle = WIDTH, .narrow = WIDTH * (S(1.0) - SPREAD), .wide = WIDTH * (S(1.0) + SPREAD)};

@@ -23,9 +23,10 @@ struct StepReference {
     S T0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X0).in("'x").otherwise(0.0).means("value before the step"),
-                        HY_FIELD(X1).in("'x").otherwise(1.0).means("value after the step"),
-                        HY_FIELD(T0).in("s").otherwise(0.0).at_least(0.0).means("time of the step")};
+      return std::tuple{
+          HY_FIELD(X0).role(FieldRole::StartValue).in("'x").otherwise(0.0).means("value before the step"),
+          HY_FIELD(X1).in("'x").otherwise(1.0).means("value after the step"),
+          HY_FIELD(T0).role(FieldRole::StartValue).in("s").otherwise(0.0).at_least(0.0).means("time of the step")};
     }
   };
   template <class S>

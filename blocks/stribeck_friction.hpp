@@ -20,7 +20,9 @@ struct StribeckFriction {
           "up to this step; where it depends on XOUT in the same step, a HY_DELAY before V closes the loop.",
 
       .source = "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083",
-      .effect = "stribeck_friction"};
+      .effect = "stribeck_friction",
+      .family = Family::DryFriction,
+      .simpler = "coulomb_friction"};
 
   template <class S>
   struct Params {

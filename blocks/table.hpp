@@ -30,7 +30,7 @@ struct Table {
     static constexpr auto fields() {
       return std::tuple{
           HY_FIELD(X).in("'x").means("arguments, rising"), HY_FIELD(Y).in("'y").means("values"),
-          HY_FIELD(COUNT).within(2, capacity).means("number of points"),
+          HY_FIELD(COUNT).role(FieldRole::PointCount).within(2, capacity).means("number of points"),
           HY_FIELD(EXTRAPOLATE).otherwise(0.0).means("TRUE: straight on outside; FALSE: end values hold")};
     }
   };

@@ -15,7 +15,8 @@ struct ThermalDrift : OfClockTime {
                                .meaning =
                                    "Adds what a machine drifts as it warms up after the start: an exponential of the "
                                    "clock time t, also while nothing moves. t is 0 in the first step.",
-                               .effect = "thermal_drift"};
+                               .effect = "thermal_drift",
+                               .family = Family::SlowChange};
 
   template <class S>
   struct Params {

@@ -18,7 +18,8 @@ struct ViscousFriction {
           "has come about up to this step; where it depends on XOUT in the same step, a HY_DELAY before V closes the "
           "loop.",
 
-      .effect = "viscous_friction"};
+      .effect = "viscous_friction",
+      .family = Family::ViscousFriction};
 
   template <class S>
   struct Params {

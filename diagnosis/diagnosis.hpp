@@ -27,6 +27,7 @@ struct ParameterFinding {
   double low = 0.0;
   double high = 0.0;
   std::string unit{};
+  FieldRole role = FieldRole::Number;
 };
 
 /// What an effect was given and no fit moved: the distance at which a nonlinearity has its size, a stride.

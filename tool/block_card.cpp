@@ -60,7 +60,10 @@ std::string limits_text(const Field& field, bool is_output) {
     parts.push_back("neutral at " + value_text(field, field.neutral));
   }
   if (!field.effect.empty()) {
-    parts.push_back(fmt::format("effect {}", field.effect));
+    parts.push_back(fmt::format("effect {}, of the family {}", field.effect, name_of(field.family)));
+  }
+  if (field.role != FieldRole::Number) {
+    parts.push_back(fmt::format("role {}", text_of(field.role).name));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -119,6 +122,10 @@ nlohmann::json field_json(const Field& field, bool is_output) {
   }
   if (!field.effect.empty()) {
     json["effect"] = field.effect;
+    json["family"] = name_of(field.family);
+  }
+  if (field.role != FieldRole::Number) {
+    json["role"] = text_of(field.role).name;
   }
   if (!is_output && !field.required) {
     json["default"] = field.preset;
@@ -161,8 +168,9 @@ std::string card_text(const BlockType& block) {
     text += "\ndelay and gain\n" + wrapped(about.delay, 2);
   }
   if (!about.effect.empty()) {
-    text += "\neffect\n" +
-            wrapped(fmt::format("{}, between XIN and XOUT.{}", about.effect, limits_of_effect(block, "")), 2);
+    text += "\neffect\n" + wrapped(fmt::format("{}, of the family {}, between XIN and XOUT.{}", about.effect,
+                                               name_of(about.family), limits_of_effect(block, "")),
+                                   2);
   }
   if (!about.enriches.empty()) {
     text += fmt::format("\ncan replace\n  {}, to the bit while every further effect is neutral\n", about.enriches);
@@ -186,6 +194,7 @@ nlohmann::json card_json(const BlockType& block) {
           {"meaning", about.meaning},
           {"delay", about.delay},
           {"effect", about.effect},
+          {"family", name_of(about.family)},
           {"enriches", about.enriches},
           {"source", about.source},
           {"rate_transition", about.rate_transition},

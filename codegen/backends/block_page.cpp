@@ -1,10 +1,12 @@
 #include "codegen/backends/block_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -68,6 +70,10 @@ bool any_effect(std::span<const Field> fields) {
   return std::ranges::any_of(fields, [](const Field& field) { return !field.effect.empty(); });
 }
 
+bool any_role(std::span<const Field> fields) {
+  return std::ranges::any_of(fields, [](const Field& field) { return field.role != FieldRole::Number; });
+}
+
 bool any_range(std::span<const Field> fields) {
   return std::ranges::any_of(fields, [](const Field& field) { return !range_text(field).empty(); });
 }
@@ -80,17 +86,29 @@ std::string table(std::span<const Field> fields, Kind kind) {
   const bool has_range = any_range(fields);
   const bool has_neutral = any_neutral(fields);
   const bool has_effect = any_effect(fields);
-  std::string text =
-      fmt::format("| name | type | unit |{}{}{}{} meaning |\n", has_range ? " range |" : "",
-                  has_default ? " default |" : "", has_neutral ? " neutral |" : "", has_effect ? " effect |" : "");
-  text += fmt::format("| --- | --- | --- |{}{}{}{} --- |\n", has_range ? " --- |" : "", has_default ? " --- |" : "",
-                      has_neutral ? " --- |" : "", has_effect ? " --- |" : "");
+  const bool has_role = any_role(fields);
+  std::string text = "| name | type | unit |";
+  std::string rule = "| --- | --- | --- |";
+  const auto column = [&](bool is_there, std::string_view name) {
+    text += is_there ? fmt::format(" {} |", name) : "";
+    rule += is_there ? " --- |" : "";
+  };
+  column(has_range, "range");
+  column(has_default, "default");
+  column(has_neutral, "neutral");
+  column(has_effect, "effect");
+  column(has_role, "role");
+  column(true, "meaning");
+  text += "\n" + rule + "\n";
   for (const Field& field : fields) {
     text += fmt::format("| `{}` | {} | {} |", field.name, type_text(field), unit_text(field));
     text += has_range ? fmt::format(" {} |", range_text(field)) : "";
     text += has_default ? fmt::format(" {} |", default_text(field)) : "";
     text += has_neutral ? fmt::format(" {} |", field.has_neutral() ? value_text(field, field.neutral) : "") : "";
-    text += !has_effect ? "" : field.effect.empty() ? " |" : fmt::format(" `{}` |", field.effect);
+    text += !has_effect            ? ""
+            : field.effect.empty() ? " |"
+                                   : fmt::format(" `{}`, {} |", field.effect, name_of(field.family));
+    text += !has_role ? "" : field.role == FieldRole::Number ? " |" : fmt::format(" {} |", text_of(field.role).name);
     text += fmt::format(" {} |\n", escaped(field.meaning));
   }
   return text;
@@ -122,6 +140,28 @@ std::string feedthrough(const BlockType& block) {
   }
   text += "\n●: the output of a step depends on the input of the same step.";
   text += any_free ? " An output without a mark can close a loop.\n" : "\n";
+  return text;
+}
+
+/// The effects of a family, each with the blocks that have it.
+std::string members_of(Family family, std::string_view folder) {
+  std::map<std::string_view, std::vector<std::string>> members;
+  for (const BlockType& block : block_types()) {
+    const std::string link = fmt::format("[{0}]({1}/{0}.md)", block.about.name, folder);
+    const auto add = [&](std::string_view effect, Family of) {
+      if (of == family && (members[effect].empty() || members[effect].back() != link)) {
+        members[effect].push_back(link);
+      }
+    };
+    add(block.about.effect, block.about.family);
+    for (const Field& field : block.params) {
+      add(field.effect, field.family);
+    }
+  }
+  std::string text;
+  for (const auto& [effect, blocks] : members) {
+    text += fmt::format("{}`{}` ({})", text.empty() ? "" : ", ", effect, fmt::join(blocks, ", "));
+  }
   return text;
 }
 
@@ -158,6 +198,10 @@ std::string limits_of_effect(const BlockType& block, std::string_view quote) {
   std::string text;
   if (block.about.of_record) {
     text += " It is the record's: a diagnosis tries it at the inputs and outputs of a diagram alone.";
+  }
+  if (!block.about.untried.empty()) {
+    text += fmt::format(" A diagnosis tries it where it is asked for it ({}--effects{}): {}.", quote, quote,
+                        block.about.untried);
   }
   for (const Field& field : block.params) {
     const bool low = std::isfinite(field.effect_minimum);
@@ -201,9 +245,10 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
     part("Delay and gain", escaped(about.delay) + "\n");
   }
   if (!about.effect.empty()) {
-    part("Effect", fmt::format("`{}`, between `XIN` and `XOUT`. With every parameter at its neutral setting the block "
-                               "passes its input through unchanged.{}\n",
-                               about.effect, limits_of_effect(block, "`")));
+    part("Effect",
+         fmt::format("`{}`, of the family `{}`, between `XIN` and `XOUT`. With every parameter at its neutral "
+                     "setting the block passes its input through unchanged.{}\n",
+                     about.effect, name_of(about.family), limits_of_effect(block, "`")));
   }
   if (!about.enriches.empty()) {
     part("Replaces",
@@ -214,6 +259,16 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
   part("Example", fmt::format("```st\n{}```\n", response_diagram(block)));
   if (!about.source.empty()) {
     part("Source", escaped(about.source) + "\n");
+  }
+  return text;
+}
+
+std::string family_index(std::string_view folder) {
+  std::string text =
+      "### Effects by family\n\nA family is what a record tells before it tells the member. A diagram's own effect "
+      "names its\nfamily by `@family`.\n\n| family | what it is | effects |\n| --- | --- | --- |\n";
+  for (const FamilyText& one : family_texts) {
+    text += fmt::format("| `{}` | {} | {} |\n", one.name, escaped(one.meaning), members_of(one.family, folder));
   }
   return text;
 }

@@ -34,4 +34,7 @@ struct BlockPageOptions {
 /// The index of the reference: every block with its title, by group, with links to pages NAME.md below `folder`.
 [[nodiscard]] std::string block_index(std::string_view folder);
 
+/// The families of effects, each with its effects and the blocks that have them.
+[[nodiscard]] std::string family_index(std::string_view folder);
+
 }  // namespace hysteron

@@ -35,7 +35,8 @@ std::string with_block_index(std::string_view page) {
   if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) {
     throw std::invalid_argument("the index page lacks the marks between which the blocks are listed");
   }
-  return fmt::format("{}\n{}\n{}", page.substr(0, begin + begin_mark.size()), block_index("blocks"), page.substr(end));
+  return fmt::format("{}\n{}\n{}\n{}", page.substr(0, begin + begin_mark.size()), block_index("blocks"),
+                     family_index("blocks"), page.substr(end));
 }
 
 }  // namespace hysteron

@@ -21,10 +21,10 @@ using language::upper;
 using language::Variable;
 
 using Keys = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 6> input_keys{"unit", "min", "max", "param", "neutral", "doc"};
+constexpr std::array<std::string_view, 7> input_keys{"unit", "min", "max", "param", "neutral", "role", "doc"};
 constexpr std::array<std::string_view, 2> value_keys{"unit", "doc"};
 constexpr std::array<std::string_view, 3> instance_keys{"every", "phase", "doc"};
-constexpr std::array<std::string_view, 3> block_keys{"ts", "effect", "doc"};
+constexpr std::array<std::string_view, 4> block_keys{"ts", "effect", "family", "doc"};
 
 /// The most that a block may hold, and the most levels of blocks in blocks.
 constexpr std::uint64_t most_instances = 2'000'000;
@@ -120,6 +120,8 @@ class Reader {
         }
       } else if (key == "EFFECT") {
         definition.effect = annotation.value;
+      } else if (key == "FAMILY") {
+        take_family(annotation, definition);
       }
     }
     definition.variables.reserve(definition.block->variables.size());
@@ -139,6 +141,24 @@ class Reader {
       }
       definition.variables.push_back(declare(variable));
     }
+  }
+
+  void take_family(const Annotation& annotation, Definition& definition) {
+    const auto is_effect = [](const Annotation& one) { return language::same_name(one.key, "effect"); };
+    if (std::ranges::none_of(definition.block->annotations, is_effect)) {
+      error(error::bad_annotation, annotation.span, "@family speaks of an effect, and the block names none",
+            "Name the effect: @effect sag.");
+    }
+    std::string names;
+    for (const FamilyText& one : family_texts) {
+      names += (names.empty() ? "" : ", ") + std::string(one.name);
+      if (language::same_name(one.name, annotation.value)) {
+        definition.family = one.name;
+        return;
+      }
+    }
+    error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a family of effects", annotation.value),
+          fmt::format("Write one of {}; without @family the effect is one by itself.", names));
   }
 
   Declared declare(const Variable& variable) {
@@ -170,6 +190,7 @@ class Reader {
       for (const Annotation& annotation : variable.annotations) {
         annotate(annotation, instance, declared);
       }
+      check_role(variable, declared);
     }
     if (declared.rate.phase >= declared.rate.every) {
       error(error::bad_annotation, variable.name.span,
@@ -263,6 +284,33 @@ class Reader {
       declared.kind = Declared::Kind::Parameter;
     } else if (is_input(declared) && key == "PARAM") {
       declared.kind = Declared::Kind::Parameter;
+    } else if (is_input(declared) && key == "ROLE") {
+      take_role(annotation, field);
+    }
+  }
+
+  void take_role(const Annotation& annotation, Field& field) {
+    std::string names;
+    for (const RoleText& one : role_texts) {
+      if (one.stated) {
+        names += (names.empty() ? "" : ", ") + std::string(one.name);
+        if (language::same_name(one.name, annotation.value)) {
+          field.role = one.role;
+          return;
+        }
+      }
+    }
+    error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a role", annotation.value),
+          fmt::format("Write one of {}.", names));
+  }
+
+  /// A role says what a parameter is for; a signal has none.
+  void check_role(const Variable& variable, const Declared& declared) {
+    if (declared.field.role != FieldRole::Number &&
+        (declared.kind != Declared::Kind::Parameter || declared.field.type != Type::Real)) {
+      error(error::bad_annotation, variable.name.span,
+            fmt::format("'{}' has a @role and is no parameter of type LREAL", declared.field.name),
+            "Add @param, or leave @role out.");
     }
   }
 

@@ -31,6 +31,7 @@ struct Definition {
   std::int64_t sample_time_ns = 0;
   language::Span sample_time_span{};  ///< where @ts states it; the name where nothing does
   std::string effect{};               ///< (* @effect creep *): joins the candidates of a diagnosis
+  std::string family{};               ///< (* @family slow_memory *), of that effect
   std::vector<bool> late{};           ///< by variable: an output that depends on an input within the same step
   bool usable = true;                 ///< FALSE where an error makes instances pointless
 };

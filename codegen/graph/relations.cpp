@@ -13,9 +13,9 @@ namespace {
 
 constexpr double longest_rounded = 1.0 + 1e-12;  ///< a dead time of exactly so many samples may be rounded up
 
-/// Which parameters of a block hang together, by their places. Found once, by what the description calls them.
+/// Which parameters of a block hang together, by their places. Found once, by the roles in its description.
 struct Relations {
-  std::optional<std::size_t> low{};        ///< MN and MX
+  std::optional<std::size_t> low{};        ///< of two bounds
   std::optional<std::size_t> high{};       ///< both or none
   std::optional<std::size_t> count{};      ///< the points of a table that are used
   std::vector<std::size_t> columns{};      ///< the arrays of a table; the first must rise
@@ -23,28 +23,28 @@ struct Relations {
   std::size_t samples = 0;
 };
 
-std::optional<std::size_t> place_of(std::span<const Field> fields, std::string_view name) {
-  const auto found = std::ranges::find(fields, name, &Field::name);
+std::optional<std::size_t> place_of(std::span<const Field> fields, FieldRole role) {
+  const auto found = std::ranges::find(fields, role, &Field::role);
   return found == fields.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - fields.begin()));
 }
 
 Relations relations_of(const BlockType& block) {
   Relations result;
-  result.low = place_of(block.params, "MN");
-  result.high = place_of(block.params, "MX");
+  result.low = place_of(block.params, FieldRole::LowerBound);
+  result.high = place_of(block.params, FieldRole::UpperBound);
   if (!result.low || !result.high) {
     result.low = result.high = std::nullopt;
   }
-  if (place_of(block.states, "RISING")) {
-    result.count = place_of(block.params, "COUNT");
+  result.count = place_of(block.params, FieldRole::PointCount);
+  if (result.count) {
     for (std::size_t i = 0; i < block.params.size(); ++i) {
       if (block.params[i].length > 1) {
         result.columns.push_back(i);
       }
     }
   }
-  if (const auto past = place_of(block.states, "PAST")) {
-    result.dead_time = place_of(block.params, "DEAD_TIME");
+  if (const auto past = place_of(block.states, FieldRole::PastInputs)) {
+    result.dead_time = place_of(block.params, FieldRole::DeadTime);
     result.samples = block.states[*past].length;
   }
   return result;

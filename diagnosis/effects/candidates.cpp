@@ -64,7 +64,7 @@ class Enumeration {
 
   std::vector<Candidate> list() {
     for (const EffectKind& kind : effect_kinds(definitions_)) {
-      if (!is_tried(options_.effects, kind.id)) {
+      if (!is_tried(options_.effects, kind.id) || (options_.effects.empty() && !kind.untried.empty())) {
         continue;
       }
       if (kind.change == Change::Insert) {
@@ -117,7 +117,7 @@ class Enumeration {
   /// the diagram, a column of the records that nothing uses.
   [[nodiscard]] std::vector<std::string> drivers(const EffectKind& kind, const Edge& edge) const {
     std::vector<std::string> result;
-    if (kind.id == "cross_coupling") {
+    if (kind.family == name_of(Family::Coupling)) {
       if (!edge.prefix.empty()) {
         return result;
       }
@@ -199,6 +199,7 @@ class Enumeration {
         free_name(source_->blocks[edge.definition], fmt::format("{}_{}", base_name, language::upper(kind.id)));
     Candidate candidate{.kind = kind, .variant = base_};
     Applied applied{.effect = kind.id,
+                    .simpler = kind.simpler,
                     .block = kind.block,
                     .edge = edge.name,
                     .at_port = is_port(edge),
@@ -370,11 +371,13 @@ bool Applied::has(Role role) const {
 }
 
 bool Applied::holds(const Applied& other) const {
-  return other.parameters.size() < parameters.size() &&
-         std::ranges::all_of(other.parameters, [&](const EffectParameter& its) {
-           return std::ranges::any_of(
-               parameters, [&](const EffectParameter& own) { return own.name == its.name && own.role == its.role; });
-         });
+  return other.effect == simpler && other.parameters.size() < parameters.size();
+}
+
+std::string Applied::path_of(FieldRole role) const {
+  const auto found =
+      std::ranges::find_if(parameters, [&](const EffectParameter& one) { return one.field.role == role; });
+  return found == parameters.end() ? std::string() : paths[static_cast<std::size_t>(found - parameters.begin())];
 }
 
 const EffectParameter& Applied::parameter(const std::string& path) const {

@@ -16,6 +16,7 @@ namespace hysteron::diagnosis {
 /// An effect that is part of a diagram.
 struct Applied {
   std::string effect{};              ///< creep
+  std::string simpler{};             ///< as EffectKind has it
   std::string block{};               ///< HY_CREEP
   std::string edge{};                ///< HYST.XOUT; of a richer block, its output
   bool at_port = false;              ///< that edge is an input or an output of the diagram
@@ -34,7 +35,9 @@ struct Applied {
   /// By one of its paths.
   [[nodiscard]] const EffectParameter& parameter(const std::string& path) const;
   [[nodiscard]] std::string place() const { return effect + "@" + edge; }
-  /// Whether the other one is a simpler formula of this: its parameters are some of these.
+  /// Of the parameter of a role; empty where there is none.
+  [[nodiscard]] std::string path_of(FieldRole role) const;
+  /// Whether the other one is a simpler formula of this, as the description of its block says.
   [[nodiscard]] bool holds(const Applied& other) const;
 };
 

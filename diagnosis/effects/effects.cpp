@@ -9,20 +9,29 @@
 namespace hysteron::diagnosis {
 namespace {
 
+/// The role that a description states, of what is no strength. Role::Other where it states none.
+Role stated_role(FieldRole role) {
+  switch (role) {
+    case FieldRole::ReferenceSize:
+    case FieldRole::Centre:
+      return Role::Reference;
+    case FieldRole::Period:
+      return Role::Period;
+    case FieldRole::Softness:
+      return Role::Softness;
+    case FieldRole::Instant:
+      return Role::Instant;
+    default:
+      return Role::Other;
+  }
+}
+
 Role role_of(const Field& field, std::string_view unit, bool strength) {
-  const std::string_view name = field.name;
-  if (!strength && (name.ends_with("REFERENCE") || name.ends_with("CENTRE"))) {
-    return Role::Reference;
-  }
-  if (!strength && name == "PITCH") {
-    return Role::Period;
-  }
-  if (!strength && name == "SPREAD") {
-    return Role::Softness;
+  if (const Role stated = stated_role(field.role); !strength && stated != Role::Other) {
+    return stated;
   }
   if (unit == "s") {
-    return !strength && (field.preset == 0.0 || std::isinf(field.preset)) && name.starts_with("T_") ? Role::Instant
-                                                                                                    : Role::Duration;
+    return Role::Duration;
   }
   if (unit == "Hz") {
     return Role::Frequency;
@@ -46,7 +55,7 @@ Role role_of(const Field& field, std::string_view unit, bool strength) {
 std::vector<EffectParameter> searched(std::span<const Field> fields) {
   std::vector<EffectParameter> result;
   for (const Field& field : fields) {
-    if (field.type != Type::Real || field.length > 1) {
+    if (field.type != Type::Real || field.length > 1 || field.role == FieldRole::StartValue) {
       continue;
     }
     const bool strength = field.has_neutral();
@@ -90,12 +99,15 @@ void drop_gains(std::vector<EffectParameter>& parameters) {
 void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
   if (!block.about.effect.empty()) {
     EffectKind kind{.id = std::string(block.about.effect), .block = std::string(block.about.name)};
+    kind.family = name_of(block.about.family);
+    kind.simpler = block.about.simpler;
+    kind.untried = block.about.untried;
     kind.of_record = block.about.of_record;
     bool has_input = false;
     for (const Field& input : block.inputs) {
       has_input = has_input || input.name == kind.input;
-      // X0 is where a block starts, no signal that drives the effect.
-      if (input.type == Type::Real && input.name != kind.input && input.name != "X0" && input.unit != "'x") {
+      if (input.type == Type::Real && input.name != kind.input && input.role != FieldRole::StartValue &&
+          input.unit != "'x") {
         kind.auxiliaries.emplace_back(input.name);
         kind.by_velocity = kind.by_velocity || input.unit == "'v";
         kind.fed_back = kind.fed_back || kind.by_velocity || input.unit == "'p";
@@ -103,10 +115,6 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
     }
     kind.parameters = searched(block.params);
     std::ranges::copy_if(block.params, std::back_inserter(kind.choices), &Field::open);
-    // A level at which something starts or stands, which the search leaves alone: X0, say.
-    std::erase_if(kind.parameters, [](const EffectParameter& one) {
-      return !one.strength && one.role == Role::Level && one.field.preset == 0.0;
-    });
     drop_gains(kind.parameters);
     if (has_input && has_strength(kind)) {
       kinds.push_back(std::move(kind));
@@ -117,14 +125,13 @@ void add_library(const BlockType& block, std::vector<EffectKind>& kinds) {
       continue;
     }
     EffectKind kind{.id = std::string(field.effect),
+                    .family = std::string(name_of(field.family)),
                     .block = std::string(block.about.name),
                     .change = block.about.enriches.empty() ? Change::Free : Change::Enrich,
                     .enriches = std::string(block.about.enriches.empty() ? block.about.name : block.about.enriches)};
     const auto all = searched(block.params);
     for (const EffectParameter& one : all) {
-      const bool own = one.field.name == field.name || (one.field.name.starts_with(field.name) &&
-                                                        one.field.name.substr(field.name.size()).starts_with("_"));
-      if (own) {
+      if (one.field.name == field.name || one.field.shapes == field.name) {
         kind.parameters.push_back(one);
       }
     }
@@ -140,7 +147,9 @@ void add_own(const Definition& definition, std::vector<EffectKind>& kinds) {
   if (definition.effect.empty() || !definition.usable) {
     return;
   }
-  EffectKind kind{.id = definition.effect, .block = std::string(definition.block->name.text)};
+  EffectKind kind{.id = definition.effect,
+                  .family = definition.family.empty() ? definition.effect : definition.family,
+                  .block = std::string(definition.block->name.text)};
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
   std::vector<Field> parameters;
@@ -182,7 +191,7 @@ std::vector<EffectKind> effect_kinds(const Definitions& definitions) {
       // With a velocity or a position beside it, it is the size of a force.
       if (one.strength && one.role == Role::Level && one.field.neutral == 0.0 && one.field.minimum == 0.0 &&
           kind.auxiliaries.empty()) {
-        one.role = one.name == "QUANTUM" ? Role::Quantum : Role::Gap;
+        one.role = one.field.role == FieldRole::Quantum ? Role::Quantum : Role::Gap;
       }
     }
   }

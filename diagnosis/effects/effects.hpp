@@ -1,8 +1,8 @@
 // The effects that are tried: every block with an effect and a neutral setting, from the catalogue and from the user's
 // own file, and what the search needs to know of their parameters.
 //
-// Nothing here names a block. What a parameter is follows from its description: neutral or not, and its unit relative
-// to the signal ('x), which says what a sensible size is.
+// Nothing here names a block or a parameter. What a parameter is follows from its description: neutral or not, its
+// role, and its unit relative to the signal ('x), which says what a sensible size is.
 #pragma once
 
 #include <string>
@@ -51,15 +51,18 @@ enum class Change : std::uint8_t {
 };
 
 struct EffectKind {
-  std::string id{};     ///< creep
-  std::string block{};  ///< HY_CREEP
+  std::string id{};      ///< creep
+  std::string family{};  ///< slow_memory; of an effect of the user's own that states none, its id
+  std::string block{};   ///< HY_CREEP
   Change change = Change::Insert;
+  std::string simpler{};  ///< the effect with fewer parameters that may be meant where this one was found
   std::string input = "XIN";
   std::string output = "XOUT";
   std::string enriches{};                     ///< Enrich: the block that it can stand for; Free: the block itself
   std::vector<EffectParameter> parameters{};  ///< those that are searched
   std::vector<Field> choices{};               ///< of what was before the record: tried both ways
   std::vector<std::string> auxiliaries{};     ///< further LREAL inputs, to be wired: V, POS, Z
+  std::string untried{};                      ///< why it is tried only where it is asked for; empty: it is tried
   bool of_output = false;                     ///< its levels are those of the block's output, not of its input
   bool fed_back = false;                      ///< they are a velocity or position that what the effect changes drives
   bool by_velocity = false;                   ///< and it is a velocity

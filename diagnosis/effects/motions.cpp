@@ -22,12 +22,13 @@ Smoothing smoothing_of(const Node& node) {
     return {};
   }
   const auto& outputs = node.block->outputs;
-  const auto rate = std::ranges::find(outputs, std::string_view("RATE"), &Field::name);
+  const auto rate = std::ranges::find(outputs, FieldRole::Rate, &Field::role);
   if (rate == outputs.end()) {
     return {};
   }
-  const auto order = std::ranges::count_if(
-      node.block->states, [](const Field& state) { return state.type == Type::Real && state.name != "X1"; });
+  const auto order = std::ranges::count_if(node.block->states, [](const Field& state) {
+    return state.type == Type::Real && state.role != FieldRole::PastInput;
+  });
   return {.order = static_cast<int>(order), .rate = static_cast<std::size_t>(rate - outputs.begin())};
 }
 

@@ -158,7 +158,7 @@ std::vector<double> shape_grid(const EffectParameter& parameter, bool ends, cons
 }
 
 bool is_centre(const EffectParameter& parameter) {
-  return parameter.role == Role::Reference && parameter.name.ends_with("CENTRE");
+  return parameter.field.role == FieldRole::Centre;
 }
 
 /// Of another signal, where it adds nothing.

@@ -130,9 +130,9 @@ std::string unit_behind(const GapFinding& gap) {
 
 /// A delay that a model's own steps may be.
 bool is_within_a_sample(const EffectFinding& effect, double sample_time) {
-  return effect.id == "delay" && std::ranges::any_of(effect.parameters, [&](const ParameterFinding& one) {
-           return one.name == "DEAD_TIME" && one.low <= sample_time;
-         });
+  return std::ranges::any_of(effect.parameters, [&](const ParameterFinding& one) {
+    return one.role == FieldRole::DeadTime && one.low <= sample_time;
+  });
 }
 
 }  // namespace
@@ -199,6 +199,7 @@ std::vector<EffectFinding> effect_findings(const Findings& findings) {
       }
       finding.parameters.push_back(finding_of(leaf(unknown.path), unknown.unit, chosen.fit.x[at], errors[at],
                                               model.lower()[at], model.upper()[at]));
+      finding.parameters.back().role = applied.parameter(unknown.path).field.role;
       if (errors[at] > undetermined * std::abs(chosen.fit.x[at]) || !has_influence(chosen.fit, at, unknown.typical)) {
         widen_by_trial(model, chosen.fit, at, samples, finding.parameters.back());
       }

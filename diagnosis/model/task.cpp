@@ -16,10 +16,6 @@ constexpr double prior_share = 0.3;
 /// A tuning that ran into a bound has bent the parameter to make up for something else: it says less of its value.
 constexpr double at_bound = 5.0;
 
-bool starts_something(const Field& field) {
-  return field.preset == 0.0 && field.name.ends_with("0") && field.unit != "1";
-}
-
 Unknown known_of(const Parameter& parameter) {
   const double value = parameter.value.front();
   Unknown unknown{.path = parameter.path,
@@ -69,7 +65,7 @@ Task task_of(const DiagnosisInput& input) {
       break;
     }
     if (number && parameter.value.front() != 0.0 && std::isfinite(parameter.value.front()) &&
-        !starts_something(parameter.field)) {
+        parameter.field.role != FieldRole::StartValue) {
       task.known.push_back(known_of(parameter));
     }
   }

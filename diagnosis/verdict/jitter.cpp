@@ -186,7 +186,7 @@ const Applied* delay_of(const Explanation& one) {
 }
 
 double mean_delay(const Task& task, const Explanation& one) {
-  const std::optional<Index> at = place_in_fit(task, one, delay_of(one)->instance + ".DEAD_TIME");
+  const std::optional<Index> at = place_in_fit(task, one, delay_of(one)->path_of(FieldRole::DeadTime));
   return at ? one.fit.x[*at] : 0.0;
 }
 

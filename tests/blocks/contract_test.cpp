@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -97,13 +98,103 @@ TEST(Contract, OnlyEffectsHaveANeutralSetting) {
     if (B::about.effect.empty()) {
       const auto fields = fields_of<DoubleParams<B>>();
       for (const Field& field : fields) {
-        // A further parameter of an effect begins with the name of the first: ASYMMETRY, ASYMMETRY_EXPONENT.
-        const bool further = std::ranges::any_of(fields, [&](const Field& first) {
-          return !first.effect.empty() && field.name.starts_with(std::string(first.name) + "_");
-        });
+        const bool further = !field.shapes.empty();
         EXPECT_TRUE(field.has_neutral() ? further || !field.effect.empty() : field.effect.empty()) << field.name;
       }
     }
+  });
+}
+
+TEST(Contract, EveryEffectIsOfAFamily) {
+  std::map<std::string_view, Family> families;
+  const auto expect = [&](std::string_view effect, Family family) {
+    EXPECT_EQ(effect.empty(), family == Family::None) << effect;
+    EXPECT_EQ(families.try_emplace(effect, family).first->second, family) << effect << " is of two families";
+  };
+  for_each_block([&]<class B> {
+    expect(B::about.effect, B::about.family);
+    EXPECT_TRUE(B::about.untried.empty() || !B::about.effect.empty());
+    for (const Field& field : fields_of<DoubleParams<B>>()) {
+      expect(field.effect, field.family);
+    }
+  });
+  EXPECT_EQ(families.at("creep"), families.at("relaxation"));
+}
+
+TEST(Families, AreNamedAndSaidWhatTheyAre) {
+  std::set<std::string_view> names;
+  for (const FamilyText& one : family_texts) {
+    EXPECT_TRUE(names.insert(one.name).second);
+    EXPECT_EQ(name_of(one.family), one.name);
+    EXPECT_GE(one.meaning.size(), 10U) << one.name;
+  }
+  EXPECT_EQ(name_of(Family::None), "");
+}
+
+TEST(Contract, AParameterShapesAnEffectOfItsOwnBlock) {
+  int count = 0;
+  for_each_block([&]<class B> {
+    const auto fields = fields_of<DoubleParams<B>>();
+    for (const Field& field : fields) {
+      if (!field.shapes.empty()) {
+        ++count;
+        const auto first = std::ranges::find(fields, field.shapes, &Field::name);
+        ASSERT_NE(first, fields.end()) << field.name << " shapes " << field.shapes;
+        EXPECT_FALSE(first->effect.empty()) << field.name << " shapes " << field.shapes;
+      }
+    }
+  });
+  EXPECT_GT(count, 0);
+}
+
+TEST(Contract, ARoleStandsWhereItMeansSomething) {
+  for_each_block([]<class B> {
+    const auto each = [](const auto& fields, bool are_params) {
+      for (const Field& field : fields) {
+        const bool of_params = text_of(field.role).stated || field.role == FieldRole::LowerBound ||
+                               field.role == FieldRole::UpperBound || field.role == FieldRole::PointCount;
+        // An input may be what a reset loads.
+        EXPECT_TRUE(!of_params || are_params || field.role == FieldRole::StartValue) << field.name;
+      }
+    };
+    each(fields_of<DoubleParams<B>>(), true);
+    each(fields_of<DoubleIn<B>>(), false);
+    each(fields_of<typename B::template Out<double>>(), false);
+    each(fields_of<typename B::template State<double>>(), false);
+    const auto params = fields_of<DoubleParams<B>>();
+    EXPECT_EQ(std::ranges::count(params, FieldRole::LowerBound, &Field::role),
+              std::ranges::count(params, FieldRole::UpperBound, &Field::role));
+  });
+}
+
+/// The names of a block's parameters that belong to an effect: all, or those of the field that has it.
+template <class B>
+std::set<std::string_view> names_of_effect(std::string_view effect) {
+  std::set<std::string_view> names;
+  for (const Field& field : fields_of<DoubleParams<B>>()) {
+    if (B::about.effect == effect ? field.role != FieldRole::StartValue && field.type == Type::Real
+                                  : field.effect == effect) {
+      names.insert(field.name);
+    }
+  }
+  return names;
+}
+
+TEST(Contract, ASimplerEffectHasSomeOfTheParameters) {
+  for_each_block([]<class Rich> {
+    if (Rich::about.simpler.empty()) {
+      return;
+    }
+    const auto own = names_of_effect<Rich>(Rich::about.effect);
+    int found = 0;
+    Catalogue::for_each([&]<class Plain> {
+      const auto names = names_of_effect<Plain>(Rich::about.simpler);
+      if (!names.empty()) {
+        ++found;
+        EXPECT_TRUE(std::ranges::includes(own, names)) << Plain::about.name;
+      }
+    });
+    EXPECT_GT(found, 0) << Rich::about.simpler;
   });
 }
 

@@ -43,9 +43,26 @@ TEST(Annotations, OfARangeAreInOrder) {
 TEST(Annotations, ThatDoNotFitAreToldThoseThatDo) {
   EXPECT_THAT(refusal(with("", "", "(* @min 0 *)")),
               AllOf(HasSubstr("@min is not an annotation that fits here"), HasSubstr("Known here: @unit, @doc.")));
-  EXPECT_THAT(refusal(with("", "(* @every 4 *)")), HasSubstr("Known here: @unit, @min, @max, @param, @neutral, @doc."));
+  EXPECT_THAT(refusal(with("", "(* @every 4 *)")),
+              HasSubstr("Known here: @unit, @min, @max, @param, @neutral, @role, @doc."));
   EXPECT_THAT(refusal(with("", "", "", "(* @unit V *)")), HasSubstr("Known here: @every, @phase, @doc."));
-  EXPECT_THAT(refusal(with("(* @unit V *)", "")), HasSubstr("Known here: @ts, @effect, @doc."));
+  EXPECT_THAT(refusal(with("(* @unit V *)", "")), HasSubstr("Known here: @ts, @effect, @family, @doc."));
+}
+
+TEST(Annotations, ARoleIsOneOfThoseThatAParameterCanHave) {
+  EXPECT_THAT(refusal(with("", "(* @param @role begin *)")),
+              AllOf(HasSubstr("'begin' is not a role"), HasSubstr("start, reference_size, centre")));
+  EXPECT_THAT(refusal(with("", "(* @param @role lower_bound *)")), HasSubstr("'lower_bound' is not a role"));
+  EXPECT_THAT(refusal(with("", "(* @role start *)")), HasSubstr("'U' has a @role and is no parameter"));
+  EXPECT_EQ(refusal(with("", "(* @role Start @param *)")), "accepted");
+  EXPECT_EQ(refusal(with("", "(* @neutral 0.0 *) (* @role quantum *)")), "accepted");
+}
+
+TEST(Annotations, AFamilyIsKnownAndIsOfAnEffect) {
+  EXPECT_THAT(refusal(with("(* @effect sag @family bending *)", "")),
+              AllOf(HasSubstr("'bending' is not a family of effects"), HasSubstr("dry_friction, viscous_friction")));
+  EXPECT_THAT(refusal(with("(* @family play *)", "")), HasSubstr("the block names none"));
+  EXPECT_EQ(refusal(with("(* @family Static_Curve *) (* @effect sag *)", "")), "accepted");
 }
 
 TEST(Annotations, APhaseBelowZeroIsToldFromWhereItCounts) {

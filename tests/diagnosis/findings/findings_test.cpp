@@ -122,17 +122,19 @@ TEST(Reasons, ASlowPeriodIsNamedWhereSomethingStaysOpen) {
 }
 
 TEST(Reasons, ADelayWithinASampleMayBeTheModelsOwn) {
-  const auto reasons = [](std::string effect, double low) {
-    const Diagnosis found{.effects = {{.id = std::move(effect),
-                                       .edge = "BELT.XIN",
-                                       .parameters = {{.name = "DEAD_TIME", .value = low, .low = low, .unit = "s"}}}}};
+  const auto reasons = [](FieldRole role, double low) {
+    const Diagnosis found{
+        .effects = {{.id = "delay",
+                     .edge = "BELT.XIN",
+                     .parameters = {{.name = "LATE", .value = low, .low = low, .unit = "s", .role = role}}}}};
     return structural_reasons(found, 0.01, 0.0);
   };
-  ASSERT_EQ(reasons("delay", 0.005).size(), 1U);
-  EXPECT_NE(reasons("delay", 0.005).front().find("delay at BELT.XIN: it may be no more than a sample, 0.01 s"),
-            std::string::npos);
-  EXPECT_TRUE(reasons("delay", 0.02).empty());
-  EXPECT_TRUE(reasons("hold", 0.005).empty());
+  ASSERT_EQ(reasons(FieldRole::DeadTime, 0.005).size(), 1U);
+  EXPECT_NE(
+      reasons(FieldRole::DeadTime, 0.005).front().find("delay at BELT.XIN: it may be no more than a sample, 0.01 s"),
+      std::string::npos);
+  EXPECT_TRUE(reasons(FieldRole::DeadTime, 0.02).empty());
+  EXPECT_TRUE(reasons(FieldRole::Number, 0.005).empty());
 }
 
 TEST(Findings, ASizeStandsBesideTheDistanceAtWhichItIs) {

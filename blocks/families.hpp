@@ -1,0 +1,60 @@
+// Families of effects: what a record can tell before it tells which member it is. A Coulomb friction and a Stribeck
+// friction are both dry friction; a creep and a relaxation are both a slow memory.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace hysteron {
+
+enum class Family : std::uint8_t {
+  None,
+  DryFriction,
+  ViscousFriction,
+  Play,
+  Hysteresis,
+  SlowMemory,
+  SlowChange,
+  LinearDynamics,
+  StaticCurve,
+  RateLimit,
+  PeriodicOverPosition,
+  PeriodicInTime,
+  Logging,
+  Coupling,
+  Offset
+};
+
+struct FamilyText {
+  Family family;
+  std::string_view name;  ///< as in @family and in reports
+  std::string_view meaning;
+};
+
+inline constexpr std::array family_texts{
+    FamilyText{Family::DryFriction, "dry_friction",
+               "a force that turns with the direction of the motion, not its speed"},
+    FamilyText{Family::ViscousFriction, "viscous_friction", "a force that grows with the speed"},
+    FamilyText{Family::Play, "play", "a gap that the motion crosses before anything follows"},
+    FamilyText{Family::Hysteresis, "hysteresis", "a loop whose memory is the input's turning points, at any rate"},
+    FamilyText{Family::SlowMemory, "slow_memory", "what follows its input over seconds or hours: creep, relaxation"},
+    FamilyText{Family::SlowChange, "slow_change",
+               "what changes with the time since the start, whatever the machine does"},
+    FamilyText{Family::LinearDynamics, "linear_dynamics", "what a linear filter does: gain, delay, lag, resonance"},
+    FamilyText{Family::StaticCurve, "static_curve", "a curve over the present value: limit, dead zone, bend"},
+    FamilyText{Family::RateLimit, "rate_limit", "a bound on the rate of change"},
+    FamilyText{Family::PeriodicOverPosition, "periodic_over_position", "what repeats itself over a position"},
+    FamilyText{Family::PeriodicInTime, "periodic_in_time",
+               "what repeats itself with the time, whatever the machine does"},
+    FamilyText{Family::Logging, "logging", "what converters, clocks and loggers do to values and to their times"},
+    FamilyText{Family::Coupling, "coupling", "what a signal from elsewhere adds or changes"},
+    FamilyText{Family::Offset, "offset", "a constant that is added"}};
+
+constexpr std::string_view name_of(Family family) {
+  const auto found = std::ranges::find(family_texts, family, &FamilyText::family);
+  return found == family_texts.end() ? std::string_view() : found->name;
+}
+
+}  // namespace hysteron

@@ -279,7 +279,10 @@ class Enumeration {
     if (node != nullptr) {
       candidate.input = wire_of(graph, *node, candidate.kind.input);
       for (const std::string& pin : candidate.kind.auxiliaries) {
-        candidate.auxiliary.push_back(wire_of(graph, *node, pin));
+        const Wire wire = wire_of(graph, *node, pin);
+        if (wire.from != Wire::From::Literal) {  // a further pin that stays at its default
+          candidate.auxiliary.push_back(wire);
+        }
       }
       const Wire changed{.from = Wire::From::Node, .index = static_cast<std::uint32_t>(node - graph.nodes.data())};
       candidate.upstream = sources_of(graph, candidate.input, changed).size();

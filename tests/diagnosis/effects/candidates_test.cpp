@@ -333,7 +333,8 @@ TEST(Candidates, TheNamesOfParametersDecideNothing) {
     return result;
   };
   const std::vector<std::string> expected = shapes(with_own_effect + axis);
-  ASSERT_THAT(expected, Contains("sag FORCE 10! 10"));
+  const int other = static_cast<int>(Role::Other);
+  ASSERT_THAT(expected, Contains(fmt::format("sag FORCE {}! {}", other, other)));
   for (const char* name : {"X0", "T_ON", "PITCH", "QUANTUM", "SPREAD", "CENTRE", "A_REFERENCE", "DEAD_TIME", "MN"}) {
     EXPECT_EQ(shapes(renamed(with_own_effect + axis, {{"SIZE", name}})), expected) << name;
     EXPECT_EQ(shapes(renamed(with_own_effect + axis, {{"HALF", name}})), expected) << name;

@@ -60,6 +60,7 @@ Explanation explanation_of(const std::vector<std::pair<std::string, std::vector<
   for (const auto& [effect, names] : effects) {
     Applied& one = result.variant.effects.emplace_back();
     one.effect = effect;
+    one.simpler = effect == "stribeck_friction" ? "coulomb_friction" : "";
     for (const std::string& name : names) {
       one.parameters.push_back({.name = name});
     }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -272,7 +271,7 @@ bool do_the_same(const Law& a, const Law& b) {
 /// What settles within a small part of a block is a lag by another name.
 std::string family_at(const EffectKind& kind, const Law& law, double block) {
   const auto time = std::ranges::find_if(law.shape, [](const auto& one) { return one.first == "T1"; });
-  const std::string family = family_of(kind.id);
+  const std::string& family = kind.family;
   return family == "slow_memory" && time != law.shape.end() && time->second < policy::quick.value * block
              ? "linear_dynamics"
              : family;
@@ -347,31 +346,6 @@ struct Job {
 
 }  // namespace
 
-std::string family_of(const std::string& effect) {
-  static const std::map<std::string, std::string> names{{"backlash", "play"},
-                                                        {"dead_zone", "static"},
-                                                        {"coulomb_friction", "dry_friction"},
-                                                        {"stribeck_friction", "dry_friction"},
-                                                        {"viscous_friction", "viscous"},
-                                                        {"cogging", "periodic_in_place"},
-                                                        {"cross_coupling", "coupling"},
-                                                        {"creep", "slow_memory"},
-                                                        {"relaxation", "slow_memory"},
-                                                        {"delay", "linear_dynamics"},
-                                                        {"lag", "linear_dynamics"},
-                                                        {"resonance", "linear_dynamics"},
-                                                        {"drift", "slow_change"},
-                                                        {"gain_drift", "slow_change"},
-                                                        {"thermal_drift", "slow_change"},
-                                                        {"load", "slow_change"},
-                                                        {"even_nonlinearity", "static"},
-                                                        {"odd_nonlinearity", "static"},
-                                                        {"saturation", "static"},
-                                                        {"periodic_disturbance", "periodic_in_time"}};
-  const auto found = names.find(effect);
-  return found == names.end() ? effect : found->second;
-}
-
 std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation& fitted, const Blocks& blocks,
                          const LawOptions& options) {
   Diagnostics none;  // the text compiled before
@@ -384,15 +358,17 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
   Hints free_hints = hints;
   bar_lines_of(drivers, sample_time, free_hints.frequencies);
   std::vector<Job> jobs;
+  std::vector<bool> within_motion;
+  for (const Space::Place& place : places) {
+    within_motion.push_back(!place.is_port && carries_velocity(place, drivers));
+  }
   for (const EffectKind& kind : kinds) {
-    if (kind.change != Change::Insert || !is_tried(options.effects, kind.id) || kind.id == "quantization" ||
-        kind.id == "gain_error" || kind.id == "clock" || find_block_type(kind.block) == nullptr) {
+    if (!is_tried(options.effects, kind.id) || !is_law(kind)) {
       continue;
     }
+    const bool oscillates = std::ranges::count(kind.parameters, Role::Frequency, &EffectParameter::role) > 0;
     for (std::size_t place = 0; place < places.size(); ++place) {
-      const bool oscillates = std::ranges::count(kind.parameters, Role::Frequency, &EffectParameter::role) > 0;
-      if (!may_act_on(kind, places[place]) || (oscillates && free_hints.frequencies.empty()) ||
-          (is_static(kind) && carries_velocity(places[place], drivers))) {
+      if (!may_act_on(kind, places[place]) || (oscillates && free_hints.frequencies.empty()) || within_motion[place]) {
         continue;
       }
       if (kind.auxiliaries.empty()) {
@@ -400,8 +376,17 @@ std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation
         continue;
       }
       for (const DriverSignal& signal : drivers) {
-        if (may_drive(kind, signal, places[place])) {
+        if (!may_drive(kind, signal, places[place])) {
+          continue;
+        }
+        if (kind.auxiliaries.size() == 1) {
           jobs.push_back({.kind = &kind, .place = place, .drivers = {&signal}});
+          continue;
+        }
+        for (const DriverSignal& load : drivers) {
+          if (may_load(load)) {
+            jobs.push_back({.kind = &kind, .place = place, .drivers = {&signal, &load}});
+          }
         }
       }
     }

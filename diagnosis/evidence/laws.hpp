@@ -47,9 +47,6 @@ struct LawOptions {
   unsigned threads = 2;
 };
 
-/// The family of an effect.
-[[nodiscard]] std::string family_of(const std::string& effect);
-
 /// All laws on all places of a space; those that do there what another one of the same effect does are left out.
 [[nodiscard]] std::vector<Law> laws_of(const Task& task, const Space& space, const Explanation& fitted,
                                        const Blocks& blocks, const LawOptions& options);

@@ -52,6 +52,10 @@ LinearSystem MissingSpace::linearised(const TangentRun& run, std::size_t record,
 std::unique_ptr<MissingSpace> MissingSpace::of_bottleneck(const Task& task, const std::string& top,
                                                           const Explanation& fitted,
                                                           const std::vector<std::string>& unused, unsigned threads) {
+  // A parameter of one record alone has no slope over all of them.
+  if (std::ranges::any_of(task.known, [](const Unknown& one) { return one.record.has_value(); })) {
+    return nullptr;
+  }
   std::vector<std::string> driven;
   for (const Port& input : fitted.variant.program->graph.inputs) {
     if (input.type == Type::Real && task.records.front().find(input.name) != nullptr) {

@@ -1,11 +1,13 @@
 #include "diagnosis/evidence/roles.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
+#include "blocks/families.hpp"
 #include "codegen/graph/unit.hpp"
-#include "diagnosis/evidence/laws.hpp"
+#include "codegen/trace/block_type.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -54,8 +56,20 @@ bool may_act_on(const EffectKind& kind, const Space::Place& place) {
   return true;
 }
 
-bool is_static(const EffectKind& kind) {
-  return kind.auxiliaries.empty() && family_of(kind.id) == "static";
+bool is_law(const EffectKind& kind) {
+  const auto is_gain = [](const EffectParameter& one) { return one.strength && one.field.neutral == 1.0; };
+  const auto is_other = [&](const EffectParameter& one) { return one.strength && !is_gain(one); };
+  const auto is_limit = [](const EffectParameter& one) { return one.strength && !std::isfinite(one.field.neutral); };
+  return kind.change == Change::Insert && find_block_type(kind.block) != nullptr &&
+         kind.family != name_of(Family::Logging) && std::ranges::any_of(kind.parameters, is_other) &&
+         (kind.auxiliaries.empty() || std::ranges::none_of(kind.parameters, is_limit)) &&
+         (kind.by_velocity || kind.family != name_of(Family::DryFriction));
+}
+
+bool may_load(const DriverSignal& signal) {
+  const Quantity quantity = quantity_of(signal.unit);
+  return !signal.is_rate && !signal.is_follower && !quantity.position && !quantity.velocity && !quantity.thermal &&
+         (quantity.known || signal.source == DriverSignal::Source::Input);
 }
 
 bool carries_velocity(const Space::Place& place, const std::vector<DriverSignal>& drivers) {

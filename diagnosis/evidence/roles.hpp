@@ -23,9 +23,16 @@ struct Quantity {
 /// repeats over a position acts on a position or on a force.
 [[nodiscard]] bool may_act_on(const EffectKind& kind, const Space::Place& place);
 
-/// A curve of its signal alone, and whether a place carries a velocity, or a gain times one: a force that is a curve of
-/// a velocity is a friction, and is tried as one.
-[[nodiscard]] bool is_static(const EffectKind& kind);
+/// Whether an effect adds something to its edge that a regression can find: no gain, which is a matter of calibration;
+/// nothing that a logger does, which is looked for in the record itself; no limit on another signal; no friction
+/// without a speed, which shows in the shape of an oscillation.
+[[nodiscard]] bool is_law(const EffectKind& kind);
+
+/// A load that a friction may grow with: a force, a pressure, an effort; no motion.
+[[nodiscard]] bool may_load(const DriverSignal& signal);
+
+/// Whether a place carries a velocity, or a gain times one. Between a speed and its integral nothing can act, and a
+/// force that is a function of a speed is a friction: it is tried as one, on the force.
 [[nodiscard]] bool carries_velocity(const Space::Place& place, const std::vector<DriverSignal>& drivers);
 
 /// A friction is driven by a velocity, what repeats by a position, a coupling by another column.

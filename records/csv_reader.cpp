@@ -296,30 +296,35 @@ class Reader {
   }
 
   [[noreturn]] void refuse_time(const TimeFault& fault, const std::vector<double>& time) {
-    const auto seconds = [](double value) { return fmt::format("{:.6g} s", value); };
+    constexpr int digits = 6;
     Diagnostics list;
     const std::vector<Note> before{{.place = source_.place("t", fault.row - 1), .text = "the row before"}};
     if (fault.reversed) {
       const bool same = time[fault.row] == time[fault.row - 1];
+      const auto [last, here] = distinct_texts(time[fault.row - 1], time[fault.row], digits);
       list.error(error::reversed_time, source_.place("t", fault.row),
-                 same ? fmt::format("The time {} stands in two rows.", seconds(time[fault.row]))
-                      : fmt::format("The time runs back, from {} to {}.", seconds(time[fault.row - 1]),
-                                    seconds(time[fault.row])),
+                 same ? fmt::format("The time {} s stands in two rows.", here)
+                      : fmt::format("The time runs back, from {} s to {} s.", last, here),
                  same ? "print the time with more digits, or remove the row that was written twice."
                       : "put the rows in the order of time; give each record a file of its own.",
                  before);
     } else {
-      std::string mend = "resample the record to a constant sample time, or cut it here.";
+      std::string mend =
+          "resample the record to a constant sample time, or cut it here. Take the nearest sample of encoders and "
+          "commands, which step, and interpolate slow analog signals alone.";
       if (fault.step > 1.5 * fault.usual) {
         mend = "rows are missing: cut the record here, or record it again.";
       }
       if (fault.coarse) {
         mend += " The times are printed coarsely: more digits may mend it.";
       }
-      list.error(
-          error::uneven_time, source_.place("t", fault.row),
-          fmt::format("The time goes on by {} here, elsewhere by {}.", seconds(fault.step), seconds(fault.usual)), mend,
-          before);
+      const auto [here, elsewhere] = distinct_texts(fault.step, fault.usual, digits);
+      list.error(error::uneven_time, source_.place("t", fault.row),
+                 fault.off > 0.0 ? fmt::format("No single step stands out, but the times stray from an even grid by "
+                                               "{:.3g} s, {:.3g} sample times: the clock jitters or drifts.",
+                                               fault.off, fault.off / fault.usual)
+                                 : fmt::format("The time goes on by {} s here, elsewhere by {} s.", here, elsewhere),
+                 mend, before);
     }
     throw InputError(list);
   }

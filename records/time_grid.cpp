@@ -169,8 +169,9 @@ TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& r
     const auto stands_out = std::find_if(steps.begin(), steps.end(), [&](double step) {
       return std::abs(step - usual) > 2.0 * taken_away + 0.02 * usual + rounding;
     });
-    grid.fault =
-        fault_at(stands_out != steps.end() ? static_cast<std::size_t>(stands_out - steps.begin()) + 1 : off.farthest);
+    const bool any = stands_out != steps.end();
+    grid.fault = fault_at(any ? static_cast<std::size_t>(stands_out - steps.begin()) + 1 : off.farthest);
+    grid.fault->off = any ? 0.0 : off.span;
   }
   return grid;
 }

@@ -28,6 +28,7 @@ struct TimeFault {
   std::size_t row = 0;    ///< the row at which it shows, never the first
   double step = 0.0;      ///< from the row before, s
   double usual = 0.0;     ///< the median step, s
+  double off = 0.0;       ///< from the even grid, s, where no step stands out; else 0
   bool reversed = false;  ///< the step is zero or negative
   bool coarse = false;    ///< a single printed digit is worth more than a tenth of the sample time
 };

@@ -1,5 +1,7 @@
 #include "support/numbers.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -80,6 +82,19 @@ std::string real_literal(double value) {
 }
 std::string real_literal(float value) {
   return to_text(value, true);
+}
+
+std::pair<std::string, std::string> distinct_texts(double a, double b, int digits) {
+  constexpr int all_of_them = 17;  // digits that tell any two doubles apart
+  const double difference = a - b;
+  for (;; ++digits) {
+    std::pair<std::string, std::string> texts{fmt::format("{:.{}g}", a, digits), fmt::format("{:.{}g}", b, digits)};
+    const double shown = parse_number(texts.first).value - parse_number(texts.second).value;
+    const bool is_shown = std::abs(shown - difference) <= 0.1 * std::abs(difference);
+    if (is_shown || !std::isfinite(difference) || digits >= all_of_them) {
+      return texts;
+    }
+  }
 }
 
 ParsedNumber parse_number(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hysteron {
 
@@ -20,6 +21,10 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// Structured Text and TOML all read it as a real number. The value must be finite.
 [[nodiscard]] std::string real_literal(double value);
 [[nodiscard]] std::string real_literal(float value);
+
+/// Two numbers with as many significant digits as show their difference to a tenth of itself, `digits` at least: 0.1013
+/// and 0.1009 where three would give 0.101 twice. Equal numbers have equal texts.
+[[nodiscard]] std::pair<std::string, std::string> distinct_texts(double a, double b, int digits);
 
 enum class NumberStatus : std::uint8_t {
   Finite,

@@ -44,8 +44,9 @@ std::optional<Failure> compare(const PlannedCase& planned, std::size_t output, c
       fmt::format("{} at step {} (t = {} s): {} {}, got {}", port.name, *first, number_text(planned.time[*first]),
                   whose, text_of(port.type, wanted), text_of(port.type, got[*first]));
   if (port.type == Type::Real) {
-    cause += fmt::format(", off by {:.3g}, allowed {:.3g}", std::abs(got[*first] - wanted),
-                         allowed_error(planned, port.type, wanted));
+    const auto [off, allowed] =
+        distinct_texts(std::abs(got[*first] - wanted), allowed_error(planned, port.type, wanted), 3);
+    cause += fmt::format(", off by {}, allowed {}", off, allowed);
   }
   cause += expected.size() == 1 ? "" : fmt::format("; {} of {} steps fail", count, expected.size());
   return Failure{.cause = std::move(cause), .plot = plot_of(*first, planned.time, expected, got)};

@@ -12,6 +12,7 @@
 
 #include "diagnosis/faults/sensor_faults.hpp"
 #include "support/median.hpp"
+#include "support/numbers.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::diagnosis {
@@ -341,26 +342,26 @@ class Check {
       }
       const std::string where = problem_.experiments.size() > 1 ? " of " + experiment.name : "";
       for (const SensorFault& fault : find_sensor_faults(measured, model, glitches)) {
-        const double from = experiment.time[fault.rows.first];
-        const double to = experiment.time[fault.rows.last - 1];
+        const auto [from, to] =
+            distinct_texts(experiment.time[fault.rows.first], experiment.time[fault.rows.last - 1], 6);
         switch (fault.kind) {
           case SensorFault::Kind::Stuck:
             texts.push_back(
-                fmt::format("{} stands at exactly {:.4g} {} from {:.6g} to {:.6g} s{}, and is noisy elsewhere: "
+                fmt::format("{} stands at exactly {:.4g} {} from {} to {} s{}, and is noisy elsewhere: "
                             "the sensor is stuck",
                             port.name, fault.value, port.unit, from, to, where));
             break;
           case SensorFault::Kind::Dropout:
             texts.push_back(
-                fmt::format("{} leaps to exactly {:.4g} {} from {:.6g} to {:.6g} s{} and back: its readings "
+                fmt::format("{} leaps to exactly {:.4g} {} from {} to {} s{} and back: its readings "
                             "drop out",
                             port.name, fault.value, port.unit, from, to, where));
             break;
           case SensorFault::Kind::Leap:
-            warn(fmt::format(
-                "{} leaps by {:.3g} {} at {:.6g} s{}, far more than it or the model ever does from one sample "
-                "to the next: a piece of the record may be missing there. Cut it there into two records.",
-                port.name, fault.value, port.unit, from, where));
+            warn(
+                fmt::format("{} leaps by {:.3g} {} at {} s{}, far more than it or the model ever does from one sample "
+                            "to the next: a piece of the record may be missing there. Cut it there into two records.",
+                            port.name, fault.value, port.unit, from, where));
             continue;
         }
         spoilt += fault.rows.size();

@@ -147,6 +147,28 @@ TEST(CsvReader, RefusesTimesThatAreNoGrid) {
               StartsWith("HY507 error: log.csv:5:1: The time goes on by 0.015 s here, elsewhere by 0.005 s."));
 }
 
+/// An error that prints two numbers shows that they differ.
+TEST(CsvReader, TwoTimesThatDifferAreToldApart) {
+  EXPECT_THAT(refusal_of("t,u\n100.0000002,1\n100.0000004,1\n100.0000003,1\n"),
+              StartsWith("HY508 error: log.csv:4:1: The time runs back, from 100.0000004 s to 100.0000003 s."));
+  std::string text = "t,u\n";
+  for (int k = 0; k < 40; ++k) {
+    text += fmt::format("{:.9f},1\n", 0.1013004 * k + (k > 20 ? 0.0021 : 0.0));
+  }
+  EXPECT_THAT(refusal_of(text), HasSubstr("The time goes on by 0.1034 s here, elsewhere by 0.1013 s."));
+}
+
+TEST(CsvReader, AClockThatDriftsIsToldByHowFarItStrays) {
+  std::string text = "t,u\n";
+  for (int k = 0; k < 400; ++k) {
+    text += fmt::format("{:.9f},1\n", 0.101 * k + 1e-6 * k * k);
+  }
+  const std::string said = refusal_of(text);
+  EXPECT_THAT(said, HasSubstr("No single step stands out, but the times stray from an even grid by 0."));
+  EXPECT_THAT(said, HasSubstr("jitters or drifts"));
+  EXPECT_THAT(said.substr(said.find("mend: ")), HasSubstr("nearest sample of encoders and commands"));
+}
+
 TEST(CsvReader, CollectsErrorsButNotWithoutEnd) {
   std::string text = "t,u,y\n";
   for (int row = 0; row < 3; ++row) {

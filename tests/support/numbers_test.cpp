@@ -31,6 +31,21 @@ TEST(NumberText, IsWhatAPersonWouldWrite) {
   EXPECT_EQ(number_text(std::nan("")), "nan");
 }
 
+TEST(NumberText, TwoNumbersThatDifferHaveTextsThatShowBy) {
+  using Texts = std::pair<std::string, std::string>;
+  EXPECT_EQ(distinct_texts(0.015, 0.005, 6), Texts("0.015", "0.005"));
+  EXPECT_EQ(distinct_texts(0.101, 0.101, 6), Texts("0.101", "0.101"));
+  EXPECT_EQ(distinct_texts(0.10132, 0.10128, 3), Texts("0.10132", "0.10128"));
+  EXPECT_EQ(distinct_texts(0.1014996, 0.1015004, 3), Texts("0.1014996", "0.1015004")) << "0.101 and 0.102 exaggerate";
+  EXPECT_EQ(distinct_texts(1e9, 1e9 + 0.25, 6), Texts("1000000000", "1000000000.25"));
+  EXPECT_EQ(distinct_texts(-0.0, 0.0, 3), Texts("-0", "0"));
+  EXPECT_EQ(distinct_texts(1.0, infinity, 3), Texts("1", "inf"));
+  EXPECT_EQ(distinct_texts(not_a_number, 1.0, 3), Texts("nan", "1"));
+  const double next = std::nextafter(1.0, 2.0);
+  const auto [one, other] = distinct_texts(1.0, next, 3);
+  EXPECT_NE(one, other);
+}
+
 TEST(NumberText, LiteralsAlwaysHaveAPoint) {
   EXPECT_EQ(real_literal(25.0), "25.0");
   EXPECT_EQ(real_literal(0.0), "0.0");

@@ -86,7 +86,7 @@ struct Scales {
 Scales scales_at(const LeastSquaresProblem& problem, const Point& point) {
   Scales scales;
   scales.columns = point.jacobian.colwise().norm().transpose();
-  const double size = (scales.columns.array() * point.x.array().abs()).maxCoeff();
+  const double size = scales.columns.cwiseProduct(point.x).lpNorm<Eigen::Infinity>();  // 0 of none
   scales.residual = std::max(std::sqrt(2.0 * point.cost), 1e-6 * size);
   if (!(scales.residual > 0.0)) {
     scales.residual = 1.0;

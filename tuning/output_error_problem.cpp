@@ -173,7 +173,11 @@ class Builder {
         problem_.outputs.push_back(i);
       }
     }
-    if (problem_.outputs.empty()) {
+    if (outputs.empty()) {
+      diagnostics_.error(error::no_measured_output, {.file = graph().source ? graph().source->path : std::string()},
+                         fmt::format("{} has no output that a record could hold.", graph().name),
+                         "declare one in VAR_OUTPUT, named as the record's column.");
+    } else if (problem_.outputs.empty()) {
       const std::vector<std::string> names = names_of(outputs);
       diagnostics_.error(
           error::no_measured_output, {.file = records_.empty() ? std::string() : records_.front().file()},

@@ -177,18 +177,18 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
     jacobian->setZero();
   }
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
-    if (jacobian == nullptr) {
+    std::vector<Index> columns;
+    for (Index j = 0; jacobian != nullptr && j < std::ssize(problem_.parameters); ++j) {
+      columns.push_back(j);
+    }
+    for (std::size_t state = 0; jacobian != nullptr && state < problem_.initial_states.size(); ++state) {
+      columns.push_back(state_column(e, 0, state));
+    }
+    if (columns.empty()) {  // also where derivatives are asked for, and there is nothing to derive by
       if (!pass<double>(plain_, x, e, {}, residuals, nullptr)) {
         return false;
       }
       continue;
-    }
-    std::vector<Index> columns;
-    for (Index j = 0; j < std::ssize(problem_.parameters); ++j) {
-      columns.push_back(j);
-    }
-    for (std::size_t state = 0; state < problem_.initial_states.size(); ++state) {
-      columns.push_back(state_column(e, 0, state));
     }
     const std::span<const Index> all(columns);
     for (std::size_t begin = 0; begin < all.size();) {

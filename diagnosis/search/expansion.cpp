@@ -62,7 +62,8 @@ Footing footing_of(const Task& task, Variant base) {
   nominal.cost = cost_of(model, nominal.x, nominal.residuals, nullptr);
   result.nominal_cost = Background(model, nominal).unexplained();
   const double calibrated_cost = Background(model, result.calibrated.fit).unexplained();
-  const double shift = (result.calibrated.fit.x - nominal.x).cwiseProduct(model.prior()).cwiseAbs().maxCoeff();
+  const double shift =
+      (result.calibrated.fit.x - nominal.x).cwiseProduct(model.prior()).lpNorm<Eigen::Infinity>();  // 0 of none
   result.about_nominal = calibrated_cost > straight_enough * result.nominal_cost;
   result.is_near = result.about_nominal && shift < near_shift && calibrated_cost < near_left * nominal.cost &&
                    calibrated_cost < near_straight * result.nominal_cost;

@@ -148,6 +148,30 @@ std::string page(const TuneReport& report) {
   return html + "</body></html>\n";
 }
 
+/// Which start was best, and what each left.
+std::string starts_text(const OutputErrorFit& fit) {
+  if (fit.start_costs.size() < 2) {
+    return {};
+  }
+  const auto samples = static_cast<double>(fit.solution.residuals.size());
+  std::string text =
+      fmt::format("The best of {} starts was number {}. What each left, in % of the range{}:", fit.start_costs.size(),
+                  fit.best_start + 1, fit.scores.size() > 1 ? "s" : "");
+  for (std::size_t start = 0; start < fit.start_costs.size(); ++start) {
+    const double cost = fit.start_costs[start];
+    text += std::isnan(cost) ? fmt::format(" {} no value;", start + 1)
+                             : fmt::format(" {} {:.3g};", start + 1, 100.0 * std::sqrt(2.0 * cost / samples));
+  }
+  text.back() = '.';
+  return text + " Number 1 is the file's own.\n";
+}
+
+bool stays_at_start(const TuneReport& report) {
+  const auto& free = report.problem.parameters;
+  return std::ranges::all_of(
+      free, [&](const FreeParameter& one) { return report.fit.solution.x[&one - free.data()] == one.start; });
+}
+
 }  // namespace
 
 std::string as_text(const TuneReport& report) {
@@ -175,8 +199,9 @@ std::string as_text(const TuneReport& report) {
   for (const std::string& warning : fit.covariance.warnings) {
     text += warning + '\n';
   }
-  if (fit.start_costs.size() > 1) {
-    text += fmt::format("The best of {} starts was number {}.\n", fit.start_costs.size(), fit.best_start + 1);
+  text += starts_text(fit);
+  if (stays_at_start(report)) {
+    text += "Nothing better than the start was found: its values are kept.\n";
   }
   return text + fmt::format("{} {}, {:.2f} s.\n", fit.solution.message, iterations_of(fit), fit.seconds);
 }

@@ -122,12 +122,29 @@ class Descent {
     Round first{.origin = x, .unit = problem_.typical, .cost_unit = 2.0 * point->cost, .free = free()};
     first.tolerance = 1e-8;
     solve_round(first);
-    constexpr int most_rounds = 6;
-    for (int k = 0; k < most_rounds && may_go_on(); ++k) {
-      if (!refine() && at_bounds_is_right()) {
-        polish();
-        break;
-      }
+    refine_all();
+  }
+
+  /// From a point that is worth more than where the first, wide round would go on to.
+  void run_nearby() {
+    outcome = {FitStatus::Converged, "nothing to do"};
+    refine_all();
+  }
+
+  /// Whether the outcome is an end of its own, and not one by a limit, the user or a failure.
+  [[nodiscard]] bool may_go_on() const {
+    return outcome.status == FitStatus::Converged || outcome.status == FitStatus::NearlyConverged ||
+           outcome.status == FitStatus::Stalled;
+  }
+
+  /// Takes a point as it is: which of its unknowns lie on bounds that hold them, the gradient says.
+  void stay_at(const VectorXd& point) {
+    x = point;
+    std::ranges::replace_if(
+        at_bound, [](AtBound one) { return one != AtBound::Held; }, AtBound::Free);
+    released_.assign(at_bound.size(), false);
+    if (const Point* const here = model_.at(x, true)) {
+      settle_on_bounds(*here, 0.0);
     }
   }
 
@@ -152,9 +169,14 @@ class Descent {
     }
     return list;
   }
-  [[nodiscard]] bool may_go_on() const {
-    return outcome.status == FitStatus::Converged || outcome.status == FitStatus::NearlyConverged ||
-           outcome.status == FitStatus::Stalled;
+  void refine_all() {
+    constexpr int most_rounds = 6;
+    for (int k = 0; k < most_rounds && may_go_on(); ++k) {
+      if (!refine() && at_bounds_is_right()) {
+        polish();
+        break;
+      }
+    }
   }
 
   void solve_round(const Round& round) {
@@ -171,7 +193,7 @@ class Descent {
       outcome = {FitStatus::ModelFailed, "no value"};
       return false;
     }
-    settle_on_bounds(*point);
+    settle_on_bounds(*point, 1e-4);
     point = model_.at(x, true);
     if (point == nullptr || free().empty()) {
       return false;
@@ -188,12 +210,13 @@ class Descent {
     return next != nullptr && scales_at(problem_, *next).residual < 0.3 * scales.residual;
   }
 
-  /// A parameter that the barrier keeps just inside its bound, against a gradient that points outwards, is set onto it.
-  void settle_on_bounds(const Point& point) {
+  /// A parameter that the barrier keeps just inside its bound, within a share of its typical size, against a gradient
+  /// that points outwards, is set onto it.
+  void settle_on_bounds(const Point& point, double within) {
     const VectorXd gradient = model_.gradient(point);
     for (std::size_t k = 0; k < at_bound.size(); ++k) {
       const auto j = static_cast<Index>(k);
-      const double near = 1e-4 * problem_.typical[j];
+      const double near = within * problem_.typical[j];
       if (at_bound[k] != AtBound::Free || released_[k]) {
         continue;
       }
@@ -276,6 +299,33 @@ double robust_threshold(const VectorXd& residuals) {
   std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
   std::transform(sizes.begin(), sizes.end(), sizes.begin(), [](double r) { return std::fabs(r); });
   return 1.345 * deviation_of_median * median(std::move(sizes));
+}
+
+/// Ipopt descends the cost and a barrier, and a polish the gradient: where the cost is rough, either may leave a good
+/// point for another valley. Another descent begins at the best point that was seen, the start among them, and where
+/// that is worse again the point itself is the result.
+void keep_best(Model& model, Descent& descent) {
+  constexpr double notably = 1e-6;  // of the cost: a thousandth of a standard error at a thousand samples
+  constexpr int most_descents = 2;
+  (void)model.at(model.problem().start, false);  // by the loss as it is now
+  const auto is_worse = [&] {
+    const Point* const here = model.at(descent.x, true);
+    return model.best.x.size() > 0 && (here == nullptr || model.best.cost < (1.0 - notably) * here->cost);
+  };
+  for (int k = 0; k < most_descents && is_worse(); ++k) {
+    const VectorXd best = model.best.x;
+    if (!descent.may_go_on()) {
+      break;
+    }
+    Descent nearby(model, best);
+    nearby.run_nearby();
+    descent.x = nearby.x;
+    descent.outcome = nearby.outcome;
+    descent.at_bound = nearby.at_bound;
+  }
+  if (is_worse()) {
+    descent.stay_at(VectorXd(model.best.x));
+  }
 }
 
 /// Whether each free parameter is known to its own size at least. On a plateau, where a peak has left the samples say,
@@ -403,6 +453,7 @@ LeastSquaresResult solve(const LeastSquaresProblem& problem, const LeastSquaresO
       descent.at_bound = again.at_bound;
     }
   }
+  keep_best(model, descent);
   return report(model, descent);
 }
 

@@ -18,7 +18,8 @@
 // - Bounds. A parameter that the interior point leaves at its bound is set onto it, and the others are fitted again.
 // - Last digits. A line search compares costs, which no longer change below a cosine of 1e-8 or so. Full Gauss-Newton
 //   steps judged by the gradient instead follow, as long as each makes it smaller.
-// - Result. The best point ever evaluated is kept, so that a cancelled or failed run still returns it.
+// - Result. The best point ever evaluated is kept, the start among them: a cancelled or failed run still returns it, and
+//   no fit ends worse than it began.
 #pragma once
 
 #include <Eigen/Core>

@@ -287,6 +287,11 @@ class Fitter {
     }
   }
 
+  [[nodiscard]] double cost_at(const VectorXd& x) {
+    VectorXd residuals(rollout_.residual_count());
+    return rollout_.residuals(x, residuals, nullptr) ? 0.5 * residuals.squaredNorm() : infinity;
+  }
+
   /// Again, with each output in units of the error that it was left with.
   void weight_by_noise() {
     std::vector<double> scales = rollout_.scales();
@@ -299,7 +304,8 @@ class Fitter {
     }
     rollout_.set_scales(scales);
     LeastSquaresProblem problem = least_squares_;
-    problem.start = fit_.solution.x;
+    // By the new weights the start may be the better one of the two.
+    problem.start = cost_at(least_squares_.start) < cost_at(fit_.solution.x) ? least_squares_.start : fit_.solution.x;
     const int iterations = fit_.solution.iterations;
     fit_.solution = solve(problem, solver_options(fit_.best_start));
     fit_.solution.iterations += iterations;

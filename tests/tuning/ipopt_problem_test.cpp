@@ -148,6 +148,75 @@ TEST(LeastSquares, AnOptimumCloseToABoundIsNotTakenForOneOnIt) {
   EXPECT_NEAR(fit.x[2], 0.7, 1e-9);
 }
 
+/// A narrow, shallow valley at 1, where the fit begins, and a wide one at 6 that is less deep: a barrier away from the
+/// bound at 0.5 pushes the fit out of the first and down into the second.
+LeastSquaresProblem two_valleys(double depth) {
+  LeastSquaresProblem problem;
+  problem.residual_count = 1;
+  problem.names = {"x"};
+  problem.start = vector({1.0});
+  problem.lower = vector({0.5});
+  problem.evaluate = [depth](const VectorXd& x, VectorXd& r, MatrixXd* jacobian) {
+    const double near = (x[0] - 1.0) / 0.3;
+    const double far = (x[0] - 6.0) / 2.0;
+    const double narrow = depth * std::exp(-near * near);
+    const double wide = 0.5 * depth * std::exp(-far * far);
+    r[0] = 1.0 - narrow - wide;
+    if (jacobian != nullptr) {
+      (*jacobian)(0, 0) = 2.0 * narrow * near / 0.3 + 2.0 * wide * far / 2.0;
+    }
+    return true;
+  };
+  return problem;
+}
+
+TEST(LeastSquares, NoFitEndsWorseThanItBegan) {
+  for (const double depth : {0.5, 0.2, 0.1, 0.05, 0.02, 0.005}) {
+    const LeastSquaresProblem problem = two_valleys(depth);
+    VectorXd residuals(1);
+    ASSERT_TRUE(problem.evaluate(problem.start, residuals, nullptr));
+    const LeastSquaresResult fit = solve(problem);
+    EXPECT_LE(fit.cost, 0.5 * residuals.squaredNorm() * (1.0 + 1e-9)) << depth;
+    EXPECT_NEAR(fit.x[0], 1.0, 0.01) << depth;
+    const LeastSquaresResult robust = solve(problem, {.loss = Loss::Huber, .huber_threshold = 0.1});
+    EXPECT_NEAR(robust.x[0], 1.0, 0.01) << depth;
+  }
+}
+
+/// Steps without a slope: the derivative sees a straight line that leads away, as a rough law of friction does.
+TEST(LeastSquares, WhereTheModelJumpsTheBestPointSeenIsKept) {
+  LeastSquaresProblem problem;
+  problem.residual_count = 2;
+  problem.names = {"x"};
+  problem.start = vector({2.0});
+  problem.lower = vector({0.0});
+  problem.upper = vector({10.0});
+  problem.evaluate = [](const VectorXd& x, VectorXd& r, MatrixXd* jacobian) {
+    const bool is_right = std::fabs(x[0] - 2.0) < 0.05;
+    r = vector({is_right ? 0.1 : 1.0, 0.2 * (x[0] - 7.0) * (is_right ? 0.01 : 1.0)});
+    if (jacobian != nullptr) {
+      *jacobian << 0.0, 0.2;
+    }
+    return true;
+  };
+  const LeastSquaresResult fit = solve(problem);
+  EXPECT_NEAR(fit.x[0], 2.0, 0.05);
+  EXPECT_FALSE(fit.converged()) << "the gradient is not zero there: " << fit.message;
+  EXPECT_EQ(fit.at_bound.front(), AtBound::Free);
+}
+
+TEST(LeastSquares, AProblemWithoutAnUnknownIsEvaluated) {
+  LeastSquaresProblem problem;
+  problem.residual_count = 2;
+  problem.evaluate = [](const VectorXd&, VectorXd& r, MatrixXd*) {
+    r = vector({3.0, 4.0});
+    return true;
+  };
+  const LeastSquaresResult fit = solve(problem);
+  EXPECT_EQ(fit.cost, 12.5);
+  EXPECT_EQ(fit.x.size(), 0);
+}
+
 TEST(LeastSquares, AHeldParameterStaysAndTheOthersMove) {
   LeastSquaresProblem problem = bowl();
   problem.lower = vector({0.5, -5.0, -5.0});

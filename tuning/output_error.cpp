@@ -360,12 +360,31 @@ OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputE
   return Fitter(problem, options).run();
 }
 
+namespace {
+
+/// The value of a parameter; of one that each record has for itself, the mean of all of them.
+double mean_over_records(const OutputErrorProblem& problem, const OutputErrorFit& fit, std::size_t parameter) {
+  const FreeParameter& wanted = problem.parameters[parameter];
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const FreeParameter& free = problem.parameters[j];
+    if (free.parameter == wanted.parameter && free.element == wanted.element) {
+      sum += fit.solution.x[static_cast<Index>(j)];
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
 parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
                                      const OutputErrorFit& fit) {
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     const FreeParameter& free = problem.parameters[j];
     const Parameter& parameter = problem.program.graph.parameters[free.parameter];
-    const double value = fit.solution.x[static_cast<Index>(j)];
+    const double value = mean_over_records(problem, fit, j);
     auto found = std::ranges::find_if(file.values, [&](const parameters::ParameterValue& given) {
       return equal_ignoring_case(given.path, parameter.path);
     });
@@ -394,7 +413,10 @@ std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFi
     files.push_back(experiment.name);
   }
   std::string text = fmt::format("{}{}.\n{}", tuned_by, fmt::join(files, ", "), fit.solution.message);
-  for (std::size_t j = problem.parameters.size(); files.size() > 1 && j < fit.names.size(); ++j) {
+  for (std::size_t j = 0; files.size() > 1 && j < fit.names.size(); ++j) {
+    if (j < problem.parameters.size() && !problem.parameters[j].record) {
+      continue;  // the same in all records, and a value of the file
+    }
     text += fmt::format("\n{}: {}", fit.names[j], number_text(fit.solution.x[static_cast<Index>(j)]));
   }
   return text;
@@ -406,7 +428,8 @@ parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const Outpu
     const FreeParameter& free = problem.parameters[j];
     const Parameter& parameter = problem.program.graph.parameters[free.parameter];
     parameters::Remark remark{.unit = free.unit, .meaning = std::string(parameter.field.meaning)};
-    if (parameter.value.size() == 1 && std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
+    if (parameter.value.size() == 1 && !free.record &&
+        std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
       remark.standard_error = fit.covariance.standard_errors[static_cast<Index>(j)];
     }
     remarks[in_capitals("parameters." + parameter.path)] = std::move(remark);

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,9 +34,10 @@ namespace hysteron {
 struct FreeParameter {
   std::size_t parameter = 0;  ///< by its place in the graph
   std::size_t element = 0;
-  std::string name{};  ///< INV.C1; TABLE.Y[2] for an element
-  std::string unit{};  ///< as the wires give it; empty where they do not
-  Place place{};       ///< of its fit setting
+  std::string name{};  ///< INV.C1; TABLE.Y[2] for an element; INV.C1 of record 2 where each record has its own
+  std::optional<std::size_t> record{};  ///< the only record that it acts in; none: all
+  std::string unit{};                   ///< as the wires give it; empty where they do not
+  Place place{};                        ///< of its fit setting
   double start = 0.0;
   double lower = 0.0;  ///< −∞ where there is none
   double upper = 0.0;
@@ -126,12 +128,12 @@ OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputE
 
 /// The parameter file with the fitted values in it; all else is kept, but for the heading of an earlier fit. The
 /// initial states of a single record become its table [initial]; those of several records belong to each alone, and no
-/// run could take them all.
+/// run could take them all. Of a parameter with a value for each record their mean is set, for runs and the next fit.
 parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
                                      const OutputErrorFit& fit);
 
-/// What stands at the top of it: the records, how the fit ended, and the initial states where there are several
-/// records.
+/// What stands at the top of it: the records, how the fit ended, and where there are several records what each has for
+/// itself.
 std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFit& fit);
 
 /// What is written beside its values: unit, meaning, standard error.

@@ -99,7 +99,22 @@ class Builder {
                          .place = fit.place,
                          .start = fit.start ? fit.start->value : parameter.value[element]};
       set_bounds(free, fit, field);
+      add_for_records(std::move(free), fit);
+    }
+  }
+
+  /// Once, or once for each record.
+  void add_for_records(FreeParameter free, const FitSetting& fit) {
+    free.record = fit.record;
+    if (!fit.by_record || records_.size() < 2) {
       problem_.parameters.push_back(std::move(free));
+      return;
+    }
+    for (std::size_t record = 0; record < records_.size(); ++record) {
+      FreeParameter own = free;
+      own.record = record;
+      own.name += fmt::format(" of record {}", record + 1);
+      problem_.parameters.push_back(std::move(own));
     }
   }
 

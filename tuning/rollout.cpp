@@ -37,6 +37,10 @@ S seeded(double value, Index column, std::span<const Index> columns) {
   return S(value);
 }
 
+bool acts_in(const FreeParameter& free, std::size_t experiment) {
+  return !free.record || *free.record == experiment;
+}
+
 double plain_value(double value) {
   return value;
 }
@@ -113,12 +117,20 @@ bool Rollout::restarts(Machine<S>& machine, const VectorXd& x, std::size_t exper
 }
 
 template <class S>
-void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
+void Rollout::set_parameters(Machine<S>& machine, const VectorXd& parameters, std::size_t experiment,
+                             std::span<const Index> columns) {
   for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
     const FreeParameter& free = problem_.parameters[j];
     const auto column = static_cast<Index>(j);
-    machine.set_parameter(free.parameter, seeded<S>(x[column], column, columns), free.element);
+    if (acts_in(free, experiment)) {
+      machine.set_parameter(free.parameter, seeded<S>(parameters[column], column, columns), free.element);
+    }
   }
+}
+
+template <class S>
+void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns) {
+  set_parameters(machine, x, experiment, columns);
   machine.reset();
   load_states(machine, x, experiment, 0, columns);
 }
@@ -178,8 +190,10 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
   }
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
     std::vector<Index> columns;
-    for (Index j = 0; jacobian != nullptr && j < std::ssize(problem_.parameters); ++j) {
-      columns.push_back(j);
+    for (std::size_t j = 0; jacobian != nullptr && j < problem_.parameters.size(); ++j) {
+      if (acts_in(problem_.parameters[j], e)) {
+        columns.push_back(static_cast<Index>(j));
+      }
     }
     for (std::size_t state = 0; jacobian != nullptr && state < problem_.initial_states.size(); ++state) {
       columns.push_back(state_column(e, 0, state));
@@ -231,17 +245,15 @@ std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) 
 }
 
 std::vector<double> Rollout::own_states(const VectorXd& parameters) {
-  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
-    const FreeParameter& free = problem_.parameters[j];
-    plain_.set_parameter(free.parameter, parameters[static_cast<Index>(j)], free.element);
-  }
   std::vector<double> values;
   const auto keep = [&] {
     for (const FreeState& state : problem_.initial_states) {
       values.push_back(*plain_.real_state(state.path));
     }
   };
-  for (const Experiment& experiment : problem_.experiments) {
+  for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+    const Experiment& experiment = problem_.experiments[e];
+    set_parameters<double>(plain_, parameters, e, {});
     plain_.reset();
     keep();
     std::size_t step = 0;

@@ -11,8 +11,8 @@
 
 namespace hysteron::detail {
 
-/// The unknowns are the parameters, then the initial states of the first record, at its start and at each of its
-/// restarts, of the second, …
+/// The unknowns are the parameters, those of a single record among them, then the initial states of the first record,
+/// at its start and at each of its restarts, of the second, …
 class Rollout {
  public:
   explicit Rollout(const OutputErrorProblem& problem);
@@ -61,6 +61,10 @@ class Rollout {
   template <class S>
   bool restarts(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t step,
                 std::size_t& start, std::span<const Eigen::Index> columns);
+  /// The parameters that act in a record; each as S gives its value and its derivatives.
+  template <class S>
+  void set_parameters(Machine<S>& machine, const Eigen::VectorXd& parameters, std::size_t experiment,
+                      std::span<const Eigen::Index> columns);
   [[nodiscard]] Eigen::Index state_column(std::size_t experiment, std::size_t start, std::size_t state) const;
   /// Of what is in this column at start 0.
   [[nodiscard]] Eigen::Index column_at(Eigen::Index column, std::size_t start) const;

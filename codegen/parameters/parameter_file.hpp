@@ -11,14 +11,21 @@
 //   C1 = {min = 0.0, max = 1.0, start = 0.05, scale = 1e-3}
 //   C2 = {}
 //
+//   [fit.record.SENSOR]                   # what has a value of its own in each record: the zero of a day
+//   OFFSET = {min = -1.0, max = 1.0}
+//
 //   [tune]
 //   outputs = ["Y"]
 //   train = [1.0, 21.0]
+//
+//   [diagnose]
+//   ignore = ["SP"]                       # columns of the records that drive nothing
 //
 // The reader knows the form of the file; whether INV and C1 exist, and of what type and range, the diagram knows.
 // Hence every value carries its place. Why the file has this shape: docs/decisions/0002-parameter-files.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -60,6 +67,8 @@ struct FitSetting {
   std::optional<PlacedNumber> maximum{};  ///< finite, or +∞
   std::optional<PlacedNumber> start{};    ///< default: the value of the parameter
   std::optional<PlacedNumber> scale{};    ///< above 0: the size of a notable change
+  bool by_record = false;                 ///< stands under [fit.record]: each record has a value of its own
+  std::optional<std::size_t> record{};    ///< of this record alone; no file says so, but who has taken records apart
 };
 
 enum class Loss : std::uint8_t { Squares, Huber };
@@ -77,6 +86,10 @@ struct TuneSettings {
   std::vector<Interval> train{};             ///< default, where empty: the whole record
   std::vector<Interval> test{};              ///< default, where empty: none
   std::vector<PlacedText> initial_states{};  ///< states whose initial values are fitted too
+};
+
+struct DiagnoseSettings {
+  std::vector<PlacedText> ignore{};  ///< columns of the records that the diagnosis does not look at
 };
 
 /// A comment of the user, which is kept when the file is written anew.
@@ -98,6 +111,7 @@ struct ParameterFile {
   std::vector<ParameterValue> initial{};  ///< of states, as SUM.SUM, in the order of the file
   std::vector<FitSetting> fits{};         ///< in the order of the file
   TuneSettings tune{};
+  DiagnoseSettings diagnose{};
   std::vector<Comment> comments{};  ///< in the order of the file
 
   /// The value of a path, without regard to case; null where the file has none.

@@ -22,9 +22,19 @@ namespace {
 /// Instances inside instances. Further down is no diagram but an attack on the stack.
 constexpr int most_levels = 64;
 
-constexpr std::array<std::string_view, 4> top_keys{"parameters", "initial", "fit", "tune"};
+constexpr std::array<std::string_view, 5> top_keys{"parameters", "initial", "fit", "tune", "diagnose"};
 constexpr std::array<std::string_view, 4> fit_keys{"min", "max", "start", "scale"};
 constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", "test", "initial_states"};
+constexpr std::array<std::string_view, 1> diagnose_keys{"ignore"};
+/// Below [fit], in small letters: an instance of that name is written in capitals.
+constexpr std::string_view by_record = "record";
+
+/// What the header of a record may hold.
+bool is_column(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return c != '"' && c != '\\' && !(c >= 0 && c < ' ') && c != '\x7F';
+  });
+}
 
 bool is_path(std::string_view key) {
   const bool letters = std::all_of(key.begin(), key.end(), [](char c) {
@@ -77,9 +87,11 @@ class Reader {
         } else if (key.str() == "initial") {
           read_values(*table, "", 0, result_.initial);
         } else if (key.str() == "fit") {
-          read_fits(*table, "", 0);
-        } else {
+          read_fits(*table, "", 0, false);
+        } else if (key.str() == "tune") {
           read_tune(*table);
+        } else {
+          read_diagnose(*table);
         }
       }
     }
@@ -249,13 +261,17 @@ class Reader {
            });
   }
 
-  void read_fits(const toml::table& table, const std::string& path, int level) {
+  void read_fits(const toml::table& table, const std::string& path, int level, bool each_record) {
     for (const auto& [key, node] : table) {
       const auto below = path_below(path, key, level);
       if (!below) {
         continue;
       }
       const auto* const inner = node.as_table();
+      if (inner != nullptr && path.empty() && !each_record && key.str() == by_record) {
+        read_fits(*inner, "", level + 1, true);
+        continue;
+      }
       if (inner == nullptr) {
         diagnostics_.error(error::wrong_value_type, at(node),
                            fmt::format("{} must be a table of settings, but is {}.", *below, kind_of(node)),
@@ -263,15 +279,15 @@ class Reader {
         continue;
       }
       if (is_parameter(*inner)) {
-        read_fit(*inner, *below, at(key));
+        read_fit(*inner, *below, at(key), each_record);
       } else {
-        read_fits(*inner, *below, level + 1);
+        read_fits(*inner, *below, level + 1, each_record);
       }
     }
   }
 
-  void read_fit(const toml::table& table, const std::string& path, const Place& place) {
-    FitSetting fit{.path = path, .place = place};
+  void read_fit(const toml::table& table, const std::string& path, const Place& place, bool each_record) {
+    FitSetting fit{.path = path, .place = place, .by_record = each_record};
     for (const auto& [key, node] : table) {
       if (!known_key(key, node, fit_keys, "the fit of " + path)) {
         continue;
@@ -334,9 +350,9 @@ class Reader {
         continue;
       }
       if (key.str() == "outputs") {
-        result_.tune.outputs = names_of(key, node, R"(outputs = ["Y"])");
+        result_.tune.outputs = names_of(key, node, R"(outputs = ["Y"])", is_path);
       } else if (key.str() == "initial_states") {
-        result_.tune.initial_states = names_of(key, node, R"(initial_states = ["LAG.XOUT"])");
+        result_.tune.initial_states = names_of(key, node, R"(initial_states = ["LAG.XOUT"])", is_path);
       } else if (key.str() == "loss") {
         read_loss(key, node);
       } else {
@@ -361,7 +377,16 @@ class Reader {
     }
   }
 
-  std::vector<PlacedText> names_of(const toml::key& key, const toml::node& node, std::string_view example) {
+  void read_diagnose(const toml::table& table) {
+    for (const auto& [key, node] : table) {
+      if (known_key(key, node, diagnose_keys, "[diagnose]")) {
+        result_.diagnose.ignore = names_of(key, node, R"(ignore = ["SP"])", is_column);
+      }
+    }
+  }
+
+  std::vector<PlacedText> names_of(const toml::key& key, const toml::node& node, std::string_view example,
+                                   bool (*is_name)(std::string_view)) {
     std::vector<PlacedText> names;
     const auto* const list = node.as_array();
     if (list == nullptr || list->empty()) {
@@ -370,7 +395,7 @@ class Reader {
     }
     for (const toml::node& element : *list) {
       const auto text = element.value<std::string_view>();
-      if (!text || !is_path(*text)) {
+      if (!text || !is_name(*text)) {
         wrong_type(key, element, "a list of names", example);
         continue;
       }

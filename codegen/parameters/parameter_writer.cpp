@@ -165,6 +165,13 @@ std::string list_of(const std::vector<Interval>& intervals) {
   return intervals.size() == 1 ? text : "[" + text + "]";
 }
 
+void append_diagnose(const DiagnoseSettings& diagnose, std::vector<Entry>& entries) {
+  if (!diagnose.ignore.empty()) {
+    entries.push_back({.key = "DIAGNOSE", .text = "[diagnose]", .remark = {}, .head = true});
+    entries.push_back({.key = "DIAGNOSE.IGNORE", .text = "ignore = " + list_of(diagnose.ignore), .remark = {}});
+  }
+}
+
 void append_tune(const TuneSettings& tune, std::vector<Entry>& entries) {
   const std::size_t head = entries.size();
   entries.push_back({.key = "TUNE", .text = "[tune]", .remark = {}, .head = true});
@@ -287,14 +294,17 @@ std::string parameter_text(const ParameterFile& file, const Remarks& remarks, st
     initial.add(value.path, value_text(value.value), remarks);
   }
   Tables fits("fit");
+  Tables each_record("fit.record");
   for (const FitSetting& fit : file.fits) {
-    fits.add(fit.path, settings_of(fit));
+    (fit.by_record ? each_record : fits).add(fit.path, settings_of(fit));
   }
   std::vector<Entry> entries;
   values.append_to(entries);
   initial.append_to(entries);
   fits.append_to(entries);
+  each_record.append_to(entries);
   append_tune(file.tune, entries);
+  append_diagnose(file.diagnose, entries);
   text += entries_text(entries, file.comments);
   text.erase(0, text.find_first_not_of('\n'));  // where there is no heading
   return text;

@@ -9,7 +9,7 @@ namespace hysteron::diagnosis {
 namespace {
 
 parameters::FitSetting fit_of(const Unknown& unknown) {
-  parameters::FitSetting fit{.path = unknown.path};
+  parameters::FitSetting fit{.path = unknown.path, .record = unknown.record};
   fit.start = parameters::PlacedNumber{.value = unknown.start};
   if (std::isfinite(unknown.lower)) {
     fit.minimum = parameters::PlacedNumber{.value = unknown.lower};

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,9 +34,11 @@ struct Unknown {
   double start = 0.0;
   double lower = 0.0;
   double upper = 0.0;
-  double typical = 1.0;    ///< size of a notable change
-  double deviation = 0.0;  ///< of the prior about `start`; ∞: none
-  bool rounds = false;     ///< a quantum, 0 where it is off
+  double typical = 1.0;                 ///< size of a notable change
+  double deviation = 0.0;               ///< of the prior about `start`; ∞: none
+  bool rounds = false;                  ///< a quantum, 0 where it is off
+  bool at_bound = false;                ///< the tuned value lies on a bound of its fit
+  std::optional<std::size_t> record{};  ///< the only record that it acts in; none: all
 };
 
 /// Shooting of the records, each with its own initial states.

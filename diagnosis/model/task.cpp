@@ -8,13 +8,14 @@
 
 #include "codegen/parameters/apply.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
 constexpr double prior_share = 0.3;
 /// A tuning that ran into a bound has bent the parameter to make up for something else: it says less of its value.
-constexpr double at_bound = 5.0;
+constexpr double wider_at_bound = 5.0;
 
 Unknown known_of(const Parameter& parameter) {
   const double value = parameter.value.front();
@@ -26,6 +27,21 @@ Unknown known_of(const Parameter& parameter) {
                   .typical = value == 0.0 ? 1.0 : std::abs(value),
                   .deviation = prior_share * std::abs(value)};
   return unknown;
+}
+
+/// Once; or where there are several records, each with its own value, once for each. What a tuning gives is their mean,
+/// and no prior for one of them.
+void add_known(const Unknown& unknown, std::size_t records, std::vector<Unknown>& known) {
+  if (records < 2) {
+    known.push_back(unknown);
+    return;
+  }
+  for (std::size_t record = 0; record < records; ++record) {
+    Unknown own = unknown;
+    own.record = record;
+    own.deviation = infinity;
+    known.push_back(std::move(own));
+  }
 }
 
 bool is_name(const std::string& text) {
@@ -54,10 +70,12 @@ Task task_of(const DiagnosisInput& input) {
     }
     unknown.start = std::clamp(unknown.start, unknown.lower, unknown.upper);
     const double margin = 1e-3 * std::abs(unknown.start);
-    if (unknown.start - unknown.lower <= margin || unknown.upper - unknown.start <= margin) {
-      unknown.deviation *= at_bound;
+    unknown.at_bound = unknown.lower < unknown.upper &&
+                       (unknown.start - unknown.lower <= margin || unknown.upper - unknown.start <= margin);
+    if (unknown.at_bound) {
+      unknown.deviation *= wider_at_bound;
     }
-    task.known.push_back(std::move(unknown));
+    add_known(unknown, setting.by_record ? input.records.size() : 1, task.known);
   }
   for (const Parameter& parameter : graph.parameters) {
     const bool number = parameter.field.type == Type::Real && parameter.field.length == 1;
@@ -104,6 +122,21 @@ std::vector<std::string> unused_columns(const Task& task, const Program& program
     }
   }
   return result;
+}
+
+std::vector<std::string> remarks_on_bounds(const Task& task) {
+  std::vector<std::string> remarks;
+  for (const Unknown& known : task.known) {
+    if (known.at_bound && known.record.value_or(0) == 0) {
+      const bool low = known.start - known.lower <= known.upper - known.start;
+      remarks.push_back(fmt::format(
+          "{} = {}{}{} lies on the {} bound of its fit: the tuning would have gone further, and may stand in for what "
+          "the diagram lacks. Widen the bound and tune again, or set a value that you know.",
+          known.path, number_text(known.start), known.unit.empty() || known.unit == "1" ? "" : " ",
+          known.unit == "1" ? "" : known.unit, low ? "lower" : "upper"));
+    }
+  }
+  return remarks;
 }
 
 InputError error_of_start(const DiagnosisInput& input) {

@@ -20,6 +20,10 @@ namespace hysteron::diagnosis {
 /// Columns of the records that are neither input nor output of the diagram and could be inputs by their name.
 [[nodiscard]] std::vector<std::string> unused_columns(const Task& task, const Program& program);
 
+/// A remark on each known parameter that lies on a bound of its fit: the tuning ran into it, and began the diagnosis
+/// where it could not go on.
+[[nodiscard]] std::vector<std::string> remarks_on_bounds(const Task& task);
+
 /// HY711: the diagram has no finite value with the parameters as given.
 [[nodiscard]] InputError error_of_start(const DiagnosisInput& input);
 

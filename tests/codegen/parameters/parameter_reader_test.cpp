@@ -86,6 +86,26 @@ TEST(ParameterReader, DottedKeysAndInlineTablesSayTheSame) {
   EXPECT_THAT(paths(file.fits), ElementsAre("INV.C1", "INV.C2"));
 }
 
+TEST(ParameterReader, WhatEachRecordHasForItselfStandsUnderFitRecord) {
+  const auto file = parse_parameter_file("plant.toml",
+                                         "[fit.record]\nZERO = {}\n[fit.record.SENSOR]\nOFFSET = {min = -1}\n"
+                                         "[fit.SENSOR]\nK = {}\n[fit.RECORD]\nGAIN = {}\n");
+  EXPECT_THAT(paths(file.fits), ElementsAre("ZERO", "SENSOR.OFFSET", "SENSOR.K", "RECORD.GAIN"));
+  std::vector<bool> own;
+  for (const FitSetting& fit : file.fits) {
+    own.push_back(fit.by_record);
+  }
+  EXPECT_THAT(own, ElementsAre(true, true, false, false)) << "an instance RECORD is written in capitals";
+  EXPECT_EQ(file.fits[1].minimum->value, -1.0);
+}
+
+TEST(ParameterReader, ColumnsToBeIgnoredMayHaveAnyName) {
+  const auto file = parse_parameter_file("plant.toml", "[diagnose]\nignore = [\"SP\", \"Tank level\"]\n");
+  ASSERT_EQ(file.diagnose.ignore.size(), 2U);
+  EXPECT_EQ(file.diagnose.ignore[1].text, "Tank level");
+  EXPECT_EQ(file.diagnose.ignore[1].place.column, 17U);
+}
+
 TEST(ParameterReader, AnEmptyFileSaysNothing) {
   const auto file = parse_parameter_file("plant.toml", "");
   EXPECT_TRUE(file.values.empty() && file.fits.empty() && file.tune.outputs.empty() && file.tune.train.empty());
@@ -195,6 +215,14 @@ TEST(ParameterReader, RefusesWhatIsNoParameterFile) {
        "exchange"},
       {"[tune]\ntrain = [[1.0, 9.0], [8.0, 12.0]]\n", "HY606 error: plant.toml:2:22: Two intervals of train overlap",
        "join"},
+      {"[fit.record]\nC1 = 1\n", "HY604 error: plant.toml:2:6: C1 must be a table of settings", "C1 = {}"},
+      {"[fit.INV]\nC1 = {}\n[fit.record.INV]\nC1 = {}\n", "HY602 error: plant.toml:4:1: INV.C1 has been given before",
+       "keep one"},
+      {"[diagnose]\nignor = [\"SP\"]\n", "HY603 error: plant.toml:2:1: There is no key ignor in [diagnose]",
+       "did you mean ignore?"},
+      {"[diagnose]\nignore = \"SP\"\n", "HY604 error: plant.toml:2:10: ", "[\"SP\"]"},
+      {"[diagnose]\nignore = [\"\"]\n", "HY604 error: plant.toml:2:11: ", "[\"SP\"]"},
+      {"[diagnose]\nignore = [\"SP\", \"sp\"]\n", "HY602 error: plant.toml:2:17: sp stands in the list twice", "case"},
   };
   for (const auto& [text, beginning, mend] : cases) {
     SCOPED_TRACE(text);

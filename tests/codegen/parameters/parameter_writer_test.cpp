@@ -140,6 +140,13 @@ TEST(ParameterWriter, WritesWhereStatesBegin) {
   EXPECT_EQ(parameter_text(parse_parameter_file("p.toml", text), remarks), text);
 }
 
+TEST(ParameterWriter, WritesWhatEachRecordHasAndWhatIsIgnored) {
+  const std::string_view text =
+      "[fit.INV]\nC1 = {min = 0.0}\n\n[fit.record]\nZERO = {}  # of the day\n\n[fit.record.SENSOR]\n"
+      "OFFSET = {max = 1.0}\n\n[diagnose]\nignore = [\"SP\", \"Tank level\"]\n";
+  EXPECT_EQ(parameter_text(parse_parameter_file("plant.toml", text)), text);
+}
+
 TEST(ParameterWriter, AnEmptyFileIsEmpty) {
   EXPECT_EQ(parameter_text({}), "");
 }

@@ -1,17 +1,91 @@
-// Which parameters of a diagram count as known numbers of the machine, to be refitted where none is named.
+// What the user gives, as the task of a diagnosis.
 #include "diagnosis/model/task.hpp"
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "diagnosis/model/least_squares.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::UnorderedElementsAre;
+
+records::Record plain() {
+  return test::measured(test::program_of(test::axis()), test::record_of("FORCE", test::rich_force(400)), 0.001);
+}
+
+std::vector<std::string> remarks_for(const std::string& fit) {
+  return remarks_on_bounds(
+      task_of(test::input_of(test::axis(), "[parameters.MASS]\nK = 0.5\n[fit.MASS]\nK = " + fit + "\n", {plain()})));
+}
+
+TEST(Task, AValueOnABoundOfItsFitIsRemarkedOn) {
+  EXPECT_THAT(remarks_for("{min = 0.1, max = 2.0}"), IsEmpty());
+  EXPECT_THAT(remarks_for("{}"), IsEmpty());
+  EXPECT_THAT(remarks_for("{max = 0.5}"),
+              ElementsAre(AllOf(HasSubstr("MASS.K = 0.5"), HasSubstr("upper bound"), HasSubstr("Widen"))));
+  EXPECT_THAT(remarks_for("{min = 0.4999, max = 0.9}"), ElementsAre(HasSubstr("lower bound"))) << "nearly is enough";
+}
+
+/// Each record of an axis with a force of its own that nobody has logged.
+constexpr std::string_view biased = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
+  VAR_INPUT
+    FORCE : LREAL;  (* @unit N *)
+    BIAS  : LREAL := 0.0;  (* @param @unit N *)
+  END_VAR
+  VAR_OUTPUT V : LREAL;  (* @unit m/s *) END_VAR
+  VAR SPEED : HY_LAG := (T1 := 0.4, SETTLED := TRUE); END_VAR
+  SPEED(XIN := FORCE + BIAS);
+  V := SPEED.XOUT;
+END_FUNCTION_BLOCK
+)";
+
+TEST(Task, ARecordsOwnParametersAreKnownOnceForEach) {
+  std::vector<records::Record> days;
+  for (const std::string bias : {"0.4", "-0.9"}) {
+    days.push_back(test::measured(test::program_of(std::string(biased), "[parameters]\nBIAS = " + bias + "\n"),
+                                  test::record_of("FORCE", test::rich_force(400)), 0.001));
+  }
+  Task task =
+      task_of(test::input_of(std::string(biased), "[fit.SPEED]\nT1 = {}\n[fit.record]\nBIAS = {min = -3.0}\n", days));
+  ASSERT_EQ(task.known.size(), 3U);
+  EXPECT_FALSE(task.known[0].record);
+  EXPECT_EQ(task.known[1].record, 0U);
+  EXPECT_EQ(task.known[2].record, 1U);
+  task.scales = {0.001};
+  Model model(task, test::program_of(std::string(biased)));
+  const Fit calibrated = fit(model, model.start());
+  EXPECT_NEAR(calibrated.x[1], 0.4, 0.01);
+  EXPECT_NEAR(calibrated.x[2], -0.9, 0.01);
+}
+
+TEST(Task, NoKnownParameterIsAModelAllTheSame) {
+  const std::string text =
+      "FUNCTION_BLOCK TWICE (* @ts 5ms *)\n  VAR_INPUT U : LREAL; END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "  Y := 2.0*U;\nEND_FUNCTION_BLOCK\n";
+  const auto record = test::measured(test::program_of(text), test::record_of("U", test::rich_voltage(400)), 0.001);
+  Task task = task_of(test::input_of(text, "", {record}));
+  EXPECT_THAT(task.known, IsEmpty());
+  task.scales = {0.001};
+  Model model(task, test::program_of(text));
+  VectorXd plain_residuals;
+  VectorXd residuals;
+  MatrixXd jacobian;
+  ASSERT_TRUE(model.residuals(model.start(), plain_residuals));
+  ASSERT_TRUE(model.residuals(model.start(), residuals, &jacobian));
+  EXPECT_EQ(residuals, plain_residuals) << "also where derivatives by nothing are asked for";
+  EXPECT_EQ(jacobian.cols(), 0);
+  EXPECT_NEAR(fit(model, model.start()).cost, 200.0, 30.0) << "half a square of noise a sample";
+}
 
 std::vector<std::string> known(const std::string& gain, const std::string& annotation) {
   const std::string text =

@@ -180,9 +180,10 @@ Covariance covariance_of(const LeastSquaresResult& fit, const std::vector<std::s
     if (fit.at_bound[k] == AtBound::Free) {
       d.free.push_back(static_cast<Index>(k));
     } else if (fit.at_bound[k] != AtBound::Held) {
-      bound_warnings.push_back(
-          fmt::format("{} lies on its {} bound: it has no standard error, and those of the others hold for that value.",
-                      names[k], fit.at_bound[k] == AtBound::Lower ? "lower" : "upper"));
+      bound_warnings.push_back(fmt::format(
+          "{} ran into its {} bound, {}: it has no standard error, and those of the others hold for that "
+          "value. A bound that holds bends the others: is it right, or does the model lack something?",
+          names[k], fit.at_bound[k] == AtBound::Lower ? "lower" : "upper", number_text(fit.x[static_cast<Index>(k)])));
     }
   }
   const auto n = std::ssize(d.free);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string_view>
 #include <vector>
 
 #include "diagnosis/faults/sensor_faults.hpp"
+#include "diagnosis/model/task.hpp"
 #include "support/median.hpp"
 #include "support/numbers.hpp"
 #include "tuning/simulation.hpp"
@@ -452,7 +454,10 @@ std::vector<std::string> absurd_samples(const Task& task, const Graph& graph) {
 }
 
 RecordCheck check_records(const Task& task, const Model& model, const VectorXd& nominal) {
-  return Check(task, model, nominal).run();
+  RecordCheck result = Check(task, model, nominal).run();
+  // No fault of a record, but what the nominal rests on as well.
+  std::ranges::move(remarks_on_bounds(task), std::back_inserter(result.warnings));
+  return result;
 }
 
 }  // namespace hysteron::diagnosis

@@ -220,8 +220,10 @@ END_FUNCTION_BLOCK
 TEST_F(Diagnose, WhatClosesALoopIsTakenByEveryCommandAndItsExperimentIsReadyToBePlayed) {
   std::string machine = cooled;
   machine.replace(machine.find("XIN := FORCE"), 12, "XIN := DRAG.XOUT");
-  machine.replace(machine.find("  END_VAR\n\n"), 0, "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n    LATE : HY_DELAY;\n");
-  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0, "  DRAG(XIN := FORCE, V := LATE.XOUT);\n  LATE(XIN := SPEED.XOUT);\n");
+  machine.replace(machine.find("  END_VAR\n\n"), 0,
+                  "    DRAG : HY_VISCOUS_FRICTION := (QUADRATIC := 0.8);\n    LATE : HY_DELAY;\n");
+  machine.replace(machine.find("END_FUNCTION_BLOCK"), 0,
+                  "  DRAG(XIN := FORCE, V := LATE.XOUT);\n  LATE(XIN := SPEED.XOUT);\n");
   records::Record drive = test::record_of("FORCE", test::rich_force(1200));
   drive.add({.name = "WIND", .values = std::vector<double>(1200, 0.25)});
   bench.write("plant.st", cooled);
@@ -280,6 +282,13 @@ TEST_F(Diagnose, ALimitIsHeldAgainstTheDiagram) {
     EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("HY730 error: "), HasSubstr(one.cause), HasSubstr(one.mend)));
     EXPECT_FALSE(bench.has("bad"));
   }
+}
+
+TEST_F(Diagnose, AParameterThatWasTunedIntoItsBoundIsRemarkedOn) {
+  bench.write("p.toml", "[parameters.MASS]\nK = 0.5\n[fit.MASS]\nK = {max = 0.5}\n");
+  const auto outcome = bench.shell(command);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("note: MASS.K = 0.5 lies on the upper bound of its fit"));
 }
 
 TEST_F(Diagnose, ABudgetThatCutTheSearchIsTold) {

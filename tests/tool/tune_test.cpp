@@ -304,6 +304,21 @@ TEST_F(Tune, IntervalsOfTrainAndTestAreHeldAgainstEachOtherAndTheRecord) {
   EXPECT_THAT(rest.out, Not(HasSubstr("no test intervals"))) << "train is then what test leaves";
 }
 
+TEST_F(Tune, ABoundThatAParameterRanIntoIsNamed) {
+  bench.write(
+      "b.toml",
+      "[parameters.AMP]\nK = 1.0\n[parameters.BODY]\nT1 = 0.2\n[fit.AMP]\nK = {max = 2.0}\n[fit.BODY]\nT1 = {}\n");
+  const auto outcome = bench.shell("hysteron tune plant.st --log log.csv --params b.toml --out tuned.toml");
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("AMP.K ran into its upper bound, 2:"), HasSubstr("on its upper bound")));
+}
+
+TEST_F(Tune, WhatEachStartLeftIsTold) {
+  const auto outcome = bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --start 3");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ContainsRegex("The best of 3 starts was number [123]. What each left, in % of the range: "
+                                         "1 [^;]+; 2 [^;]+; 3 .+. Number 1 is the file's own."));
+}
+
 TEST_F(Tune, HelpHasExamples) {
   const auto outcome = bench.shell("hysteron tune --help");
   EXPECT_EQ(outcome.code, 0);

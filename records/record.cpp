@@ -84,6 +84,10 @@ void Record::replace(std::string_view name, std::vector<double> values) {
   columns_[static_cast<std::size_t>(&column(name) - columns_.data())].values = std::move(values);
 }
 
+void Record::remove(std::string_view name) {
+  std::erase_if(columns_, [&](const Column& column) { return equal_ignoring_case(column.name, name); });
+}
+
 Record Record::slice(RowRange rows) const {
   if (rows.first > rows.last || rows.last > size()) {
     throw std::out_of_range(fmt::format("rows {} to {} of {}", rows.first, rows.last, size()));

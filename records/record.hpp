@@ -64,6 +64,9 @@ class Record {
   /// number of values.
   void replace(std::string_view name, std::vector<double> values);
 
+  /// Takes a column away, where there is one.
+  void remove(std::string_view name);
+
   /// The rows of a range, with their times as they are.
   [[nodiscard]] Record slice(RowRange rows) const;
 

@@ -17,6 +17,7 @@
 #include "codegen/graph/definition.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "diagnosis/effects/effects.hpp"
+#include "diagnosis/model/ignored_columns.hpp"
 #include "diagnosis/report/verdict_json.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -58,6 +59,7 @@ struct DiagnoseOptions {
   std::vector<std::string> logs;
   std::string output;
   std::vector<std::string> effects;
+  std::vector<std::string> ignored;
   std::vector<std::string> limits;
   DiagramOptions controller;
   std::string trace;
@@ -207,6 +209,10 @@ int diagnose(DiagnoseOptions options, Console& console) {
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
   input.records = read_measured_records(options.logs);
+  for (const std::string& column : options.ignored) {
+    input.file.diagnose.ignore.push_back({.text = column});
+  }
+  diagnosis::ignore_columns(input);
   options.diagnosis.effects = options.effects;
   options.diagnosis.limits = LimitReader(program.graph).read(options.limits);
   std::optional<diagnosis::ControllerFinding> controller;
@@ -248,6 +254,11 @@ Action add_diagnose(CLI::App& app) {
       ->check(number_from_zero())
       ->option_text("SIZE");
   app.add_option("--effects", options->effects, "Tries these effects alone, by their identifiers.")
+      ->delimiter(',')
+      ->option_text("A,B,…");
+  app.add_option("--ignore", options->ignored,
+                 "Columns of the logs that drive nothing, as a set point beside a loop; also ignore = [\"SP\"] under "
+                 "[diagnose] in P.toml.")
       ->delimiter(',')
       ->option_text("A,B,…");
   app.add_option("--most", options->diagnosis.most_effects, "The most effects that are combined.")

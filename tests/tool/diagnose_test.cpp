@@ -284,6 +284,28 @@ TEST_F(Diagnose, ALimitIsHeldAgainstTheDiagram) {
   }
 }
 
+TEST_F(Diagnose, AColumnThatIsIgnoredIsNoCause) {
+  bench.write("log.csv", records::csv_text(test::warm_sensor()));
+  const std::string line =
+      "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects cross_coupling,drift --most 1 ";
+  ASSERT_EQ(bench.shell(line).code, 0);
+  EXPECT_EQ(json::parse(bench.read("found/verdict.json"))["effects"][0]["id"], "cross_coupling");
+  const auto ignored = bench.shell(line + "--ignore temp");
+  ASSERT_EQ(ignored.code, 0) << ignored.err;
+  EXPECT_THAT(bench.read("found/verdict.json"), Not(HasSubstr("cross_coupling")));
+  EXPECT_THAT(bench.read("found/improved.toml"), HasSubstr("ignore = [\"temp\"]"));
+
+  bench.write("q.toml", std::string(test::axis_parameters) + "[diagnose]\nignore = [\"TEMP\"]\n");
+  const auto listed = bench.shell(
+      "hysteron diagnose plant.st --log log.csv --params q.toml --out other --effects cross_coupling --most 1");
+  ASSERT_EQ(listed.code, 0) << listed.err;
+  EXPECT_THAT(bench.read("other/verdict.json"), Not(HasSubstr("cross_coupling")));
+
+  const auto slip = bench.shell(line + "--ignore tmep");
+  EXPECT_EQ(slip.code, 2);
+  EXPECT_THAT(slip.err, AllOf(HasSubstr("HY502 error: "), HasSubstr("did you mean temp?")));
+}
+
 TEST_F(Diagnose, AParameterThatWasTunedIntoItsBoundIsRemarkedOn) {
   bench.write("p.toml", "[parameters.MASS]\nK = 0.5\n[fit.MASS]\nK = {max = 0.5}\n");
   const auto outcome = bench.shell(command);

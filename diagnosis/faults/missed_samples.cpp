@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "diagnosis/noise/spectrum.hpp"
@@ -25,6 +27,12 @@ constexpr std::size_t fewest_beside_model = 6;
 constexpr double largest_step = 0.5;
 constexpr double least_leap = 0.6;
 constexpr double least_share = 0.002;  // runs of all samples
+/// Of the way that was missed, what the leaps at the ends of the runs make up for: all of it. A signal that is late, or
+/// that sticks and yields, makes up for a part, or leaps on its own.
+constexpr double least_made_up = 0.78;
+constexpr double most_made_up = 1.1;
+/// Dead times from the one that suits a record best: a calibrated lag has taken up a part of it.
+constexpr std::size_t dead_times = 3;
 
 /// The deviation of the noise, from how far samples lie off the cubic through their four neighbours; by the lower
 /// quartile, since runs spoil their surroundings.
@@ -49,6 +57,22 @@ double rounding(const std::vector<double>& values) {
   return rounded_off(common_step(values));
 }
 
+/// A model's output over one record, and the same behind dead times: behind one, a signal that rests when its input
+/// begins to move stands still beside the model, and no sample was missed.
+struct Beside {
+  std::span<const double> modelled{};
+  std::array<std::span<const double>, dead_times> late{};
+};
+
+/// What the leaps at the ends of runs make up for, against the way of the model, over all of them.
+struct Leaps {
+  double measured = 0.0;
+  double modelled = 0.0;
+  double squares = 0.0;
+
+  [[nodiscard]] double made_up() const { return (measured - modelled) / std::max(squares - modelled, 1e-300); }
+};
+
 /// One record's runs.
 class Runs {
  public:
@@ -67,20 +91,20 @@ class Runs {
   void held_already(std::span<const std::uint8_t> held) { std::ranges::copy(held, held_.begin()); }
 
   /// Those that show clearly beside a model, and hardly in the measurement alone; their number.
-  std::size_t clear_beside(std::span<const double> modelled) {
+  std::size_t clear_beside(const Beside& model) {
     return hold_where([&](std::size_t k, std::size_t length) {
-      return moves_on(k, length, modelled) && differs_from_model(k, length, modelled, clear_evidence);
+      return moves_on(k, length, model.modelled) && differs_from_model(k, length, model, clear_evidence);
     });
   }
 
   /// Those that show beside the model.
-  void beside(std::span<const double> modelled) {
+  void beside(const Beside& model) {
     for (std::size_t k = 2; noise_ > 0.0 && k + 4 < values_.size(); ++k) {
       if (held_[k] != 0) {
         continue;
       }
       for (std::size_t length = std::min(standing_after(k), values_.size() - k - 2); length >= 1; --length) {
-        if (differs_from_model(k, length, modelled, fair_evidence)) {
+        if (differs_from_model(k, length, model, fair_evidence)) {
           hold(k, length);
           k += length;
           break;
@@ -90,6 +114,18 @@ class Runs {
   }
 
   [[nodiscard]] const std::vector<std::uint8_t>& held() const { return held_; }
+
+  void add_leaps(std::span<const double> modelled, Leaps& leaps) const {
+    for (std::size_t k = 0, first = 0; k + 1 < values_.size(); ++k) {
+      first = held_[k] != 0 ? first : k;  // the last sample that came
+      if (held_[k] != 0 && held_[k + 1] == 0) {
+        const double way = modelled[k + 1] - modelled[first];
+        leaps.measured += way * (values_[k + 1] - values_[k]);
+        leaps.modelled += way * (modelled[k + 1] - modelled[k]);
+        leaps.squares += way * way;
+      }
+    }
+  }
 
  private:
   /// The samples behind k that have its value but for the noise.
@@ -161,12 +197,18 @@ class Runs {
            std::abs(values_[k + length + 1] - values_[k + length]) >= least_leap * way;
   }
 
-  [[nodiscard]] bool differs_from_model(std::size_t k, std::size_t length, std::span<const double> modelled,
-                                        double least) const {
+  [[nodiscard]] bool differs_from_model(std::size_t k, std::size_t length, const Beside& model, double least) const {
     const double step = values_[k + length + 1] - values_[k];
-    const double wanted = modelled[k + length + 1] - modelled[k];
+    const double wanted = model.modelled[k + length + 1] - model.modelled[k];
     return std::abs(step - wanted) <= alike * std::abs(step) + still * noise_ &&
-           evidence(k, length, [&](std::size_t i) { return modelled[k + i] - modelled[k]; }) > least;
+           stands_beside(k, length, model.modelled) > least &&
+           std::ranges::all_of(model.late, [&](std::span<const double> late) {
+             return stands_beside(k, length, late) > std::min(least, fair_evidence);
+           });
+  }
+
+  [[nodiscard]] double stands_beside(std::size_t k, std::size_t length, std::span<const double> modelled) const {
+    return evidence(k, length, [&](std::size_t i) { return modelled[k + i] - modelled[k]; });
   }
 
   const std::vector<double>& values_;
@@ -199,6 +241,9 @@ void add(const std::vector<double>& values, const std::vector<std::uint8_t>& hel
 }
 
 double variance(const std::vector<double>& values) {
+  if (values.empty()) {
+    return 0.0;
+  }
   const Eigen::Map<const Eigen::ArrayXd> all(values.data(), std::ssize(values));
   return (all - all.mean()).square().mean();
 }
@@ -217,6 +262,60 @@ bool are_stairs(const std::vector<Held>& runs) {
   constexpr double of_stairs = 0.5;
   return steps.size() >= fewest_runs && variance(steps) < of_stairs * variance(slopes);
 }
+
+/// The outputs of all records behind a dead time in whole samples.
+std::vector<double> delayed(const std::vector<Experiment>& experiments, std::span<const double> modelled,
+                            std::size_t delay) {
+  std::vector<double> late;
+  for (const Experiment& experiment : experiments) {
+    const std::size_t offset = late.size();
+    for (std::size_t k = 0; k < experiment.drive.steps; ++k) {
+      late.push_back(modelled[offset + (k < delay ? 0 : k - delay)]);
+    }
+  }
+  return late;
+}
+
+/// A model beside all records.
+class Models {
+ public:
+  Models(const std::vector<Experiment>& experiments, std::size_t output, std::span<const double> modelled)
+      : modelled_(modelled) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t best = 0;
+    for (std::size_t delay = 0; delay <= longest_run; ++delay) {
+      const std::vector<double> off = delayed(experiments, modelled, delay);
+      double left = 0.0;
+      std::size_t row = 0;
+      for (const Experiment& experiment : experiments) {
+        std::vector<double> here;
+        for (const double value : experiment.measured[output]) {
+          here.push_back(value - off[row++]);
+        }
+        left += variance(here) * static_cast<double>(here.size());
+      }
+      if (left < least) {
+        least = left;
+        best = delay;
+      }
+    }
+    for (std::size_t i = 0; i < dead_times; ++i) {
+      late_[i] = delayed(experiments, modelled, best + i);
+    }
+  }
+
+  [[nodiscard]] Beside at(std::size_t offset, std::size_t size) const {
+    Beside result{.modelled = modelled_.subspan(offset, size)};
+    for (std::size_t i = 0; i < dead_times; ++i) {
+      result.late[i] = std::span(late_[i]).subspan(offset, size);
+    }
+    return result;
+  }
+
+ private:
+  std::span<const double> modelled_;
+  std::array<std::vector<double>, dead_times> late_{};
+};
 
 template <class Find>
 MissedSamples collected(const std::vector<Experiment>& experiments, std::size_t output, const Find& find) {
@@ -261,12 +360,17 @@ MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, st
 MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output,
                                   std::span<const double> modelled, double noise) {
   std::size_t runs = 0;
+  Leaps leaps;
+  const Models models(experiments, output, modelled);
   MissedSamples result = collected(experiments, output, [&](const std::vector<double>& values, std::size_t offset) {
     Runs one(values, noise);
-    runs += one.clear_beside(modelled.subspan(offset, values.size()));
+    const Beside model = models.at(offset, values.size());
+    runs += one.clear_beside(model);
+    one.add_leaps(model.late.front(), leaps);
     return one.held();
   });
-  return runs >= fewest_beside_model ? result : MissedSamples{};
+  const bool made_up = leaps.made_up() >= least_made_up && leaps.made_up() <= most_made_up;
+  return runs >= fewest_beside_model && made_up ? result : MissedSamples{};
 }
 
 MissedSamples with_model(const MissedSamples& found, const std::vector<Experiment>& experiments, std::size_t output,
@@ -275,10 +379,11 @@ MissedSamples with_model(const MissedSamples& found, const std::vector<Experimen
   for (const std::size_t row : found.rows) {
     held[row] = 1;
   }
+  const Models models(experiments, output, modelled);
   return collected(experiments, output, [&](const std::vector<double>& values, std::size_t offset) {
     Runs one(values);
     one.held_already(std::span(held).subspan(offset, values.size()));
-    one.beside(modelled.subspan(offset, values.size()));
+    one.beside(models.at(offset, values.size()));
     return one.held();
   });
 }

@@ -25,7 +25,9 @@ struct MissedSamples {
 [[nodiscard]] MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output);
 
 /// Where those are too few, with a model that moves on meanwhile, by so much that a slow signal behind a quantizer is
-/// none. `modelled` holds the output's values, record by record, and `noise` is their noise floor.
+/// none. A dead time explains the standing as well, of a signal that rested when its input began to move; and what
+/// yields or follows late does not make up for its way in one leap: neither is a missed sample. `modelled` holds the
+/// output's values, record by record, and `noise` is their noise floor.
 [[nodiscard]] MissedSamples find_missed_samples(const std::vector<Experiment>& experiments, std::size_t output,
                                                 std::span<const double> modelled, double noise);
 

@@ -144,6 +144,55 @@ TEST(MissedSamples, BesideAModelRoundingAndALateSensorAreNone) {
   EXPECT_THAT(find_missed_samples(test::experiments_of(test::noisy(late, 0.01, 7)), 0, steps, 0.01).rows, IsEmpty());
 }
 
+/// x follows u with a time constant, behind a dead time; in samples.
+std::vector<double> lagged(const std::vector<double>& u, double time_constant, std::size_t dead_time) {
+  std::vector<double> x;
+  double state = 0.0;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    state += (1.0 - std::exp(-1.0 / time_constant)) * ((k < dead_time ? 0.0 : u[k - dead_time]) - state);
+    x.push_back(state);
+  }
+  return x;
+}
+
+/// A heater that is switched every so often, to and fro at random, and rests before it answers. The model without the
+/// dead time has taken a longer lag for it.
+TEST(MissedSamples, BesideAModelWithoutItsDeadTimeAreNone) {
+  for (const std::size_t every : {8U, 12U}) {
+    for (const std::size_t dead_time : {2U, 3U}) {
+      test::Noise random(5);
+      std::vector<double> u;
+      while (u.size() < count) {
+        u.insert(u.end(), every, random.uniform() < 0.5 ? -1.0 : 1.0);
+      }
+      const auto measured = test::noisy(lagged(u, 4.0, dead_time), 0.005, 7);
+      EXPECT_THAT(find_missed_samples(test::experiments_of(measured), 0, lagged(u, 10.0, 0), 0.005).rows, IsEmpty())
+          << every << " " << dead_time;
+    }
+  }
+}
+
+/// The force of a damper that yields at once, and whose model is in proportion to the speed: it stands where the model
+/// moves on, and leaps where the speed turns round.
+TEST(MissedSamples, BesideAModelThatDoesNotYieldAreNone) {
+  for (const double rate : {0.11, 0.2, 0.35}) {
+    std::vector<double> speed;
+    std::vector<double> force;
+    double spring = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto t = static_cast<double>(k);
+      speed.push_back(3.0 * std::sin(rate * t) + 2.0 * std::sin(2.6 * rate * t + 1.0));
+      spring = std::clamp(spring + 0.9 * speed.back(), -1.0, 1.0);
+      force.push_back(3.0 * spring + 0.3 * speed.back());
+    }
+    for (double& value : speed) {
+      value *= 1.3;  // the proportion that fits the force best
+    }
+    EXPECT_THAT(find_missed_samples(test::experiments_of(test::noisy(force, 0.1, 7)), 0, speed, 0.1).rows, IsEmpty())
+        << rate;
+  }
+}
+
 /// To levels that lie unevenly, as a converter's do.
 std::vector<double> rounded_unevenly(std::vector<double> values, double quantum) {
   for (double& value : values) {

@@ -20,6 +20,10 @@ constexpr double far_beyond = 3.0;
 constexpr double single_beyond = 5.0;
 /// Noise of so many steps of the sensor lets no reading stand for long.
 constexpr double noisy_steps = 3.0;
+/// A sound reading would have shown what is so many times the noise.
+constexpr double shown_by_noise = 3.0;
+/// A sensor that stands at so many other readings does so by itself, wherever the machine rests.
+constexpr std::ptrdiff_t fewest_standstills = 5;
 /// A sensor whose readings stand for this share of the time does so by itself, as a switch does.
 constexpr double often = 0.5;
 
@@ -67,7 +71,7 @@ class FaultFinder {
 
   /// Whether consecutive second differences oppose each other, as those of noise do and those of a motion do not, and
   /// are larger than the sensor's step makes them.
-  [[nodiscard]] bool is_noisy() const {
+  [[nodiscard]] bool is_noisy() {
     std::vector<double> sizes;
     double together = 0.0;
     double alone = 0.0;
@@ -92,8 +96,8 @@ class FaultFinder {
       before = second;
     }
     constexpr double opposed = -0.3;  // of white noise −2/3, of what moves smoothly nearly 1
-    const double noise = deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
-    return together < opposed * alone && noise >= noisy_steps * step;
+    noise_ = deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
+    return together < opposed * alone && noise_ >= noisy_steps * step;
   }
 
   /// The largest leap that counts, but for those at the ends of the runs of one reading.
@@ -118,6 +122,20 @@ class FaultFinder {
       standing += measured_[run.first] != reading ? run.size() : 0;
     }
     return static_cast<double>(standing) > often * static_cast<double>(others);
+  }
+
+  [[nodiscard]] bool stands_elsewhere(double reading) const {
+    return std::ranges::count_if(runs_, [&](const RowRange& run) { return measured_[run.first] != reading; }) >=
+           fewest_standstills;
+  }
+
+  /// Whether the model, while a reading stands, goes further than the noise would hide.
+  [[nodiscard]] bool model_moves_in(const RowRange& run) const {
+    if (run.last > model_.size()) {
+      return true;
+    }
+    const auto [low, high] = std::ranges::minmax(model_.subspan(run.first, run.size()));
+    return high - low > shown_by_noise * noise_;
   }
 
   [[nodiscard]] bool model_leaps_at(std::size_t row, double size) const {
@@ -148,7 +166,8 @@ class FaultFinder {
       const double reading = measured_[run.first];
       const bool known =
           std::ranges::any_of(result_, [&](const SensorFault& one) { return one.rows.first == run.first; });
-      if (!known && noisy_ && run.size() >= shortest_stuck && reading != low && reading != high) {
+      if (!known && noisy_ && run.size() >= shortest_stuck && reading != low && reading != high &&
+          !stands_elsewhere(reading) && model_moves_in(run)) {
         result_.push_back({.kind = Kind::Stuck, .rows = run, .value = reading});
       }
     }
@@ -188,6 +207,7 @@ class FaultFinder {
   std::vector<bool> counts_;
   std::vector<RowRange> runs_{};
   bool noisy_ = false;
+  double noise_ = 0.0;  ///< of readings that move, see is_noisy()
   std::vector<SensorFault> result_{};
 };
 

@@ -2,9 +2,10 @@
 // record that is missing.
 //
 // A stretch of exactly equal readings is a stuck sensor where the sensor is noisy elsewhere, by three of its steps or
-// more, and the stretch is no end of its range, which is a clipped sensor. It is a dropout where the readings leap
-// there and back by far more than anywhere else. A single leap, far beyond all others and beyond the model's fastest
-// change, is a gap in the record whose rows were numbered anew.
+// more, the model moves on meanwhile, and the stretch is no end of its range, which is a clipped sensor. A sensor that
+// stands in many places is coarse, or its record was resampled: it stands where the machine rests. A stretch is a
+// dropout where the readings leap there and back by far more than anywhere else. A single leap, far beyond all others
+// and beyond the model's fastest change, is a gap in the record whose rows were numbered anew.
 #pragma once
 
 #include <cstddef>

@@ -96,6 +96,54 @@ TEST(SensorFaults, AMachineThatSticksPasses) {
   EXPECT_THAT(faults(test::noisy(values, 0.05, 1)), IsEmpty());
 }
 
+/// A machine that drives, waits and drives on, with waits of many lengths.
+std::vector<double> with_waits(std::size_t waits) {
+  std::vector<double> values{20.0};
+  for (std::size_t k = 1; k < 2000; ++k) {
+    const bool is_waiting = k % (2000 / waits) < 90;
+    values.push_back(values.back() + (is_waiting ? 0.0 : 0.1 * std::cos(0.005 * static_cast<double>(k))));
+  }
+  return values;
+}
+
+/// Noisy where it moves and exact where it rests, as a speed that is computed from an encoder.
+std::vector<double> noisy_in_motion(const std::vector<double>& moved, double deviation) {
+  std::vector<double> values = test::noisy(moved, deviation, 1);
+  for (std::size_t k = 1; k + 1 < moved.size(); ++k) {
+    if (moved[k] == moved[k - 1] && moved[k] == moved[k + 1]) {
+      values[k] = moved[k];
+    }
+  }
+  return values;
+}
+
+TEST(SensorFaults, ASensorThatIsExactAtRestPassesWhereTheModelRestsToo) {
+  for (const std::size_t waits : {1U, 2U, 4U}) {
+    const auto moved = with_waits(waits);
+    EXPECT_THAT(faults(noisy_in_motion(moved, 0.05), moved), IsEmpty()) << waits;
+    EXPECT_THAT(faults(noisy_in_motion(moved, 0.05), motion()), testing::Not(IsEmpty()))
+        << "a model that moves on: it may as well be stuck";
+  }
+}
+
+/// Linear interpolation invents readings between the steps of an encoder, and leaves it standing where it stood.
+TEST(SensorFaults, ACoarseSensorThatWasResampledPassesThoughTheModelMovesOn) {
+  std::vector<double> moved{0.0};  // sticks at each turn of a force, where the model without friction swings on
+  for (const double driven : motion()) {
+    const double off = driven - moved.back();
+    moved.push_back(std::abs(off) > 4.0 ? driven - std::copysign(4.0, off) : moved.back());
+  }
+  const std::vector<double> coarse = test::rounded(moved, 0.15);
+  const std::vector<double> jitter = test::Noise(4).white(coarse.size(), 0.15);
+  std::vector<double> resampled;
+  for (std::size_t k = 0; k < 2000; ++k) {
+    const double at = std::clamp(static_cast<double>(k) + jitter[k], 0.0, 1999.0);
+    const auto left = static_cast<std::size_t>(at);
+    resampled.push_back(std::lerp(coarse[left], coarse[left + 1], at - static_cast<double>(left)));
+  }
+  EXPECT_THAT(faults(resampled), IsEmpty());
+}
+
 TEST(SensorFaults, ASwitchedSignalPasses) {
   std::vector<double> values;
   for (std::size_t k = 0; k < 2000; ++k) {

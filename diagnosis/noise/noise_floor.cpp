@@ -206,10 +206,8 @@ double noise_off_steps(const std::vector<double>& values) {
   if (!(step > 0.0) || share_of_whole_steps(values, step) > rounded_last) {
     return 0.0;
   }
-  // Of a normal deviation σ the mean of the turned values is exp(−2π²σ²/step²) long. Values on the steps themselves,
-  // but for the digits of a file, say nothing of noise.
-  const double length = std::min(1.0, alignment(values, step));
-  const double off = step * std::sqrt(-2.0 * std::log(std::max(length, 1e-6))) * 0.5 * std::numbers::inv_pi;
+  // Values on the steps themselves, but for the digits of a file, say nothing of noise.
+  const double off = deviation_off_steps(step, alignment(values, step));
   constexpr double of_digits = 0.02;
   return off > of_digits * step ? off : 0.0;
 }

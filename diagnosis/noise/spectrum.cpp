@@ -87,17 +87,28 @@ class Lattice {
                            [](const std::complex<double>& one) { return std::abs(one); });
   }
 
-  /// The highest of all, if above half of what it can be; 0 where there is none.
+  /// The highest of all, if above half of what it can be and no chance; 0 where there is none.
   [[nodiscard]] double clear() const {
-    double best = 0.5 * count_;
-    std::size_t found = 0;
-    for (std::size_t k = first; k <= last && !heights_.empty(); ++k) {
-      if (heights_[k] > 1.02 * best) {  // of a step and its parts, the step
-        best = heights_[k];
-        found = k;
+    constexpr int most_tried = 16;
+    std::size_t begin = first;
+    for (int tried = 0; tried < most_tried; ++tried) {
+      double best = 0.5 * count_;
+      std::size_t found = 0;
+      for (std::size_t k = begin; k <= last && !heights_.empty(); ++k) {
+        if (heights_[k] > 1.02 * best) {  // of a step and its parts, the step
+          best = heights_[k];
+          found = k;
+        }
       }
+      if (found == 0) {
+        break;
+      }
+      if (const double step = refined(found); !may_be_chance(step, best / count_)) {
+        return step;
+      }
+      begin = found + 1;
     }
-    return found == 0 ? 0.0 : refined(found);
+    return 0.0;
   }
 
   /// The first peak on which nearly all lie, whatever finer one they lie on, too; 0 where there is none.
@@ -131,7 +142,8 @@ class Lattice {
       if (height <= heights_[k - 1] || height < heights_[k + 1] || height <= over_chance * std::sqrt(count_)) {
         continue;
       }
-      if (const double about = height_about(k); height > best * about) {
+      if (const double about = height_about(k);
+          height > best * about && !may_be_chance(1.0 / (static_cast<double>(k) * bin_), height / count_)) {
         best = height / about;
         found = k;
       }
@@ -140,6 +152,34 @@ class Lattice {
   }
 
  private:
+  /// A signal that rests near a few levels, a voltage say that one force needs and another one for the way back, has
+  /// some step that fits them all. A sensor that rounds, and the noise behind it, differ from that in one of three: the
+  /// levels are many; or nearly all values lie on them; or what lies off them is as fast as noise is.
+  [[nodiscard]] bool may_be_chance(double step, double share) const {
+    constexpr std::size_t many = 8;
+    constexpr double nearly_all = 0.9;
+    constexpr double as_fast = 0.2;  // of noise with a correlation of 0.9 from sample to sample, 0.23
+    return share < nearly_all && levels_at(step) < many && fast_noise() < as_fast * deviation_off_steps(step, share);
+  }
+
+  [[nodiscard]] std::size_t levels_at(double step) const {
+    const double phase = std::arg(mean_turn(values_, step)) / (2.0 * std::numbers::pi);
+    std::vector<double> levels;
+    std::ranges::transform(values_, std::back_inserter(levels),
+                           [&](double value) { return std::round(value / step - phase); });
+    std::ranges::sort(levels);
+    return static_cast<std::size_t>(std::unique(levels.begin(), levels.end()) - levels.begin());
+  }
+
+  /// Of white noise its deviation, by the second differences; of slow noise less.
+  [[nodiscard]] double fast_noise() const {
+    std::vector<double> sizes;
+    for (std::size_t k = 1; k + 1 < values_.size(); ++k) {
+      sizes.push_back(std::abs(values_[k + 1] - 2.0 * values_[k] + values_[k - 1]));
+    }
+    return deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
+  }
+
   static constexpr std::size_t bins = 1U << 15U;
   static constexpr std::size_t padding = 4;
   static constexpr std::size_t first = 3 * padding;
@@ -250,6 +290,10 @@ std::vector<double> likely_steps(const std::vector<double>& values) {
 
 double alignment(const std::vector<double>& values, double step) {
   return std::abs(mean_turn(values, step));
+}
+
+double deviation_off_steps(double step, double alignment) {
+  return step * std::sqrt(-2.0 * std::log(std::clamp(alignment, 1e-6, 1.0))) * 0.5 * std::numbers::inv_pi;
 }
 
 double step_from_zero(const std::vector<double>& values, double step) {

@@ -27,7 +27,8 @@ class Periodogram {
 
 /// The step on which values lie, 0 where on none: the largest |Σ exp(2πi y/q)|/N over q from a third to 1/4096 of their
 /// range, if above 0.5, with N the narrow bins that hold a value. Values that are rounded by a sensor and then get
-/// noise of less than a tenth of the step show it.
+/// noise of less than a tenth of the step show it. A few levels near which a signal rests lie on some step by chance,
+/// and are none: what is off them is neither little nor as fast as noise.
 [[nodiscard]] double common_step(const std::vector<double>& values);
 
 /// That step, and behind it the largest one with more than 0.9 in the place of 0.5 where that is another: of values
@@ -49,6 +50,10 @@ class Periodogram {
 
 /// How well values y lie on a step q: |mean of exp(2πi y/q)|, 1 on the step itself, wherever it begins.
 [[nodiscard]] double alignment(const std::vector<double>& values, double step);
+
+/// Of values about steps that are aligned so well, the deviation of the normal noise that takes them off: the mean of
+/// exp(2πi y/q) is exp(−2π²σ²/q²) long.
+[[nodiscard]] double deviation_off_steps(double step, double alignment);
 
 /// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least
 /// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.

@@ -110,6 +110,40 @@ TEST(CommonStep, IsThatOfValuesWithLittleNoise) {
   EXPECT_EQ(common_step(rounded_motion(0.0, 0.001)), 0.0);
 }
 
+/// A voltage that drives an axis to and fro: it rests near a few levels, those of friction and of acceleration, and
+/// goes from one to the next in one sample or in many.
+std::vector<double> few_levels(std::size_t ramp) {
+  const std::vector<double> levels{1.1, 3.4, 1.1, -1.2, -3.4, -1.2};
+  std::vector<double> values;
+  test::Noise white(2);
+  for (std::size_t k = 0; k < 12500; ++k) {
+    const std::size_t part = k / 300;
+    const auto within = static_cast<double>(k % 300);
+    const double share = ramp == 0 ? 1.0 : std::min(1.0, within / static_cast<double>(ramp));
+    const double bend = 0.3 * std::sin(0.02 * within) + 0.15 * std::sin(1.7 * static_cast<double>(part));
+    values.push_back(std::lerp(levels[(part + 5) % 6], levels[part % 6], share) + bend + 0.003 * white());
+  }
+  return values;
+}
+
+TEST(CommonStep, AFewLevelsAtWhichAVoltageRestsAreNone) {
+  for (const std::size_t ramp : {0U, 5U, 40U}) {
+    EXPECT_EQ(common_step(few_levels(ramp)), 0.0) << ramp;
+    EXPECT_TRUE(likely_steps(few_levels(ramp)).empty()) << ramp;
+  }
+}
+
+TEST(CommonStep, AFewLevelsOfASensorThatRoundsAreSome) {
+  for (const double noise : {0.0, 0.02, 0.1}) {
+    std::vector<double> values;
+    test::Noise white(5);
+    for (int k = 0; k < 4000; ++k) {
+      values.push_back(std::round(2.2 * std::sin(0.003 * k)) + noise * white());
+    }
+    EXPECT_NEAR(common_step(values), 1.0, 0.05) << noise;
+  }
+}
+
 TEST(ClearSteps, AreThoseOfBothRoundings) {
   constexpr double coarse = 1.4;
   constexpr double fine = 0.057;

@@ -40,15 +40,36 @@ double share_of_whole_steps(const std::vector<double>& values, double step) {
 /// The least for an estimate, in samples.
 constexpr std::size_t fewest = 60;
 
+/// How far a signal that was measured too may flicker while it rests: by its noise, or by a step of its sensor. 0 where
+/// that is no small part of its range: then it is what moves the machine.
+double flicker_of(const Signal& signal) {
+  constexpr double deviations = 4.0;
+  constexpr double small = 0.002;  // of the range
+  constexpr double fine = 0.001;
+  if (signal.size() < fewest) {
+    return 0.0;
+  }
+  const auto [low, high] = std::ranges::minmax(signal);
+  const auto if_below = [&](double share, double size) { return size < share * (high - low) ? size : 0.0; };
+  return std::max(deviations * if_below(small, noise_by_differences(signal)),
+                  if_below(fine, 1.001 * smallest_step(signal)));
+}
+
+/// A signal, and by how much it may flicker.
+struct Watched {
+  const Signal* signal = nullptr;
+  double flicker = 0.0;
+};
+
 /// Rows in which no signal moves.
-std::vector<records::RowRange> rests_of(const std::vector<const Signal*>& signals, std::size_t steps) {
+std::vector<records::RowRange> rests_of(const std::vector<Watched>& signals, std::size_t steps) {
   constexpr std::size_t shortest = 40;
   constexpr std::size_t longest = 600;  // of what a cubic is taken off
   std::vector<records::RowRange> result;
   std::size_t first = 0;
   for (std::size_t k = 1; k <= steps; ++k) {
-    const bool moved = k == steps || std::ranges::any_of(signals, [&](const Signal* signal) {
-                         return at_step(*signal, k) != at_step(*signal, k - 1);
+    const bool moved = k == steps || std::ranges::any_of(signals, [&](const Watched& one) {
+                         return std::abs(at_step(*one.signal, k) - at_step(*one.signal, first)) > one.flicker;
                        });
     if (!moved) {
       continue;
@@ -74,12 +95,13 @@ std::vector<std::vector<records::RowRange>> rests_of(const std::vector<Experimen
     std::size_t samples = 0;
     result.clear();
     for (std::size_t e = 0; e < experiments.size(); ++e) {
-      std::vector<const Signal*> signals;
-      for (const Signal& input : experiments[e].drive.inputs) {
-        signals.push_back(&input);
-      }
+      std::vector<Watched> signals;
+      const auto watch = [&](const Signal& signal) {
+        signals.push_back({.signal = &signal, .flicker = flicker_of(signal)});
+      };
+      std::ranges::for_each(experiments[e].drive.inputs, watch);
       for (std::size_t i = 0; with_others && e < others.size() && i < others[e].size(); ++i) {
-        signals.push_back(&others[e][i]);
+        watch(others[e][i]);
       }
       result.push_back(rests_of(signals, experiments[e].drive.steps));
       for (const records::RowRange& rest : result.back()) {
@@ -255,6 +277,12 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   // Rounding by a sensor is noise too: a quantum over √12, where the samples show one.
   const double rounding = quanta.empty() ? 0.0 : rounded_off(*std::ranges::min_element(quanta));
   const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
+  // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
+  // noise, however slow.
+  constexpr double smoothest_noise = 30.0;  // times its fast part
+  if (floor.dwells > smoothest_noise * std::max(floor.differences, least)) {
+    floor.dwells = 0.0;
+  }
   // Differences of a fast signal see such a quantum as noise, too.
   const bool of_rounding = rounding > most_rounding * range && floor.differences < 1.5 * rounding;
   floor.value = of_rounding ? least : std::max(floor.differences, least);

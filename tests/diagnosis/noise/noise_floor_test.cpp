@@ -163,6 +163,35 @@ TEST(NoiseFloor, WhatRingsInMostDwellsIsNoNoise) {
   EXPECT_NEAR(noise_floor(experiment(over_time(8000, treads), sum(y, over_time(8000, ringing))), 0).value, 0.05, 0.01);
 }
 
+TEST(NoiseFloor, AMachineThatSwingsFreeWhileItsCommandsRestDoesNotDwell) {
+  // The larger the swing the slower: friction makes it a line of no one frequency.
+  std::vector<double> swing{1.2};
+  double speed = 0.0;
+  for (std::size_t k = 1; k < 4000; ++k) {
+    speed += step * (-40.0 * std::sin(swing.back()) - 0.05 * std::tanh(20.0 * speed));
+    swing.push_back(swing.back() + step * speed);
+  }
+  const auto y = sum(swing, test::Noise(9).white(4000, 0.001));
+  const auto floor = noise_floor(experiment(std::vector<double>(4000, 1.0), y), 0);
+  EXPECT_LT(floor.value, 0.003) << floor.evidence;
+}
+
+TEST(NoiseFloor, ACommandThatWasMeasuredTooDwellsInSpiteOfItsNoise) {
+  const auto y = sum(over_time(8000, treads), slow_noise(8000, 0.05));
+  const auto exact = noise_floor(experiment(over_time(8000, treads), y), 0);
+  ASSERT_EQ(exact.evidence, "dwells");
+  const auto noisy = sum(over_time(8000, treads), test::Noise(4).white(8000, 0.003));
+  const auto flickering = [](double t) { return treads(t) + (std::fmod(t, 0.31) < 0.02 ? 0.004 : 0.0); };
+  for (const auto& command : {noisy, over_time(8000, flickering)}) {
+    const auto floor = noise_floor(experiment(command, y), 0);
+    EXPECT_EQ(floor.evidence, "dwells");
+    EXPECT_NEAR(floor.value, exact.value, 0.1 * exact.value);
+  }
+  // Noise that is no small part of a command moves the machine.
+  const auto shaken = sum(over_time(8000, treads), test::Noise(4).white(8000, 0.5));
+  EXPECT_EQ(noise_floor(experiment(shaken, y), 0).dwells, 0.0);
+}
+
 TEST(NoiseFloor, WhatElseWasLoggedHasToRestToo) {
   // Another axis moves in the first half of the record, and the output follows it.
   const auto other = over_time(8000, [](double t) { return t < 20.0 ? std::sin(7.0 * t * (1.0 + 0.03 * t)) : 0.0; });

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/progress.hpp"
+#include "support/root_mean_square.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
@@ -92,13 +92,12 @@ std::string column_summary(const std::string& name, const std::string& unit, con
   const auto with_unit = unit.empty() ? std::string() : " " + unit;
   std::string text = fmt::format("  {:<16} {:.6g} to {:.6g}{}", name, *low, *high, with_unit);
   if (recorded != nullptr) {
-    double sum = 0.0;
+    RootMeanSquare error;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      const double difference = values[k] - recorded->values[k];
-      sum += difference * difference;
+      error.add(values[k] - recorded->values[k]);
     }
     const auto [least, most] = std::minmax_element(recorded->values.begin(), recorded->values.end());
-    const double rms = std::sqrt(sum / static_cast<double>(values.size()));
+    const double rms = error.value();
     text += fmt::format("; RMSE against the record's column {:.4g}{}", rms, with_unit);
     if (*most > *least) {
       text += fmt::format(", {:.3g} % of its range", 100.0 * rms / (*most - *least));

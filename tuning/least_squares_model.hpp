@@ -29,10 +29,11 @@ class Model {
 
   /// The point at x, evaluated no more often than needed; null where the model has no value.
   const Point* at(const Eigen::VectorXd& x, bool with_jacobian) {
-    if (point_.x.size() == x.size() && point_.x == x && (point_.has_jacobian || !with_jacobian)) {
+    if (is_known_ && point_.x == x && (point_.has_jacobian || !with_jacobian)) {
       return std::isfinite(point_.cost) ? &point_ : nullptr;
     }
     point_.x = x;
+    is_known_ = true;
     point_.cost = std::numeric_limits<double>::infinity();
     point_.has_jacobian = with_jacobian;
     ++residual_evaluations;
@@ -51,7 +52,7 @@ class Model {
 
   void set_threshold(double threshold) {
     threshold_ = threshold;
-    point_.x.resize(0);
+    is_known_ = false;
     best = {};
   }
   [[nodiscard]] double threshold() const { return threshold_; }
@@ -96,6 +97,7 @@ class Model {
   const LeastSquaresProblem& problem_;
   const LeastSquaresOptions& options_;
   Point point_{};
+  bool is_known_ = false;  ///< the point was evaluated, by the loss as it is
   double threshold_ = std::numeric_limits<double>::infinity();
 };
 

@@ -12,6 +12,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/root_mean_square.hpp"
 #include "tuning/rollout.hpp"
 
 namespace hysteron {
@@ -320,30 +321,25 @@ class Fitter {
       result.unit = port.unit;
       result.range = range_in(&Experiment::train, output);
       result.test_range = range_in(&Experiment::test, output);
-      double train = 0.0;
-      double test = 0.0;
-      result.train_samples = 0;
-      result.test_samples = 0;
+      RootMeanSquare train;
+      RootMeanSquare test;
       for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
         const Experiment& experiment = problem_.experiments[e];
         const Signal model = final_scores ? fit_.model[e][output] : rollout_.outputs(x, e)[output];
-        const auto sum = [&](const std::vector<records::RowRange>& ranges, std::size_t& count) {
-          double squares = 0.0;
+        const auto add = [&](const std::vector<records::RowRange>& ranges, RootMeanSquare& error) {
           for (const records::RowRange& range : ranges) {
             for (std::size_t row = range.first; row < range.last; ++row) {
-              const double residual = model[row] - experiment.measured[output][row];
-              squares += residual * residual;
+              error.add(model[row] - experiment.measured[output][row]);
             }
-            count += range.size();
           }
-          return squares;
         };
-        train += sum(experiment.train, result.train_samples);
-        test += sum(experiment.test, result.test_samples);
+        add(experiment.train, train);
+        add(experiment.test, test);
       }
-      result.*target = std::sqrt(train / static_cast<double>(result.train_samples));
-      result.test =
-          result.test_samples == 0 ? not_a_number : std::sqrt(test / static_cast<double>(result.test_samples));
+      result.train_samples = train.count();
+      result.test_samples = test.count();
+      result.*target = train.value();
+      result.test = test.value();
     }
   }
 

@@ -147,7 +147,7 @@ TEST(Covariance, ParametersOnBoundsHaveNone) {
   EXPECT_TRUE(std::isnan(c.correlation(0, 1)));
   EXPECT_EQ(c.degrees_of_freedom, 49);
   EXPECT_NEAR(c.standard_errors[0], c.residual_deviation * std::sqrt(c.correlation_time / 50.0), 1e-14);
-  EXPECT_THAT(c.warnings.front(), HasSubstr("slope lies on its upper bound"));
+  EXPECT_THAT(c.warnings.front(), HasSubstr("slope ran into its upper bound, 0.58"));
 }
 
 TEST(Covariance, AsManyParametersAsSamplesLeaveNoStandardErrors) {

@@ -211,6 +211,11 @@ struct RiseTerm {
 };
 
 template <class S>
+RiseTerm<S> select(const Bool<S>& condition, const RiseTerm<S>& a, const RiseTerm<S>& b) {
+  return {.rise = select(condition, a.rise, b.rise), .slope = select(condition, a.slope, b.slope)};
+}
+
+template <class S>
 RichRise<S> rich_rise(const LoopConstants<S>& loop, const LoopEffects<S>& effects, const S& start, const S& distance,
                       const S& momentum, const Bool<S>& downwards) {
   const RichGrowth<S> growth = rich_growth<S>(loop, effects, start, distance, momentum, downwards);

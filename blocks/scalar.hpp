@@ -149,16 +149,15 @@ bool vanishes(S x) {
   return x == S(0);
 }
 
-/// A value that costs much and is `at_zero` where `factor` is 0: of numbers it is worked out only where that does not
-/// vanish, of traced scalars always.
+/// A value that costs much and is `at_zero` where `factor` is 0, also where the value is then infinite or not a number:
+/// of numbers it is worked out only where that does not vanish, of traced scalars always.
 template <class T, class S, class Value>
 T unless_zero(const S& factor, const T& at_zero, const Value& value) {
   if constexpr (is_number<S>) {
-    if (vanishes(factor)) {
-      return at_zero;
-    }
+    return vanishes(factor) ? at_zero : value();
+  } else {
+    return select(factor == S(0.0), at_zero, value());
   }
-  return value();
 }
 
 /// Towards zero, as IEC 61131-3 TRUNC; saturates at the ends of DINT, and 0 for not-a-number, so that no input is

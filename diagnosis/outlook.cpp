@@ -46,6 +46,11 @@ void invert(const Outlook& outlook, Diagnosis& found) {
   if (moving.empty()) {
     return;
   }
+  if (found.verdict == Verdict::Unknown) {
+    found.feedforward_notes.emplace_back(
+        "The cause is not known: a feedforward of this diagram would take back what the machine does not do.");
+    return;
+  }
   const Program improved = fitted_program(outlook.task, without_noise(outlook.kept, outlook.top));
   const Feedforward feedforward = feedforward_of(improved, moving.front(), found.gap.signal, record.sample_time());
   found.feedforward_text = feedforward.text;

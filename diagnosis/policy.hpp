@@ -19,6 +19,11 @@ struct Threshold {
 
 namespace policy {
 
+inline constexpr Threshold above_noise{"above the noise", 10.0, "1", "mathematics: three times the noise in size",
+                                       "what energy of noise has to be left for the evidence to be asked"};
+inline constexpr Threshold unexplained{"unexplained", 0.001, "1",
+                                       "a formula errs by 3 % in size, as in the weights of a judgement",
+                                       "what share of the gap's energy has to be left for the evidence to be asked"};
 inline constexpr Threshold blocks{"blocks", 15.0, "1", "convention: 10 to 20 folds; 6 to 50 gave the same families",
                                   "into how many stretches the records are cut, one of them held out at a time"};
 inline constexpr Threshold rows{"rows", 4000.0, "samples", "cost: the regression is linear in them",
@@ -58,9 +63,10 @@ inline constexpr Threshold kept_promise{"kept promise", 0.5, "1", "convention: h
 inline constexpr Threshold relevant{"relevant", 0.05, "1", "convention: the twentieth part",
                                     "what share of the gap an effect has to close to be named"};
 
-inline constexpr std::array all{blocks,      rows,     price,       model_error,  another_place,  draws,
-                                quiet_slope, follower, same_signal, at_once,      line_of_driver, quick,
-                                linear,      named,    rival,       kept_promise, relevant};
+inline constexpr std::array all{above_noise, unexplained,   blocks,         rows,        price,
+                                model_error, another_place, draws,          quiet_slope, follower,
+                                same_signal, at_once,       line_of_driver, quick,       linear,
+                                named,       rival,         kept_promise,   relevant};
 
 }  // namespace policy
 }  // namespace hysteron::diagnosis

@@ -184,7 +184,8 @@ SetFinding described(const Explored& there, const LawSet& set) {
       if (!term.strength.empty()) {
         finding.values.push_back({.name = term.strength,
                                   .value = term.neutral + term.unit * set.score.shares[at],
-                                  .error = std::abs(term.unit) * set.score.errors[at]});
+                                  .error = std::abs(term.unit) * set.score.errors[at],
+                                  .unit = term.measure});
       }
       ++at;
     }

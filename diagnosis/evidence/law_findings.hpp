@@ -13,6 +13,7 @@ struct LawValue {
   std::string name{};
   double value = 0.0;
   double error = 0.0;
+  std::string unit{};  ///< as its block says it: 'x is that of the edge
 };
 
 struct LawFinding {

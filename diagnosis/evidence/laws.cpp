@@ -193,6 +193,7 @@ class Settings {
       const double a = (std::max(field.minimum, field.effect_minimum) - field.neutral) / step;
       const double b = (std::min(field.maximum, field.effect_maximum) - field.neutral) / step;
       Law::Term term{.strength = parameter(j).name,
+                     .measure = parameter(j).unit,
                      .unit = step,
                      .neutral = field.neutral,
                      .lowest = both_ways_ ? -std::numeric_limits<double>::infinity() : std::min(a, b),
@@ -210,7 +211,7 @@ class Settings {
       return;
     }
     Draft one = draft(values);
-    one.law.terms.push_back({.strength = "", .unit = 1.0, .lowest = share_low, .highest = share_high});
+    one.law.terms.push_back({.unit = 1.0, .lowest = share_low, .highest = share_high});
     one.signals.push_back(std::move(signal));
     result.push_back(std::move(one));
   }

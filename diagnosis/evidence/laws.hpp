@@ -22,6 +22,7 @@ namespace hysteron::diagnosis {
 struct Law {
   struct Term {
     std::string strength{};  ///< the parameter that it is a unit of
+    std::string measure{};   ///< in which that one is given, as its block says it: 'x
     double unit = 1.0;       ///< that one less its neutral value, at a share of 1
     double neutral = 0.0;
     double lowest = 0.0;  ///< of the share

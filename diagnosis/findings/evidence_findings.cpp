@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <utility>
 
+#include "codegen/graph/unit.hpp"
 #include "diagnosis/policy.hpp"
 
 namespace hysteron::diagnosis {
@@ -33,12 +36,40 @@ EffectFinding finding_of(const LawFinding& law) {
       result.parameters.push_back({.name = value.name,
                                    .value = value.value,
                                    .low = value.value - in_95_percent * value.error,
-                                   .high = value.value + in_95_percent * value.error});
+                                   .high = value.value + in_95_percent * value.error,
+                                   .unit = value.unit});
     } else if (std::isfinite(value.value)) {
       result.settings.push_back({.name = value.name, .value = value.value});
     }
   }
   return result;
+}
+
+/// A unit in terms of the signal that an effect acts on ('x) and of the one that drives it ('v), in their units;
+/// nothing where these are not known.
+std::string unit_in(std::string text, const MissingPicture& picture) {
+  const auto put = [&](std::string_view variable, const std::string& unit) {
+    for (std::size_t at = 0; (at = text.find(variable, at)) != std::string::npos;) {
+      text.replace(at, variable.size(), fmt::format("({})", unit.empty() ? "'" : unit));
+    }
+  };
+  put("'x", picture.unit);
+  put("'v", picture.over_unit);
+  std::string reason;
+  const std::optional<units::Unit> unit = units::parse_unit(text, reason);
+  return unit ? units::unit_text(*unit) : std::string();
+}
+
+/// The sizes of an effect in the unit of what is missing, as "UP 0.19, DOWN 0.26 m/s^2".
+std::string sizes_of(const EffectFinding& effect, const MissingPicture& picture) {
+  std::vector<std::string> sizes;
+  for (const ParameterFinding& parameter : effect.parameters) {
+    if (!picture.unit.empty() && effect.edge == picture.edge && parameter.unit == picture.unit) {
+      sizes.push_back(fmt::format("{} {:.3g}", parameter.name, parameter.value));
+    }
+  }
+  return sizes.empty() || sizes.size() > 2 ? std::string()
+                                           : fmt::format(", {} {}", fmt::join(sizes, ", "), picture.unit);
 }
 
 std::string percent(double share) {
@@ -78,6 +109,10 @@ void tell(const Evidence& evidence, Diagnosis& result) {
       fitted->share = finding.share;
       finding = *fitted;
     }
+    for (ParameterFinding& parameter : finding.parameters) {
+      parameter.unit =
+          unit_in(parameter.unit, finding.edge == evidence.picture.edge ? evidence.picture : MissingPicture{});
+    }
     effects.push_back(std::move(finding));
   }
   const std::string& family = evidence.families.front().family;
@@ -100,8 +135,8 @@ void tell(const Evidence& evidence, Diagnosis& result) {
       result.rivals.push_back(std::move(rival));
     }
   }
-  // √closed is the correlation of what the set predicts with what is missing: of a gap that is mostly open, a cause that
-  // no effect of the library is may be all there is.
+  // √closed is the correlation of what the set predicts with what is missing: of a gap that is mostly open, a cause
+  // that no effect of the library is may be all there is.
   const double correlation = std::sqrt(std::clamp(first.closed, 0.0, 1.0));
   result.confidence = std::min(evidence.families.front().probability * correlation, 0.99);
 }
@@ -110,17 +145,27 @@ std::string sentence_of(const Diagnosis& found) {
   const Evidence& evidence = found.evidence;
   const SetFinding& first = first_set(evidence);
   const FamilyFinding& family = evidence.families.front();
-  std::string text =
-      fmt::format("{} at {} ({}, probability {:.2f}) closes {} of the gap by itself, on stretches not fitted",
-                  capitalised(words_of_family(family.family)), family.edge, family.effect, family.probability,
-                  percent(family.alone));
+  const std::string sizes = found.effects.empty() ? std::string() : sizes_of(found.effects.front(), evidence.picture);
+  std::string text = fmt::format("{} at {}{} closes {} of the gap by itself, on stretches not fitted",
+                                 capitalised(words_of_family(family.family)), family.edge,
+                                 sizes.empty() ? sizes : sizes + ",", percent(family.alone));
   std::vector<std::string> beside;
+  const FamilyFinding* next = nullptr;
   for (const FamilyFinding& one : evidence.families) {
-    if (&one != &family && one.probability > policy::named.value && one.closed > policy::relevant.value) {
+    if (&one == &family) {
+      continue;
+    }
+    if (one.probability > policy::named.value && one.closed > policy::relevant.value) {
       beside.push_back(
           fmt::format("{} at {} (probability {:.2f})", words_of_family(one.family), one.edge, one.probability));
+    } else if (one.alone > policy::relevant.value && (next == nullptr || one.alone > next->alone)) {
+      next = &one;
     }
   }
+  text += fmt::format(" (probability {:.2f}{})", family.probability,
+                      next == nullptr
+                          ? std::string()
+                          : fmt::format("; next best {}, {}", words_of_family(next->family), percent(next->alone)));
   if (!beside.empty()) {
     text += fmt::format(", with {} {}", fmt::join(beside, " and "), percent(first.closed));
   }

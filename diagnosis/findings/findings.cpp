@@ -296,8 +296,15 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       }
       return farthest > 0.6 ? std::min(0.6, no_effect) : no_effect;
     }
-    case Verdict::Unknown:
-      return 0.7;
+    case Verdict::Unknown: {
+      // Sure as far as what is left is a cause of its own, and as no effect of the library may yet be it.
+      constexpr double surest = 0.95;
+      double offered = 0.0;
+      for (const FamilyFinding& one : so_far.evidence.families) {
+        offered = std::max(offered, one.probability * std::clamp(one.alone, 0.0, 1.0));
+      }
+      return std::min(surest, so_far.unknown_score) * (1.0 - offered);
+    }
   }
   return 0.0;
 }

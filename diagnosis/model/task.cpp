@@ -130,10 +130,9 @@ std::vector<std::string> remarks_on_bounds(const Task& task) {
     if (known.at_bound && known.record.value_or(0) == 0) {
       const bool low = known.start - known.lower <= known.upper - known.start;
       remarks.push_back(fmt::format(
-          "{} = {}{}{} lies on the {} bound of its fit: the tuning would have gone further, and may stand in for what "
+          "{} = {} lies on the {} bound of its fit: the tuning would have gone further, and may stand in for what "
           "the diagram lacks. Widen the bound and tune again, or set a value that you know.",
-          known.path, number_text(known.start), known.unit.empty() || known.unit == "1" ? "" : " ",
-          known.unit == "1" ? "" : known.unit, low ? "lower" : "upper"));
+          known.path, number_text(known.start), low ? "lower" : "upper"));
     }
   }
   return remarks;

@@ -279,7 +279,7 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
   // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
   // noise, however slow.
-  constexpr double smoothest_noise = 30.0;  // times its fast part
+  constexpr double smoothest_noise = 10.0;  // times its fast part
   if (floor.dwells > smoothest_noise * std::max(floor.differences, least)) {
     floor.dwells = 0.0;
   }

@@ -22,7 +22,8 @@ constexpr double top = 12.0;
 constexpr double bottom = 46.0;
 /// More points hide each other.
 constexpr std::size_t most_points = 1500;
-constexpr int ticks = 4;
+/// Of a scale: more crowd it.
+constexpr double most_ticks = 6.0;
 
 struct Range {
   double low = 0.0;
@@ -76,20 +77,31 @@ std::string law_line(const MissingPicture& picture, const Range& x, const Range&
   return fmt::format("<polyline class=\"law\" points=\"{}\"/>\n", points);
 }
 
+/// The round places of a scale: multiples of 1, 2 or 5 times a power of ten.
+std::vector<double> ticks_of(const Range& range) {
+  const double least = (range.high - range.low) / most_ticks;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  const double step = power * (least <= 2.0 * power ? 2.0 : least <= 5.0 * power ? 5.0 : 10.0);
+  std::vector<double> result;
+  for (double at = std::ceil(range.low / step); at * step <= range.high; at += 1.0) {
+    result.push_back(at * step);
+  }
+  return result;
+}
+
 std::string axes(const MissingPicture& picture, const Range& x, const Range& y) {
   std::string svg;
-  for (int k = 0; k <= ticks; ++k) {
-    const double share = static_cast<double>(k) / ticks;
-    const double at_x = x.low + share * (x.high - x.low);
-    const double at_y = y.low + share * (y.high - y.low);
+  for (const double at : ticks_of(x)) {
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\"/>"
         "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
-        across(x, at_x), top, height - bottom, height - bottom + 16.0, figure(at_x, 2));
+        across(x, at), top, height - bottom, height - bottom + 16.0, figure(at, 3));
+  }
+  for (const double at : ticks_of(y)) {
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
         "<text x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-        left, width - right, down(y, at_y), left - 6.0, down(y, at_y) + 4.0, figure(at_y, 2));
+        left, width - right, down(y, at), left - 6.0, down(y, at) + 4.0, figure(at, 3));
   }
   return svg + fmt::format("<text class=\"title\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
                            0.5 * (left + width - right), height - 8.0,
@@ -145,8 +157,7 @@ std::string families_section(const Diagnosis& diagnosis) {
   return fmt::format(
       "<section class=\"families\"><h2>Which kinds of effect are there</h2>\n"
       "<p>The probability says that an effect of this kind is there. The share is what it closes of the gap, on "
-      "stretches "
-      "that its fit did not see.</p>\n"
+      "stretches that its fit did not see.</p>\n"
       "<table><thead><tr><th>kind</th><th class=\"number\">probability</th><th class=\"number\">closes</th>"
       "<th>likeliest effect</th><th class=\"number\">of its "
       "kind</th><th>on</th></tr></thead><tbody>\n{}</tbody></table>\n"

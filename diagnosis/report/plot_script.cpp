@@ -5,7 +5,9 @@ namespace {
 
 constexpr std::string_view plots = R"js("use strict";
 // A page that cannot draw says so, rather than showing empty frames.
+// That a frame's sizes settle in the next frame only is no fault.
 window.addEventListener("error", event => {
+  if (String(event.message).startsWith("ResizeObserver loop")) return;
   const note = document.getElementById("fault");
   note.hidden = false;
   note.className = "box fault";

@@ -69,6 +69,7 @@ article.effect .at { font-weight: 400; color: var(--soft); }
 table { border-collapse: collapse; margin: .4rem 0; font-variant-numeric: tabular-nums; }
 article table { width: 100%; }
 article th, article td { padding-right: .5rem; }
+@media (max-width: 700px) { table, article table { display: block; overflow-x: auto; } }
 th, td { padding: .22rem .9rem .22rem 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 500; font-size: .87rem; color: var(--soft); }
 .number { text-align: right; white-space: nowrap; }

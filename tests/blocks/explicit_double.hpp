@@ -134,8 +134,8 @@ T max(const T& a, const T& b) {
   return T(hysteron::max(a.value(), b.value()));
 }
 
-template <class T>
-T select(const ExplicitBool& condition, const T& a, const T& b) {
+template <class T, class Tag>
+Explicit<T, Tag> select(const ExplicitBool& condition, const Explicit<T, Tag>& a, const Explicit<T, Tag>& b) {
   return condition.value() ? a : b;
 }
 inline ExplicitInt to_int(const ExplicitDouble& x) {

@@ -88,17 +88,19 @@ Asked asked(const Measured& measured, std::string text, double to_unit = 1.0) {
   return result;
 }
 
+/// The level of the dry friction of the best set, the mean of both directions where they differ.
 double level_of(const Evidence& evidence) {
-  for (const SetFinding& set : evidence.sets) {
-    for (const LawFinding& law : set.laws) {
-      for (const LawValue& value : law.values) {
-        if (law.effect == "coulomb_friction" && value.name == "LEVEL") {
-          return value.value;
-        }
+  double sum = 0.0;
+  double count = 0.0;
+  for (const LawFinding& law : evidence.sets.front().laws) {
+    for (const LawValue& value : law.values) {
+      if (law.effect.ends_with("friction") && (value.name == "LEVEL" || value.name == "UP" || value.name == "DOWN")) {
+        sum += value.value;
+        count += 1.0;
       }
     }
   }
-  return 0.0;
+  return sum / count;
 }
 
 TEST(Evidence, DryFrictionIsSureBesideWhatNoEffectExplains) {

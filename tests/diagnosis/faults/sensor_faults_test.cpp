@@ -128,7 +128,7 @@ TEST(SensorFaults, ASensorThatIsExactAtRestPassesWhereTheModelRestsToo) {
 
 /// Linear interpolation invents readings between the steps of an encoder, and leaves it standing where it stood.
 TEST(SensorFaults, ACoarseSensorThatWasResampledPassesThoughTheModelMovesOn) {
-  std::vector<double> moved{0.0};  // sticks at each turn of a force, where the model without friction swings on
+  std::vector<double> moved{motion().front() - 4.0};  // sticks at each turn of a force, where the model without friction swings on
   for (const double driven : motion()) {
     const double off = driven - moved.back();
     moved.push_back(std::abs(off) > 4.0 ? driven - std::copysign(4.0, off) : moved.back());

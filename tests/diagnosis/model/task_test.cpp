@@ -39,10 +39,10 @@ TEST(Task, AValueOnABoundOfItsFitIsRemarkedOn) {
 /// Each record of an axis with a force of its own that nobody has logged.
 constexpr std::string_view biased = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
   VAR_INPUT
-    FORCE : LREAL;  (* @unit N *)
-    BIAS  : LREAL := 0.0;  (* @param @unit N *)
+    FORCE : LREAL;
+    BIAS  : LREAL := 0.0;  (* @param *)
   END_VAR
-  VAR_OUTPUT V : LREAL;  (* @unit m/s *) END_VAR
+  VAR_OUTPUT V : LREAL; END_VAR
   VAR SPEED : HY_LAG := (T1 := 0.4, SETTLED := TRUE); END_VAR
   SPEED(XIN := FORCE + BIAS);
   V := SPEED.XOUT;

@@ -1,0 +1,69 @@
+// What is told of the evidence: effects in the units of their edge, and the sentence that an engineer would say.
+#include "diagnosis/findings/evidence_findings.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include "diagnosis/diagnosis.hpp"
+
+namespace hysteron::diagnosis {
+namespace {
+
+Evidence of_friction(const std::string& unit) {
+  Evidence evidence;
+  evidence.families = {{.family = "dry_friction",
+                        .probability = 0.98,
+                        .closed = 0.8,
+                        .alone = 0.8,
+                        .effect = "asymmetric_friction",
+                        .edge = "SPEED.XIN"},
+                       {.family = "play", .probability = 0.1, .closed = 0.3, .alone = 0.54, .edge = "V"},
+                       {.family = "offset", .probability = 0.1, .closed = 0.1, .alone = 0.2, .edge = "V"}};
+  evidence.sets = {{.laws = {{.effect = "asymmetric_friction",
+                              .family = "dry_friction",
+                              .edge = "SPEED.XIN",
+                              .values = {{.name = "UP", .value = 19.0, .error = 1.0, .unit = "'x"},
+                                         {.name = "DOWN", .value = 21.04, .error = 1.0, .unit = "'x"},
+                                         {.name = "PRESLIDE", .value = 0.001, .error = 1e-4, .unit = "'v*s"}},
+                              .closed = 0.8}},
+                    .probability = 0.98,
+                    .closed = 0.8}};
+  evidence.picture = {.edge = "SPEED.XIN", .unit = unit, .over = "V", .over_unit = "m/s"};
+  return evidence;
+}
+
+Diagnosis told(const std::string& unit) {
+  Diagnosis found;
+  found.evidence = of_friction(unit);
+  tell(found.evidence, found);
+  return found;
+}
+
+TEST(EvidenceFindings, ParametersAreInTheUnitsOfTheirEdgeAndDriver) {
+  const Diagnosis found = told("N");
+  ASSERT_EQ(found.effects.size(), 1U);
+  ASSERT_EQ(found.effects[0].parameters.size(), 3U);
+  EXPECT_EQ(found.effects[0].parameters[0].unit, "N");
+  EXPECT_EQ(found.effects[0].parameters[2].unit, "m");
+}
+
+TEST(EvidenceFindings, AUnitThatTheDiagramDoesNotSayIsLeftOut) {
+  const Diagnosis found = told("");
+  EXPECT_EQ(found.effects.at(0).parameters.at(0).unit, "");
+  EXPECT_THAT(sentence_of(found), testing::StartsWith("Dry friction at SPEED.XIN closes 80 %"));
+}
+
+TEST(EvidenceFindings, TheSentenceHasSizesShareNextBestAndRest) {
+  EXPECT_EQ(sentence_of(told("N")),
+            "Dry friction at SPEED.XIN, UP 19, DOWN 21 N, closes 80 % of the gap by itself, on stretches not fitted "
+            "(probability 0.98; next best play, 54 %). The rest, 20 %, no effect of the library explains.");
+}
+
+TEST(EvidenceFindings, ConfidenceIsTheProbabilityTimesTheCorrelationWithWhatIsMissing) {
+  EXPECT_NEAR(told("N").confidence, 0.98 * std::sqrt(0.8), 1e-12);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

@@ -193,7 +193,12 @@ class Run {
     if (!is_told(result_.evidence)) {
       return;
     }
-    explained_ = explained(task_, result_.top, result_.evidence.sets.front(), calibrated, unused_);
+    Explained tried = explained(task_, result_.top, result_.evidence.sets.front(), calibrated, unused_);
+    if (tried.refuted) {
+      result_.evidence = {};
+      return;
+    }
+    explained_ = std::move(tried.explanation);
     choose_instead(task_, explained_ ? *explained_ : calibrated, judgement);
     unrepeatable_.reset();
     harmonics_.reset();

@@ -131,4 +131,13 @@ bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed, co
          graph.wire(graph.nodes[input.index], 0) != driver;
 }
 
+bool is_integral(const Graph& graph, const Wire& signal) {
+  if (signal.from != Wire::From::Node || signal.port != 0) {
+    return false;
+  }
+  const Node& node = graph.nodes[signal.index];
+  return node.block != nullptr && !node.block->inputs.empty() && node.block->inputs.front().unit == "'x" &&
+         node.block->outputs.front().unit == "'x*s";
+}
+
 }  // namespace hysteron::diagnosis

@@ -27,4 +27,7 @@ namespace hysteron::diagnosis {
 /// position.
 [[nodiscard]] bool is_velocity(const Graph& graph, const Wire& driver, const Wire& changed, const Wire& input);
 
+/// Whether a signal is the integral of another one: a speed, a position, a level. A force is none, and no friction.
+[[nodiscard]] bool is_integral(const Graph& graph, const Wire& signal);
+
 }  // namespace hysteron::diagnosis

@@ -227,8 +227,8 @@ MissingPicture picture_of(const Explored& there, const LawSet& set, const std::s
       (i == *own ? of_law : missing) += (*there.laws)[i].responses.col(k) * set.score.shares[at];
     }
   }
-  result = {.edge = there.space->name() == "outputs" ? law.edge : there.space->name(),
-            .unit = there.space->name() == "outputs" ? std::string() : there.space->places().front().unit,
+  result = {.edge = there.space->name() == OutputSpace::title ? law.edge : there.space->name(),
+            .unit = there.space->name() == OutputSpace::title ? std::string() : there.space->places().front().unit,
             .effect = law.effect,
             .over = driven ? driver->name : place.edge.name,
             .over_unit = driven ? driver->unit : place.unit};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "diagnosis/effects/starts.hpp"
+#include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/refusal.hpp"
 #include "diagnosis/policy.hpp"
 
@@ -49,8 +50,8 @@ double value_of(const LawFinding& law, const EffectParameter& parameter, double 
 
 }  // namespace
 
-std::optional<Explanation> explained(const Task& task, const std::string& top, const SetFinding& set,
-                                     const Explanation& calibrated, const std::vector<std::string>& columns) {
+Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
+                    const std::vector<std::string>& columns) {
   Explanation result{.variant = calibrated.variant};
   std::vector<Index> travels;  // of frictions: how far they give
   VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
@@ -90,7 +91,7 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
     result.variant.program = compiled(result.variant, top);
   }
   if (result.variant.effects.size() == calibrated.variant.effects.size()) {
-    return std::nullopt;
+    return {};
   }
   // A friction that lets go within a step has no derivative that would lead a fit: softer ones are tried, too.
   Explanation best{};
@@ -116,12 +117,14 @@ std::optional<Explanation> explained(const Task& task, const std::string& top, c
       break;
     }
   }
-  if (!std::isfinite(best.fit.cost)) {
-    return std::nullopt;
+  // A fit over whole records that falls far short of what the stretches promise has lost its way, or they were wrong.
+  const double closed = std::isfinite(best.fit.cost)
+                            ? 1.0 - best.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm()
+                            : 0.0;
+  if (closed > policy::kept_promise.value * set.closed) {
+    return {.explanation = std::move(best)};
   }
-  // A fit over whole records that falls far short of what the stretches promise has lost its way.
-  const double closed = 1.0 - best.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm();
-  return closed > policy::kept_promise.value * set.closed ? std::optional(std::move(best)) : std::nullopt;
+  return {.refuted = set.space == OutputSpace::title};
 }
 
 }  // namespace hysteron::diagnosis

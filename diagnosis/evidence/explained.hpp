@@ -9,10 +9,16 @@
 
 namespace hysteron::diagnosis {
 
+struct Explained {
+  /// Nothing where the text has no place for the laws, or where the fit closes less than half of what the evidence
+  /// promises.
+  std::optional<Explanation> explanation{};
+  /// The set was found by what it does at the outputs, to first order, and the diagram with it does not do that.
+  bool refuted = false;
+};
+
 /// The laws of the set that the text of the diagram has a place for, each begun from where the evidence found it.
-/// Nothing where it has none, or where the fit closes less than half of what the evidence promises.
-[[nodiscard]] std::optional<Explanation> explained(const Task& task, const std::string& top, const SetFinding& set,
-                                                   const Explanation& calibrated,
-                                                   const std::vector<std::string>& columns);
+[[nodiscard]] Explained explained(const Task& task, const std::string& top, const SetFinding& set,
+                                  const Explanation& calibrated, const std::vector<std::string>& columns);
 
 }  // namespace hysteron::diagnosis

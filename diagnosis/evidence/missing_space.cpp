@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "diagnosis/effects/motions.hpp"
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/search/start_states.hpp"
@@ -219,7 +220,8 @@ bool MissingSpace::solve(const Explanation& fitted, const std::vector<std::strin
     const auto at = static_cast<std::size_t>(find_port(there.graph.inputs, input) - there.graph.inputs.data());
     Place place{.edge = edge.edge,
                 .unit = unit_of_sum(there, edge.instance),
-                .is_port = is_port(fitted.variant.program->graph, edge.edge)};
+                .is_port = is_port(fitted.variant.program->graph, edge.edge),
+                .is_integral = is_integral(there.graph, edge.before)};
     const TangentRun::Variable variable{.kind = TangentRun::Kind::Signal, .index = at};
     ways_.emplace_back();
     for (std::size_t e = 0; e < records; ++e) {

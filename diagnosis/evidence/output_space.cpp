@@ -9,6 +9,7 @@
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/parameters/apply.hpp"
+#include "diagnosis/effects/motions.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "tuning/machine_dual.hpp"
 
@@ -62,7 +63,8 @@ OutputSpace::OutputSpace(const Task& task, const std::string& top, const Explana
     places[i] = {.edge = edges[i],
                  .carried = wire_signals(task, *added[i]->program, {added[i]->before}, known).front(),
                  .unit = unit_of_sum(*added[i]->program, added[i]->instance),
-                 .is_port = is_port(fitted.variant.program->graph, edges[i])};
+                 .is_port = is_port(fitted.variant.program->graph, edges[i]),
+                 .is_integral = is_integral(added[i]->program->graph, added[i]->before)};
   });
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (added[i]) {

@@ -17,7 +17,8 @@ class OutputSpace : public Space {
   OutputSpace(const Task& task, const std::string& top, const Explanation& fitted,
               const std::vector<std::string>& unused, unsigned threads);
 
-  [[nodiscard]] std::string name() const override { return "outputs"; }
+  static constexpr std::string_view title = "outputs";
+  [[nodiscard]] std::string name() const override { return std::string(title); }
   [[nodiscard]] std::size_t outputs() const override { return task_.outputs.size(); }
   [[nodiscard]] const std::vector<Place>& places() const override { return places_; }
   [[nodiscard]] const std::vector<DriverSignal>& drivers() const override { return drivers_; }

@@ -47,7 +47,7 @@ bool may_act_on(const EffectKind& kind, const Space::Place& place) {
   }
   const Quantity quantity = quantity_of(place.unit);
   if (kind.by_velocity) {
-    return !quantity.position && !quantity.velocity && !quantity.thermal && !quantity.number;
+    return !place.is_integral && !quantity.position && !quantity.velocity && !quantity.thermal && !quantity.number;
   }
   if (kind.by_position) {
     return kind.auxiliaries.empty() ? quantity.position || !quantity.known

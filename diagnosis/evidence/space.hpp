@@ -20,6 +20,7 @@ class Space {
     RecordSignals carried{};
     std::string unit{};    ///< empty where the diagram does not say it
     bool is_port = false;  ///< an input or an output of the diagram
+    bool is_integral = false;
   };
 
   Space() = default;

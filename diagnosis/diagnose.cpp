@@ -194,7 +194,7 @@ class Run {
       return;
     }
     Explained tried = explained(task_, result_.top, result_.evidence.sets.front(), calibrated, unused_);
-    if (tried.refuted) {
+    if (tried.refuted && !result_.evidence.is_open_loop) {
       result_.evidence = {};
       return;
     }

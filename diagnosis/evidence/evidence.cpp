@@ -263,6 +263,7 @@ Evidence evidence_of(const Task& task, const std::string& top, const Explanation
   std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
 
   Evidence result;
+  result.is_open_loop = open.has_value();
   for (const Explored& one : spaces) {
     result.tried += one.laws->size();
   }

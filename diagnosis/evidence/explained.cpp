@@ -8,6 +8,7 @@
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/refusal.hpp"
 #include "diagnosis/policy.hpp"
+#include "diagnosis/search/stretches.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -43,6 +44,15 @@ const Candidate* fitting(const std::vector<Candidate>& list, const Graph& graph,
   return best;
 }
 
+/// Whether the candidate has the law's drivers, each of them.
+bool is_driven_alike(const Candidate& one, const Graph& graph, const LawFinding& law) {
+  return std::ranges::equal(
+      one.own().wires, law.drivers,
+      [](const std::string& a, const std::string& b) { return language::same_name(a, b); },
+      [](const auto& wire) { return wire.second; },
+      [&](const std::string& driver) { return wire_name(graph, driver); });
+}
+
 double value_of(const LawFinding& law, const EffectParameter& parameter, double otherwise) {
   const auto found = std::ranges::find(law.values, parameter.name, &LawValue::name);
   return found == law.values.end() ? otherwise : found->value;
@@ -53,6 +63,7 @@ double value_of(const LawFinding& law, const EffectParameter& parameter, double 
 Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
                     const std::vector<std::string>& columns) {
   Explanation result{.variant = calibrated.variant};
+  bool is_whole = true;        // all laws have a place and their own drivers
   std::vector<Index> travels;  // of frictions: how far they give
   VectorXd start = calibrated.fit.x.head(std::ssize(task.known));
   for (std::size_t j = 0; j < std::min(task.known.size(), set.known.size()); ++j) {
@@ -67,8 +78,10 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
         candidates_of(result.variant, top, {.effects = {law.effect}, .columns = columns, .again = true});
     const Candidate* const found = fitting(list, calibrated.variant.program->graph, law);
     if (found == nullptr) {
+      is_whole = false;
       continue;
     }
+    is_whole = is_whole && is_driven_alike(*found, calibrated.variant.program->graph, law);
     Variant variant = found->variant;
     Applied& own = variant.effects.back();
     for (std::size_t j = 0; j < own.parameters.size(); ++j) {
@@ -124,7 +137,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
   if (closed > policy::kept_promise.value * set.closed) {
     return {.explanation = std::move(best)};
   }
-  return {.refuted = set.space == OutputSpace::title};
+  return {.refuted = is_whole && (set.space == OutputSpace::title || !in_stretches(task, calibrated))};
 }
 
 }  // namespace hysteron::diagnosis

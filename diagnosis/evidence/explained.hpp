@@ -13,7 +13,8 @@ struct Explained {
   /// Nothing where the text has no place for the laws, or where the fit closes less than half of what the evidence
   /// promises.
   std::optional<Explanation> explanation{};
-  /// The set was found by what it does at the outputs, to first order, and the diagram with it does not do that.
+  /// The diagram with the set was run and does not do what the set promises, where a run is a fair judge: the promise
+  /// was for the outputs, to first order, or the diagram forgets what was before, so that nothing adds up.
   bool refuted = false;
 };
 

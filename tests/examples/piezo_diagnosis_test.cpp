@@ -1,5 +1,5 @@
-// Example 6 on the real record: two named effects take the held-out cycles below what 12 play operators and a cubic
-// leave. Where there is a folder of measured data, a missing record is a failure, not a skip.
+// Example 6 on the real record: the effects of one round take the held-out cycles below what 12 play operators and a
+// cubic leave. Where there is a folder of measured data, a missing record is a failure, not a skip.
 #include "examples/06_piezo_diagnosis/piezo_diagnosis.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::Eq;
 
 class PiezoDiagnosis : public test::OnMeasuredRecords<> {};
 
-TEST_F(PiezoDiagnosis, TwoNamedEffectsBeatPlayOperators) {
+TEST_F(PiezoDiagnosis, NamedEffectsBeatPlayOperators) {
   const auto identification = stack_record("identify_1hz.csv");
   ASSERT_TRUE(identification) << "the data folder lacks piezo-picma-dbo";
   const StackCycles cycles = cycles_of(*identification);
@@ -27,12 +27,8 @@ TEST_F(PiezoDiagnosis, TwoNamedEffectsBeatPlayOperators) {
 
   const Round first = next_round(paper, cycles.fitted, effects_of_a_stack(), scratch.path() / "first");
   ASSERT_TRUE(first.named()) << first.found.summary;
-  EXPECT_THAT(first.found.effects.front().id, AnyOf(Eq("lag"), Eq("delay")));
-  EXPECT_LT(gap_of(first, cycles).held_out, 0.0095);
-
-  const Round second = next_round(first, cycles.fitted, effects_of_a_stack(), scratch.path() / "second");
-  ASSERT_TRUE(second.named()) << second.found.summary;
-  EXPECT_LT(gap_of(second, cycles).held_out, 0.0076);
+  EXPECT_THAT(first.found.effects.front().id, AnyOf(Eq("even_nonlinearity"), Eq("asymmetry")));
+  EXPECT_LT(gap_of(first, cycles).held_out, 0.0040) << "12 play operators and a cubic leave 0.0076";
 }
 
 }  // namespace

@@ -33,7 +33,6 @@
 #include "diagnosis/noise/noise_floors.hpp"
 #include "diagnosis/noise/remainder.hpp"
 #include "diagnosis/outlook.hpp"
-#include "diagnosis/policy.hpp"
 #include "diagnosis/remedy/improved.hpp"
 #include "diagnosis/search/loop_noise.hpp"
 #include "diagnosis/search/search.hpp"
@@ -170,20 +169,12 @@ class Run {
         maps_of(task_, without_noise(found.calibrated, result_.top), without_noise(kept, result_.top), gap_output_);
   }
 
-  /// Whether what a set leaves is neither noise nor the little by which a formula errs: then no set is true, and its
-  /// likelihood says nothing of which effects are there.
-  [[nodiscard]] bool is_unexplained(const Explanation& chosen, const Explanation& calibrated) const {
-    const double left = chosen.fit.cost - floor_cost_;
-    return left > policy::above_noise.value * floor_cost_ &&
-           left > policy::unexplained.value * (calibrated.fit.cost - floor_cost_) &&
-           materiality_.is_left(unrepeatable_ ? unrepeatable_->residuals : chosen.fit.residuals);
-  }
-
   /// Where no set is true, which effects are there is asked of stretches that no fit has seen.
   void weigh_evidence(Searched& searched) {
     Judgement& judgement = searched.judgement;
     const Explanation& calibrated = searched.search.calibrated;
-    if (!related_ || !is_unexplained(*judgement.chosen, calibrated)) {
+    if (!related_ || !leaves_a_cause(*judgement.chosen, calibrated, floor_cost_) ||
+        !materiality_.is_left(unrepeatable_ ? unrepeatable_->residuals : judgement.chosen->fit.residuals)) {
       return;
     }
     result_.evidence = evidence_of(

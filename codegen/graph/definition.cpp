@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <ranges>
 
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/units.hpp"
@@ -149,16 +150,26 @@ class Reader {
       error(error::bad_annotation, annotation.span, "@family speaks of an effect, and the block names none",
             "Name the effect: @effect sag.");
     }
-    std::string names;
-    for (const FamilyText& one : family_texts) {
-      names += (names.empty() ? "" : ", ") + std::string(one.name);
-      if (language::same_name(one.name, annotation.value)) {
-        definition.family = one.name;
-        return;
-      }
+    if (const FamilyText* const family =
+            one_of(family_texts, annotation, "a family of effects", "; without @family the effect is one by itself")) {
+      definition.family = family->name;
     }
-    error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a family of effects", annotation.value),
-          fmt::format("Write one of {}; without @family the effect is one by itself.", names));
+  }
+
+  /// Of texts the one that an annotation names; null, and an error that lists them, where it names none.
+  template <class Texts>
+  auto one_of(Texts&& texts, const Annotation& annotation, std::string_view what, std::string_view otherwise)
+      -> decltype(&*texts.begin()) {
+    std::string names;
+    for (const auto& one : texts) {
+      if (language::same_name(one.name, annotation.value)) {
+        return &one;
+      }
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", one.name);
+    }
+    error(error::bad_annotation, annotation.span, fmt::format("'{}' is not {}", annotation.value, what),
+          fmt::format("Write one of {}{}.", names, otherwise));
+    return nullptr;
   }
 
   Declared declare(const Variable& variable) {
@@ -290,18 +301,10 @@ class Reader {
   }
 
   void take_role(const Annotation& annotation, Field& field) {
-    std::string names;
-    for (const RoleText& one : role_texts) {
-      if (one.stated) {
-        names += (names.empty() ? "" : ", ") + std::string(one.name);
-        if (language::same_name(one.name, annotation.value)) {
-          field.role = one.role;
-          return;
-        }
-      }
+    if (const RoleText* const role =
+            one_of(role_texts | std::views::filter(&RoleText::stated), annotation, "a role", "")) {
+      field.role = role->role;
     }
-    error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a role", annotation.value),
-          fmt::format("Write one of {}.", names));
   }
 
   /// A role says what a parameter is for; a signal has none.

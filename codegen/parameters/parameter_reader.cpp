@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "codegen/parameters/parameter_file.hpp"
+#include "codegen/parameters/parameter_names.hpp"
 #include "codegen/parameters/toml_comments.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -28,20 +29,6 @@ constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", 
 constexpr std::array<std::string_view, 1> diagnose_keys{"ignore"};
 /// Below [fit], in small letters: an instance of that name is written in capitals.
 constexpr std::string_view by_record = "record";
-
-/// What the header of a record may hold.
-bool is_column(std::string_view name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-    return c != '"' && c != '\\' && !(c >= 0 && c < ' ') && c != '\x7F';
-  });
-}
-
-bool is_path(std::string_view key) {
-  const bool letters = std::all_of(key.begin(), key.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
-  });
-  return letters && !key.empty() && key.front() != '.' && key.back() != '.' && key.find("..") == std::string_view::npos;
-}
 
 std::string_view kind_of(const toml::node& node) {
   switch (node.type()) {

@@ -136,8 +136,7 @@ bool is_integral(const Graph& graph, const Wire& signal) {
     return false;
   }
   const Node& node = graph.nodes[signal.index];
-  return node.block != nullptr && !node.block->inputs.empty() && node.block->inputs.front().unit == "'x" &&
-         node.block->outputs.front().unit == "'x*s";
+  return smoothing_of(node).order == 0 && integrals_of(node) == 1;
 }
 
 }  // namespace hysteron::diagnosis

@@ -242,6 +242,12 @@ MissingPicture picture_of(const Explored& there, const LawSet& set, const std::s
 
 }  // namespace
 
+bool leaves_a_cause(const Explanation& chosen, const Explanation& calibrated, double floor_cost) {
+  const double left = chosen.fit.cost - floor_cost;
+  return left > policy::above_noise.value * floor_cost &&
+         left > policy::unexplained.value * (calibrated.fit.cost - floor_cost);
+}
+
 Evidence evidence_of(const Task& task, const std::string& top, const Explanation& calibrated,
                      const EvidenceOptions& options) {
   const std::optional<OpenLoop> open = opened(task, top, calibrated.variant);

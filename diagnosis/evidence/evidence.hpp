@@ -22,6 +22,10 @@ struct EvidenceOptions {
   std::uint64_t seed = 1;
 };
 
+/// Whether what a set leaves is neither noise, whose cost is `floor_cost`, nor the little by which a formula errs: then
+/// no set is true, and its likelihood says nothing of which effects are there.
+[[nodiscard]] bool leaves_a_cause(const Explanation& chosen, const Explanation& calibrated, double floor_cost);
+
 /// Of a diagram as calibrated, with residuals and sensitivities.
 [[nodiscard]] Evidence evidence_of(const Task& task, const std::string& top, const Explanation& calibrated,
                                    const EvidenceOptions& options);

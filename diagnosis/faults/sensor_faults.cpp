@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/median.hpp"
+#include "diagnosis/noise/spectrum.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -96,7 +96,7 @@ class FaultFinder {
       before = second;
     }
     constexpr double opposed = -0.3;  // of white noise −2/3, of what moves smoothly nearly 1
-    noise_ = deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
+    noise_ = deviation_by_second_differences(std::move(sizes));
     return together < opposed * alone && noise_ >= noisy_steps * step;
   }
 

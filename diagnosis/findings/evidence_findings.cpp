@@ -68,8 +68,7 @@ std::string sizes_of(const EffectFinding& effect, const MissingPicture& picture)
       sizes.push_back(fmt::format("{} {:.3g}", parameter.name, parameter.value));
     }
   }
-  return sizes.empty() || sizes.size() > 2 ? std::string()
-                                           : fmt::format(", {} {}", fmt::join(sizes, ", "), picture.unit);
+  return sizes.empty() || sizes.size() > 2 ? std::string() : fmt::format("{} {}", fmt::join(sizes, ", "), picture.unit);
 }
 
 std::string percent(double share) {
@@ -148,7 +147,7 @@ std::string sentence_of(const Diagnosis& found) {
   const std::string sizes = found.effects.empty() ? std::string() : sizes_of(found.effects.front(), evidence.picture);
   std::string text = fmt::format("{} at {}{} closes {} of the gap by itself, on stretches not fitted",
                                  capitalised(words_of_family(family.family)), family.edge,
-                                 sizes.empty() ? sizes : sizes + ",", percent(family.alone));
+                                 sizes.empty() ? sizes : fmt::format(", {},", sizes), percent(family.alone));
   std::vector<std::string> beside;
   const FamilyFinding* next = nullptr;
   for (const FamilyFinding& one : evidence.families) {

@@ -6,8 +6,8 @@
 //   several orders, the smallest. It sees what is fast only: too little where noise is coloured, too much where the
 //   signal itself is fast.
 // - dwells: while all that was logged stands still but for the flicker of its own sensors, what is left of y after a
-//   slow course is taken off; or of what a model leaves of y, where the machine still moves as the model does. What goes on
-//   smoothly there is no noise: a machine that swings free while its commands rest.
+//   slow course is taken off; or of what a model leaves of y, where the machine still moves as the model does. What
+//   goes on smoothly there is no noise: a machine that swings free while its commands rest.
 // - repeats: where the inputs repeat themselves, y of one cycle less that of the next one, over √2, trends taken off.
 // - steps: where a sensor rounds and noise follows, what lies off the steps. The others count leaps between two steps,
 //   too, so this one goes before differences and dwells.

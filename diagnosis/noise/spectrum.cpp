@@ -171,13 +171,12 @@ class Lattice {
     return static_cast<std::size_t>(std::unique(levels.begin(), levels.end()) - levels.begin());
   }
 
-  /// Of white noise its deviation, by the second differences; of slow noise less.
   [[nodiscard]] double fast_noise() const {
     std::vector<double> sizes;
     for (std::size_t k = 1; k + 1 < values_.size(); ++k) {
       sizes.push_back(std::abs(values_[k + 1] - 2.0 * values_[k] + values_[k - 1]));
     }
-    return deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
+    return deviation_by_second_differences(std::move(sizes));
   }
 
   static constexpr std::size_t bins = 1U << 15U;
@@ -294,6 +293,10 @@ double alignment(const std::vector<double>& values, double step) {
 
 double deviation_off_steps(double step, double alignment) {
   return step * std::sqrt(-2.0 * std::log(std::clamp(alignment, 1e-6, 1.0))) * 0.5 * std::numbers::inv_pi;
+}
+
+double deviation_by_second_differences(std::vector<double> sizes) {
+  return deviation_of_median * median(std::move(sizes)) / std::sqrt(6.0);
 }
 
 double step_from_zero(const std::vector<double>& values, double step) {

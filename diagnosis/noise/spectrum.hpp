@@ -55,6 +55,9 @@ class Periodogram {
 /// exp(2πi y/q) is exp(−2π²σ²/q²) long.
 [[nodiscard]] double deviation_off_steps(double step, double alignment);
 
+/// The deviation of white noise by the sizes of second differences, σ² = E(∆²y)²/6; of slow noise less.
+[[nodiscard]] double deviation_by_second_differences(std::vector<double> sizes);
+
 /// The periods over a signal at which the residual oscillates most, in the unit of the signal, strongest first: least
 /// squares of sine and cosine on a fine grid (Lomb 1976). `signal` by record, in the order of the residual's rows.
 [[nodiscard]] std::vector<double> strongest_periods(const Eigen::VectorXd& residuals,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"

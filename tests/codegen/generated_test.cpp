@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/backends/c_library_names.hpp"
-#include "codegen/backends/cpp.hpp"
-#include "codegen/backends/cpp_host.hpp"
-#include "codegen/backends/cpp_words.hpp"
-#include "codegen/backends/identifiers.hpp"
+#include "codegen/backends/c_family/c_library_names.hpp"
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/c_family/words.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/cpp/cpp_host.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "tests/codegen/random_program.hpp"

@@ -1,4 +1,4 @@
-#include "codegen/backends/svg_plot.hpp"
+#include "codegen/backends/reference/svg_plot.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "codegen/backends/block_response.hpp"
+#include "codegen/backends/reference/block_response.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "codegen/backends/block_stimuli.hpp"
+#include "codegen/backends/reference/block_stimuli.hpp"
 #include "codegen/compile.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/interpreter/machine.hpp"

@@ -1,7 +1,7 @@
 // The generated step behind plain C functions, so that a host can link it, or open it as a library, without its types.
 #pragma once
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 
 namespace hysteron {
 

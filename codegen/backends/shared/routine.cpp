@@ -1,4 +1,4 @@
-#include "codegen/backends/routine.hpp"
+#include "codegen/backends/shared/routine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -455,6 +455,12 @@ class RoutineBuilder {
 
 Routine make_routine(const Program& program) {
   return RoutineBuilder(program).run();
+}
+
+bool has_infinite_parameter(const Graph& graph) {
+  return std::ranges::any_of(graph.parameters, [](const Parameter& one) {
+    return std::ranges::any_of(one.value, [](double value) { return !std::isfinite(value); });
+  });
 }
 
 }  // namespace hysteron

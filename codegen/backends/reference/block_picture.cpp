@@ -1,4 +1,4 @@
-#include "codegen/backends/block_picture.hpp"
+#include "codegen/backends/reference/block_picture.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/backends/block_response.hpp"
-#include "codegen/backends/svg_plot.hpp"
+#include "codegen/backends/reference/block_response.hpp"
+#include "codegen/backends/reference/svg_plot.hpp"
 
 namespace hysteron {
 namespace {

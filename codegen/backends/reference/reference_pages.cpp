@@ -1,10 +1,10 @@
-#include "codegen/backends/reference_pages.hpp"
+#include "codegen/backends/reference/reference_pages.hpp"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "codegen/backends/block_page.hpp"
+#include "codegen/backends/reference/block_page.hpp"
 
 namespace hysteron {
 namespace {

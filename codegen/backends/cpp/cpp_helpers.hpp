@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "codegen/backends/routine.hpp"
+#include "codegen/backends/shared/routine.hpp"
 
 namespace hysteron {
 

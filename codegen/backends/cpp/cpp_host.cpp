@@ -1,12 +1,11 @@
-#include "codegen/backends/cpp_host.hpp"
+#include "codegen/backends/cpp/cpp_host.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
-#include "codegen/backends/cpp_words.hpp"
-#include "codegen/backends/identifiers.hpp"
+#include "codegen/backends/c_family/names.hpp"
 #include "codegen/graph/defaults.hpp"
 #include "support/numbers.hpp"
 
@@ -209,20 +208,6 @@ add_compile_options(-Wall -Wextra {flags})
 add_executable({name}_run main.cpp)
 )";
 
-}  // namespace
-
-std::vector<std::string> cpp_port_names(const std::vector<Port>& ports) {
-  Identifiers identifiers(cpp_words);
-  std::vector<std::string> names;
-  names.reserve(ports.size());
-  for (const Port& port : ports) {
-    names.emplace_back(identifiers.make({port.name}));
-  }
-  return names;
-}
-
-namespace {
-
 /// The number of a cell as the input takes it.
 std::string converted(Type type, const std::string& target, const std::string& column, const std::string& number) {
   switch (type) {
@@ -246,7 +231,7 @@ GeneratedFile cpp_host_main(const Program& program) {
   std::string places;
   std::string inputs;
   bool has_whole = false;
-  const auto input_names = cpp_port_names(graph.inputs);
+  const auto input_names = port_members(graph.inputs);
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
     const std::string& name = input_names[i];
     std::string column = graph.inputs[i].name;
@@ -262,7 +247,7 @@ GeneratedFile cpp_host_main(const Program& program) {
   }
   std::string outputs;
   std::string header;
-  const auto output_names = cpp_port_names(graph.outputs);
+  const auto output_names = port_members(graph.outputs);
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     header += "," + graph.outputs[i].name;
     outputs += fmt::format("    text += ',';\n    append(text, out.{}{});\n", output_names[i],

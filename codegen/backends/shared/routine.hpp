@@ -58,8 +58,15 @@ struct Routine {
   bool infinite_literals = false;  ///< infinite, or not a number
   std::size_t operations = 0;      ///< arithmetic operations a step
   std::size_t function_calls = 0;  ///< of them exp, log, power, …
+
+  [[nodiscard]] bool uses_operation(Op op) const {
+    return (used_by_reset | used_by_step).test(static_cast<std::size_t>(op));
+  }
 };
 
 Routine make_routine(const Program& program);
+
+/// Whether a parameter begins with a value that is infinite or not a number.
+bool has_infinite_parameter(const Graph& graph);
 
 }  // namespace hysteron

@@ -1,4 +1,4 @@
-#include "codegen/backends/block_page.hpp"
+#include "codegen/backends/reference/block_page.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "codegen/backends/block_response.hpp"
+#include "codegen/backends/reference/block_response.hpp"
 #include "codegen/graph/names.hpp"
 #include "support/numbers.hpp"
 

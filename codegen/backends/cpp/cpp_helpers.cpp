@@ -1,4 +1,4 @@
-#include "codegen/backends/cpp_helpers.hpp"
+#include "codegen/backends/cpp/cpp_helpers.hpp"
 
 #include <array>
 #include <initializer_list>

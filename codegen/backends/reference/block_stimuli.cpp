@@ -1,4 +1,4 @@
-#include "codegen/backends/block_stimuli.hpp"
+#include "codegen/backends/reference/block_stimuli.hpp"
 
 #include <algorithm>
 #include <array>

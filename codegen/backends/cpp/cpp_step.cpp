@@ -1,9 +1,9 @@
-#include "codegen/backends/cpp_step.hpp"
+#include "codegen/backends/cpp/cpp_step.hpp"
 
 #include <fmt/format.h>
 
-#include "codegen/backends/cpp_host.hpp"
-#include "codegen/backends/identifiers.hpp"
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/cpp/cpp_host.hpp"
 
 namespace hysteron {
 namespace {
@@ -69,13 +69,13 @@ GeneratedFile generate_cpp_step(const Program& program) {
   std::string outputs;
   std::string setters;
   std::string getters;
-  const auto input_names = cpp_port_names(graph.inputs);
+  const auto input_names = port_members(graph.inputs);
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
     const auto target = "in." + input_names[i];
     inputs +=
         fmt::format("  {} = {};\n", target, converted(graph.inputs[i].type, target, fmt::format("inputs[{}]", i)));
   }
-  const auto output_names = cpp_port_names(graph.outputs);
+  const auto output_names = port_members(graph.outputs);
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     outputs += fmt::format("  outputs[{}] = static_cast<double>(out.{});\n", i, output_names[i]);
   }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/compile.hpp"
 
 namespace hysteron {
@@ -12,11 +13,6 @@ namespace hysteron {
 /// What generated code is to be compiled with, so that it has the interpreter's bits: no fused multiply-add, and no
 /// exp, pow or atan of constants at compile time, where the compiler rounds better than the library.
 inline constexpr std::string_view cpp_numeric_flags = "-ffp-contract=off -frounding-math";
-
-struct GeneratedFile {
-  std::string name;
-  std::string text;
-};
 
 struct CppOptions {
   bool float32 = false;  ///< real numbers of the target are float

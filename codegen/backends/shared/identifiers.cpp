@@ -47,7 +47,7 @@ std::string_view Identifiers::make(std::initializer_list<std::string_view> parts
   text_.clear();
   append_identifier(text_, parts, letter_case_);
   const auto [base, is_new] = taken_.add(text_);
-  if (is_new) {
+  if (is_new && (is_word_ == nullptr || !is_word_(text_))) {
     return taken_[base];
   }
   if (next_number_.size() <= base) {

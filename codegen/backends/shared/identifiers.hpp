@@ -21,19 +21,23 @@ std::string identifier_text(std::initializer_list<std::string_view> parts, Lette
 class Identifiers {
  public:
   /// `reserved` are the words of the target that no identifier may be.
-  explicit Identifiers(std::span<const std::string_view> reserved, LetterCase letter_case = LetterCase::Lower)
-      : letter_case_(letter_case) {
+  explicit Identifiers(std::span<const std::string_view> reserved) {
     for (const std::string_view word : reserved) {
       taken_.add(word);
     }
   }
+
+  /// For a target whose words are told by a function.
+  Identifiers(bool (*is_word)(std::string_view), LetterCase letter_case)
+      : is_word_(is_word), letter_case_(letter_case) {}
 
   /// An identifier close to the parts of a name, numbered where it is taken. It stays where it is as long as this
   /// object lives.
   std::string_view make(std::initializer_list<std::string_view> parts);
 
  private:
-  LetterCase letter_case_;
+  bool (*is_word_)(std::string_view) = nullptr;  ///< null: the words are in taken_
+  LetterCase letter_case_ = LetterCase::Lower;
   NameTable taken_;
   std::vector<std::uint32_t> next_number_;  ///< by number in taken_: below it all are taken
   std::string text_;                        ///< of the identifier that is being made

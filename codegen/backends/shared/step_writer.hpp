@@ -29,6 +29,13 @@ class StepWriter {
       write(statement, text);
     }
   }
+  /// The reset: values take their names from the block whose state they set.
+  void write_reset(std::string& text) {
+    for (const Statement& statement : routine.reset) {
+      section_ = routine.cells[statement.target].node;
+      write(statement, text);
+    }
+  }
 
  protected:
   // What a target spells. Each of the last five writes what follows the indentation of a line.

@@ -102,6 +102,25 @@ void PrinterOfC::print_special(const Value& value, int outer, std::string& out) 
   out += outer > Strength::Loosest ? ")" : "";
 }
 
+bool PrinterOfC::print_equal_sides(const Value& value, const std::string& side, std::string& out) const {
+  switch (value.op) {
+    case Op::Equal:
+    case Op::LessEqual:
+      append(out, "!isnan(", side, ")");
+      return true;
+    case Op::NotEqual:
+      append(out, "isnan(", side, ")");
+      return true;
+    case Op::IntEqual:
+    case Op::IntLessEqual:
+      out += "true";
+      return true;
+    default:  // less than itself, or other than itself
+      out += "false";
+      return true;
+  }
+}
+
 void WriterOfC::heading(const Node& node, std::string& text) {
   append(text, "\n", indentation, "// ", node.path, " : ", node.block->about.name, "\n");
 }

@@ -18,6 +18,7 @@ struct DialectOfC {
   std::string_view word_begin{}, word_end{};  ///< round the digits of a word
   std::string_view element_begin{};           ///< the call that sets an element of an array
   bool passes_length = false;                 ///< whether the calls for elements take the length of the array
+  bool knows_equal_sides = false;             ///< x == x is written as !isnan(x)
 };
 
 std::string_view type_of(const DialectOfC& dialect, Type type);
@@ -31,7 +32,9 @@ class PrinterOfC final : public ExpressionPrinter {
         routine_(routine),
         layout_(layout),
         dialect_(dialect),
-        float32_(float32) {}
+        float32_(float32) {
+    looks_for_equal_sides = dialect.knows_equal_sides;
+  }
 
   void print_cell(std::uint32_t cell, std::string& out) const {
     print_member(dialect_.state, layout_.cells[cell], out);
@@ -44,6 +47,7 @@ class PrinterOfC final : public ExpressionPrinter {
  private:
   void print_leaf(const Value& value, int outer, std::string& out) const override;
   void print_special(const Value& value, int outer, std::string& out) const override;
+  bool print_equal_sides(const Value& value, const std::string& side, std::string& out) const override;
   static void print_member(std::string_view object, const Member& member, std::string& out);
 
   const Graph& graph_;

@@ -3,6 +3,16 @@
 namespace hysteron {
 
 void ExpressionPrinter::print_infix(const Value& value, const Spelling& spelled, int outer, std::string& out) const {
+  const bool compares = spelled.strength == Strength::Equality || spelled.strength == Strength::Relation;
+  if (looks_for_equal_sides && compares) {
+    std::string left;
+    std::string right;
+    print(value.args[0], Strength::Primary, left);
+    print(value.args[1], Strength::Primary, right);
+    if (left == right && print_equal_sides(value, left, out)) {
+      return;
+    }
+  }
   // The left side may bind as strongly (a - b - c is (a - b) - c); the right side must bind more strongly, or the
   // order of rounding would change. `and` inside `or` is bracketed for the reader's sake.
   const int strength = spelled.strength;

@@ -57,6 +57,7 @@ class SpellingTable {
       table_[static_cast<std::size_t>(row.op)] = row.spelling;
     }
   }
+  constexpr void set(Op op, const Spelling& spelling) { table_[static_cast<std::size_t>(op)] = spelling; }
   constexpr const Spelling& operator[](Op op) const { return table_[static_cast<std::size_t>(op)]; }
 
  private:
@@ -105,6 +106,12 @@ class ExpressionPrinter {
   [[nodiscard]] virtual bool sign_needs_brackets(int outer) const {
     return outer > Strength::Prefix || outer == Strength::Additive + 1;
   }
+
+  /// A comparison of two sides that read alike, which compilers warn of: false where it is to be written as it is.
+  virtual bool print_equal_sides(const Value& /*value*/, const std::string& /*side*/, std::string& /*out*/) const {
+    return false;
+  }
+  bool looks_for_equal_sides = false;
 
   void print_arguments(const Value& value, std::string& out) const;
 

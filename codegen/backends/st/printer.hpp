@@ -7,6 +7,7 @@
 
 #include "codegen/backends/shared/layout.hpp"
 #include "codegen/backends/shared/step_writer.hpp"
+#include "codegen/backends/shared/words.hpp"
 #include "codegen/backends/st/dialect.hpp"
 #include "codegen/backends/st/guards.hpp"
 
@@ -106,7 +107,7 @@ class StWriter final : public StepWriter {
   void set_cell(std::uint32_t cell, ValueId value, std::string& text) override;
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
   void fill_cell(std::uint32_t cell, ValueId value, std::string& text) override;
-  [[nodiscard]] std::string_view word_for(const Value& value) const override;
+  [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
 
  private:
   void assign(std::string_view target, ValueId value, std::string& text);

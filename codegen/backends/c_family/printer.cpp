@@ -102,6 +102,8 @@ void PrinterOfC::print_special(const Value& value, int outer, std::string& out) 
   out += outer > Strength::Loosest ? ")" : "";
 }
 
+/// The result is known, but for what is not a number; yet the side is mentioned, or a value would have a name for
+/// nothing.
 bool PrinterOfC::print_equal_sides(const Value& value, const std::string& side, std::string& out) const {
   switch (value.op) {
     case Op::Equal:
@@ -111,12 +113,18 @@ bool PrinterOfC::print_equal_sides(const Value& value, const std::string& side, 
     case Op::NotEqual:
       append(out, "isnan(", side, ")");
       return true;
+    case Op::Less:
+      append(out, "(isnan(", side, ") && !isnan(", side, "))");
+      return true;
     case Op::IntEqual:
     case Op::IntLessEqual:
-      out += "true";
+      append(out, "(0 * ", side, " == 0)");
       return true;
-    default:  // less than itself, or other than itself
-      out += "false";
+    case Op::Xor:
+      append(out, "(", side, " && !", side, ")");
+      return true;
+    default:
+      append(out, "(0 * ", side, " != 0)");
       return true;
   }
 }

@@ -30,6 +30,7 @@ static void run_{name}(const char *folder) {{
   {name}_state other;
   {name}_out out;
   double row[6];
+  int step = 0;
   char file[500];
   FILE *source;
   FILE *target;
@@ -42,6 +43,10 @@ static void run_{name}(const char *folder) {{
   target = fopen(file, "wb");
   while (fread(row, sizeof(row), 1, source) == 1) {{
     double results[6];
+    if (step == {middle}) {{
+      {name}_reset(&state, &params);
+    }}
+    ++step;
     in.x1 = ({real})row[0];
     in.x2 = ({real})row[1];
     in.x3 = ({real})row[2];
@@ -90,7 +95,7 @@ void hold_c_against_interpreted(std::string_view compiler) {
     }
     main_text += fmt::format("#include \"p{}.h\"\n", i);
     runs_text += fmt::format(fmt::runtime(c_run), fmt::arg("name", fmt::format("p{}", i)), fmt::arg("number", i),
-                             fmt::arg("real", sizeof(Real) == 4 ? "float" : "double"));
+                             fmt::arg("middle", c_steps / 2), fmt::arg("real", sizeof(Real) == 4 ? "float" : "double"));
     calls += fmt::format("  run_p{}(argv[argc - 1]);\n", i);
   }
   folder.write("main.c", main_text + runs_text + "int main(int argc, char **argv) {\n" + calls + "  return 0;\n}\n");

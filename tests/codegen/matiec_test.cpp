@@ -17,7 +17,7 @@
 namespace hysteron::testing {
 namespace {
 
-constexpr std::size_t matiec_steps = 400;
+constexpr std::size_t matiec_steps = 400;  // the host resets in the middle
 
 constexpr std::string_view matiec_host_head = R"(#include <stdio.h>
 #include "iec_std_lib.h"
@@ -34,7 +34,9 @@ BOOL __DEBUG;
   FILE* in = fopen(name, "rb"); \
   snprintf(name, sizeof(name), "%s/out%d", folder, NUMBER); \
   FILE* out = fopen(name, "wb"); \
-  for (double row[6]; fread(row, sizeof(row), 1, in) == 1;) { \
+  int step = 0; \
+  for (double row[6]; fread(row, sizeof(row), 1, in) == 1; ++step) { \
+    block.RESET.value = step == 200; \
     block.X1.value = row[0]; block.X2.value = row[1]; block.X3.value = row[2]; \
     block.B1.value = row[3] != 0; block.B2.value = row[4] != 0; block.N1.value = (DINT)row[5]; \
     BLOCK##_body__(&block); \

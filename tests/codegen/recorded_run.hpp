@@ -50,6 +50,7 @@ inline std::vector<double> random_rows(std::size_t steps, std::uint64_t seed) {
   return rows;
 }
 
+/// With a reset before the step in the middle.
 template <class Real>
 RecordedRun record(const Program& program, std::size_t steps, std::uint64_t seed) {
   RecordedRun run{.inputs = random_rows(steps, seed)};
@@ -57,6 +58,9 @@ RecordedRun record(const Program& program, std::size_t steps, std::uint64_t seed
   for (std::size_t k = 0; k < steps; ++k) {
     for (std::size_t i = 0; i < RecordedRun::columns; ++i) {
       machine.set_input(i, static_cast<Real>(run.inputs[k * RecordedRun::columns + i]));
+    }
+    if (k == steps / 2) {
+      machine.reset();
     }
     std::feclearexcept(FE_ALL_EXCEPT);
     machine.step();

@@ -47,7 +47,9 @@ void run(const char* folder, int number) {{
   std::FILE* in = std::fopen(name, "rb");
   std::snprintf(name, sizeof(name), "%s/out%d", folder, number);
   std::FILE* out = std::fopen(name, "wb");
-  for (double row[6]; std::fread(row, sizeof(row), 1, in) == 1;) {{
+  int step = 0;
+  for (double row[6]; std::fread(row, sizeof(row), 1, in) == 1; ++step) {{
+    block.RESET = step == {};
     block.X1 = static_cast<Real>(row[0]);
     block.X2 = static_cast<Real>(row[1]);
     block.X3 = static_cast<Real>(row[2]);
@@ -65,7 +67,7 @@ int main(int, char** argv) {{
   feenableexcept(FE_DIVBYZERO);  // as on a PLC that a division by 0 stops
 {}}}
 )",
-                      sizeof(Real) == 4 ? "float" : "double", calls);
+                      sizeof(Real) == 4 ? "float" : "double", st_steps / 2, calls);
   std::ofstream(at("main.cpp")) << text;
   // -fwrapv: DINT wraps at its ends, as in a PLC.
   const std::string compile = fmt::format("c++ -std=c++20 -O1 -w -fwrapv {} {} -o {} 2> {}", cpp_numeric_flags,

@@ -25,7 +25,7 @@ constexpr std::array library_functions{
     LibraryFunction{Op::Acos, "acos", "acosf"}, LibraryFunction{Op::Atan, "atan", "atanf"},
 };
 
-constexpr SpellingTable table(bool float32) {
+constexpr SpellingTable c_operations(bool float32) {
   SpellingTable result({
       {Op::Add, infix("+", Strength::Additive)},
       {Op::Subtract, infix("-", Strength::Additive)},
@@ -64,8 +64,8 @@ constexpr SpellingTable table(bool float32) {
   return result;
 }
 
-constexpr SpellingTable operations_of_double = table(false);
-constexpr SpellingTable operations_of_float = table(true);
+constexpr SpellingTable operations_of_double = c_operations(false);
+constexpr SpellingTable operations_of_float = c_operations(true);
 
 constexpr DialectOfC dialect_with(const SpellingTable& operations, std::string_view real) {
   return {.operations = operations,
@@ -83,17 +83,17 @@ constexpr DialectOfC dialect_with(const SpellingTable& operations, std::string_v
           .word_end = "U",
           .element_begin = "set_element(",
           .passes_length = true,
-          .knows_equal_sides = true};
+          .careful = true};
 }
 
 /// Code with {real}, {zero} and the like filled in.
-struct Helper {
+struct CHelper {
   std::string_view name;
   std::string_view text;
 };
 
-constexpr std::array helpers{
-    Helper{"real_power", R"(// base^exponent; the common exponents have a path of their own.
+constexpr std::array c_helpers{
+    CHelper{"real_power", R"(// base^exponent; the common exponents have a path of their own.
 static {real} real_power({real} base, {real} exponent) {{
   {real} result;
   if (exponent == 1.0{f}) {{
@@ -110,23 +110,23 @@ static {real} real_power({real} base, {real} exponent) {{
   return result;
 }}
 )"},
-    Helper{"real_min", R"(static {real} real_min({real} a, {real} b) {{
+    CHelper{"real_min", R"(static {real} real_min({real} a, {real} b) {{
   return (b < a) ? b : a;
 }}
 )"},
-    Helper{"real_max", R"(static {real} real_max({real} a, {real} b) {{
+    CHelper{"real_max", R"(static {real} real_max({real} a, {real} b) {{
   return (b > a) ? b : a;
 }}
 )"},
-    Helper{"int_min", R"(static int32_t int_min(int32_t a, int32_t b) {{
+    CHelper{"int_min", R"(static int32_t int_min(int32_t a, int32_t b) {{
   return (b < a) ? b : a;
 }}
 )"},
-    Helper{"int_max", R"(static int32_t int_max(int32_t a, int32_t b) {{
+    CHelper{"int_max", R"(static int32_t int_max(int32_t a, int32_t b) {{
   return (b > a) ? b : a;
 }}
 )"},
-    Helper{"to_int", R"(// Towards zero; saturates at the ends, 0 for not-a-number.
+    CHelper{"to_int", R"(// Towards zero; saturates at the ends, 0 for not-a-number.
 static int32_t to_int({real} x) {{
   int32_t result;
   if (x >= 2147483648.0{f}) {{
@@ -134,67 +134,74 @@ static int32_t to_int({real} x) {{
   }} else if (x > -2147483648.0{f}) {{
     result = (int32_t)x;
   }} else if (x <= -2147483648.0{f}) {{
-    result = INT32_MIN;
+    result = -2147483647 - 1;
   }} else {{
     result = 0;
   }}
   return result;
 }}
 )"},
-    Helper{"place", R"(// An index outside of an array is taken to its nearest end.
+    CHelper{"place", R"(// An index outside of an array is taken to its nearest end.
 static int32_t place(int32_t length, int32_t index) {{
   const int32_t last = length - 1;
   return (index < 0) ? 0 : ((index > last) ? last : index);
 }}
 )"},
-    Helper{"element", R"(static {real} element(const {real} *array, int32_t length, int32_t index) {{
+    CHelper{"element", R"(static {real} element(const {real} *array, int32_t length, int32_t index) {{
   return array[place(length, index)];
 }}
 )"},
-    Helper{"set_element", R"(static void set_element({real} *array, int32_t length, int32_t index, {real} value) {{
+    CHelper{"set_element", R"(static void set_element({real} *array, int32_t length, int32_t index, {real} value) {{
   array[place(length, index)] = value;
 }}
 )"},
-    Helper{"fill", R"(static void fill({real} *array, int32_t length, {real} value) {{
+    CHelper{"fill", R"(static void fill({real} *array, int32_t length, {real} value) {{
   for (int32_t i = 0; i < length; ++i) {{
     array[i] = value;
   }}
 }}
 )"},
-    Helper{"wrap", R"(// An int32_t wraps at its ends; a division by zero gives 0.
+    CHelper{"wrap", R"(// An int32_t wraps at its ends; a division by zero gives 0.
 static int32_t wrap(int64_t x) {{
   const uint32_t bits = (uint32_t)((uint64_t)x & 0xFFFFFFFFU);
-  return (bits <= 0x7FFFFFFFU) ? (int32_t)bits : ((int32_t)(bits - 0x80000000U) + INT32_MIN);
+  int32_t result = -2147483647 - 1;
+  if (bits <= 0x7FFFFFFFU) {{
+    result = (int32_t)bits;
+  }} else {{
+    const uint32_t above = bits - 0x80000000U;
+    result += (int32_t)above;
+  }}
+  return result;
 }}
 )"},
-    Helper{"int_add", R"(static int32_t int_add(int32_t a, int32_t b) {{
+    CHelper{"int_add", R"(static int32_t int_add(int32_t a, int32_t b) {{
   return wrap((int64_t)a + (int64_t)b);
 }}
 )"},
-    Helper{"int_subtract", R"(static int32_t int_subtract(int32_t a, int32_t b) {{
+    CHelper{"int_subtract", R"(static int32_t int_subtract(int32_t a, int32_t b) {{
   return wrap((int64_t)a - (int64_t)b);
 }}
 )"},
-    Helper{"int_multiply", R"(static int32_t int_multiply(int32_t a, int32_t b) {{
+    CHelper{"int_multiply", R"(static int32_t int_multiply(int32_t a, int32_t b) {{
   return wrap((int64_t)a * (int64_t)b);
 }}
 )"},
-    Helper{"int_divide", R"(static int32_t int_divide(int32_t a, int32_t b) {{
+    CHelper{"int_divide", R"(static int32_t int_divide(int32_t a, int32_t b) {{
   return (b == 0) ? 0 : wrap((int64_t)a / (int64_t)b);
 }}
 )"},
-    Helper{"int_modulo", R"(static int32_t int_modulo(int32_t a, int32_t b) {{
+    CHelper{"int_modulo", R"(static int32_t int_modulo(int32_t a, int32_t b) {{
   return (b == 0) ? 0 : wrap((int64_t)a % (int64_t)b);
 }}
 )"},
-    Helper{"int_negate", R"(static int32_t int_negate(int32_t a) {{
+    CHelper{"int_negate", R"(static int32_t int_negate(int32_t a) {{
   return wrap(-(int64_t)a);
 }}
 )"},
 };
 
 /// Which of them a step calls, by name.
-std::set<std::string_view> helpers_of(const Routine& routine) {
+std::set<std::string_view> c_helpers_of(const Routine& routine) {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < operation_count; ++i) {
     const auto op = static_cast<Op>(i);
@@ -237,7 +244,7 @@ std::span<const std::string_view> c_words() {
     for (const LibraryFunction& one : library_functions) {
       list.insert(list.end(), {one.of_double, one.of_float});
     }
-    for (const Helper& helper : helpers) {
+    for (const CHelper& helper : c_helpers) {
       list.push_back(helper.name);
     }
     list.insert(list.end(), {"restrict", "pow", "powf", "isnan", "sample_time"});
@@ -260,9 +267,9 @@ std::vector<std::string> c_library_functions(const Routine& routine, bool float3
 }
 
 std::string c_helper_functions(const Routine& routine, bool float32) {
-  const auto names = helpers_of(routine);
+  const auto names = c_helpers_of(routine);
   std::string text;
-  for (const Helper& helper : helpers) {
+  for (const CHelper& helper : c_helpers) {
     if (names.contains(helper.name)) {
       text += fmt::format(fmt::runtime(helper.text), fmt::arg("real", float32 ? "float" : "double"),
                           fmt::arg("f", float32 ? "F" : ""), fmt::arg("m", float32 ? "f" : "")) +

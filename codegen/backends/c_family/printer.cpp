@@ -94,11 +94,12 @@ void PrinterOfC::print_special(const Value& value, int outer, std::string& out) 
     return;
   }
   out += outer > Strength::Loosest ? "(" : "";
-  print(value.args[0], Strength::LogicalOr, out);
+  const int side = dialect_.careful ? Strength::Primary : Strength::LogicalOr;
+  print(value.args[0], side, out);
   out += " ? ";
-  print(value.args[1], Strength::LogicalOr, out);
+  print(value.args[1], side, out);
   out += " : ";
-  print(value.args[2], out);
+  print(value.args[2], dialect_.careful ? side : Strength::Loosest, out);
   out += outer > Strength::Loosest ? ")" : "";
 }
 
@@ -134,9 +135,10 @@ void WriterOfC::heading(const Node& node, std::string& text) {
 }
 
 void WriterOfC::begin_rate(const Rate& rate, std::string& text) {
-  text += "if (";
+  text += dialect_.careful ? "if ((" : "if (";
   printer_.print_cell(routine.counter, text);
-  append(text, fmt::format(" % {} == {}) {{\n", rate.every, rate.phase));
+  append(text, fmt::format(fmt::runtime(dialect_.careful ? " % {}) == {}) {{\n" : " % {} == {}) {{\n"), rate.every,
+                           rate.phase));
 }
 
 void WriterOfC::define(ValueId id, std::string_view name, std::string& text) {
@@ -175,7 +177,9 @@ void WriterOfC::write_counter(std::string& text) const {
   if (routine.longest_period > 1) {
     std::string counter;
     printer_.print_cell(routine.counter, counter);
-    append(text, fmt::format("  {0} = {0} + 1 < {1} ? {0} + 1 : 0;\n", counter, routine.longest_period));
+    append(text, fmt::format(fmt::runtime(dialect_.careful ? "  {0} = (({0} + 1) < {1}) ? ({0} + 1) : 0;\n"
+                                                           : "  {0} = {0} + 1 < {1} ? {0} + 1 : 0;\n"),
+                             counter, routine.longest_period));
   }
 }
 

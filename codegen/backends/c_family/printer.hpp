@@ -18,7 +18,7 @@ struct DialectOfC {
   std::string_view word_begin{}, word_end{};  ///< round the digits of a word
   std::string_view element_begin{};           ///< the call that sets an element of an array
   bool passes_length = false;                 ///< whether the calls for elements take the length of the array
-  bool knows_equal_sides = false;             ///< x == x is written as !isnan(x)
+  bool careful = false;  ///< x == x is written as !isnan(x), and operators of two kinds stand in brackets
 };
 
 std::string_view type_of(const DialectOfC& dialect, Type type);
@@ -33,7 +33,8 @@ class PrinterOfC final : public ExpressionPrinter {
         layout_(layout),
         dialect_(dialect),
         float32_(float32) {
-    looks_for_equal_sides = dialect.knows_equal_sides;
+    looks_for_equal_sides = dialect.careful;
+    brackets_mixed_operators = dialect.careful;
   }
 
   void print_cell(std::uint32_t cell, std::string& out) const {

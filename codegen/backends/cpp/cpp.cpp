@@ -66,8 +66,7 @@ class CppHeader {
     std::string text = banner();
     append(text, includes(), "namespace ", namespace_identifier(graph_.name),
            " {\n\nusing Real = ", options_.float32 ? "float" : "double",
-           ";\n\ninline constexpr Real sample_time = ", printer_.literal(Type::Real, graph_.sample_time()),
-           ";  // s\n\n");
+           ";\n\nconstexpr Real sample_time = ", printer_.literal(Type::Real, graph_.sample_time()), ";  // s\n\n");
     append_structs(text);
     const bool stores = sets_elements(routine_.reset) || sets_elements(routine_.step);
     append(text, cpp_helper_functions(routine_.used_by_reset | routine_.used_by_step, stores));
@@ -84,7 +83,8 @@ class CppHeader {
         number_text(graph_.sample_time()), state_bytes(routine_, options_.float32), routine_.operations,
         routine_.function_calls));
     line(fmt::format("Hash of diagram and parameters: {}.", program_hash(program_)));
-    line(fmt::format("Compile with {}: then a step has the bits that `hysteron run` shows.", cpp_numeric_flags));
+    line(fmt::format("C++11 or later. Compile with {}: then a step has the bits that `hysteron run` shows.",
+                     cpp_numeric_flags));
     line("");
     return text + schedule_lines(program_, "//", "…") + "#pragma once\n\n";
   }

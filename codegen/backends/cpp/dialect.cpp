@@ -3,7 +3,7 @@
 namespace hysteron {
 namespace {
 
-constexpr SpellingTable operations({
+constexpr SpellingTable cpp_operations({
     {Op::Add, infix("+", Strength::Additive)},
     {Op::Subtract, infix("-", Strength::Additive)},
     {Op::Multiply, infix("*", Strength::Multiplicative)},
@@ -49,7 +49,7 @@ constexpr SpellingTable operations({
 
 }  // namespace
 
-const DialectOfC cpp_dialect{.operations = operations,
+const DialectOfC cpp_dialect{.operations = cpp_operations,
                              .real = "Real",
                              .truth = "bool",
                              .integer = "std::int32_t",

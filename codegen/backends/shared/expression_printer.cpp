@@ -27,7 +27,8 @@ void ExpressionPrinter::print_infix(const Value& value, const Spelling& spelled,
     const bool mixed =
         !is_named(id) &&
         ((value.op == Op::Or && inner == Op::And) ||
-         (strength == Strength::LogicalXor && !is_leaf(inner) && table_[inner].form == Spelling::Form::Infix) ||
+         ((strength == Strength::LogicalXor || (brackets_mixed_operators && table_[inner].text != spelled.text)) &&
+          !is_leaf(inner) && table_[inner].form == Spelling::Form::Infix) ||
          (strength == Strength::Equality && inner >= Op::Less && inner <= Op::IntNotEqual));
     print(id, mixed ? Strength::Primary : needed, out);
   };

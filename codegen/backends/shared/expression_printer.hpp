@@ -112,6 +112,7 @@ class ExpressionPrinter {
     return false;
   }
   bool looks_for_equal_sides = false;
+  bool brackets_mixed_operators = false;  ///< a + (b * c), as rules for C ask for
 
   void print_arguments(const Value& value, std::string& out) const;
 

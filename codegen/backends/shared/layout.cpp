@@ -6,9 +6,9 @@ namespace hysteron {
 namespace {
 
 constexpr std::size_t longest_schedule = 200;  // a longer diagram's schedule is its step itself
-constexpr std::size_t line_width = 116;
+constexpr std::size_t schedule_width = 116;
 
-std::size_t bytes_of(Type type, bool float32) {
+std::size_t bytes_of_type(Type type, bool float32) {
   switch (type) {
     case Type::Real:
       return float32 ? 4 : 8;
@@ -27,7 +27,7 @@ std::size_t bytes_of(Type type, bool float32) {
 std::size_t state_bytes(const Routine& routine, bool float32) {
   std::size_t bytes = 0;
   for (const CellInfo& cell : routine.cells) {
-    bytes += bytes_of(cell.field.type, float32) * cell.field.length;
+    bytes += bytes_of_type(cell.field.type, float32) * cell.field.length;
   }
   return bytes;
 }
@@ -49,7 +49,7 @@ std::string schedule_lines(const Program& program, std::string_view comment, std
                                           action.kind == Action::Kind::Output   ? " (output)"
                                           : action.kind == Action::Kind::Update ? " (update)"
                                                                                 : "");
-    if (width + entry.size() > line_width) {
+    if (width + entry.size() > schedule_width) {
       text += fmt::format("\n{}  ", comment);
       width = comment.size() + 2;
     }

@@ -1,19 +1,13 @@
 #include "codegen/backends/shared/step_writer.hpp"
 
 namespace hysteron {
-namespace {
-
-constexpr std::uint32_t none = no_value;
-
-}  // namespace
-
 StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, ExpressionPrinter& the_expressions,
                        Identifiers& locals)
     : graph(the_graph), routine(the_routine), expressions(the_expressions), locals_(locals) {
-  own_definition_.assign(routine.tape.size(), none);
+  own_definition_.assign(routine.tape.size(), no_value);
   for (std::uint32_t i = 0; i < routine.step.size(); ++i) {
     const Statement& one = routine.step[i];
-    if (one.kind == Statement::Kind::Define && one.always && own_definition_[one.value] == none) {
+    if (one.kind == Statement::Kind::Define && one.always && own_definition_[one.value] == no_value) {
       own_definition_[one.value] = i;
     }
   }
@@ -94,11 +88,11 @@ void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
     }
     if (entered) {
       const std::uint32_t own = own_definition_[id];
-      if ((needs_name(id) || own != none) && (with_root || id != root)) {
-        write_definition(
-            id,
-            own != none ? name_of(routine.step[own]) : locals_.make({graph.nodes[section_].owner(), word_for(value)}),
-            text);
+      if ((needs_name(id) || own != no_value) && (with_root || id != root)) {
+        write_definition(id,
+                         own != no_value ? name_of(routine.step[own])
+                                         : locals_.make({graph.nodes[section_].owner(), word_for(value)}),
+                         text);
       }
       continue;
     }

@@ -10,19 +10,19 @@
 namespace hysteron {
 namespace {
 
-struct Replacement {
+struct SignInAscii {
   std::string_view sign;
   std::string_view text;
 };
 
-constexpr std::array replacements{
-    Replacement{"(*", "( *"},  Replacement{"*)", "* )"}, Replacement{"]]>", "]] >"}, Replacement{"\r", " "},
-    Replacement{"µ", "u"},     Replacement{"μ", "u"},    Replacement{"·", "*"},      Replacement{"×", "x"},
-    Replacement{"²", "^2"},    Replacement{"³", "^3"},   Replacement{"°", "deg"},    Replacement{"±", "+-"},
-    Replacement{"−", "-"},     Replacement{"–", "-"},    Replacement{"—", "-"},      Replacement{"→", "->"},
-    Replacement{"≤", "<="},    Replacement{"≥", ">="},   Replacement{"≠", "<>"},     Replacement{"…", "..."},
-    Replacement{"√", "sqrt "}, Replacement{"π", "pi"},   Replacement{"τ", "tau"},    Replacement{"Δ", "d"},
-    Replacement{"½", "1/2"},   Replacement{"Ω", "Ohm"},  Replacement{"’", "'"},      Replacement{"∞", "infinity"},
+constexpr std::array signs_in_ascii{
+    SignInAscii{"(*", "( *"},  SignInAscii{"*)", "* )"}, SignInAscii{"]]>", "]] >"}, SignInAscii{"\r", " "},
+    SignInAscii{"µ", "u"},     SignInAscii{"μ", "u"},    SignInAscii{"·", "*"},      SignInAscii{"×", "x"},
+    SignInAscii{"²", "^2"},    SignInAscii{"³", "^3"},   SignInAscii{"°", "deg"},    SignInAscii{"±", "+-"},
+    SignInAscii{"−", "-"},     SignInAscii{"–", "-"},    SignInAscii{"—", "-"},      SignInAscii{"→", "->"},
+    SignInAscii{"≤", "<="},    SignInAscii{"≥", ">="},   SignInAscii{"≠", "<>"},     SignInAscii{"…", "..."},
+    SignInAscii{"√", "sqrt "}, SignInAscii{"π", "pi"},   SignInAscii{"τ", "tau"},    SignInAscii{"Δ", "d"},
+    SignInAscii{"½", "1/2"},   SignInAscii{"Ω", "Ohm"},  SignInAscii{"’", "'"},      SignInAscii{"∞", "infinity"},
 };
 
 }  // namespace
@@ -30,8 +30,8 @@ constexpr std::array replacements{
 std::string st_comment(std::string_view text) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
-    const Replacement* found = nullptr;
-    for (const Replacement& one : replacements) {
+    const SignInAscii* found = nullptr;
+    for (const SignInAscii& one : signs_in_ascii) {
       if (text.substr(at).starts_with(one.sign)) {
         found = &one;
         break;

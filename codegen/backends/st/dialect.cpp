@@ -7,15 +7,15 @@
 namespace hysteron {
 namespace {
 
-using Shape = StDialect::Shape;
+using StShape = StDialect::Shape;
 
-constexpr std::array dialects{
+constexpr std::array st_dialects{
     StDialect{.name = "portable", .extension = ".st", .small_literals = true},
-    StDialect{.name = "codesys", .extension = ".st", .shape = Shape::TwoPanes},
-    StDialect{.name = "twincat", .extension = ".TcPOU", .shape = Shape::Object},
+    StDialect{.name = "codesys", .extension = ".st", .shape = StShape::TwoPanes},
+    StDialect{.name = "twincat", .extension = ".TcPOU", .shape = StShape::Object},
     StDialect{.name = "siemens-scl",
               .extension = ".scl",
-              .shape = Shape::Source,
+              .shape = StShape::Source,
               .local_prefix = "#",
               .named_arguments = true,
               .power_operator = true,
@@ -26,7 +26,7 @@ constexpr std::array dialects{
 }  // namespace
 
 std::optional<StDialect> st_dialect(std::string_view name) {
-  for (const StDialect& dialect : dialects) {
+  for (const StDialect& dialect : st_dialects) {
     if (equal_ignoring_case(dialect.name, name)) {
       return dialect;
     }

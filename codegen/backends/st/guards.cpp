@@ -9,8 +9,8 @@ namespace {
 /// No comparison with it holds.
 constexpr double not_a_bound = std::numeric_limits<double>::quiet_NaN();
 
-/// A literal below it may be 0 in the target: it is the smallest normal REAL.
-constexpr double smallest = std::numeric_limits<float>::min();
+/// A literal below it may be 0 in the target: it is the smallest_literal normal REAL.
+constexpr double smallest_literal = std::numeric_limits<float>::min();
 
 }  // namespace
 
@@ -56,7 +56,7 @@ bool Guards::is_positive(ValueId id) const {
   const Value& value = tape_[id];
   switch (value.op) {
     case Op::RealLiteral:
-      return value.literal >= smallest;
+      return value.literal >= smallest_literal;
     case Op::SampleTime:
       return true;
     case Op::Add:
@@ -131,7 +131,7 @@ bool Guards::never_zero(ValueId id, const Known* known) const {
   const Value& value = tape_[id];
   switch (value.op) {
     case Op::RealLiteral:
-      return std::fabs(value.literal) >= smallest;
+      return std::fabs(value.literal) >= smallest_literal;
     case Op::Negate:
     case Op::Abs:
       return never_zero(value.args[0], known);

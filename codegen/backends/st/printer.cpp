@@ -12,7 +12,7 @@
 namespace hysteron {
 namespace {
 
-constexpr SpellingTable operations({
+constexpr SpellingTable st_operations({
     {Op::Add, infix("+", Strength::Additive)},
     {Op::Subtract, infix("-", Strength::Additive)},
     {Op::Multiply, infix("*", Strength::Multiplicative)},
@@ -88,7 +88,7 @@ std::string st_literal(Type type, double value, const StReals& reals) {
 
 StPrinter::StPrinter(const Graph& graph, const Routine& routine, const Layout& layout, const StNames& names,
                      const StDialect& dialect, bool float32)
-    : ExpressionPrinter(routine.tape, operations),
+    : ExpressionPrinter(routine.tape, st_operations),
       graph_(graph),
       routine_(routine),
       layout_(layout),

@@ -38,7 +38,7 @@ constexpr std::array<Allowed, 6> allowed_words{{
     {"tests/support/measured_records.hpp", undone_words[2], "without the folder of measured records"},
     {"tests/records/measured_test.cpp", undone_words[2], "without the folder of measured records"},
     {"tests/diagnosis/report/browser_test.cpp", undone_words[2], "without chromium"},
-    {"tests/codegen/matiec_test.cpp", undone_words[2], "without MATIEC, an outside compiler"},
+    {"tests/codegen/backends/matiec_test.cpp", undone_words[2], "without MATIEC, an outside compiler"},
     {"tests/clients/points_test.cpp", undone_words[2], "without node, or without the clients that a script fetches"},
 }};
 

@@ -69,7 +69,11 @@ void StepWriter::write_definition(ValueId id, std::string_view name, std::string
 }
 
 std::string_view StepWriter::name_of(const Statement& definition) {
-  return locals_.make({graph.nodes[definition.target].owner(), definition.field, definition.what});
+  const std::string_view owner = graph.nodes[definition.target].owner();
+  if (definition.field.empty() && is_taken(owner)) {
+    return locals_.make({owner, word_for(routine.tape[definition.value])});
+  }
+  return locals_.make({owner, definition.field, definition.what});
 }
 
 /// Defines every value below a root that needs a name.

@@ -50,6 +50,9 @@ class StepWriter {
   /// What a shared value is called that is no port and no state.
   [[nodiscard]] virtual std::string_view word_for(const Value& value) const = 0;
 
+  /// Whether a value that stands for a whole pin or output is better called by its operation.
+  [[nodiscard]] virtual bool is_taken(std::string_view /*owner*/) const { return false; }
+
   /// Values that are never written inside an expression, by value; empty: every value may be.
   std::vector<bool> must_be_named{};
 

@@ -107,6 +107,10 @@ class StWriter final : public StepWriter {
   void set_cell(std::uint32_t cell, ValueId value, std::string& text) override;
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
   void fill_cell(std::uint32_t cell, ValueId value, std::string& text) override;
+  /// An output is a variable of the block itself.
+  [[nodiscard]] bool is_taken(std::string_view owner) const override {
+    return find_port(graph.outputs, owner) != nullptr;
+  }
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
 
  private:

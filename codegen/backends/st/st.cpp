@@ -90,8 +90,12 @@ class StBlock {
     if (siemens) {
       text += "{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n";
     }
-    append_section(text, "VAR_INPUT", "", inputs());
-    append_section(text, "VAR_INPUT", siemens ? "" : "parameters, at their tuned values", parameters());
+    if (siemens) {
+      append_section(text, "VAR_INPUT", "", inputs() + parameters());
+    } else {
+      append_section(text, "VAR_INPUT", "", inputs());
+      append_section(text, "VAR_INPUT", "parameters, at their tuned values", parameters());
+    }
     append_section(text, "VAR_OUTPUT", "", outputs());
     append_section(text, "VAR CONSTANT", "", constants());
     append_section(text, "VAR", "memory, from step to step", memory());

@@ -11,7 +11,7 @@
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/st/st.hpp"
 #include "tests/codegen/random_program.hpp"
-#include "tests/codegen/recorded_run.hpp"
+#include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::testing {

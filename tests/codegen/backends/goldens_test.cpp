@@ -46,7 +46,7 @@ END_FUNCTION_BLOCK
 )";
 
 void hold_against_golden(const GeneratedFile& file, const std::string& folder) {
-  const std::string path = std::string(HYSTERON_SOURCE_DIR) + "/tests/codegen/goldens/" + folder + "_" + file.name;
+  const std::string path = std::string(HYSTERON_SOURCE_DIR) + "/tests/codegen/backends/goldens/" + folder + "_" + file.name;
   if (std::getenv("HYSTERON_UPDATE_GOLDENS") != nullptr) {
     std::ofstream(path, std::ios::binary) << file.text;
   }

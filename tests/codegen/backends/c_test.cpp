@@ -10,7 +10,7 @@
 
 #include "codegen/backends/cpp/cpp.hpp"
 #include "tests/codegen/random_program.hpp"
-#include "tests/codegen/recorded_run.hpp"
+#include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::testing {

@@ -72,7 +72,7 @@ class StAsCpp {
     return text + "}\n};\n";
   }
 
-  [[nodiscard]] const std::vector<std::string>& tokens() const { return tokens_; }
+  [[nodiscard]] std::vector<std::string> tokens() const { return tokens_; }
 
  private:
   static bool is_word(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_'; }

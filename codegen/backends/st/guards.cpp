@@ -93,6 +93,12 @@ bool Guards::never_negative(ValueId id) const {
   }
 }
 
+/// An input or a parameter keeps its value through a step, wherever it is read; a state does not.
+bool Guards::is_same(ValueId a, ValueId b) const {
+  const Op op = tape_[a].op;
+  return a == b || ((op == Op::Input || op == Op::Parameter) && tape_[a] == tape_[b]);
+}
+
 /// Whether a condition that holds, or does not, says that a value is not 0.
 bool Guards::tells_nonzero(ValueId condition, bool holds, ValueId id) const {
   const Value& value = tape_[condition];
@@ -108,15 +114,15 @@ bool Guards::tells_nonzero(ValueId condition, bool holds, ValueId id) const {
     case Op::Or:
       return !holds && (tells_nonzero(side(0), false, id) || tells_nonzero(side(1), false, id));
     case Op::Less:
-      return holds ? (side(1) == id && literal(0) >= 0.0) || (side(0) == id && literal(1) <= 0.0)
-                   : (side(0) == id && literal(1) > 0.0) || (side(1) == id && literal(0) < 0.0);
+      return holds ? (is_same(side(1), id) && literal(0) >= 0.0) || (is_same(side(0), id) && literal(1) <= 0.0)
+                   : (is_same(side(0), id) && literal(1) > 0.0) || (is_same(side(1), id) && literal(0) < 0.0);
     case Op::LessEqual:
-      return holds ? (side(1) == id && literal(0) > 0.0) || (side(0) == id && literal(1) < 0.0)
-                   : (side(0) == id && literal(1) >= 0.0) || (side(1) == id && literal(0) <= 0.0);
+      return holds ? (is_same(side(1), id) && literal(0) > 0.0) || (is_same(side(0), id) && literal(1) < 0.0)
+                   : (is_same(side(0), id) && literal(1) >= 0.0) || (is_same(side(1), id) && literal(0) <= 0.0);
     case Op::Equal:
     case Op::NotEqual:
       return holds == (value.op == Op::NotEqual) &&
-             ((side(0) == id && literal(1) == 0.0) || (side(1) == id && literal(0) == 0.0));
+             ((is_same(side(0), id) && literal(1) == 0.0) || (is_same(side(1), id) && literal(0) == 0.0));
     default:
       return false;
   }

@@ -43,6 +43,7 @@ class Guards {
     const Known* outer;
   };
   [[nodiscard]] bool never_zero(ValueId id, const Known* known) const;
+  [[nodiscard]] bool is_same(ValueId a, ValueId b) const;
   [[nodiscard]] bool tells_nonzero(ValueId condition, bool holds, ValueId id) const;
   [[nodiscard]] bool is_positive(ValueId id) const;
   void name_with_operands(ValueId id, std::size_t operands);

@@ -56,11 +56,11 @@ RecordedRun record(const Program& program, std::size_t steps, std::uint64_t seed
   RecordedRun run{.inputs = random_rows(steps, seed)};
   Machine<Real> machine(program);
   for (std::size_t k = 0; k < steps; ++k) {
+    if (k == steps / 2) {
+      machine.reset();  // inputs too begin anew
+    }
     for (std::size_t i = 0; i < RecordedRun::columns; ++i) {
       machine.set_input(i, static_cast<Real>(run.inputs[k * RecordedRun::columns + i]));
-    }
-    if (k == steps / 2) {
-      machine.reset();
     }
     std::feclearexcept(FE_ALL_EXCEPT);
     machine.step();

@@ -104,6 +104,7 @@ constexpr std::array titles{
     ErrorTitle{error::no_test_selected, "No test case to run"},
     ErrorTitle{error::bad_usage, "Command line that is not understood"},
     ErrorTitle{error::foreign_file, "File that Hysteron did not write"},
+    ErrorTitle{error::name_too_long, "Name too long for the target"},
     ErrorTitle{error::run_file_syntax, "Run file is not TOML"},
     ErrorTitle{error::run_key_twice, "Key given twice in a run file"},
     ErrorTitle{error::unknown_run_key, "Unknown key in a run file"},

@@ -1,4 +1,5 @@
-// Words that an identifier of generated C++ may not be: keywords, and the names that the generated text uses itself.
+// Words that an identifier of generated C or C++ may not be: keywords, and the names that the generated text uses
+// itself.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 
 namespace hysteron {
 
-/// Also errno, unix and linux, which are macros.
+/// Also restrict, which is one of C alone, and errno, unix and linux, which are macros.
 inline constexpr auto cpp_keywords = std::to_array<std::string_view>(
     {"alignas",     "alignof",   "and",        "and_eq",    "asm",      "auto",         "bitand",
      "bitor",       "bool",      "break",      "case",      "catch",    "char",         "char8_t",
@@ -22,7 +23,7 @@ inline constexpr auto cpp_keywords = std::to_array<std::string_view>(
      "static_cast", "struct",    "switch",     "template",  "this",     "thread_local", "throw",
      "true",        "try",       "typedef",    "typeid",    "typename", "union",        "unsigned",
      "using",       "virtual",   "void",       "volatile",  "wchar_t",  "while",        "xor",
-     "xor_eq",      "errno",     "unix",       "linux"});
+     "xor_eq",      "errno",     "restrict",   "unix",      "linux"});
 
 /// What the generated text calls its own.
 inline constexpr auto cpp_own_words =

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "codegen/backends/cpp/cpp.hpp"
-#include "tests/codegen/random_program.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
+#include "tests/codegen/random_program.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::testing {
@@ -106,6 +106,25 @@ void hold_c_against_interpreted(std::string_view compiler) {
   for (std::size_t i = 0; i < c_programs; ++i) {
     EXPECT_EQ(equal_steps(runs[i], read_doubles(folder / fmt::format("out{}", i))), c_steps) << "program " << i;
   }
+}
+
+/// Names of C, of its library and of the generated text itself; comments that would run on; nothing to keep.
+TEST(GeneratedC, NamesAndCommentsAreSafe) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK PRINTF (* @ts 1ms *) VAR_INPUT RESTRICT : LREAL; (* @doc ends in \\ *)\n"
+      "INLINE : LREAL; STATE : DINT; END_VAR VAR_OUTPUT FABS : LREAL; PARAMS : LREAL; REAL_MIN : DINT; END_VAR\n"
+      "VAR POW : HY_GAIN := (K := 3.0); END_VAR POW(XIN := RESTRICT);\n"
+      "FABS := EXP(POW.XOUT) + MIN(POW.XOUT, INLINE) ** INLINE; PARAMS := FABS + POW.XOUT; REAL_MIN := STATE + 1;\n"
+      "END_FUNCTION_BLOCK");
+  const test::ScratchFolder folder;
+  for (const GeneratedFile& file : generate_c(program)) {
+    folder.write(file.name, file.text);
+  }
+  const std::string build = fmt::format(
+      "cd {0} && cc -fsyntax-only {1} {2} *.c > log 2>&1 && c++ -fsyntax-only -Wall -Wextra -Werror -x c++ -include "
+      "printf_2.h /dev/null >> log 2>&1",
+      folder.path().string(), c_warnings, cpp_numeric_flags);
+  EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 2000);
 }
 
 TEST(GeneratedC, RandomProgramsHaveTheBitsOfTheInterpreter) {

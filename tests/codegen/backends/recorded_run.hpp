@@ -93,14 +93,14 @@ inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
 }
 
-/// How many steps have the interpreter's bits, from the first on.
-inline std::size_t equal_steps(const RecordedRun& run, const std::vector<double>& outputs) {
+/// How many steps have the interpreter's bits, from the first on. `zeros_are_one`: 0 and -0 are the same.
+inline std::size_t equal_steps(const RecordedRun& run, const std::vector<double>& outputs, bool zeros_are_one = false) {
   if (outputs.size() != run.outputs.size()) {
     return 0;
   }
   const std::size_t width = run.outputs.size() / run.steps();
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (!same_bits(outputs[i], run.outputs[i])) {
+    if (!same_bits(outputs[i], run.outputs[i]) && !(zeros_are_one && outputs[i] == 0.0 && run.outputs[i] == 0.0)) {
       return i / width;
     }
   }

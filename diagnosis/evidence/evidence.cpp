@@ -41,9 +41,9 @@ Explored explored(const Task& task, const Explanation& calibrated, std::unique_p
   result.regression =
       std::make_unique<BlockRegression>(*result.blocks, result.blocks->thinned(result.space->residuals()).col(0),
                                         result.blocks->thinned(result.space->known()));
-  result.regression->weigh(result.regression->with({}).held_out);
+  result.regression->weigh(result.regression->bare().held_out);
   result.search = std::make_unique<SetSearch>(*result.laws, *result.regression, options.threads);
-  result.bare = result.search->fitted({});
+  result.bare = result.search->bare();
   return result;
 }
 

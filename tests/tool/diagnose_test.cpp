@@ -71,30 +71,6 @@ TEST_F(Diagnose, NamesTheEffectAndWritesWhatItFound) {
   EXPECT_NEAR(verdict["gap"]["improved_rms"].get<double>(), noise, 0.1 * noise);
 }
 
-TEST_F(Diagnose, ExplainsByItsRulesAndLeavesOneOut) {
-  // The load is not among what is tried, so that something is left for the rules.
-  const std::string asked =
-      "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects lag --explain";
-  const auto explained = bench.shell(asked);
-  ASSERT_EQ(explained.code, 0) << explained.err;
-  const json decisions = json::parse(bench.read("found/verdict.json"))["decisions"];
-  ASSERT_FALSE(decisions.empty());
-  for (const json& one : decisions) {
-    const double measured = one["measured"];
-    EXPECT_EQ(one["outcome"] == "above" || one["outcome"] == "held down", measured > one["threshold"]) << one;
-    EXPECT_THAT(explained.out, HasSubstr(fmt::format("  rule: {}", one["rule"].get<std::string>())));
-  }
-  const std::string rule = decisions[0]["rule"];
-  const auto without = bench.shell(asked + fmt::format(" --without \"{}\"", rule));
-  ASSERT_EQ(without.code, 0) << without.err;
-  for (const json& one : json::parse(bench.read("found/verdict.json"))["decisions"]) {
-    EXPECT_TRUE(one["rule"] != rule || one["threshold"].is_null() || one["threshold"] == 0.0) << one;
-  }
-  const auto none = bench.shell(asked + " --without relevance");
-  EXPECT_EQ(none.code, 2);
-  EXPECT_THAT(none.err, AllOf(HasSubstr("HY730 error: There is no rule relevance"), HasSubstr("relevant")));
-}
-
 TEST_F(Diagnose, TheImprovedDiagramChecksRunsAndGenerates) {
   ASSERT_EQ(bench.shell(command).code, 0);
   const auto check = bench.shell("hysteron check found/improved.st && hysteron fmt --check found/improved.st");

@@ -4,8 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+#include <iterator>
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
@@ -44,28 +43,26 @@ double Rules::operator[](const Threshold& threshold) const {
 }
 
 bool Rules::is_above(const Threshold& threshold, double measured, std::string_view about) {
-  const double limit = (*this)[threshold];
-  const bool above = measured > limit;
-  decisions_.push_back({.rule = std::string(threshold.name),
-                        .about = std::string(about),
-                        .measured = measured,
-                        .threshold = limit,
-                        .unit = std::string(threshold.unit),
-                        .outcome = above ? "above" : "below"});
+  const bool above = measured > (*this)[threshold];
+  keep(threshold, measured, about, above ? "above" : "below");
   return above;
 }
 
-double Rules::capped(const Threshold& threshold, double confidence, std::string_view about) {
+double Rules::capped(const Threshold& threshold, double confidence) {
   const double limit = (*this)[threshold];
   if (confidence > limit) {
-    decisions_.push_back({.rule = std::string(threshold.name),
-                          .about = std::string(about),
-                          .measured = confidence,
-                          .threshold = limit,
-                          .unit = std::string(threshold.unit),
-                          .outcome = "held down"});
+    keep(threshold, confidence, {}, "held down");
   }
   return std::min(confidence, limit);
+}
+
+void Rules::keep(const Threshold& threshold, double measured, std::string_view about, std::string_view outcome) {
+  decisions_.push_back({.rule = std::string(threshold.name),
+                        .about = std::string(about),
+                        .measured = measured,
+                        .threshold = (*this)[threshold],
+                        .unit = std::string(threshold.unit),
+                        .outcome = std::string(outcome)});
 }
 
 }  // namespace hysteron::diagnosis

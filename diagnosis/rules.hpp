@@ -33,12 +33,14 @@ class Rules {
   bool is_above(const Threshold& threshold, double measured, std::string_view about = {});
 
   /// A confidence that is no higher than the threshold in force; keeps it where that holds it down.
-  double capped(const Threshold& threshold, double confidence, std::string_view about = {});
+  double capped(const Threshold& threshold, double confidence);
 
   /// In the order in which they were asked.
   [[nodiscard]] const std::vector<Decision>& decisions() const { return decisions_; }
 
  private:
+  void keep(const Threshold& threshold, double measured, std::string_view about, std::string_view outcome);
+
   std::vector<std::string_view> without_{};  ///< names of the policy
   std::vector<Decision> decisions_{};
 };

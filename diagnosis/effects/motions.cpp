@@ -97,6 +97,11 @@ std::optional<Motion> motion_of(std::string_view text) {
   return result;
 }
 
+/// Integrates once, and smooths nothing.
+bool is_integrator(const Node& node) {
+  return smoothing_of(node).order == 0 && integrals_of(node) == 1;
+}
+
 /// A length or an angle, by its power of metres.
 bool is_travel(const units::Fraction& length) {
   return length.zero() || length.number() == 1.0;
@@ -135,8 +140,7 @@ bool is_integral(const Graph& graph, const Wire& signal) {
   if (signal.from != Wire::From::Node || signal.port != 0) {
     return false;
   }
-  const Node& node = graph.nodes[signal.index];
-  return smoothing_of(node).order == 0 && integrals_of(node) == 1;
+  return is_integrator(graph.nodes[signal.index]);
 }
 
 bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by) {
@@ -147,7 +151,7 @@ bool is_balance(const Graph& graph, const Wire& signal, const std::string& passe
   const bool is_sum = source.block == nullptr ? source.op == Op::Add || source.op == Op::Subtract
                                               : source.block->about.name == "HY_SUM";
   return is_sum && std::ranges::any_of(graph.nodes, [&](const Node& node) {
-           if (node.block == nullptr || smoothing_of(node).order != 0 || integrals_of(node) != 1) {
+           if (node.block == nullptr || !is_integrator(node)) {
              return false;
            }
            const Wire& wire = graph.wire(node, 0);

@@ -87,6 +87,23 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
   std::exponential_distribution<double> weight(1.0);
   std::normal_distribution<double> error(0.0, 1.0);
   Votes votes;
+  // What no draw changes: it would be found some thousand times.
+  struct Entry {
+    LawSet* set = nullptr;
+    std::vector<std::string> families{};
+  };
+  const auto entries = [&](std::vector<LawSet>& list, bool elsewhere) {
+    std::vector<Entry> result;
+    for (LawSet& set : list) {
+      if (is_elsewhere(set, spaces) == elsewhere) {
+        result.push_back({.set = &set, .families = spaces[set.space].search->families_of(set)});
+      }
+    }
+    return result;
+  };
+  const std::vector<Entry> at_hand = entries(sets.told, false);
+  const std::vector<Entry> yardsticks = entries(sets.yardsticks, false);
+  const std::vector<Entry> elsewhere = entries(sets.told, true);
   const auto count = static_cast<int>(policy::draws.value);
   const double one_vote = 1.0 / policy::draws.value;
   for (int draw = 0; draw < count; ++draw) {
@@ -97,46 +114,42 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
       bare.push_back(one.regression->log_square(one.bare.score.held_out, weights));
     }
     std::map<std::vector<std::string>, double> errors;  // of a formula: the same for all sets of the same families
-    const auto left_by = [&](const LawSet& set) {
-      const Explored& there = spaces[set.space];
-      const auto [found, first] = errors.emplace(there.search->families_of(set), 0.0);
+    const auto left_by = [&](const Entry& entry) {
+      const LawSet& set = *entry.set;
+      const auto [found, first] = errors.emplace(entry.families, 0.0);
       if (first) {
         found->second = rules[policy::model_error] * error(random);
       }
-      return there.regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
+      return spaces[set.space].regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
              rules[policy::price] * static_cast<double>(set.laws.size());
     };
-    LawSet* best = nullptr;
+    const Entry* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
-    const auto take = [&](LawSet& set, double left) {
+    const auto take = [&](const Entry& entry, double left) {
       if (left < least) {
         least = left;
-        best = &set;
+        best = &entry;
       }
     };
-    for (LawSet& set : sets.told) {
-      if (!is_elsewhere(set, spaces)) {
-        take(set, left_by(set));
-      }
+    for (const Entry& entry : at_hand) {
+      take(entry, left_by(entry));
     }
     // Shares of the missing signal and of the outputs are no one scale: noise has another part in each. A set of
     // another place counts by how much better it is at the outputs than the best that needs none.
     double yardstick = std::numeric_limits<double>::infinity();
-    for (const LawSet& set : sets.yardsticks) {
-      yardstick = std::min(yardstick, left_by(set));
+    for (const Entry& entry : yardsticks) {
+      yardstick = std::min(yardstick, left_by(entry));
     }
-    const double at_hand = least;
-    for (LawSet& set : sets.told) {
-      if (is_elsewhere(set, spaces)) {
-        take(set, at_hand + left_by(set) - yardstick + rules[policy::another_place]);
-      }
+    const double least_at_hand = least;
+    for (const Entry& entry : elsewhere) {
+      take(entry, least_at_hand + left_by(entry) - yardstick + rules[policy::another_place]);
     }
-    best->probability += one_vote;
-    for (const std::string& family : spaces[best->space].search->families_of(*best)) {
+    best->set->probability += one_vote;
+    for (const std::string& family : best->families) {
       votes.families[family] += one_vote;
     }
-    for (const std::size_t i : best->laws) {
-      const Law& law = (*spaces[best->space].laws)[i];
+    for (const std::size_t i : best->set->laws) {
+      const Law& law = (*spaces[best->set->space].laws)[i];
       votes.members[{law.family, law.effect}] += one_vote;
     }
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "codegen/backends/c_family/operators.hpp"
 #include "codegen/backends/c_family/words.hpp"
 
 namespace hysteron {
@@ -26,12 +27,7 @@ constexpr std::array library_functions{
 };
 
 constexpr SpellingTable c_operations(bool float32) {
-  SpellingTable result({
-      {Op::Add, infix("+", Strength::Additive)},
-      {Op::Subtract, infix("-", Strength::Additive)},
-      {Op::Multiply, infix("*", Strength::Multiplicative)},
-      {Op::Divide, infix("/", Strength::Multiplicative)},
-      {Op::Negate, sign("-")},
+  SpellingTable result = c_family_operators.with({
       {Op::Power, call("real_power")},
       {Op::Min, call("real_min")},
       {Op::Max, call("real_max")},
@@ -43,18 +39,6 @@ constexpr SpellingTable c_operations(bool float32) {
       {Op::IntNegate, call("int_negate")},
       {Op::IntMin, call("int_min")},
       {Op::IntMax, call("int_max")},
-      {Op::Less, infix("<", Strength::Relation)},
-      {Op::LessEqual, infix("<=", Strength::Relation)},
-      {Op::Equal, infix("==", Strength::Equality)},
-      {Op::NotEqual, infix("!=", Strength::Equality)},
-      {Op::IntLess, infix("<", Strength::Relation)},
-      {Op::IntLessEqual, infix("<=", Strength::Relation)},
-      {Op::IntEqual, infix("==", Strength::Equality)},
-      {Op::IntNotEqual, infix("!=", Strength::Equality)},
-      {Op::And, infix("&&", Strength::LogicalAnd)},
-      {Op::Or, infix("||", Strength::LogicalOr)},
-      {Op::Xor, infix("!=", Strength::Equality)},
-      {Op::Not, negation("!")},
       {Op::ToInt, call("to_int")},
       {Op::ToReal, call(float32 ? "(float)" : "(double)")},
   });

@@ -1,14 +1,11 @@
 #include "codegen/backends/cpp/dialect.hpp"
 
+#include "codegen/backends/c_family/operators.hpp"
+
 namespace hysteron {
 namespace {
 
-constexpr SpellingTable cpp_operations({
-    {Op::Add, infix("+", Strength::Additive)},
-    {Op::Subtract, infix("-", Strength::Additive)},
-    {Op::Multiply, infix("*", Strength::Multiplicative)},
-    {Op::Divide, infix("/", Strength::Multiplicative)},
-    {Op::Negate, sign("-")},
+constexpr SpellingTable cpp_operations = c_family_operators.with({
     {Op::Abs, call("std::fabs")},
     {Op::Sqrt, call("std::sqrt")},
     {Op::Exp, call("std::exp")},
@@ -30,18 +27,6 @@ constexpr SpellingTable cpp_operations({
     {Op::IntNegate, call("detail::negate")},
     {Op::IntMin, call("detail::min")},
     {Op::IntMax, call("detail::max")},
-    {Op::Less, infix("<", Strength::Relation)},
-    {Op::LessEqual, infix("<=", Strength::Relation)},
-    {Op::Equal, infix("==", Strength::Equality)},
-    {Op::NotEqual, infix("!=", Strength::Equality)},
-    {Op::IntLess, infix("<", Strength::Relation)},
-    {Op::IntLessEqual, infix("<=", Strength::Relation)},
-    {Op::IntEqual, infix("==", Strength::Equality)},
-    {Op::IntNotEqual, infix("!=", Strength::Equality)},
-    {Op::And, infix("&&", Strength::LogicalAnd)},
-    {Op::Or, infix("||", Strength::LogicalOr)},
-    {Op::Xor, infix("!=", Strength::Equality)},
-    {Op::Not, negation("!")},
     {Op::ToInt, call("detail::to_int")},
     {Op::ToReal, call("static_cast<Real>")},
     {Op::At, call("detail::at")},

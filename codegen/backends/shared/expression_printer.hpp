@@ -57,6 +57,15 @@ class SpellingTable {
       table_[static_cast<std::size_t>(row.op)] = row.spelling;
     }
   }
+  /// The same with further rows.
+  template <std::size_t N>
+  [[nodiscard]] constexpr SpellingTable with(const Row (&rows)[N]) const {
+    SpellingTable result = *this;
+    for (const Row& row : rows) {
+      result.set(row.op, row.spelling);
+    }
+    return result;
+  }
   constexpr void set(Op op, const Spelling& spelling) { table_[static_cast<std::size_t>(op)] = spelling; }
   constexpr const Spelling& operator[](Op op) const { return table_[static_cast<std::size_t>(op)]; }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "codegen/backends/shared/generated_file.hpp"
+#include "codegen/graph/names.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron {
@@ -59,31 +60,18 @@ std::string digits_of(double value, const StReals& reals) {
 }  // namespace
 
 std::string_view st_type(Type type, bool float32) {
-  switch (type) {
-    case Type::Real:
-      return float32 ? "REAL" : "LREAL";
-    case Type::Bool:
-      return "BOOL";
-    case Type::Int:
-      return "DINT";
-    case Type::Word:
-      return "WORD";
-  }
-  return "";
+  return float32 && type == Type::Real ? "REAL" : type_name(type);
 }
 
 std::string st_literal(Type type, double value, const StReals& reals) {
   switch (type) {
     case Type::Real:
       return digits_of(value, reals);
-    case Type::Bool:
-      return value != 0.0 ? "TRUE" : "FALSE";
-    case Type::Int:
-      return fmt::format("{}", static_cast<std::int64_t>(value));
     case Type::Word:
       return fmt::format("WORD#16#{:04X}", static_cast<unsigned>(value));
+    default:
+      return literal_text(type, value);
   }
-  return "";
 }
 
 StPrinter::StPrinter(const Graph& graph, const Routine& routine, const Layout& layout, const StNames& names,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -52,6 +53,18 @@ constexpr std::array unary_functions{
     Function{"SIN", Op::Sin},   Function{"COS", Op::Cos},   Function{"TAN", Op::Tan},    Function{"ASIN", Op::Asin},
     Function{"ACOS", Op::Acos}, Function{"ATAN", Op::Atan}, Function{"TRUNC", Op::ToInt}};
 
+struct Formal {
+  std::string_view function;
+  std::array<std::string_view, 9> names;
+};
+constexpr std::array formal_names{Formal{"EXPT", {"IN1", "IN2"}},
+                                  Formal{"MIN", {"IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7", "IN8"}},
+                                  Formal{"MAX", {"IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7", "IN8"}},
+                                  Formal{"LIMIT", {"MN", "IN", "MX"}},
+                                  Formal{"SEL", {"G", "IN0", "IN1"}},
+                                  Formal{"MUX", {"K", "IN0", "IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7"}}};
+constexpr std::array<std::string_view, 1> only_operand{"IN"};
+
 Op select_for(Type type) {
   switch (type) {
     case Type::Int:
@@ -66,6 +79,15 @@ Op select_for(Type type) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> formal_arguments(std::string_view function) {
+  for (const Formal& one : formal_names) {
+    if (one.function == function) {
+      return {one.names.begin(), std::ranges::find(one.names, std::string_view())};
+    }
+  }
+  return only_operand;
+}
 
 Wire GraphBuilder::literal(Type type, double value, std::string_view unit) {
   graph_.literals.push_back(value);
@@ -319,7 +341,8 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
     return good;
   };
   // Formal arguments are put in the order of the standard.
-  const auto formal = [&](std::initializer_list<std::string_view> order) {
+  const auto formal = [&] {
+    const auto order = formal_arguments(name);
     std::vector<Wire> sorted(args.size());
     bool named = !call.arguments.empty() && !call.arguments.front().formal.text.empty();
     if (!named) {
@@ -346,7 +369,7 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
 
   for (const Function& function : unary_functions) {
     if (name == function.name) {
-      if (!formal({"IN"}) || args.size() != 1) {
+      if (!formal() || args.size() != 1) {
         return wrong(fmt::format("{}(X) with an LREAL", name));
       }
       if (name == "ABS" && all(Type::Int, 1)) {
@@ -356,21 +379,23 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
     }
   }
   if (name == "LOG") {
-    return formal({"IN"}) && all(Type::Real, 1)
+    return formal() && all(Type::Real, 1)
                ? apply(Op::Divide, {apply(Op::Log, {args[0]}, span), builder_.literal(Type::Real, 2.302585092994046)},
                        span)
                : wrong("LOG(X) with an LREAL");
   }
   if (name == "EXPT") {
-    if (formal({"IN1", "IN2"}) && args.size() == 2 && args[1].type == Type::Int) {
+    if (!formal()) {
+      return wrong("EXPT(BASE, EXPONENT) with LREALs");
+    }
+    if (args.size() == 2 && args[1].type == Type::Int) {
       args[1] = GraphBuilder::is_literal(args[1]) ? builder_.literal(Type::Real, builder_.value(args[1]))
                                                   : apply(Op::ToReal, {args[1]}, span);
     }
     return all(Type::Real, 2) ? apply(Op::Power, {args[0], args[1]}, span) : wrong("EXPT(BASE, EXPONENT) with LREALs");
   }
   if (name == "MIN" || name == "MAX") {
-    if (!formal({"IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7", "IN8"}) || args.size() < 2 ||
-        !(all(Type::Real, args.size()) || all(Type::Int, args.size()))) {
+    if (!formal() || args.size() < 2 || !(all(Type::Real, args.size()) || all(Type::Int, args.size()))) {
       return wrong(fmt::format("{}(A, B, …) with two or more LREALs or DINTs", name));
     }
     const bool real = args[0].type == Type::Real;
@@ -382,7 +407,7 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
     return result;
   }
   if (name == "LIMIT") {
-    if (!formal({"MN", "IN", "MX"}) || !(all(Type::Real, 3) || all(Type::Int, 3))) {
+    if (!formal() || !(all(Type::Real, 3) || all(Type::Int, 3))) {
       return wrong("LIMIT(MN, IN, MX) with three LREALs or three DINTs");
     }
     const bool real = args[0].type == Type::Real;
@@ -390,15 +415,13 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
                  span);
   }
   if (name == "SEL") {
-    if (!formal({"G", "IN0", "IN1"}) || args.size() != 3 || args[0].type != Type::Bool ||
-        args[1].type != args[2].type) {
+    if (!formal() || args.size() != 3 || args[0].type != Type::Bool || args[1].type != args[2].type) {
       return wrong("SEL(G, IN0, IN1) with a BOOL and two values of one type: IN1 where G is TRUE");
     }
     return apply(select_for(args[1].type), {args[0], args[2], args[1]}, span);
   }
   if (name == "MUX") {
-    bool good = args.size() >= 3 && args[0].type == Type::Int &&
-                formal({"K", "IN0", "IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7"});
+    bool good = args.size() >= 3 && args[0].type == Type::Int && formal();
     for (std::size_t i = 2; good && i < args.size(); ++i) {
       good = args[i].type == args[1].type;
     }

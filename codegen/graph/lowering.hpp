@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -41,6 +42,9 @@ class GraphBuilder {
   std::string numbered_path_;
   std::uint32_t next_number_ = 0;
 };
+
+/// The names of a function's arguments in their order, by its name in upper case: G, IN0, IN1 of SEL.
+std::span<const std::string_view> formal_arguments(std::string_view function);
 
 /// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
 class Lowering {

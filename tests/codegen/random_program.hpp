@@ -50,7 +50,7 @@ class RandomDiagram {
       case Type::Bool:
         return pick(2) != 0 ? "TRUE" : "FALSE";
       default:
-        return "";
+        return fmt::format("WORD#{}", pick(65536));
     }
   }
 

@@ -58,7 +58,7 @@ constexpr std::array titles{
     ErrorTitle{error::hidden_delay, "Hidden delay"},
     ErrorTitle{error::rate_mismatch, "Wire between two rates"},
     ErrorTitle{error::missing_sample_time, "No sample time"},
-    ErrorTitle{error::read_after_call, "Delayed output read after its call"},
+    ErrorTitle{error::read_after_call, "Delayed output read on the other side"},
     ErrorTitle{error::rates_too_far_apart, "Rates without a usable common period"},
     ErrorTitle{error::record_too_short, "Record with too few rows"},
     ErrorTitle{error::missing_column, "Missing column"},

@@ -31,7 +31,8 @@ struct Source {
   std::string box{};
   std::string port{};
   Type type = Type::Real;
-  std::string passed{};  ///< the variable that hands it on, to be written at the wire
+  std::string passed{};       ///< the variable that hands it on, to be written at the wire
+  std::size_t statement = 0;  ///< that works it out, counted from 1; 0: an input
 };
 
 class Drawing {
@@ -46,14 +47,14 @@ class Drawing {
       }
     }
     name_ = program.graph.name;
-    sample_time_ = program.graph.sample_time();
+    sample_time_ns_ = program.graph.sample_time_ns;
   }
 
   DiagramDot run() {
     const Definition& top = definitions_.list[definitions_.by_name.at(upper(name_))];
     std::string title = fmt::format("<B>{}</B>", dot::escaped(name_));
-    if (sample_time_ > 0.0) {
-      title += dot::small_text(fmt::format("  TS = {} s", sample_time_));
+    if (sample_time_ns_ > 0) {
+      title += dot::small_text("  TS = " + duration_of(sample_time_ns_));
     }
     for (const auto& annotation : top.block->annotations) {
       if (annotation.key == "doc") {
@@ -80,6 +81,7 @@ class Drawing {
     const Definition* definition = nullptr;
     std::string prefix{};                            ///< "" at the top, else ending in a dot
     std::map<std::string, ExpressionId> assigned{};  ///< by variable
+    std::map<std::string, std::size_t> statement{};  ///< by variable and instance: the one that works it out, from 1
     std::set<std::string> drawn{};                   ///< variables whose expression has a box
     std::size_t level = 0;
   };
@@ -92,7 +94,9 @@ class Drawing {
     line(level, fmt::format("{} [label=<{}>, fillcolor=\"{}\"{}];", dot::quoted(name), label, fill, more));
   }
 
-  void edge(const Source& from, const std::string& to, std::string_view port) {
+  /// `reader` is the statement that reads it, from 1. What is read before it is worked out is feedback: it is written
+  /// from its end to its beginning, so that Graphviz puts the reader at the left.
+  void edge(const Source& from, const std::string& to, std::string_view port, std::size_t reader) {
     const auto end = [](const std::string& name, std::string_view pin, std::string_view side) {
       return pin.empty() ? dot::quoted(name) : fmt::format("{}:{}:{}", dot::quoted(name), dot::quoted(pin), side);
     };
@@ -105,8 +109,23 @@ class Drawing {
     } else if (from.type != Type::Real) {
       style.emplace_back("color=\"#1f4e9c\"");
     }
-    edges_ += fmt::format("  {} -> {}{};\n", end(from.box, from.port, "e"), end(to, port, "w"),
+    const bool feedback = from.statement >= reader;
+    if (feedback) {
+      style.emplace_back("dir=back");
+    }
+    const std::string begin = end(from.box, from.port, "e");
+    const std::string target = end(to, port, "w");
+    edges_ += fmt::format("  {} -> {}{};\n", feedback ? target : begin, feedback ? begin : target,
                           style.empty() ? "" : fmt::format(" [{}]", fmt::join(style, ", ")));
+  }
+
+  static std::string duration_of(std::int64_t nanoseconds) {
+    for (const auto& [factor, unit] : {std::pair{1'000'000'000, "s"}, {1'000'000, "ms"}, {1'000, "µs"}}) {
+      if (nanoseconds % factor == 0) {
+        return fmt::format("{} {}", nanoseconds / factor, unit);
+      }
+    }
+    return fmt::format("{} ns", nanoseconds);
   }
 
   static std::string with_unit(std::string_view name, std::string_view unit) {
@@ -117,14 +136,18 @@ class Drawing {
 
   void draw(const Definition& definition, const std::string& prefix, std::size_t level) {
     Scope scope{.definition = &definition, .prefix = prefix, .level = level};
-    for (const auto& statement : definition.block->statements) {
-      if (const auto* assignment = std::get_if<language::Assignment>(&statement)) {
+    const auto& statements = definition.block->statements;
+    for (std::size_t i = 0; i < statements.size(); ++i) {
+      if (const auto* assignment = std::get_if<language::Assignment>(&statements[i])) {
         scope.assigned[upper(assignment->target.text)] = assignment->value;
+        scope.statement[upper(assignment->target.text)] = i + 1;
+      } else {
+        scope.statement[upper(std::get<language::Call>(statements[i]).instance.text)] = i + 1;
       }
     }
     draw_ports(scope, Declared::Kind::Input, "source");
     draw_ports(scope, Declared::Kind::Parameter, "source");
-    for (const auto& statement : definition.block->statements) {
+    for (const auto& statement : statements) {
       if (const auto* call = std::get_if<language::Call>(&statement)) {
         draw_instance(scope, *call);
       } else {
@@ -140,16 +163,16 @@ class Drawing {
     for (const Declared& declared : definition.variables) {
       if (declared.kind == Declared::Kind::Output) {
         if (auto from = source_of_variable(scope, declared)) {
-          edge(*from, port_box(scope, declared), "");
+          edge(*from, port_box(scope, declared), "", statements.size() + 1);
         }
       }
     }
-    for (const auto& statement : definition.block->statements) {
-      if (const auto* call = std::get_if<language::Call>(&statement)) {
-        connect(scope, *call);
-      } else if (const auto& assignment = std::get<language::Assignment>(statement);
+    for (std::size_t i = 0; i < statements.size(); ++i) {
+      if (const auto* call = std::get_if<language::Call>(&statements[i])) {
+        connect(scope, *call, i + 1);
+      } else if (const auto& assignment = std::get<language::Assignment>(statements[i]);
                  scope.drawn.contains(upper(assignment.target.text))) {
-        connect_expression(scope, prefix + std::string(assignment.target.text), assignment.value);
+        connect_expression(scope, prefix + std::string(assignment.target.text), assignment.value, i + 1);
       }
     }
   }
@@ -224,7 +247,8 @@ class Drawing {
     line(scope.level + 1,
          fmt::format("graph [label=<<B>{}</B> {}>, style=\"rounded\", color=\"{}\", fontsize=11, margin=12];",
                      dot::escaped(declared->field.name),
-                     dot::small_text(std::string(inner.block->name.text) + settings_of(*declared, call, scope)),
+                     dot::small_text(fmt::format("{}  {}", inner.block->name.text,
+                                                 fmt::join(settings_of(*declared, call, scope), ", "))),
                      dot::faint));
     draw(inner, path + ".", scope.level + 1);
     line(scope.level, "}");
@@ -235,11 +259,11 @@ class Drawing {
   }
 
   /// What the text sets, and how often the instance runs.
-  [[nodiscard]] std::string settings_of(const Declared& declared, const language::Call& call,
-                                        const Scope& scope) const {
-    std::string text;
+  [[nodiscard]] std::vector<std::string> settings_of(const Declared& declared, const language::Call& call,
+                                                     const Scope& scope) const {
+    std::vector<std::string> list;
     const auto add = [&](const language::Argument& one) {
-      text += fmt::format("{}{} = {}", text.empty() ? "  " : ", ", one.pin.text, text_of(one.value));
+      list.push_back(fmt::format("{} = {}", one.pin.text, text_of(one.value)));
     };
     std::ranges::for_each(declared.variable->settings, add);
     for (const auto& argument : call.arguments) {
@@ -248,9 +272,9 @@ class Drawing {
       }
     }
     if (declared.rate.every > 1) {
-      text += fmt::format("{}@every {}", text.empty() ? "  " : ", ", declared.rate.every);
+      list.push_back(fmt::format("@every {}", declared.rate.every));
     }
-    return text;
+    return list;
   }
 
   void draw_library(const Scope& scope, const Declared& declared, const language::Call& call, const std::string& path) {
@@ -280,10 +304,8 @@ class Drawing {
         "COLSPAN=\"2\"><B>{}</B></TD></TR>"
         "<TR><TD COLSPAN=\"2\">{}</TD></TR>",
         dot::escaped(declared.field.name), dot::small_text(block.about.name));
-    if (const std::string settings = settings_of(declared, call, scope); !settings.empty()) {
-      for (const std::string& one : dot::lines_of(std::string_view(settings).substr(2))) {
-        label += fmt::format("<TR><TD COLSPAN=\"2\">{}</TD></TR>", dot::small_text(one));
-      }
+    for (const std::string& one : dot::lines_of(settings_of(declared, call, scope))) {
+      label += fmt::format("<TR><TD COLSPAN=\"2\">{}</TD></TR>", dot::small_text(one));
     }
     for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
       label += fmt::format("<TR>{}{}</TR>", i < left.size() ? left[i] : "<TD></TD>",
@@ -316,7 +338,7 @@ class Drawing {
 
   // --- wires ---
 
-  void connect(const Scope& scope, const language::Call& call) {
+  void connect(const Scope& scope, const language::Call& call, std::size_t reader) {
     const Declared* const declared = find(*scope.definition, call.instance.text);
     const std::string path = scope.prefix + std::string(declared->field.name);
     for (const auto& argument : call.arguments) {
@@ -330,21 +352,31 @@ class Drawing {
       const std::string pin = own ? std::string() : pin_port(argument.pin.text);
       if (const auto* reference = std::get_if<language::Reference>(&expression(argument.value).node)) {
         if (auto from = source_of(scope, *reference)) {
-          edge(*from, to, pin);
+          edge(*from, to, pin, reader);
         }
       } else {
-        edge({.box = pin_box(path, argument)}, to, pin);
-        connect_expression(scope, pin_box(path, argument), argument.value);
+        edge({.box = pin_box(path, argument), .type = own ? port->field.type : pin_type(*declared->block, argument)},
+             to, pin, reader);
+        connect_expression(scope, pin_box(path, argument), argument.value, reader);
       }
     }
   }
 
-  void connect_expression(const Scope& scope, const std::string& name, ExpressionId id) {
+  static Type pin_type(const BlockType& block, const language::Argument& argument) {
+    for (std::size_t pin = 0; pin < block.pin_count(); ++pin) {
+      if (language::same_name(block.pin(pin).name, argument.pin.text)) {
+        return block.pin(pin).type;
+      }
+    }
+    return Type::Real;
+  }
+
+  void connect_expression(const Scope& scope, const std::string& name, ExpressionId id, std::size_t reader) {
     std::set<std::pair<std::string, std::string>> known;  // U * U reads U twice
     for_each_reference(id, [&](const language::Reference& reference) {
       if (auto from = source_of(scope, reference); from && known.emplace(from->box, from->port).second) {
         from->passed.clear();  // the expression names it
-        edge(*from, name, "");
+        edge(*from, name, "", reader);
       }
     });
   }
@@ -357,16 +389,23 @@ class Drawing {
         if (language::same_name(output.name, reference.pin.text)) {
           return Source{.box = scope.prefix + std::string(declared->field.name),
                         .port = output_port(output.name),
-                        .type = output.type};
+                        .type = output.type,
+                        .statement = statement_of(scope, reference.name.text)};
         }
       }
     }
     if (declared->kind == Declared::Kind::UserBlock) {
       const Declared* const output = find(definitions_.list[declared->definition], reference.pin.text);
       return Source{.box = fmt::format("{}{}.{} (port)", scope.prefix, declared->field.name, output->field.name),
-                    .type = output->field.type};
+                    .type = output->field.type,
+                    .statement = statement_of(scope, reference.name.text)};
     }
     return source_of_variable(scope, *declared);
+  }
+
+  static std::size_t statement_of(const Scope& scope, std::string_view name) {
+    const auto found = scope.statement.find(upper(name));
+    return found == scope.statement.end() ? 0 : found->second;
   }
 
   [[nodiscard]] std::optional<Source> source_of_variable(const Scope& scope, const Declared& declared) const {
@@ -378,7 +417,8 @@ class Drawing {
     }
     const std::string name = upper(declared.field.name);
     if (scope.drawn.contains(name)) {
-      return Source{.box = scope.prefix + std::string(declared.field.name), .type = type};
+      return Source{
+          .box = scope.prefix + std::string(declared.field.name), .type = type, .statement = statement_of(scope, name)};
     }
     const auto value = scope.assigned.find(name);
     if (value == scope.assigned.end() || !is_reference(value->second)) {
@@ -435,7 +475,7 @@ class Drawing {
   Definitions definitions_;
   std::map<std::string, std::string> units_;  ///< by output of a library block, in upper case
   std::string name_;
-  double sample_time_ = 0.0;
+  std::int64_t sample_time_ns_ = 0;
   std::set<std::string> driven_;  ///< pins that wires lead to, in upper case
   std::string text_;
   std::string edges_;

@@ -70,6 +70,25 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+std::vector<std::string> lines_of(const std::vector<std::string>& items) {
+  std::vector<std::string> lines;
+  for (const std::string& item : items) {
+    if (!lines.empty()) {
+      lines.back() += ',';
+    }
+    if (lines.empty() || lines.back().size() + 1 + item.size() > line_length) {
+      if (lines.size() == most_lines) {
+        lines.back() += " …";
+        return lines;
+      }
+      lines.push_back(item.size() > 2 * line_length ? lines_of(std::string_view(item)).back() : item);
+    } else {
+      lines.back() += " " + item;
+    }
+  }
+  return lines;
+}
+
 std::string broken(std::string_view text) {
   std::string result;
   for (const std::string& line : lines_of(text)) {

@@ -21,7 +21,10 @@ std::string small_text(std::string_view text);
 /// Broken at spaces into lines that a box can hold; what does not fit into the last one is cut.
 std::vector<std::string> lines_of(std::string_view text);
 
-/// The same as a label.
+/// The items of a list with commas, none of them broken.
+std::vector<std::string> lines_of(const std::vector<std::string>& items);
+
+/// A text broken into lines, as a label.
 std::string broken(std::string_view text);
 
 }  // namespace hysteron::dot

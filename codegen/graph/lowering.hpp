@@ -63,6 +63,7 @@ class Lowering {
   Wire lower_binary(const language::Binary& binary, language::Span span);
   Wire lower_call(const language::FunctionCall& call, language::Span span);
   Wire round_to_int(Wire x, language::Span span);
+  Wire angle_of(Wire y, Wire x, language::Span span);
   Wire expression(language::ExpressionId id);
   Wire apply(Op op, std::initializer_list<Wire> operands, language::Span span) {
     return builder_.operation(op, operands, path_, span);

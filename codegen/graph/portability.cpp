@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -152,7 +153,7 @@ class Check {
       check_exponent(value_of(call, name, 1));
     } else if (name == "MUX") {
       check_index(value_of(call, name, 0), call.arguments.size() - 1, id);
-    } else if (name == "LREAL_TO_DINT" && !constant_of(call.arguments.front().value)) {
+    } else if (name == "LREAL_TO_DINT" && may_be_half(call.arguments.front().value)) {
       warn(Difference::Half, id, "LREAL_TO_DINT takes a half to the even number",
            "Where halves can come, write TRUNC(X + SEL(X < 0.0, 0.5, -0.5)), which takes them away from zero.");
     } else if (name == "MIN" || name == "MAX") {
@@ -231,6 +232,11 @@ class Check {
   [[nodiscard]] bool is_call(ExpressionId id, std::string_view name) const {
     const auto* call = std::get_if<FunctionCall>(&source_.expressions[id].node);
     return call != nullptr && language::same_name(call->function.text, name);
+  }
+
+  [[nodiscard]] bool may_be_half(ExpressionId id) const {
+    const auto constant = constant_of(id);
+    return constant ? std::abs(*constant - std::trunc(*constant)) == 0.5 : !is_call(id, "DINT_TO_LREAL");
   }
 
   /// LIMIT(a, …, b) with constants between `low` and `high`.

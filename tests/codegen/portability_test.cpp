@@ -107,7 +107,8 @@ TEST(Portability, AnIndexOfMuxThatMayLieOutside) {
 
 TEST(Portability, HalvesThatAreRounded) {
   expect_other_meaning("DINT", "LREAL_TO_DINT(X)", "STruC++: away from zero: 3", "TRUNC(X + SEL(X < 0.0, 0.5, -0.5))");
-  expect_one_meaning("DINT", "LREAL_TO_DINT(2.0)");
+  expect_other_meaning("DINT", "LREAL_TO_DINT(-2.5)", "away from zero", "TRUNC");
+  expect_one_meaning("DINT", "LREAL_TO_DINT(2.25) + LREAL_TO_DINT(DINT_TO_LREAL(N))");
   expect_one_meaning("DINT", "TRUNC(X + SEL(X < 0.0, 0.5, -0.5))");
   const std::string away = "TRUNC(X + SEL(X < 0.0, 0.5, -0.5))";
   for (const double x : {-3.5, -2.5, -0.4, 0.0, 0.5, 1.4, 2.5}) {

@@ -17,11 +17,11 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string nested =
-    "FUNCTION_BLOCK STAGE\n  VAR_INPUT\n    U : LREAL;  (* @unit V *)\n    K : LREAL := 2.0;  (* @param *)\n  END_VAR\n"
+    "FUNCTION_BLOCK STAGE\n  VAR_INPUT\n    U : LREAL;  (* @unit um *)\n    K : LREAL := 2.0;  (* @param *)\n  END_VAR\n"
     "  VAR_OUTPUT\n    Y : LREAL;  (* @unit um *)\n  END_VAR\n  VAR\n    L : HY_LAG := (T1 := 0.25);\n  END_VAR\n\n"
     "  L(XIN := U);\n  Y := L.XOUT;\nEND_FUNCTION_BLOCK\n"
     "FUNCTION_BLOCK AXIS  (* @ts 1ms @doc a loop & its \"plant\" *)\n  VAR_INPUT\n    REF : LREAL;  (* @unit um *)\n"
-    "    ON_1 : BOOL;\n    TRIM : LREAL := 0.0;  (* @param @unit V *)\n  END_VAR\n  VAR_OUTPUT\n    POS : LREAL;  (* "
+    "    ON_1 : BOOL;\n    TRIM : LREAL := 0.0;  (* @param @unit um *)\n  END_VAR\n  VAR_OUTPUT\n    POS : LREAL;  (* "
     "@unit um *)\n"
     "    FAR : BOOL;\n  END_VAR\n  VAR CONSTANT\n    LIMIT_1 : LREAL := 5.0;\n  END_VAR\n  VAR\n    A, B : STAGE;\n"
     "    LAST : HY_DELAY;  (* @every 1 *)\n    C : HY_PID := (KP := 0.5);\n    OFFSET : LREAL;\n    PASSED : LREAL;\n  "

@@ -6,7 +6,7 @@
 namespace hysteron {
 namespace {
 
-constexpr std::array rows{
+constexpr std::array known_names{
     OtherName{"TON", "IEC 61131-3", "HY_TON", "times are LREAL in seconds"},
     OtherName{"TOF", "IEC 61131-3", "HY_TOF", "times are LREAL in seconds"},
     OtherName{"TP", "IEC 61131-3", "HY_TP", "times are LREAL in seconds"},
@@ -94,7 +94,7 @@ constexpr std::array rows{
 };
 
 /// Letters and digits alone, in capitals, without a prefix HY_: UnitDelay, unit_delay and Unit Delay are one name.
-std::string plain(std::string_view name) {
+std::string letters_of(std::string_view name) {
   std::string result;
   for (const char c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
@@ -107,12 +107,12 @@ std::string plain(std::string_view name) {
 }  // namespace
 
 std::span<const OtherName> other_names() {
-  return rows;
+  return known_names;
 }
 
 std::string_view block_of_other_name(std::string_view name) {
-  for (const OtherName& one : rows) {
-    if (plain(one.name) == plain(name)) {
+  for (const OtherName& one : known_names) {
+    if (letters_of(one.name) == letters_of(name)) {
       return one.block;
     }
   }

@@ -20,9 +20,9 @@ using language::ExpressionId;
 using language::FunctionCall;
 using language::Operator;
 
-enum class Row : std::uint8_t { OpenNumber, CrossedLimit, OutsideMux, Half, Exponent, NamedOrder, ZeroDivisor };
+enum class Difference : std::uint8_t { OpenNumber, CrossedLimit, OutsideMux, Half, Exponent, NamedOrder, ZeroDivisor };
 
-constexpr std::array<OtherMeaning, 7> rows{{
+constexpr std::array<OtherMeaning, 7> meanings{{
     {.construct = "TRUNC(X) > 5, MAX(1, TRUNC(X))",
      .here = "a comparison of DINT",
      .elsewhere = "MATIEC infers ULINT: −1 is then above 5",
@@ -153,7 +153,7 @@ class Check {
     } else if (name == "MUX") {
       check_index(value_of(call, name, 0), call.arguments.size() - 1, id);
     } else if (name == "LREAL_TO_DINT" && !constant_of(call.arguments.front().value)) {
-      warn(Row::Half, id, "LREAL_TO_DINT takes a half to the even number",
+      warn(Difference::Half, id, "LREAL_TO_DINT takes a half to the even number",
            "Where halves can come, write TRUNC(X + SEL(X < 0.0, 0.5, -0.5)), which takes them away from zero.");
     } else if (name == "MIN" || name == "MAX") {
       warn_of_open(all, id);
@@ -166,7 +166,7 @@ class Check {
 
   void warn_of_open(const Openness& operands, ExpressionId id) {
     if (operands.open && operands.of_trunc) {
-      warn(Row::OpenNumber, id, "nothing here says that TRUNC gives a DINT",
+      warn(Difference::OpenNumber, id, "nothing here says that TRUNC gives a DINT",
            operands.literal.empty() ? "Give TRUNC(…) to a variable of type DINT first, and take that."
                                     : fmt::format("Write DINT#{}.", operands.literal));
     }
@@ -176,7 +176,7 @@ class Check {
     const auto lower = constant_of(value_of(call, "LIMIT", 0));
     const auto upper = constant_of(value_of(call, "LIMIT", 2));
     if (lower && upper && *lower > *upper) {
-      warn(Row::CrossedLimit, id, "the lower bound of LIMIT is above the upper one",
+      warn(Difference::CrossedLimit, id, "the lower bound of LIMIT is above the upper one",
            "Write the bounds in their order, or MIN(MAX(IN, MN), MX).");
     }
   }
@@ -187,7 +187,7 @@ class Check {
     const bool inside = constant ? *constant >= 0.0 && *constant <= last
                                  : is_call(index, "BOOL_TO_DINT") || stays_within(index, 0.0, last);
     if (!inside) {
-      warn(Row::OutsideMux, id, fmt::format("the index of MUX may lie outside of 0 … {}", last),
+      warn(Difference::OutsideMux, id, fmt::format("the index of MUX may lie outside of 0 … {}", last),
            fmt::format("Write MUX(LIMIT(0, {}, {}), …), which is the nearest end everywhere.", text_of(index), last));
     }
   }
@@ -197,7 +197,7 @@ class Check {
     const bool never_zero = constant ? *constant != 0.0 : is_kept_from_zero(divisor);
     if (!never_zero) {
       const std::string text = text_of(divisor);
-      warn(Row::ZeroDivisor, id, constant ? "a DINT is divided by 0" : fmt::format("{} may be 0", text),
+      warn(Difference::ZeroDivisor, id, constant ? "a DINT is divided by 0" : fmt::format("{} may be 0", text),
            fmt::format("Divide by SEL({0} = 0, {0}, 1), and choose what is to come of 0 by a further SEL.", text));
     }
   }
@@ -208,7 +208,7 @@ class Check {
     Type type = Type::Real;
     if (constant_value(source_, exponent, value, type) && type == Type::Real &&
         static_cast<double>(static_cast<float>(value)) != value) {
-      warn(Row::Exponent, exponent, fmt::format("the exponent {} has no type", text_of(exponent)),
+      warn(Difference::Exponent, exponent, fmt::format("the exponent {} has no type", text_of(exponent)),
            fmt::format("Name it: VAR CONSTANT EXPONENT : LREAL := {}; END_VAR.", text_of(exponent)));
     }
   }
@@ -218,7 +218,7 @@ class Check {
     for (std::size_t i = 0; i < call.arguments.size() && i < order.size(); ++i) {
       const std::string_view formal = call.arguments[i].formal.text;
       if (!formal.empty() && !language::same_name(formal, order[i])) {
-        warn(Row::NamedOrder, id, fmt::format("the arguments of {} are not in their order", name),
+        warn(Difference::NamedOrder, id, fmt::format("the arguments of {} are not in their order", name),
              fmt::format("Write them as {}({}).", name,
                          fmt::join(order.first(std::min(order.size(), call.arguments.size())), ", ")));
         return;
@@ -330,8 +330,8 @@ class Check {
     return declared->field.type;
   }
 
-  void warn(Row row, ExpressionId id, const std::string& cause, const std::string& mend) {
-    const OtherMeaning& meaning = rows[static_cast<std::size_t>(row)];
+  void warn(Difference kind, ExpressionId id, const std::string& cause, const std::string& mend) {
+    const OtherMeaning& meaning = meanings[static_cast<std::size_t>(kind)];
     diagnostics_.warning(
         error::other_meaning_elsewhere, source_.place(source_.expressions[id].span),
         fmt::format("other meaning elsewhere: {}. Here: {}. {}", cause, meaning.here, meaning.elsewhere), mend);
@@ -346,7 +346,7 @@ class Check {
 }  // namespace
 
 std::span<const OtherMeaning> other_meanings() {
-  return rows;
+  return meanings;
 }
 
 void check_portability(const Definitions& definitions, std::uint32_t definition, Diagnostics& diagnostics) {

@@ -237,12 +237,12 @@ class Order {
     diagnostics.error(
         error::hidden_delay, source_.place(read.span),
         fmt::format("hidden delay: {} is read before it is {}", read.text, is_call(writer) ? "called" : "assigned"),
-        fmt::format("An IEC compiler has last cycle's value here: memory. Is it meant, declare {0} : {1}{2}; call "
+        fmt::format("An IEC compiler has last cycle's value here: memory. If that is meant, declare {0} : {1}{2}; call "
                     "{0}(XIN := {3}); and read {0}.XOUT here. {4}",
                     name, delay_of(type), start, read.text,
                     read.statement == writer
                         ? "Within one step a value cannot depend on itself."
-                        : "Is this step's value meant, move this statement behind that one, as `hysteron fmt "
+                        : "If this step's value is meant, move this statement behind that one, as `hysteron fmt "
                           "--any-order` does."),
         {{source_.place(statement_span(writer)), is_call(writer) ? "called here" : "assigned here"}});
   }

@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/many_instances.hpp"
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 
 namespace hysteron::bench {
 namespace {

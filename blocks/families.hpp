@@ -31,20 +31,22 @@ struct FamilyText {
   Family family;
   std::string_view name;  ///< as in @family and in reports
   std::string_view meaning;
+  bool of_a_part = false;  ///< done by one part to what it passes on, and never to a balance of several
 };
 
 inline constexpr std::array family_texts{
     FamilyText{Family::DryFriction, "dry_friction",
                "a force that turns with the direction of the motion, not its speed"},
     FamilyText{Family::ViscousFriction, "viscous_friction", "a force that grows with the speed"},
-    FamilyText{Family::Play, "play", "a gap that the motion crosses before anything follows"},
-    FamilyText{Family::Hysteresis, "hysteresis", "a loop whose memory is the input's turning points, at any rate"},
+    FamilyText{Family::Play, "play", "a gap that the motion crosses before anything follows", true},
+    FamilyText{Family::Hysteresis, "hysteresis", "a loop whose memory is the input's turning points, at any rate",
+               true},
     FamilyText{Family::SlowMemory, "slow_memory", "what follows its input over seconds or hours: creep, relaxation"},
     FamilyText{Family::SlowChange, "slow_change",
                "what changes with the time since the start, whatever the machine does"},
     FamilyText{Family::LinearDynamics, "linear_dynamics", "what a linear filter does: gain, delay, lag, resonance"},
-    FamilyText{Family::StaticCurve, "static_curve", "a curve over the present value: limit, dead zone, bend"},
-    FamilyText{Family::RateLimit, "rate_limit", "a bound on the rate of change"},
+    FamilyText{Family::StaticCurve, "static_curve", "a curve over the present value: limit, dead zone, bend", true},
+    FamilyText{Family::RateLimit, "rate_limit", "a bound on the rate of change", true},
     FamilyText{Family::PeriodicOverPosition, "periodic_over_position", "what repeats itself over a position"},
     FamilyText{Family::PeriodicInTime, "periodic_in_time",
                "what repeats itself with the time, whatever the machine does"},

@@ -13,6 +13,7 @@
 #include "diagnosis/effects/candidates.hpp"
 #include "diagnosis/evidence/law_findings.hpp"
 #include "diagnosis/noise/noise_floor.hpp"
+#include "diagnosis/rules.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -178,8 +179,9 @@ struct Diagnosis {
   parameters::ParameterFile improved_file{};     ///< its parameters
   std::string feedforward_text{};                ///< where the improved diagram has an inverse, else empty
   std::vector<std::string> feedforward_notes{};  ///< how exact it is, or why there is none
-  double tracking_nominal = 0.0;   ///< predicted RMS tracking error with the nominal diagram's feedforward
-  double tracking_improved = 0.0;  ///< and with that of the improved one; both 0 where there is none
+  double tracking_nominal = 0.0;      ///< predicted RMS tracking error with the nominal diagram's feedforward
+  double tracking_improved = 0.0;     ///< and with that of the improved one; both 0 where there is none
+  std::vector<Decision> decisions{};  ///< the answers of the rules, where they were asked for
   std::size_t tried = 0;
   double seconds = 0.0;
 };

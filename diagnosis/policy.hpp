@@ -1,10 +1,11 @@
-// Every number by which the evidence decides: its value, where it comes from, what it decides.
+// Every number by which the evidence and the verdict decide: its value, where it comes from, what it decides.
 //
-// A threshold of the evidence stands here and nowhere else. `origin` is mathematics, a convention, a false-alarm rate,
-// or what it was calibrated on.
+// Such a threshold stands here and nowhere else. `origin` is mathematics, a convention, a false-alarm rate, or what it
+// was calibrated on. A rule has a value at which it changes nothing, so that it can be left out: `--without`.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string_view>
 
 namespace hysteron::diagnosis {
@@ -15,29 +16,49 @@ struct Threshold {
   std::string_view unit;
   std::string_view origin;
   std::string_view decides;
+  double neutral = std::numeric_limits<double>::quiet_NaN();  ///< not a number: a setting, which is always needed
+
+  [[nodiscard]] constexpr bool is_rule() const { return neutral == neutral; }
 };
 
 namespace policy {
 
-inline constexpr Threshold above_noise{"above the noise", 10.0, "1", "mathematics: three times the noise in size",
-                                       "what energy of noise has to be left for the evidence to be asked"};
-inline constexpr Threshold unexplained{"unexplained", 0.001, "1",
+/// Where a rule that asks for more than its threshold changes nothing, and one that asks for less.
+inline constexpr double anything = -std::numeric_limits<double>::infinity();
+inline constexpr double nothing = std::numeric_limits<double>::infinity();
+
+inline constexpr Threshold unexplained{"unexplained",
+                                       0.001,
+                                       "1",
                                        "a formula errs by 3 % in size, as in the weights of a judgement",
-                                       "what share of the gap's energy has to be left for the evidence to be asked"};
+                                       "what share of the gap's energy has to be left for the evidence to be asked",
+                                       anything};
 inline constexpr Threshold blocks{"blocks", 15.0, "1", "convention: 10 to 20 folds; 6 to 50 gave the same families",
                                   "into how many stretches the records are cut, one of them held out at a time"};
 inline constexpr Threshold rows{"rows", 4000.0, "samples", "cost: the regression is linear in them",
                                 "how many means of consecutive samples of an output are compared at most"};
-inline constexpr Threshold price{"price", 0.10, "ln", "convention: a tenth of what is left",
-                                 "what each further effect has to take off the held-out energy"};
+inline constexpr Threshold price{"price",
+                                 0.10,
+                                 "ln",
+                                 "convention: a tenth of what is left",
+                                 "what each further effect has to take off the held-out energy",
+                                 0.0};
 inline constexpr Threshold model_error{
-    "model error", 0.15, "ln", "calibrated on the development machines",
+    "model error",
+    0.15,
+    "ln",
+    "calibrated on the development machines",
     "by how much the energies that two sets leave may differ for their formulas' sake, "
-    "in all blocks alike"};
+    "in all blocks alike",
+    0.0};
 inline constexpr Threshold another_place{
-    "another place", 0.7, "ln", "convention: twice as good",
+    "another place",
+    0.7,
+    "ln",
+    "convention: twice as good",
     "what a set has to gain that needs an effect behind the place where the missing "
-    "signal can be seen"};
+    "signal can be seen",
+    0.0};
 inline constexpr Threshold draws{"draws", 2000.0, "1", "mathematics: 0.01 of standard error",
                                  "the draws of the bootstrap over blocks"};
 inline constexpr Threshold quiet_slope{"quiet slope", 0.1, "1", "convention: noise a tenth of the slope",
@@ -58,15 +79,106 @@ inline constexpr Threshold named{"named", 0.5, "1", "convention: more probable t
                                  "from which probability a family is named"};
 inline constexpr Threshold rival{"rival", 0.02, "1", "convention: one draw in fifty",
                                  "from which probability a set is told as a rival"};
-inline constexpr Threshold kept_promise{"kept promise", 0.5, "1", "convention: half of it",
-                                        "what part of the promised closure a fit over whole records has to keep"};
-inline constexpr Threshold relevant{"relevant", 0.05, "1", "convention: the twentieth part",
-                                    "what share of the gap an effect has to close to be named"};
+inline constexpr Threshold kept_promise{"kept promise",
+                                        0.5,
+                                        "1",
+                                        "convention: half of it",
+                                        "what part of the promised closure a fit over whole records has to keep",
+                                        anything};
+inline constexpr Threshold runs{"runs", 6.0, "1", "cost: a fit over whole records each",
+                                "how many of the most probable sets are run to see whether they keep their promise"};
+inline constexpr Threshold relevant{
+    "relevant", 0.05, "1", "convention: the twentieth part", "what share of the gap an effect has to close to be named",
+    anything};
 
-inline constexpr std::array all{above_noise, unexplained,   blocks,         rows,        price,
-                                model_error, another_place, draws,          quiet_slope, follower,
-                                same_signal, at_once,       line_of_driver, quick,       linear,
-                                named,       rival,         kept_promise,   relevant};
+inline constexpr Threshold far_above{"far above the noise",
+                                     3.0,
+                                     "1",
+                                     "convention: three times what may be noise",
+                                     "from which size on what is left is a gap, whether or not anything predicts it",
+                                     nothing};
+inline constexpr Threshold mostly_open{"mostly open",
+                                       0.5,
+                                       "1",
+                                       "convention: more than half",
+                                       "from which open share of the gap on a verdict is partial, where what is left "
+                                       "can be predicted",
+                                       nothing};
+inline constexpr Threshold notably_open{"notably open",
+                                        0.1,
+                                        "1",
+                                        "convention: the tenth part",
+                                        "from which open share of the gap on a verdict is partial, where twice the "
+                                        "noise is left",
+                                        nothing};
+inline constexpr Threshold twice_noise{"twice the noise",
+                                       2.0,
+                                       "1",
+                                       "convention: twice what may be noise",
+                                       "from which size on an open share makes a verdict partial",
+                                       anything};
+inline constexpr Threshold suspicious{"suspicious", 1.2, "1", "calibrated: slow noise is off by a tenth",
+                                      "from which size on what is left is no noise, where the floor is of repeats"};
+inline constexpr Threshold hidden_noise{"hidden noise", 1.5, "floors",
+                                        "calibrated: what other floors do not see of coloured noise",
+                                        "from which size on what is left is no noise, of any other floor"};
+inline constexpr Threshold smoothest_noise{"smoothest noise", 10.0, "1", "calibrated: noise of a pole of 0.9",
+                                           "how far dwells may lie above differences and be noise"};
+inline constexpr Threshold sure_of_one_motion{"sure of one motion",
+                                              0.8,
+                                              "1",
+                                              "convention",
+                                              "how sure a verdict on a record of a single motion is at most",
+                                              nothing};
+inline constexpr Threshold sure_of_missed_start{"sure of a missed start",
+                                                0.5,
+                                                "1",
+                                                "convention: what is named may stand for another state at the start",
+                                                "how sure a verdict is at most that misses the begin of a record",
+                                                nothing};
+inline constexpr Threshold sure_of_far_parameters{"sure of far parameters",
+                                                  0.6,
+                                                  "1",
+                                                  "convention: parameters bend to what the named effect is not",
+                                                  "how sure a verdict is at most whose known parameters ran far off",
+                                                  nothing};
+inline constexpr Threshold sure_of_unknown{"sure of unknown",
+                                           0.85,
+                                           "1",
+                                           "convention: that no name fits now does not say that none will",
+                                           "how sure it is at most that no effect of the library is the cause",
+                                           nothing};
+
+inline constexpr std::array all{
+                                unexplained,
+                                blocks,
+                                rows,
+                                price,
+                                model_error,
+                                another_place,
+                                draws,
+                                quiet_slope,
+                                follower,
+                                same_signal,
+                                at_once,
+                                line_of_driver,
+                                quick,
+                                linear,
+                                named,
+                                rival,
+                                kept_promise,
+                                relevant,
+                                far_above,
+                                mostly_open,
+                                notably_open,
+                                twice_noise,
+                                suspicious,
+                                hidden_noise,
+                                smoothest_noise,
+                                sure_of_one_motion,
+                                sure_of_missed_start,
+                                sure_of_far_parameters,
+                                sure_of_unknown};
 
 }  // namespace policy
 }  // namespace hysteron::diagnosis

@@ -105,6 +105,7 @@ constexpr std::array titles{
     ErrorTitle{error::no_test_selected, "No test case to run"},
     ErrorTitle{error::bad_usage, "Command line that is not understood"},
     ErrorTitle{error::foreign_file, "File that Hysteron did not write"},
+    ErrorTitle{error::name_too_long, "Name too long for the target"},
     ErrorTitle{error::no_graphviz, "Graphviz is not installed"},
     ErrorTitle{error::graphviz_failed, "Graphviz cannot draw"},
     ErrorTitle{error::run_file_syntax, "Run file is not TOML"},

@@ -113,6 +113,7 @@ inline constexpr int generated_code_fails = 726;
 inline constexpr int no_test_selected = 727;
 inline constexpr int bad_usage = 730;
 inline constexpr int foreign_file = 731;
+inline constexpr int name_too_long = 732;
 inline constexpr int no_graphviz = 740;
 inline constexpr int graphviz_failed = 741;
 inline constexpr int run_file_syntax = 801;

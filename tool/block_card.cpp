@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "codegen/backends/block_page.hpp"
+#include "codegen/backends/reference/block_page.hpp"
 #include "codegen/graph/names.hpp"
 #include "support/utf8.hpp"
 

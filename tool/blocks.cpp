@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/block_page.hpp"
+#include "codegen/backends/reference/block_page.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"

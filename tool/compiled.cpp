@@ -12,8 +12,9 @@
 #include <sstream>
 #include <utility>
 
-#include "codegen/backends/cpp.hpp"
-#include "codegen/backends/cpp_host.hpp"
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/cpp/cpp_host.hpp"
 #include "support/errors.hpp"
 #include "support/sha256.hpp"
 #include "support/text_file.hpp"
@@ -86,8 +87,8 @@ std::string as_member(Type type, std::string_view member, std::size_t column) {
 
 /// The function that runs one program over all its rows.
 std::string runner(const std::string& name, const Graph& graph) {
-  const auto inputs = cpp_port_names(graph.inputs);
-  const auto outputs = cpp_port_names(graph.outputs);
+  const auto inputs = port_members(graph.inputs);
+  const auto outputs = port_members(graph.outputs);
   std::string text = fmt::format(
       "int run_{0}(std::size_t steps) {{\n"
       "  {0}::Params params;\n  {0}::State state;\n  {0}::In in;\n  {0}::reset(params, state);\n"

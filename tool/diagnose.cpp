@@ -272,6 +272,11 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
       ->check(number_above_zero())
       ->option_text("SECONDS");
+  app.add_flag("--explain", options->diagnosis.explain,
+               "Tells which rules decided, as measured and against which threshold; in verdict.json, too.");
+  app.add_option("--without", options->diagnosis.without, "Leaves a rule of the policy out, to see what it decides.")
+      ->option_text("RULE")
+      ->allow_extra_args(false);
   app.add_option("--trace", options->trace, "What `hysteron serve` recorded of the controller while the log was taken.")
       ->option_text("RUN.trace");
   app.add_option("--controller", options->controller.file, "The diagram that it ran.")->option_text("CONTROLLER.st");

@@ -186,6 +186,11 @@ std::string diagnosis_text(const Diagnosis& found) {
   for (const std::string& warning : found.warnings) {
     text += "  note: " + warning + "\n";
   }
+  for (const diagnosis::Decision& one : found.decisions) {
+    text += fmt::format("  rule: {}{}: {:.3g}, threshold {:.3g}{}: {}\n", one.rule,
+                        one.about.empty() ? "" : fmt::format(" ({})", one.about), one.measured, one.threshold,
+                        one.unit == "1" ? "" : " " + one.unit, one.outcome);
+  }
   return text + fmt::format("{} candidates, {:.1f} s\n", found.tried, found.seconds);
 }
 

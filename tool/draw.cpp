@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/diagram_dot.hpp"
+#include "codegen/backends/drawing/diagram_dot.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"

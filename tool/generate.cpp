@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/c/c.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/st/st.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -24,9 +28,13 @@ namespace fs = std::filesystem;
 constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
+  hysteron generate feedforward.st --target c --out generated
+  hysteron generate feedforward.st --target st --dialect codesys --out plc
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
-Writes NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
+cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
+c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
+The dialects of st: portable, codesys, twincat, siemens-scl.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
 the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
@@ -36,11 +44,40 @@ Exit codes: 0 done; 2 an error in the diagram, the parameters, the run file or t
 struct GenerateOptions {
   DiagramOptions diagram;
   std::string target;
+  std::string dialect;
   std::string config;
   std::string folder;
   bool host = false;
   bool force = false;
 };
+
+struct Target {
+  std::string_view name;
+  std::vector<GeneratedFile> (*generate)(const Program& program, const GenerateOptions& options);
+};
+
+constexpr std::array targets{
+    Target{"cpp",
+           [](const Program& program, const GenerateOptions& options) {
+             return generate_cpp(program, {.float32 = options.diagram.float32});
+           }},
+    Target{"c",
+           [](const Program& program, const GenerateOptions& options) {
+             return generate_c(program, {.float32 = options.diagram.float32});
+           }},
+    Target{"st",
+           [](const Program& program, const GenerateOptions& options) {
+             return generate_st(program,
+                                {.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
+                                 .float32 = options.diagram.float32});
+           }},
+};
+
+const Target* find_target(std::string_view name) {
+  const auto* const found =
+      std::ranges::find_if(targets, [&](const Target& one) { return equal_ignoring_case(one.name, name); });
+  return found == targets.end() ? nullptr : found;
+}
 
 /// Files of these names may be someone's own: a project has a main.cpp and a CMakeLists.txt of its own.
 void refuse_foreign_file(const fs::path& path, const std::string& text) {
@@ -61,9 +98,17 @@ void check_usage(const GenerateOptions& options) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
   }
-  if (!options.target.empty() && !equal_ignoring_case(options.target, "cpp")) {
+  if (!options.target.empty() && find_target(options.target) == nullptr) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no target {}.", options.target),
-                     "the targets are: cpp.");
+                     "the targets are: cpp, c, st.");
+  }
+  if (!options.dialect.empty() && !equal_ignoring_case(options.target, "st")) {
+    throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text.",
+                     "write --target st, or leave out --dialect.");
+  }
+  if (!options.dialect.empty() && !st_dialect(options.dialect)) {
+    throw InputError(error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
+                     fmt::format("the dialects are: {}.", st_dialect_names()));
   }
   if (options.host == options.config.empty()) {
     throw InputError(error::bad_usage, {},
@@ -82,7 +127,7 @@ int generate(const GenerateOptions& options, Console& console) {
   std::vector<OutputFile> files;
   for (GeneratedFile& file :
        options.host ? generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})
-                    : generate_cpp(program, {.float32 = float32})) {
+                    : find_target(options.target)->generate(program, options)) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = std::move(file.text)});
     refuse_to_overwrite({.file = files.back().path.string(), .mend = "give another folder for --out."}, inputs);
     if (!options.force) {
@@ -108,7 +153,10 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20).")->option_text("cpp");
+  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text).")
+      ->option_text("cpp|c|st");
+  app.add_option("--dialect", options->dialect, "Of Structured Text; portable where none is given.")
+      ->option_text("DIALECT");
   app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
   app.add_option("--config", options->config, "The run file of the host.")->option_text("RUN.toml");
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "codegen/backends/cpp_step.hpp"
-#include "codegen/backends/identifiers.hpp"
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/cpp/cpp_step.hpp"
 #include "runtime/host/host.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "support/numbers.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "support/overwriting.hpp"
 
 namespace hysteron::tool {

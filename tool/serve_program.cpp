@@ -9,8 +9,8 @@
 #include <sstream>
 #include <utility>
 
-#include "codegen/backends/cpp.hpp"
-#include "codegen/backends/cpp_step.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/cpp/cpp_step.hpp"
 #include "codegen/graph/relations.hpp"
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"

@@ -139,4 +139,20 @@ bool is_integral(const Graph& graph, const Wire& signal) {
   return smoothing_of(node).order == 0 && integrals_of(node) == 1;
 }
 
+bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by) {
+  if (signal.from != Wire::From::Node) {
+    return false;
+  }
+  const Node& source = graph.nodes[signal.index];
+  const bool is_sum = source.block == nullptr ? source.op == Op::Add || source.op == Op::Subtract
+                                              : source.block->about.name == "HY_SUM";
+  return is_sum && std::ranges::any_of(graph.nodes, [&](const Node& node) {
+           if (node.block == nullptr || smoothing_of(node).order != 0 || integrals_of(node) != 1) {
+             return false;
+           }
+           const Wire& wire = graph.wire(node, 0);
+           return wire.from == Wire::From::Node && graph.nodes[wire.index].path == passed_on_by;
+         });
+}
+
 }  // namespace hysteron::diagnosis

@@ -30,4 +30,8 @@ namespace hysteron::diagnosis {
 /// Whether a signal is the integral of another one: a speed, a position, a level. A force is none, and no friction.
 [[nodiscard]] bool is_integral(const Graph& graph, const Wire& signal);
 
+/// Whether a signal is a sum, and what a node of that path passes on of it is integrated: a balance of forces, of
+/// flows, of heats, whose excess is stored.
+[[nodiscard]] bool is_balance(const Graph& graph, const Wire& signal, const std::string& passed_on_by);
+
 }  // namespace hysteron::diagnosis

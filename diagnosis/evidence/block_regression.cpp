@@ -121,6 +121,18 @@ BlockRegression::Score BlockRegression::with(std::span<const Law* const> laws, b
   return score;
 }
 
+BlockRegression::Score BlockRegression::bare() const {
+  Score kept{.allowed = true,
+             .held_out = MatrixXd::Zero(counts_.rows(), counts_.cols()),
+             .known = VectorXd::Zero(known_.cols())};
+  for (const Blocks::Run& run : blocks_.runs()) {
+    kept.held_out(static_cast<Index>(run.block), static_cast<Index>(run.output)) +=
+        residuals_.segment(run.first, run.size).squaredNorm();
+  }
+  Score refitted = with({});
+  return refitted.allowed && log_square(refitted.held_out) < log_square(kept.held_out) ? refitted : kept;
+}
+
 void BlockRegression::weigh(const MatrixXd& held_out) {
   for (Index output = 0; output < held_out.cols(); ++output) {
     weights_[output] = counts_.col(output).sum() / std::max(held_out.col(output).sum(), 1e-300);

@@ -31,6 +31,10 @@ class BlockRegression {
   /// Of shares within their bounds, or of any.
   [[nodiscard]] Score with(std::span<const Law* const> laws, bool bounded = true) const;
 
+  /// Of the calibrated diagram: with its known parameters fitted anew to the other blocks, or as they are where that
+  /// predicts better. A refit that only bends to what is missing would make every law look good.
+  [[nodiscard]] Score bare() const;
+
   [[nodiscard]] const VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const MatrixXd& known() const { return known_; }
 

@@ -41,9 +41,9 @@ Explored explored(const Task& task, const Explanation& calibrated, std::unique_p
   result.regression =
       std::make_unique<BlockRegression>(*result.blocks, result.blocks->thinned(result.space->residuals()).col(0),
                                         result.blocks->thinned(result.space->known()));
-  result.regression->weigh(result.regression->with({}).held_out);
+  result.regression->weigh(result.regression->bare().held_out);
   result.search = std::make_unique<SetSearch>(*result.laws, *result.regression, options.threads);
-  result.bare = result.search->fitted({});
+  result.bare = result.search->bare();
   return result;
 }
 
@@ -58,16 +58,20 @@ bool is_elsewhere(const LawSet& set, const std::vector<Explored>& spaces) {
          });
 }
 
-std::vector<LawSet> all_sets(std::vector<Explored>& spaces) {
-  std::vector<LawSet> result;
+/// The sets of all spaces. Those of the outputs that need no place but where what is missing can be seen are there
+/// twice: in the space of the missing signal to be told, here to be measured by.
+struct AllSets {
+  std::vector<LawSet> told{};
+  std::vector<LawSet> yardsticks{};
+};
+AllSets all_sets(std::vector<Explored>& spaces) {
+  AllSets result;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     for (LawSet& set : spaces[i].search->run()) {
       set.space = i;
       set.log_square -= spaces[i].bare.log_square;
       const bool last = i + 1 == spaces.size();
-      if (set.laws.empty() ? last : last || is_elsewhere(set, spaces)) {
-        result.push_back(std::move(set));
-      }
+      (last || is_elsewhere(set, spaces) ? result.told : result.yardsticks).push_back(std::move(set));
     }
   }
   return result;
@@ -78,10 +82,10 @@ struct Votes {
   std::map<std::string, double> families{};
   std::map<std::pair<std::string, std::string>, double> members{};
 };
-Votes vote(const std::vector<Explored>& spaces, std::vector<LawSet>& sets, std::uint64_t seed) {
+Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t seed, const Rules& rules) {
   std::mt19937_64 random(seed);
   std::exponential_distribution<double> weight(1.0);
-  std::normal_distribution<double> error(0.0, policy::model_error.value);
+  std::normal_distribution<double> error(0.0, 1.0);
   Votes votes;
   const auto count = static_cast<int>(policy::draws.value);
   const double one_vote = 1.0 / policy::draws.value;
@@ -93,20 +97,38 @@ Votes vote(const std::vector<Explored>& spaces, std::vector<LawSet>& sets, std::
       bare.push_back(one.regression->log_square(one.bare.score.held_out, weights));
     }
     std::map<std::vector<std::string>, double> errors;  // of a formula: the same for all sets of the same families
-    LawSet* best = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (LawSet& set : sets) {
+    const auto left_by = [&](const LawSet& set) {
       const Explored& there = spaces[set.space];
       const auto [found, first] = errors.emplace(there.search->families_of(set), 0.0);
       if (first) {
-        found->second = error(random);
+        found->second = rules[policy::model_error] * error(random);
       }
-      const double here = there.regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
-                          policy::price.value * static_cast<double>(set.laws.size()) +
-                          (is_elsewhere(set, spaces) ? policy::another_place.value : 0.0);
-      if (here < least) {
-        least = here;
+      return there.regression->log_square(set.score.held_out, weights) - bare[set.space] + found->second +
+             rules[policy::price] * static_cast<double>(set.laws.size());
+    };
+    LawSet* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    const auto take = [&](LawSet& set, double left) {
+      if (left < least) {
+        least = left;
         best = &set;
+      }
+    };
+    for (LawSet& set : sets.told) {
+      if (!is_elsewhere(set, spaces)) {
+        take(set, left_by(set));
+      }
+    }
+    // Shares of the missing signal and of the outputs are no one scale: noise has another part in each. A set of
+    // another place counts by how much better it is at the outputs than the best that needs none.
+    double yardstick = std::numeric_limits<double>::infinity();
+    for (const LawSet& set : sets.yardsticks) {
+      yardstick = std::min(yardstick, left_by(set));
+    }
+    const double at_hand = least;
+    for (LawSet& set : sets.told) {
+      if (is_elsewhere(set, spaces)) {
+        take(set, at_hand + left_by(set) - yardstick + rules[policy::another_place]);
       }
     }
     best->probability += one_vote;
@@ -242,19 +264,30 @@ MissingPicture picture_of(const Explored& there, const LawSet& set, const std::s
 
 }  // namespace
 
-bool leaves_a_cause(const Explanation& chosen, const Explanation& calibrated, double floor_cost) {
-  const double left = chosen.fit.cost - floor_cost;
-  return left > policy::above_noise.value * floor_cost &&
-         left > policy::unexplained.value * (calibrated.fit.cost - floor_cost);
+bool is_worth_telling(const Evidence& evidence, Rules& rules) {
+  if (evidence.families.empty() || evidence.sets.empty()) {
+    return false;
+  }
+  const FamilyFinding& first = evidence.families.front();
+  return rules.is_above(policy::named, first.probability, first.family) &&
+         rules.is_above(policy::relevant, first.closed, first.family);
 }
 
-Evidence evidence_of(const Task& task, const std::string& top, const Explanation& calibrated,
-                     const EvidenceOptions& options) {
+struct Weighing::Sets {
+  bool is_open_loop = false;
+  std::vector<Explored> spaces{};
+  AllSets all{};
+};
+
+Weighing::Weighing(const Task& task, const std::string& top, const Explanation& calibrated,
+                   const EvidenceOptions& options)
+    : seed_(options.seed), sets_(std::make_unique<Sets>()) {
   const std::optional<OpenLoop> open = opened(task, top, calibrated.variant);
   const Explanation plant = open ? footing_of(open->task, open->variant).nominal : Explanation();
   const Task& asked = open ? open->task : task;
   const Explanation& fitted = open ? plant : calibrated;
-  std::vector<Explored> spaces;
+  sets_->is_open_loop = open.has_value();
+  std::vector<Explored>& spaces = sets_->spaces;
   std::unique_ptr<MissingSpace> missing =
       MissingSpace::of_bottleneck(asked, top, fitted, options.columns, options.threads);
   if (!open || !missing) {
@@ -264,12 +297,32 @@ Evidence evidence_of(const Task& task, const std::string& top, const Explanation
   if (missing) {
     spaces.push_back(explored(asked, fitted, std::move(missing), options));
   }
-  std::vector<LawSet> sets = all_sets(spaces);
-  const Votes votes = vote(spaces, sets, options.seed);
+  sets_->all = all_sets(spaces);
+}
+
+Weighing::~Weighing() = default;
+
+void Weighing::strike_out_first() {
+  std::vector<LawSet>& told = sets_->all.told;
+  if (!told.empty()) {
+    told.erase(told.begin());
+  }
+}
+
+Evidence Weighing::told(const Rules& rules) {
+  const std::vector<Explored>& spaces = sets_->spaces;
+  std::vector<LawSet>& sets = sets_->all.told;
+  for (LawSet& set : sets) {
+    set.probability = 0.0;
+  }
+  if (sets.empty()) {
+    return {};
+  }
+  const Votes votes = vote(spaces, sets_->all, seed_, rules);
   std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
 
   Evidence result;
-  result.is_open_loop = open.has_value();
+  result.is_open_loop = sets_->is_open_loop;
   for (const Explored& one : spaces) {
     result.tried += one.laws->size();
   }

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnosis/evidence/law_findings.hpp"
+#include "diagnosis/rules.hpp"
 #include "diagnosis/search/fitting.hpp"
 
 namespace hysteron::diagnosis {
@@ -22,12 +24,28 @@ struct EvidenceOptions {
   std::uint64_t seed = 1;
 };
 
-/// Whether what a set leaves is neither noise, whose cost is `floor_cost`, nor the little by which a formula errs: then
-/// no set is true, and its likelihood says nothing of which effects are there.
-[[nodiscard]] bool leaves_a_cause(const Explanation& chosen, const Explanation& calibrated, double floor_cost);
+/// The sets of laws of a record, to be weighed again where one of them has been refuted.
+class Weighing {
+ public:
+  /// Of a diagram as calibrated, with residuals and sensitivities. The task and the explanation have to outlive it.
+  Weighing(const Task& task, const std::string& top, const Explanation& calibrated, const EvidenceOptions& options);
+  Weighing(const Weighing&) = delete;
+  Weighing& operator=(const Weighing&) = delete;
+  ~Weighing();
 
-/// Of a diagram as calibrated, with residuals and sensitivities.
-[[nodiscard]] Evidence evidence_of(const Task& task, const std::string& top, const Explanation& calibrated,
-                                   const EvidenceOptions& options);
+  /// Of all sets that are not struck out; empty where none is left.
+  [[nodiscard]] Evidence told(const Rules& rules = {});
+
+  /// The most probable set of what was told last is none.
+  void strike_out_first();
+
+ private:
+  struct Sets;
+  std::uint64_t seed_;
+  std::unique_ptr<Sets> sets_;
+};
+
+/// Whether its first family is to be told.
+[[nodiscard]] bool is_worth_telling(const Evidence& evidence, Rules& rules);
 
 }  // namespace hysteron::diagnosis

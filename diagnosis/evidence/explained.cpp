@@ -61,7 +61,7 @@ double value_of(const LawFinding& law, const EffectParameter& parameter, double 
 }  // namespace
 
 Explained explained(const Task& task, const std::string& top, const SetFinding& set, const Explanation& calibrated,
-                    const std::vector<std::string>& columns) {
+                    const std::vector<std::string>& columns, Rules& rules) {
   Explanation result{.variant = calibrated.variant};
   bool is_whole = true;        // all laws have a place and their own drivers
   std::vector<Index> travels;  // of frictions: how far they give
@@ -71,7 +71,7 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     start[at] = std::clamp(start[at] + set.known[j], task.known[j].lower, task.known[j].upper);
   }
   for (const LawFinding& law : set.laws) {
-    if (law.closed < policy::relevant.value && set.laws.size() > 1) {
+    if (law.closed < rules[policy::relevant] && set.laws.size() > 1) {
       continue;
     }
     const std::vector<Candidate> list =
@@ -131,10 +131,11 @@ Explained explained(const Task& task, const std::string& top, const SetFinding& 
     }
   }
   // A fit over whole records that falls far short of what the stretches promise has lost its way, or they were wrong.
-  const double closed = std::isfinite(best.fit.cost)
-                            ? 1.0 - best.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm()
-                            : 0.0;
-  if (closed > policy::kept_promise.value * set.closed) {
+  if (!std::isfinite(best.fit.cost)) {
+    return {};  // no run, no judge
+  }
+  const double closed = 1.0 - best.fit.residuals.squaredNorm() / calibrated.fit.residuals.squaredNorm();
+  if (rules.is_above(policy::kept_promise, closed / std::max(set.closed, 1e-300))) {
     return {.explanation = std::move(best)};
   }
   return {.refuted = is_whole && (set.space == OutputSpace::title || !in_stretches(task, calibrated))};

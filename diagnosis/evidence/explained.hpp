@@ -20,6 +20,6 @@ struct Explained {
 
 /// The laws of the set that the text of the diagram has a place for, each begun from where the evidence found it.
 [[nodiscard]] Explained explained(const Task& task, const std::string& top, const SetFinding& set,
-                                  const Explanation& calibrated, const std::vector<std::string>& columns);
+                                  const Explanation& calibrated, const std::vector<std::string>& columns, Rules& rules);
 
 }  // namespace hysteron::diagnosis

@@ -60,6 +60,7 @@ struct Evidence {
   std::vector<SetFinding> sets{};         ///< most probable first
   MissingPicture picture{};               ///< of the first family; empty where nothing is there
   std::size_t tried = 0;                  ///< laws
+  bool is_told = false;                   ///< the verdict is of it: a family is more probable than not, and is relevant
   bool is_open_loop = false;              ///< of the plant alone, taken out of the loop whose effort was logged
 };
 

@@ -221,7 +221,8 @@ bool MissingSpace::solve(const Explanation& fitted, const std::vector<std::strin
     Place place{.edge = edge.edge,
                 .unit = unit_of_sum(there, edge.instance),
                 .is_port = is_port(fitted.variant.program->graph, edge.edge),
-                .is_integral = is_integral(there.graph, edge.before)};
+                .is_integral = is_integral(there.graph, edge.before),
+                .is_balance = is_balance(there.graph, edge.before, edge.instance)};
     const TangentRun::Variable variable{.kind = TangentRun::Kind::Signal, .index = at};
     ways_.emplace_back();
     for (std::size_t e = 0; e < records; ++e) {

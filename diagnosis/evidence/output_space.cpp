@@ -64,7 +64,8 @@ OutputSpace::OutputSpace(const Task& task, const std::string& top, const Explana
                  .carried = wire_signals(task, *added[i]->program, {added[i]->before}, known).front(),
                  .unit = unit_of_sum(*added[i]->program, added[i]->instance),
                  .is_port = is_port(fitted.variant.program->graph, edges[i]),
-                 .is_integral = is_integral(added[i]->program->graph, added[i]->before)};
+                 .is_integral = is_integral(added[i]->program->graph, added[i]->before),
+                 .is_balance = is_balance(added[i]->program->graph, added[i]->before, added[i]->instance)};
   });
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (added[i]) {

@@ -45,6 +45,10 @@ bool may_act_on(const EffectKind& kind, const Space::Place& place) {
   if (kind.of_record && !place.is_port) {
     return false;
   }
+  const auto family = std::ranges::find(family_texts, kind.family, &FamilyText::name);
+  if (place.is_balance && family != family_texts.end() && family->of_a_part) {
+    return false;
+  }
   const Quantity quantity = quantity_of(place.unit);
   if (kind.by_velocity) {
     return !place.is_integral && !quantity.position && !quantity.velocity && !quantity.thermal && !quantity.number;

@@ -26,7 +26,7 @@ SetSearch::SetSearch(const std::vector<Law>& laws, const BlockRegression& regres
     : laws_(laws), regression_(regression), threads_(threads) {}
 
 std::vector<LawSet> SetSearch::run() const {
-  std::vector<LawSet> all{fitted({})};
+  std::vector<LawSet> all{bare()};
   std::vector<LawSet> front = all;
   for (int size = 1; size <= 3; ++size) {
     std::vector<LawSet> found;
@@ -88,6 +88,12 @@ LawSet SetSearch::fitted(std::vector<std::size_t> list, bool bounded) const {
   LawSet result{.laws = std::move(list), .score = regression_.with(laws, bounded)};
   result.log_square =
       result.score.allowed ? regression_.log_square(result.score.held_out) : std::numeric_limits<double>::infinity();
+  return result;
+}
+
+LawSet SetSearch::bare() const {
+  LawSet result{.score = regression_.bare()};
+  result.log_square = regression_.log_square(result.score.held_out);
   return result;
 }
 

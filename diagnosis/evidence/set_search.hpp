@@ -27,6 +27,8 @@ class SetSearch {
   [[nodiscard]] std::vector<LawSet> run() const;
 
   [[nodiscard]] LawSet fitted(std::vector<std::size_t> list, bool bounded = true) const;
+  /// No law: the calibrated diagram.
+  [[nodiscard]] LawSet bare() const;
   [[nodiscard]] std::vector<std::string> families_of(const LawSet& one) const;
 
  private:

@@ -21,6 +21,7 @@ class Space {
     std::string unit{};    ///< empty where the diagram does not say it
     bool is_port = false;  ///< an input or an output of the diagram
     bool is_integral = false;
+    bool is_balance = false;  ///< see motions.hpp
   };
 
   Space() = default;

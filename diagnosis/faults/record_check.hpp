@@ -11,7 +11,7 @@ namespace hysteron::diagnosis {
 struct RecordCheck {
   std::vector<std::string> refusals{};  ///< why no diagnosis is given
   std::vector<std::string> warnings{};  ///< what weakens it
-  bool one_motion = false;              ///< the inputs make one motion only, and repeat it
+  bool one_motion = false;              ///< the inputs make one motion only, and repeat it; a warning says so
   std::vector<Index> left_out{};        ///< rows that a sensor that is stuck or drops out has spoilt
 };
 

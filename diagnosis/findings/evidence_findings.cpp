@@ -82,23 +82,17 @@ std::string capitalised(std::string text) {
 
 }  // namespace
 
-bool is_told(const Evidence& evidence) {
-  return !evidence.families.empty() && !evidence.sets.empty() &&
-         evidence.families.front().probability > policy::named.value &&
-         evidence.families.front().closed > policy::relevant.value;
-}
-
 std::string words_of_family(const std::string& family) {
   std::string words = family;
   std::ranges::replace(words, '_', ' ');
   return words;
 }
 
-void tell(const Evidence& evidence, Diagnosis& result) {
+void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result) {
   const SetFinding& first = first_set(evidence);
   std::vector<EffectFinding> effects;
   for (const LawFinding& law : first.laws) {
-    if (law.closed < policy::relevant.value && first.laws.size() > 1) {
+    if (law.closed < rules[policy::relevant] && first.laws.size() > 1) {
       continue;  // significant, and not relevant
     }
     EffectFinding finding = finding_of(law);
@@ -130,7 +124,7 @@ void tell(const Evidence& evidence, Diagnosis& result) {
       rival.effects.push_back(law.effect);
       rival.edges.push_back(law.edge);
     }
-    if (set.probability >= policy::rival.value || &set == &first) {
+    if (set.probability >= rules[policy::rival] || &set == &first) {
       result.rivals.push_back(std::move(rival));
     }
   }
@@ -140,7 +134,7 @@ void tell(const Evidence& evidence, Diagnosis& result) {
   result.confidence = std::min(evidence.families.front().probability * correlation, 0.99);
 }
 
-std::string sentence_of(const Diagnosis& found) {
+std::string sentence_of(const Diagnosis& found, const Rules& rules) {
   const Evidence& evidence = found.evidence;
   const SetFinding& first = first_set(evidence);
   const FamilyFinding& family = evidence.families.front();
@@ -154,10 +148,10 @@ std::string sentence_of(const Diagnosis& found) {
     if (&one == &family) {
       continue;
     }
-    if (one.probability > policy::named.value && one.closed > policy::relevant.value) {
+    if (one.probability > rules[policy::named] && one.closed > rules[policy::relevant]) {
       beside.push_back(
           fmt::format("{} at {} (probability {:.2f})", words_of_family(one.family), one.edge, one.probability));
-    } else if (one.alone > policy::relevant.value && (next == nullptr || one.alone > next->alone)) {
+    } else if (one.alone > rules[policy::relevant] && (next == nullptr || one.alone > next->alone)) {
       next = &one;
     }
   }

@@ -4,18 +4,16 @@
 #include <string>
 
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/rules.hpp"
 
 namespace hysteron::diagnosis {
 
-/// Whether the evidence names a family: it is more probable than not, and closes a part of the gap that matters.
-[[nodiscard]] bool is_told(const Evidence& evidence);
-
 /// The effects of the most probable set, its rivals, and the probability of the first family as the confidence. Effects
 /// that the fitted diagram holds keep the numbers of its fit.
-void tell(const Evidence& evidence, Diagnosis& result);
+void tell(const Evidence& evidence, const Rules& rules, Diagnosis& result);
 
 /// "Dry friction at SPEED.XIN (coulomb_friction) explains 80 % of the gap on stretches not fitted, …"
-[[nodiscard]] std::string sentence_of(const Diagnosis& found);
+[[nodiscard]] std::string sentence_of(const Diagnosis& found, const Rules& rules);
 
 /// dry_friction as "dry friction".
 [[nodiscard]] std::string words_of_family(const std::string& family);

@@ -13,6 +13,7 @@
 #include "diagnosis/findings/shares.hpp"
 #include "diagnosis/model/task.hpp"
 #include "diagnosis/noise/remainder.hpp"
+#include "diagnosis/policy.hpp"
 #include "diagnosis/remedy/improved.hpp"
 #include "support/diagnostic.hpp"
 
@@ -265,7 +266,7 @@ std::vector<Rival> fitted_findings(const Findings& findings) {
   return result;
 }
 
-double confidence(const Findings& findings, const Diagnosis& so_far) {
+double confidence(const Findings& findings, const Diagnosis& so_far, Rules& rules) {
   // An effect as large as the noise can hide in what depends on the machine's motion and is called noise, a larger one
   // in what is left above it.
   const double no_effect = (0.95 - 0.3 * findings.predictable) * (1.0 - so_far.unknown_score);
@@ -278,7 +279,7 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
       const double closed = std::clamp(so_far.gap.closed, 0.0, 1.0);
       const double whole = so_far.verdict == Verdict::Partial ? 0.6 : 0.7 + 0.29 * closed;
       // What is left beyond any noise was explained by nothing: the name is not the whole.
-      const double explained = std::min(1.0, suspicious_from / std::max(findings.unexplained, 1e-9));
+      const double explained = std::min(1.0, policy::suspicious.value / std::max(findings.unexplained, 1e-9));
       return std::clamp(first * strength * whole * (1.0 - so_far.unknown_score) * explained * seen(so_far.gap) *
                             unrivalled(findings.judgement),
                         0.0, 0.99);
@@ -298,12 +299,11 @@ double confidence(const Findings& findings, const Diagnosis& so_far) {
     }
     case Verdict::Unknown: {
       // Sure as far as what is left is a cause of its own, and as no effect of the library may yet be it.
-      constexpr double surest = 0.85;  // that no name fits now does not say that none will
       double offered = 0.0;
       for (const FamilyFinding& one : so_far.evidence.families) {
         offered = std::max(offered, one.probability * std::clamp(one.alone, 0.0, 1.0));
       }
-      return std::min(surest, so_far.unknown_score) * (1.0 - offered);
+      return rules.capped(policy::sure_of_unknown, so_far.unknown_score) * (1.0 - offered);
     }
   }
   return 0.0;

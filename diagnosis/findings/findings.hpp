@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/rules.hpp"
 #include "diagnosis/verdict/verdict.hpp"
 
 namespace hysteron::diagnosis {
@@ -31,7 +32,7 @@ struct Findings {
 [[nodiscard]] std::vector<Rival> fitted_findings(const Findings& findings);
 
 /// The probability of the verdict: of the named set among the rivals, lowered by what is left unexplained.
-[[nodiscard]] double confidence(const Findings& findings, const Diagnosis& so_far);
+[[nodiscard]] double confidence(const Findings& findings, const Diagnosis& so_far, Rules& rules);
 
 /// That the refit of the known parameters gives up an output for the others, or the effects do, with both numbers.
 [[nodiscard]] std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects);

@@ -27,6 +27,8 @@ struct DiagnosisOptions {
   int most_effects = 3;
   double budget = 40.0;  ///< seconds after which no further effect is added
   std::uint64_t seed = 1;
+  bool explain = false;                ///< keeps the answers of the rules
+  std::vector<std::string> without{};  ///< rules that are left out, see rules.hpp
   unsigned threads = 2;
   std::function<void(double fraction, std::string_view text)> progress{};
   /// Of the next experiment, by name: "U" the largest |value| of an input, "U.low", "U.high", "U.rate" its ends and

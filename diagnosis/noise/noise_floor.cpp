@@ -7,6 +7,7 @@
 
 #include "diagnosis/noise/spectrum.hpp"
 #include "diagnosis/noise/stretch_noise.hpp"
+#include "diagnosis/policy.hpp"
 #include "support/median.hpp"
 
 namespace hysteron::diagnosis {
@@ -246,7 +247,7 @@ NoiseRange noise_range(double left) {
   const double trusted = std::clamp((left - 0.9) / 0.1, 0.0, 1.0);
   return {.low = std::lerp(std::min(left, 1.0) / 3.0, 0.85, trusted),
           .likely = std::min(left, 1.0),
-          .high = std::clamp(left, 1.0, hidden_noise) * (1.0 + own_error)};
+          .high = std::clamp(left, 1.0, policy::hidden_noise.value) * (1.0 + own_error)};
 }
 
 NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t output,
@@ -279,8 +280,7 @@ NoiseFloor noise_floor(const std::vector<Experiment>& experiments, std::size_t o
   const double least = std::max(std::min(rounding, most_rounding * range), 1e-9 * range);
   // Commands may rest, an enable flag and a reference, while the machine swings free: what goes on so smoothly is no
   // noise, however slow.
-  constexpr double smoothest_noise = 10.0;  // times its fast part
-  if (floor.dwells > smoothest_noise * std::max(floor.differences, least)) {
+  if (floor.dwells > policy::smoothest_noise.value * std::max(floor.differences, least)) {
     floor.dwells = 0.0;
   }
   // Differences of a fast signal see such a quantum as noise, too.

@@ -22,9 +22,6 @@
 
 namespace hysteron::diagnosis {
 
-/// So many floors may be noise after all, where the floor sees its fast part alone, or what a dwell's trend leaves.
-inline constexpr double hidden_noise = 1.5;
-
 /// Of an output's range: a sensor that rounds more than this off, RMS, is an effect, and less is noise.
 inline constexpr double most_rounding = 0.02;
 

@@ -6,6 +6,7 @@
 
 #include "diagnosis/noise/discrepancy.hpp"
 #include "diagnosis/noise/noise_colour.hpp"
+#include "diagnosis/policy.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -21,7 +22,7 @@ double most_noise(const NoiseFloor& floor) {
   if (floor.evidence == "differences") {
     return of_differences;
   }
-  return floor.evidence == "repeats" ? 1.0 : hidden_noise;
+  return floor.evidence == "repeats" ? 1.0 : policy::hidden_noise.value;
 }
 
 Discrepancy largest_discrepancy(const Model& model, const VectorXd& residuals, std::size_t outputs) {
@@ -59,7 +60,7 @@ std::vector<double> possible_noise(const Model& model, const std::vector<NoiseFl
 }
 
 double excess_of(double size) {
-  return 1.0 - std::pow(suspicious_from / std::max(size, suspicious_from), 2);
+  return 1.0 - std::pow(policy::suspicious.value / std::max(size, policy::suspicious.value), 2);
 }
 
 Remainder remainder_of(const Model& model, const VectorXd& calibrated, const VectorXd& left,

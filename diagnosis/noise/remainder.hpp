@@ -17,10 +17,6 @@
 
 namespace hysteron::diagnosis {
 
-/// Units of what may be noise from which on a residual grows suspicious: slow noise is off by a tenth, even where
-/// cycles repeat.
-inline constexpr double suspicious_from = 1.2;
-
 /// n, of the residuals of one output in floors, which lie one record behind the other with so many samples each.
 [[nodiscard]] double possible_noise(const NoiseFloor& floor, const VectorXd& residuals,
                                     const std::vector<std::size_t>& samples);
@@ -29,7 +25,7 @@ inline constexpr double suspicious_from = 1.2;
 [[nodiscard]] std::vector<double> possible_noise(const Model& model, const std::vector<NoiseFloor>& floors,
                                                  const VectorXd& residuals);
 
-/// Of so much left, in units of what may be noise, the share of energy beyond `suspicious_from`.
+/// Of so much left, in units of what may be noise, the share of energy beyond what is suspicious.
 [[nodiscard]] double excess_of(double size);
 
 struct Remainder {

@@ -13,7 +13,7 @@ namespace {
 using report::escaped;
 
 /// Nothing may be loaded from anywhere, whatever a name in the data may say.
-constexpr const char* policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+constexpr const char* content_policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
 /// Places for what the script draws.
 std::string traces_section(const Diagnosis& diagnosis) {
@@ -47,7 +47,7 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<title>{}</title>\n<style>\n{}</style></head>\n<body><main>\n<h1>{}</h1>\n",
-      policy, title, report::style(), title);
+      content_policy, title, report::style(), title);
   html +=
       "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need JavaScript; text "
       "and tables do not.</p></noscript>\n";

@@ -174,34 +174,46 @@ std::string verdict_json(const Diagnosis& found) {
   for (const GapFinding& gap : found.gaps) {
     gaps.push_back(gap_of(gap));
   }
-  const Json verdict = {{"schema", "hysteron-verdict/1"},
-                        {"verdict", name_of(found.verdict)},
-                        {"effects", std::move(effects)},
-                        {"rivals", std::move(rivals)},
-                        {"confidence", number(found.confidence)},
-                        {"families", families_of(found.evidence)},
-                        {"evidence", law_sets_of(found.evidence)},
-                        {"unknown_score", number(found.unknown_score)},
-                        {"gap", gap_of(found.gap)},
-                        {"where", where_of(found)},
-                        {"split", split_of(found)},
-                        {"cannot_tell", found.cannot_tell},
-                        {"next_experiment", std::move(next)},
-                        {"seconds", number(found.seconds)},
-                        {"summary", found.summary},
-                        {"refused", !found.refusals.empty()},
-                        {"refusals", found.refusals},
-                        {"warnings", found.warnings},
-                        {"calibration", parameters_of(found.calibration)},
-                        {"nominal", parameters_of(found.nominal)},
-                        {"rival_details", sets_of(found.rivals)},
-                        {"fitted", sets_of(found.fitted)},
-                        {"gaps", std::move(gaps)},
-                        {"tracking",
-                         {{"nominal_rms", number(found.tracking_nominal)},
-                          {"improved_rms", number(found.tracking_improved)},
-                          {"notes", found.feedforward_notes}}},
-                        {"candidates_tried", found.tried}};
+  Json decisions = Json::array();
+  for (const Decision& one : found.decisions) {
+    decisions.push_back({{"rule", one.rule},
+                         {"about", one.about},
+                         {"measured", number(one.measured)},
+                         {"threshold", number(one.threshold)},
+                         {"unit", one.unit},
+                         {"outcome", one.outcome}});
+  }
+  Json verdict = {{"schema", "hysteron-verdict/1"},
+                  {"verdict", name_of(found.verdict)},
+                  {"effects", std::move(effects)},
+                  {"rivals", std::move(rivals)},
+                  {"confidence", number(found.confidence)},
+                  {"families", families_of(found.evidence)},
+                  {"evidence", law_sets_of(found.evidence)},
+                  {"unknown_score", number(found.unknown_score)},
+                  {"gap", gap_of(found.gap)},
+                  {"where", where_of(found)},
+                  {"split", split_of(found)},
+                  {"cannot_tell", found.cannot_tell},
+                  {"next_experiment", std::move(next)},
+                  {"seconds", number(found.seconds)},
+                  {"summary", found.summary},
+                  {"refused", !found.refusals.empty()},
+                  {"refusals", found.refusals},
+                  {"warnings", found.warnings},
+                  {"calibration", parameters_of(found.calibration)},
+                  {"nominal", parameters_of(found.nominal)},
+                  {"rival_details", sets_of(found.rivals)},
+                  {"fitted", sets_of(found.fitted)},
+                  {"gaps", std::move(gaps)},
+                  {"tracking",
+                   {{"nominal_rms", number(found.tracking_nominal)},
+                    {"improved_rms", number(found.tracking_improved)},
+                    {"notes", found.feedforward_notes}}},
+                  {"candidates_tried", found.tried}};
+  if (!found.decisions.empty()) {
+    verdict["decisions"] = std::move(decisions);
+  }
   return verdict.dump(2) + "\n";
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/block_picture.hpp"
-#include "codegen/backends/reference_pages.hpp"
+#include "codegen/backends/reference/block_picture.hpp"
+#include "codegen/backends/reference/reference_pages.hpp"
 #include "support/atomic_file.hpp"
 #include "support/diagnostic.hpp"
 #include "support/text_file.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "examples/example.hpp"
 #include "records/csv.hpp"

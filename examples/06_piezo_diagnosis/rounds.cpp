@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "codegen/parameters/apply.hpp"
 #include "examples/example.hpp"
 #include "support/atomic_file.hpp"
@@ -17,8 +20,10 @@ std::string Round::effect() const {
 std::vector<std::string> Round::rivals() const {
   std::vector<std::string> names;
   for (const diagnosis::Rival& rival : found.rivals) {
-    if (rival.effects != std::vector{found.effects.front().id}) {
-      names.push_back(fmt::format("{}", fmt::join(rival.effects, " + ")));
+    std::string name = fmt::format("{}", fmt::join(rival.effects, " + "));
+    // The same effects may stand on several edges.
+    if (rival.effects != std::vector{found.effects.front().id} && std::ranges::find(names, name) == names.end()) {
+      names.push_back(std::move(name));
     }
   }
   return names;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "support/errors.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::testing {

@@ -1,6 +1,6 @@
 // The text that a picture is drawn from: every box, port, unit and wire of the diagram, hierarchy as frames, the same
 // bytes for the same text.
-#include "codegen/backends/diagram_dot.hpp"
+#include "codegen/backends/drawing/diagram_dot.hpp"
 
 #include <gmock/gmock.h>
 

@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/backends/c_library_names.hpp"
-#include "codegen/backends/cpp.hpp"
-#include "codegen/backends/cpp_host.hpp"
-#include "codegen/backends/cpp_words.hpp"
-#include "codegen/backends/identifiers.hpp"
+#include "codegen/backends/c_family/c_library_names.hpp"
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/c_family/words.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/cpp/cpp_host.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "tests/codegen/random_program.hpp"
@@ -163,6 +163,27 @@ TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreter) {
 }
 TEST(Generated, RandomProgramsHaveTheBitsOfTheInterpreterInFloat) {
   hold_generated_against_interpreted<float>();
+}
+
+/// The lowest standard that the head of a header names.
+TEST(Generated, AHeaderIsCpp11AndEveryStandardSince) {
+  const test::ScratchFolder folder;
+  std::string includes;
+  for (int i = 0; i < 12; ++i) {
+    const GeneratedFile header =
+        generate_cpp_header(RandomDiagram(static_cast<std::uint64_t>(i) + 7000, fmt::format("P{}", i), 40).program(),
+                            {.float32 = i % 2 == 1});
+    EXPECT_NE(header.text.find("// C++11 or later."), std::string::npos);
+    folder.write(header.name, header.text);
+    includes += "#include \"" + header.name + "\"\n";
+  }
+  const std::string main_file = folder.write("main.cpp", includes + "int main() { return 0; }\n");
+  for (const char* const standard : {"c++11", "c++14", "c++17", "c++20"}) {
+    const std::string compile =
+        fmt::format("c++ -std={} -fsyntax-only -pedantic -Wall -Wextra -Werror -Wno-tautological-compare {} {} 2> {}",
+                    standard, cpp_numeric_flags, main_file, folder / "log");
+    EXPECT_EQ(std::system(compile.c_str()), 0) << standard << ": " << text_of(folder / "log").substr(0, 2000);
+  }
 }
 
 /// A diagram may be named after anything that C++ or the C library has for itself: its namespace then has another name.

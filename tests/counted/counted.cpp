@@ -8,7 +8,7 @@
 #include "bench/many_instances.hpp"
 #include "bench/reference_signal.hpp"
 #include "bench/static_map_data.hpp"
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "feedforward.hpp"
 

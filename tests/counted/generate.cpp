@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "support/render.hpp"
 
 int main(int count, char** arguments) {

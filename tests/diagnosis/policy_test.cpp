@@ -20,8 +20,8 @@ TEST(Policy, TheDocumentationHasEachThresholdAsItIs) {
   const std::string page = text.str();
   for (const Threshold& one : policy::all) {
     const std::string unit = one.unit == "1" ? "" : fmt::format(" {}", one.unit);
-    const std::string row =
-        fmt::format("| {} | {:g}{} | {} | {} |", one.name, one.value, unit, one.decides, one.origin);
+    const std::string row = fmt::format("| {} | {:g}{} | {} | {} |{} |", one.name, one.value, unit, one.decides,
+                                        one.origin, one.is_rule() ? " yes" : "");
     EXPECT_NE(page.find(row), std::string::npos) << row;
   }
 }

@@ -6,9 +6,9 @@
 #include <set>
 #include <string>
 
-#include "codegen/backends/block_picture.hpp"
-#include "codegen/backends/block_response.hpp"
-#include "codegen/backends/reference_pages.hpp"
+#include "codegen/backends/reference/block_picture.hpp"
+#include "codegen/backends/reference/block_response.hpp"
+#include "codegen/backends/reference/reference_pages.hpp"
 #include "codegen/compile.hpp"
 #include "tests/docs/page.hpp"
 

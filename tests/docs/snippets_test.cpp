@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/backends/cpp.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/compile.hpp"
 #include "codegen/language/syntax.hpp"
 #include "codegen/parameters/parameter_file.hpp"

@@ -41,8 +41,8 @@ const Arrows& allowed() {
 /// The floors of the diagnosis, from the ground: a folder includes what lies below it, so that a fit knows nothing of
 /// verdicts, and a verdict nothing of the words that are made of it.
 const std::vector<std::string>& floors_of_diagnosis() {
-  static const std::vector<std::string> floors{"model",  "noise",   "effects", "search", "evidence", "faults",
-                                               "remedy", "verdict", "findings", "report"};
+  static const std::vector<std::string> floors{"model",  "noise",   "effects",  "search", "evidence", "faults",
+                                               "remedy", "verdict", "findings", "report", "stages"};
   return floors;
 }
 

@@ -216,6 +216,44 @@ TEST(Generate, NeedsASampleTime) {
   EXPECT_FALSE(bench.has("g"));
 }
 
+TEST(Generate, WritesCAndStructuredTextByName) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target C --out c").out, "c/plant.h\nc/plant.c\n");
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target st --out st").out, "st/plant.st\nst/plant_program.st\n");
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target st --dialect TwinCAT --out t").out, "t/plant.TcPOU\n");
+  EXPECT_EQ(bench.shell("hysteron generate plant.st --target st --dialect siemens-scl --out s").out, "s/plant.scl\n");
+  EXPECT_THAT(bench.read("st/plant.st"),
+              AllOf(HasSubstr("AMP_K : LREAL := 2.0;"), HasSubstr("(* SUM : HY_INTEGRAL *)"), HasSubstr("RESET_ALL")));
+  ASSERT_EQ(bench.shell("hysteron generate plant.st --target st --float32 --out r").code, 0);
+  EXPECT_THAT(bench.read("r/plant.st"), HasSubstr("AMP_K : REAL := 2.0;"));
+}
+
+/// The diagram has the name that the text would get.
+TEST(Generate, DoesNotOverwriteTheDiagramByItsText) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  const auto refused = bench.shell("hysteron generate plant.st --target st --out . --force");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("HY709"), HasSubstr("--out")));
+  EXPECT_EQ(bench.read("plant.st"), test::plant);
+  EXPECT_FALSE(bench.has("plant_program.st"));
+}
+
+TEST(Generate, AnUnknownTargetOrDialectIsNamed) {
+  const test::Workbench bench;
+  bench.write("plant.st", test::plant);
+  const auto refused = [&](const std::string& options) {
+    const auto outcome = bench.shell("hysteron generate plant.st --out g " + options);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_FALSE(bench.has("g"));
+    return outcome.err;
+  };
+  EXPECT_THAT(refused("--target rust"), AllOf(HasSubstr("HY730"), HasSubstr("cpp, c, st")));
+  EXPECT_THAT(refused("--target st --dialect rockwell"), AllOf(HasSubstr("HY730"), HasSubstr("siemens-scl")));
+  EXPECT_THAT(refused("--target c --dialect codesys"), AllOf(HasSubstr("HY730"), HasSubstr("--target st")));
+}
+
 TEST(Compiled, SeveralProgramsInOneExecutable) {
   const Program plain = compile_text(std::string(feedforward));
   Program other = plain;

@@ -84,7 +84,7 @@ Asked asked(const Measured& measured, std::string text, double to_unit = 1.0) {
   result.task = task_of(input);
   result.task.scales = {1e-4 * to_unit};
   result.footing = footing_of(result.task, {.text = input.text, .program = std::make_shared<Program>(input.program)});
-  result.evidence = evidence_of(result.task, "AXIS", result.footing.calibrated, {});
+  result.evidence = Weighing(result.task, "AXIS", result.footing.calibrated, {}).told();
   return result;
 }
 
@@ -133,15 +133,15 @@ TEST(Evidence, AnotherUnitOrAnotherSeedIsTheSameEvidence) {
   EXPECT_EQ(first.evidence.families.front().family, second.evidence.families.front().family);
   EXPECT_NEAR(first.evidence.families.front().closed, second.evidence.families.front().closed, 0.02);
   EXPECT_NEAR(1000.0 * level_of(first.evidence), level_of(second.evidence), 5.0);
-  const Evidence other = evidence_of(first.task, "AXIS", first.footing.calibrated, {.seed = 17});
+  const Evidence other = Weighing(first.task, "AXIS", first.footing.calibrated, {.seed = 17}).told();
   EXPECT_EQ(other.families.front().family, first.evidence.families.front().family);
   EXPECT_NEAR(other.families.front().probability, first.evidence.families.front().probability, 0.05);
 }
 
 TEST(Evidence, IsBitForBitTheSameOnOneThreadAndOnThree) {
   const Asked first = asked(messy_axis(0.2, 4), std::string(axis));
-  const Evidence one = evidence_of(first.task, "AXIS", first.footing.calibrated, {.threads = 1});
-  const Evidence three = evidence_of(first.task, "AXIS", first.footing.calibrated, {.threads = 3});
+  const Evidence one = Weighing(first.task, "AXIS", first.footing.calibrated, {.threads = 1}).told();
+  const Evidence three = Weighing(first.task, "AXIS", first.footing.calibrated, {.threads = 3}).told();
   ASSERT_EQ(one.sets.size(), three.sets.size());
   for (std::size_t i = 0; i < one.sets.size(); ++i) {
     EXPECT_EQ(one.sets[i].probability, three.sets[i].probability);

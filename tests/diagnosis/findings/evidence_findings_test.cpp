@@ -37,7 +37,7 @@ Evidence of_friction(const std::string& unit) {
 Diagnosis told(const std::string& unit) {
   Diagnosis found;
   found.evidence = of_friction(unit);
-  tell(found.evidence, found);
+  tell(found.evidence, {}, found);
   return found;
 }
 
@@ -52,11 +52,11 @@ TEST(EvidenceFindings, ParametersAreInTheUnitsOfTheirEdgeAndDriver) {
 TEST(EvidenceFindings, AUnitThatTheDiagramDoesNotSayIsLeftOut) {
   const Diagnosis found = told("");
   EXPECT_EQ(found.effects.at(0).parameters.at(0).unit, "");
-  EXPECT_THAT(sentence_of(found), testing::StartsWith("Dry friction at SPEED.XIN closes 80 %"));
+  EXPECT_THAT(sentence_of(found, {}), testing::StartsWith("Dry friction at SPEED.XIN closes 80 %"));
 }
 
 TEST(EvidenceFindings, TheSentenceHasSizesShareNextBestAndRest) {
-  EXPECT_EQ(sentence_of(told("N")),
+  EXPECT_EQ(sentence_of(told("N"), {}),
             "Dry friction at SPEED.XIN, UP 19, DOWN 21 N, closes 80 % of the gap by itself, on stretches not fitted "
             "(probability 0.98; next best play, 54 %). The rest, 20 %, no effect of the library explains.");
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "diagnosis/policy.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 
 namespace hysteron::diagnosis {
@@ -25,7 +26,7 @@ TEST(PossibleNoise, AsMuchAsTheFloorCanHaveMissed) {
   EXPECT_NEAR(of("differences", 2.5), 2.5, 0.1);  // all of it has been there from sample to sample
   EXPECT_EQ(of("differences", 8.0), 3.0);
   EXPECT_NEAR(of("dwells", 1.3), 1.3, 0.05);
-  EXPECT_EQ(of("dwells", 8.0), hidden_noise);
+  EXPECT_EQ(of("dwells", 8.0), policy::hidden_noise.value);
   EXPECT_EQ(of("repeats", 8.0), 1.0);
   EXPECT_NEAR(of("dwells", 0.7), 0.7, 0.03);  // the rest goes on in dwells, and is slower than noise
   EXPECT_EQ(of("dwells", 0.3), 0.5);
@@ -40,8 +41,8 @@ TEST(PossibleNoise, OfAShortRecord) {
 
 TEST(Excess, IsTheEnergyBeyondWhatIsSuspicious) {
   EXPECT_EQ(excess_of(0.0), 0.0);
-  EXPECT_EQ(excess_of(suspicious_from), 0.0);
-  EXPECT_NEAR(excess_of(2.0 * suspicious_from), 0.75, 1e-12);
+  EXPECT_EQ(excess_of(policy::suspicious.value), 0.0);
+  EXPECT_NEAR(excess_of(2.0 * policy::suspicious.value), 0.75, 1e-12);
 }
 
 TEST(UnknownScore, IsHigherWhereSeveralSetsLeaveTooMuchAlike) {

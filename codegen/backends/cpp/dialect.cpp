@@ -1,0 +1,68 @@
+#include "codegen/backends/cpp/dialect.hpp"
+
+namespace hysteron {
+namespace {
+
+constexpr SpellingTable cpp_operations({
+    {Op::Add, infix("+", Strength::Additive)},
+    {Op::Subtract, infix("-", Strength::Additive)},
+    {Op::Multiply, infix("*", Strength::Multiplicative)},
+    {Op::Divide, infix("/", Strength::Multiplicative)},
+    {Op::Negate, sign("-")},
+    {Op::Abs, call("std::fabs")},
+    {Op::Sqrt, call("std::sqrt")},
+    {Op::Exp, call("std::exp")},
+    {Op::Log, call("std::log")},
+    {Op::Sin, call("std::sin")},
+    {Op::Cos, call("std::cos")},
+    {Op::Tan, call("std::tan")},
+    {Op::Asin, call("std::asin")},
+    {Op::Acos, call("std::acos")},
+    {Op::Atan, call("std::atan")},
+    {Op::Power, call("detail::power")},
+    {Op::Min, call("detail::min")},
+    {Op::Max, call("detail::max")},
+    {Op::IntAdd, call("detail::add")},
+    {Op::IntSubtract, call("detail::subtract")},
+    {Op::IntMultiply, call("detail::multiply")},
+    {Op::IntDivide, call("detail::divide")},
+    {Op::IntModulo, call("detail::modulo")},
+    {Op::IntNegate, call("detail::negate")},
+    {Op::IntMin, call("detail::min")},
+    {Op::IntMax, call("detail::max")},
+    {Op::Less, infix("<", Strength::Relation)},
+    {Op::LessEqual, infix("<=", Strength::Relation)},
+    {Op::Equal, infix("==", Strength::Equality)},
+    {Op::NotEqual, infix("!=", Strength::Equality)},
+    {Op::IntLess, infix("<", Strength::Relation)},
+    {Op::IntLessEqual, infix("<=", Strength::Relation)},
+    {Op::IntEqual, infix("==", Strength::Equality)},
+    {Op::IntNotEqual, infix("!=", Strength::Equality)},
+    {Op::And, infix("&&", Strength::LogicalAnd)},
+    {Op::Or, infix("||", Strength::LogicalOr)},
+    {Op::Xor, infix("!=", Strength::Equality)},
+    {Op::Not, negation("!")},
+    {Op::ToInt, call("detail::to_int")},
+    {Op::ToReal, call("static_cast<Real>")},
+    {Op::At, call("detail::at")},
+});
+
+}  // namespace
+
+const DialectOfC cpp_dialect{.operations = cpp_operations,
+                             .real = "Real",
+                             .truth = "bool",
+                             .integer = "std::int32_t",
+                             .word = "std::uint16_t",
+                             .parameters = "params.",
+                             .state = "state.",
+                             .input = "in.",
+                             .output = "out.",
+                             .infinity = "std::numeric_limits<Real>::infinity()",
+                             .not_a_number = "std::numeric_limits<Real>::quiet_NaN()",
+                             .word_begin = "std::uint16_t{",
+                             .word_end = "}",
+                             .element_begin = "detail::store(",
+                             .passes_length = false};
+
+}  // namespace hysteron

@@ -1,0 +1,112 @@
+#include "codegen/backends/shared/step_writer.hpp"
+
+namespace hysteron {
+StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, ExpressionPrinter& the_expressions,
+                       Identifiers& locals)
+    : graph(the_graph), routine(the_routine), expressions(the_expressions), locals_(locals) {
+  own_definition_.assign(routine.tape.size(), no_value);
+  for (std::uint32_t i = 0; i < routine.step.size(); ++i) {
+    const Statement& one = routine.step[i];
+    if (one.kind == Statement::Kind::Define && one.always && own_definition_[one.value] == no_value) {
+      own_definition_[one.value] = i;
+    }
+  }
+}
+
+void StepWriter::write(const Statement& statement, std::string& text) {
+  switch (statement.kind) {
+    case Statement::Kind::Section:
+      section_ = statement.target;
+      section_begins_ = graph.nodes[section_].block != nullptr;
+      return;
+    case Statement::Kind::BeginRate:
+      text += indentation;
+      begin_rate(statement.rate, text);
+      indentation = "    ";
+      return;
+    case Statement::Kind::EndRate:
+      indentation = "  ";
+      text += indentation;
+      return end_rate(text);
+    case Statement::Kind::Define:
+      if ((statement.always || needs_name(statement.value)) && !expressions.is_named(statement.value)) {
+        write_shared(statement.value, false, text);
+        write_definition(statement.value, name_of(statement), text);
+      }
+      return;
+    default:
+      break;
+  }
+  write_shared(statement.value, true, text);
+  if (statement.index != no_value) {
+    write_shared(statement.index, true, text);
+  }
+  begin_line(text);
+  if (statement.kind == Statement::Kind::SetOutput) {
+    set_output(statement.target, statement.value, text);
+  } else if (statement.kind == Statement::Kind::SetCell) {
+    set_cell(statement.target, statement.value, text);
+  } else if (statement.index != no_value) {
+    set_element(statement.target, statement.index, statement.value, text);
+  } else {
+    fill_cell(statement.target, statement.value, text);
+  }
+}
+
+/// The first line of a block stands behind its name.
+void StepWriter::begin_line(std::string& text) {
+  if (section_begins_) {
+    heading(graph.nodes[section_], text);
+    section_begins_ = false;
+  }
+  text += indentation;
+}
+
+void StepWriter::write_definition(ValueId id, std::string_view name, std::string& text) {
+  begin_line(text);
+  define(id, name, text);
+  expressions.name(id, name);
+}
+
+std::string_view StepWriter::name_of(const Statement& definition) {
+  const std::string_view owner = graph.nodes[definition.target].owner();
+  if (definition.field.empty() && is_taken(owner)) {
+    return locals_.make({owner, word_for(routine.tape[definition.value])});
+  }
+  return locals_.make({owner, definition.field, definition.what});
+}
+
+/// Defines every value below a root that needs a name.
+void StepWriter::write_shared(ValueId root, bool with_root, std::string& text) {
+  struct Visit {
+    ValueId id;
+    bool entered;
+  };
+  std::vector<Visit> stack{{root, false}};
+  while (!stack.empty()) {
+    const auto [id, entered] = stack.back();
+    stack.pop_back();
+    const Value& value = routine.tape[id];
+    if (is_leaf(value.op) || expressions.is_named(id)) {
+      continue;
+    }
+    if (entered) {
+      const std::uint32_t own = own_definition_[id];
+      if ((needs_name(id) || own != no_value) && (with_root || id != root)) {
+        write_definition(id,
+                         own != no_value ? name_of(routine.step[own])
+                                         : locals_.make({graph.nodes[section_].owner(), word_for(value)}),
+                         text);
+      }
+      continue;
+    }
+    stack.push_back({id, true});
+    for (std::size_t i = value.args.size(); i-- > 0;) {
+      if (value.args[i] != no_value) {
+        stack.push_back({value.args[i], false});
+      }
+    }
+  }
+}
+
+}  // namespace hysteron

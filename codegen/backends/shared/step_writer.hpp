@@ -1,0 +1,80 @@
+// The statements of a step as text: which values get a name, in which order, under which block's heading. A target
+// spells the single lines.
+//
+// A value that is used once is written where it is used. A value that is used more often, and one that a target cannot
+// write inside an expression, gets a name before its first use.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codegen/backends/shared/expression_printer.hpp"
+#include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/shared/routine.hpp"
+
+namespace hysteron {
+
+class StepWriter {
+ public:
+  /// `locals` gives the names of values; the words that they may not be are in it.
+  StepWriter(const Graph& graph, const Routine& routine, ExpressionPrinter& expressions, Identifiers& locals);
+  virtual ~StepWriter() = default;
+  StepWriter(const StepWriter&) = delete;
+  StepWriter& operator=(const StepWriter&) = delete;
+
+  void write(const std::vector<Statement>& list, std::string& text) {
+    for (const Statement& statement : list) {
+      write(statement, text);
+    }
+  }
+  /// The reset: values take their names from the block whose state they set.
+  void write_reset(std::string& text) {
+    for (const Statement& statement : routine.reset) {
+      section_ = routine.cells[statement.target].node;
+      write(statement, text);
+    }
+  }
+
+ protected:
+  // What a target spells. Each of the last five writes what follows the indentation of a line.
+  virtual void heading(const Node& node, std::string& text) = 0;
+  virtual void begin_rate(const Rate& rate, std::string& text) = 0;
+  virtual void end_rate(std::string& text) = 0;
+  virtual void define(ValueId id, std::string_view name, std::string& text) = 0;
+  virtual void set_output(std::uint32_t output, ValueId value, std::string& text) = 0;
+  virtual void set_cell(std::uint32_t cell, ValueId value, std::string& text) = 0;
+  virtual void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) = 0;
+  virtual void fill_cell(std::uint32_t cell, ValueId value, std::string& text) = 0;
+  /// What a shared value is called that is no port and no state.
+  [[nodiscard]] virtual std::string_view word_for(const Value& value) const = 0;
+
+  /// Whether a value that stands for a whole pin or output is better called by its operation.
+  [[nodiscard]] virtual bool is_taken(std::string_view /*owner*/) const { return false; }
+
+  /// Values that are never written inside an expression, by value; empty: every value may be.
+  std::vector<bool> must_be_named{};
+
+  const Graph& graph;
+  const Routine& routine;
+  ExpressionPrinter& expressions;
+  std::string_view indentation = "  ";
+
+ private:
+  void write(const Statement& statement, std::string& text);
+  void begin_line(std::string& text);
+  void write_definition(ValueId id, std::string_view name, std::string& text);
+  void write_shared(ValueId root, bool with_root, std::string& text);
+  [[nodiscard]] bool needs_name(ValueId id) const {
+    return routine.uses[id] > 1 || (id < must_be_named.size() && must_be_named[id]);
+  }
+  std::string_view name_of(const Statement& definition);
+
+  Identifiers& locals_;
+  std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state
+  std::uint32_t section_ = 0;                  ///< the node to which the statement at hand belongs
+  bool section_begins_ = false;
+};
+
+}  // namespace hysteron

@@ -1,0 +1,72 @@
+#include "codegen/backends/st/names.hpp"
+
+#include <fmt/format.h>
+
+#include "codegen/backends/st/words.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron {
+
+/// A name of the diagram, by which it is known outside: where it cannot be kept, the head of the file says so.
+std::string_view StBlockNames::keep(std::string_view name) {
+  const std::string_view kept = identifiers_.make({name});
+  if (!language::same_name(kept, name)) {
+    renamed_ +=
+        fmt::format("   {} is called {}: its name is taken, or some compiler keeps it for itself.\n", name, kept);
+  }
+  return kept;
+}
+
+StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect)
+    : identifiers_(dialect.shape == StDialect::Shape::Source ? is_scl_word : is_st_word, LetterCase::Upper) {
+  for (const Port& port : graph.inputs) {
+    layout_.inputs.push_back(keep(port.name));
+  }
+  for (const Port& port : graph.outputs) {
+    layout_.outputs.push_back(keep(port.name));
+  }
+  block_ = keep(graph.name);
+  reset_ = identifiers_.make({"RESET"});
+  if (reset_ != "RESET") {  // the diagram has an input of this name
+    reset_ = identifiers_.make({"RESET_ALL"});
+  }
+  for (const Parameter& parameter : graph.parameters) {
+    layout_.parameters.push_back({.name = identifiers_.make({parameter.path})});
+  }
+  started_ = identifiers_.make({"STARTED"});
+  own_ = {.sample_time = identifiers_.make({"TS"}),
+          .largest = identifiers_.make({"LARGEST"}),
+          .place = identifiers_.make({"PLACE"})};
+  for (const CellInfo& cell : routine.cells) {
+    layout_.cells.push_back({.name = identifiers_.make({cell.instance, cell.field.name})});
+  }
+}
+
+void refuse_long_names(const Graph& graph, const Routine& routine, const Layout& layout, const StDialect& dialect) {
+  Diagnostics diagnostics;
+  const auto check = [&](std::string_view name, Place place) {
+    if (dialect.longest_name != 0 && name.size() > dialect.longest_name) {
+      diagnostics.error(
+          error::name_too_long, std::move(place),
+          fmt::format("{} has {} characters; {} allows {}", name, name.size(), dialect.name, dialect.longest_name),
+          "shorten the names of the instances that it is made of");
+    }
+  };
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    check(layout.inputs[i], graph.place(graph.inputs[i].span));
+  }
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    check(layout.outputs[i], graph.place(graph.outputs[i].span));
+  }
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    check(layout.parameters[i].name, graph.place(graph.parameters[i].span));
+  }
+  for (std::size_t i = 0; i < routine.cells.size(); ++i) {
+    check(layout.cells[i].name, graph.place(graph.nodes[routine.cells[i].node].span));
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(std::move(diagnostics));
+  }
+}
+
+}  // namespace hysteron

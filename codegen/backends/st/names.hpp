@@ -1,0 +1,45 @@
+// The names of a block in Structured Text: one flat list, in which nothing is a word of some compiler.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/st/printer.hpp"
+
+namespace hysteron {
+
+class StBlockNames {
+ public:
+  StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect);
+  StBlockNames(const StBlockNames&) = delete;
+  StBlockNames& operator=(const StBlockNames&) = delete;
+
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  [[nodiscard]] const StNames& own() const { return own_; }
+  [[nodiscard]] std::string_view block() const { return block_; }
+  [[nodiscard]] std::string_view reset() const { return reset_; }
+  [[nodiscard]] std::string_view started() const { return started_; }
+  /// What gives the names of values, none of which is one of those above.
+  [[nodiscard]] Identifiers& identifiers() { return identifiers_; }
+
+  /// Lines for the head of the file: which ports, and which block, have another name than in the diagram.
+  [[nodiscard]] const std::string& renamed() const { return renamed_; }
+
+ private:
+  std::string_view keep(std::string_view name);
+
+  Identifiers identifiers_;
+  Layout layout_;
+  StNames own_;
+  std::string_view block_;
+  std::string_view reset_;
+  std::string_view started_;
+  std::string renamed_;
+};
+
+/// Throws HY732 with all names of the diagram that are longer than the dialect allows.
+void refuse_long_names(const Graph& graph, const Routine& routine, const Layout& layout, const StDialect& dialect);
+
+}  // namespace hysteron

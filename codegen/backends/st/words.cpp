@@ -1,0 +1,185 @@
+#include "codegen/backends/st/words.hpp"
+
+#include <array>
+#include <unordered_set>
+
+#include "codegen/graph/names.hpp"
+#include "codegen/language/syntax.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Beside the names that the language refuses (is_reserved): what its compilers have of their own.
+constexpr auto vendor_words = std::to_array<std::string_view>({
+    // instruction list, whose operators are words in the same file
+    "LD",
+    "LDN",
+    "ST",
+    "STN",
+    "S",
+    "R",
+    "ANDN",
+    "ORN",
+    "XORN",
+    "CAL",
+    "CALC",
+    "CALCN",
+    "JMP",
+    "JMPC",
+    "JMPCN",
+    "RET",
+    "RETC",
+    "RETCN",
+    // function blocks and functions of the standard that compilers declare in their libraries
+    "DERIVATIVE",
+    "INTEGRAL",
+    "PID",
+    "RAMP",
+    "HYSTERESIS",
+    "RTC",
+    "SEMA",
+    "DELAY",
+    "AVERAGE",
+    "CTU_DINT",
+    "CTD_DINT",
+    "CTUD_DINT",
+    "ADD_TIME",
+    "SUB_TIME",
+    "MULTIME",
+    "DIVTIME",
+    "CONCAT_DATE_TOD",
+    "SQR",
+    "FRAC",
+    "CEIL",
+    "FLOOR",
+    "NORM_X",
+    "SCALE_X",
+    "SWAP",
+    "BCD_TO_INT",
+    "TRUNC_INT",
+    "TRUNC_DINT",
+    // CODESYS and TwinCAT
+    "ADR",
+    "ADRINST",
+    "BITADR",
+    "SIZEOF",
+    "XSIZEOF",
+    "INDEXOF",
+    "INI",
+    "AND_THEN",
+    "OR_ELSE",
+    "BIT",
+    "XINT",
+    "UXINT",
+    "XWORD",
+    "PVOID",
+    "POINTER",
+    "REFERENCE",
+    "REF",
+    "PROPERTY",
+    "END_PROPERTY",
+    "GET",
+    "SET",
+    "VAR_STAT",
+    "VAR_INST",
+    "VAR_GENERIC",
+    "PERSISTENT",
+    "UNION",
+    "END_UNION",
+    "LIBRARY",
+    "PARAMS",
+    "IMPLEMENTATION",
+    "END_IMPLEMENTATION",
+    "TEST_AND_SET",
+    "ANY",
+    "ANY_BIT",
+    "ANY_DATE",
+    "ANY_INT",
+    "ANY_NUM",
+    "ANY_REAL",
+    "ANY_STRING",
+    "ANY_DERIVED",
+    "ANY_ELEMENTARY",
+    "ANY_MAGNITUDE",
+    "CANCEL",
+    "ASSERT",
+    "LOWER_BOUND",
+    "UPPER_BOUND",
+    "LTIME_OF_DAY",
+    "LDATE_AND_TIME",
+});
+
+/// Of TIA Portal.
+constexpr auto scl_words = std::to_array<std::string_view>({
+    "BEGIN",
+    "BLOCK_DB",
+    "BLOCK_FB",
+    "BLOCK_FC",
+    "BLOCK_SDB",
+    "BLOCK_SFB",
+    "BLOCK_SFC",
+    "CONST",
+    "END_CONST",
+    "DATA_BLOCK",
+    "END_DATA_BLOCK",
+    "DB",
+    "DI",
+    "FB",
+    "FC",
+    "OB",
+    "SDB",
+    "SFB",
+    "SFC",
+    "UDT",
+    "GOTO",
+    "LABEL",
+    "END_LABEL",
+    "NETWORK",
+    "ORGANIZATION_BLOCK",
+    "END_ORGANIZATION_BLOCK",
+    "S5TIME",
+    "S5T",
+    "TIMER",
+    "COUNTER",
+    "TITLE",
+    "VERSION",
+    "AUTHOR",
+    "FAMILY",
+    "NAME",
+    "KNOW_HOW_PROTECT",
+    "UNLINKED",
+    "VOID",
+    "REGION",
+    "END_REGION",
+    "VARIANT",
+    "OK",
+    "NIL",
+    "DB_ANY",
+    "HW_IO",
+    "TIME_TCK",
+    "RUNTIME",
+    "PEEK",
+    "POKE",
+});
+
+/// LREAL_TO_DINT and its like.
+bool is_conversion(std::string_view name) {
+  const auto middle = name.find("_TO_");
+  return middle != std::string_view::npos && is_reserved(name.substr(0, middle)) &&
+         is_reserved(name.substr(middle + 4));
+}
+
+}  // namespace
+
+bool is_st_word(std::string_view name) {
+  static const std::unordered_set<std::string_view> words(vendor_words.begin(), vendor_words.end());
+  const std::string upper = language::upper(name);
+  return words.contains(upper) || is_reserved(upper) || is_conversion(upper);
+}
+
+bool is_scl_word(std::string_view name) {
+  static const std::unordered_set<std::string_view> words(scl_words.begin(), scl_words.end());
+  return words.contains(language::upper(name)) || is_st_word(name);
+}
+
+}  // namespace hysteron

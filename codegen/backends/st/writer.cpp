@@ -1,0 +1,193 @@
+// The statements of a step in Structured Text, with the guards of those operations that would stop a PLC.
+#include <fmt/format.h>
+
+#include "codegen/backends/shared/generated_file.hpp"
+#include "codegen/backends/st/printer.hpp"
+
+namespace hysteron {
+
+StWriter::StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
+                   const Layout& layout, const StNames& names)
+    : StepWriter(the_graph, the_routine, printer, the_locals), printer_(printer), layout_(layout), names_(names) {
+  must_be_named = printer.guards().must_be_named();
+}
+
+void StWriter::write_reset_body(std::string& text) {
+  indentation = "    ";
+  write_reset(text);
+  indentation = "  ";
+}
+
+void StWriter::write_counter(std::string& text) const {
+  if (routine.longest_period > 1) {
+    std::string counter;
+    printer_.print_cell(routine.counter, counter);
+    append(text, fmt::format("\n  {0} := {0} + 1;\n  IF {0} >= {1} THEN\n    {0} := 0;\n  END_IF;\n", counter,
+                             routine.longest_period));
+  }
+}
+
+void StWriter::heading(const Node& node, std::string& text) {
+  append(text, "\n", indentation, "(* ", node.path, " : ", node.block->about.name, " *)\n");
+}
+
+void StWriter::begin_rate(const Rate& rate, std::string& text) {
+  text += "IF ";
+  printer_.print_cell(routine.counter, text);
+  append(text, fmt::format(" MOD {} = {} THEN\n", rate.every, rate.phase));
+}
+
+void StWriter::assign(std::string_view target, ValueId value, std::string& text) {
+  append(text, target, " := ");
+  printer_.print(value, text);
+  text += ";\n";
+}
+
+void StWriter::set_output(std::uint32_t output, ValueId value, std::string& text) {
+  printer_.print_variable(layout_.outputs[output], text);
+  assign("", value, text);
+}
+
+void StWriter::set_cell(std::uint32_t cell, ValueId value, std::string& text) {
+  printer_.print_cell(cell, text);
+  assign("", value, text);
+}
+
+void StWriter::set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) {
+  printer_.print_cell(cell, text);
+  printer_.print_place(index, routine.cells[cell].field.length, text);
+  assign("", value, text);
+}
+
+void StWriter::fill_cell(std::uint32_t cell, ValueId value, std::string& text) {
+  uses_place = true;
+  std::string place;
+  printer_.print_variable(names_.place, place);
+  append(text, fmt::format("FOR {} := 0 TO {} DO ", place, routine.cells[cell].field.length - 1));
+  printer_.print_cell(cell, text);
+  append(text, "[", place, "] := ");
+  printer_.print(value, text);
+  text += "; END_FOR;\n";
+}
+
+// --- values that have a name ---
+
+void StWriter::line(std::string_view words, std::string& text) const {
+  append(text, indentation, words, "\n");
+}
+
+void StWriter::define(ValueId id, std::string_view name, std::string& text) {
+  const Value& value = routine.tape[id];
+  locals.push_back({name, value.type});
+  std::string target;
+  printer_.print_variable(name, target);
+  const Guards& guards = printer_.guards();
+  if (value.op == Op::Divide && !guards.never_zero(value.args[1])) {
+    return define_quotient(value, target, text);
+  }
+  if ((value.op == Op::IntDivide || value.op == Op::IntModulo) && !guards.is_safe_divisor(value.args[1])) {
+    return define_integer_quotient(value, target, text);
+  }
+  if (value.op == Op::Power && guards.power_form(value) >= PowerForm::NonZero) {
+    return define_power(value, target, text);
+  }
+  if (value.op == Op::ToInt) {
+    return define_integer(value, target, text);
+  }
+  assign(target, id, text);
+}
+
+/// By 0, a number with the sign of the numerator that is as large as can be; 0 / 0 is 0.
+void StWriter::define_quotient(const Value& value, const std::string& name, std::string& text) {
+  const std::string above = printer_.text(value.args[0], Strength::Primary);
+  const std::string below = printer_.text(value.args[1], Strength::Primary);
+  const std::string zero = printer_.zero();
+  std::string largest;
+  std::string lowest;
+  printer_.print_largest(false, Strength::Loosest, largest);
+  printer_.print_largest(true, Strength::Loosest, lowest);
+  std::string positive;
+  printer_.print_call("SEL", {"G", "IN0", "IN1"}, {above + " > " + zero, zero, largest}, positive);
+  std::string limit;
+  if (const Value& numerator = routine.tape[value.args[0]]; numerator.op == Op::RealLiteral) {
+    limit = numerator.literal > 0.0 ? largest : numerator.literal < 0.0 ? lowest : zero;
+  } else {
+    printer_.print_call("SEL", {"G", "IN0", "IN1"}, {above + " < " + zero, positive, lowest}, limit);
+  }
+  append(text, fmt::format("IF {2} <> {3} THEN {0} := {1} / {2};\n", name, above, below, zero));
+  line(fmt::format("ELSE {} := {}; END_IF;", name, limit), text);
+}
+
+/// By 0 it is 0; by −1 the lowest DINT would leave its range.
+void StWriter::define_integer_quotient(const Value& value, const std::string& name, std::string& text) {
+  const std::string above = printer_.text(value.args[0], Strength::Primary);
+  const std::string below = printer_.text(value.args[1], Strength::Primary);
+  const bool quotient = value.op == Op::IntDivide;
+  append(text, fmt::format("IF {} = 0 THEN {} := 0;\n", below, name));
+  line(fmt::format("ELSIF {} = -1 THEN {} := {};", below, name, quotient ? "0 - " + above : "0"), text);
+  line(fmt::format("ELSE {} := {} {} {}; END_IF;", name, above, quotient ? "/" : "MOD", below), text);
+}
+
+/// A literal exponent below 0.
+void StWriter::define_power(const Value& value, const std::string& name, std::string& text) {
+  if (printer_.guards().power_form(value) == PowerForm::Any) {
+    return define_power_of_any(value, name, text);
+  }
+  const bool whole = printer_.guards().power_form(value) == PowerForm::NonZero;
+  const std::string base = printer_.text(value.args[0], Strength::Primary);
+  const std::string exponent = fmt::format("{}#{}", st_type(Type::Real, printer_.float32()),
+                                           printer_.literal(Type::Real, routine.tape[value.args[1]].literal));
+  std::string power;
+  printer_.print_power(base, exponent, power);
+  std::string largest;
+  printer_.print_largest(false, Strength::Loosest, largest);
+  append(text, fmt::format("IF {} {} {} THEN {} := {};\n", base, whole ? "<>" : ">", printer_.zero(), name, power));
+  line(fmt::format("ELSE {} := {}; END_IF;", name, largest), text);
+}
+
+/// The exponents 1, 2, 1/2 and 0 have a path of their own in every target, so that bits agree.
+void StWriter::define_power_of_any(const Value& value, const std::string& name, std::string& text) {
+  const std::string base = printer_.text(value.args[0], Strength::Primary);
+  const std::string exponent = printer_.text(value.args[1], Strength::Primary);
+  const auto real = [&](std::string_view digits) { return printer_.real(digits); };
+  const std::string zero = printer_.zero();
+  const bool never_negative = printer_.guards().never_negative(value.args[0]);
+  std::string power;
+  printer_.print_power(base, exponent, power);
+  std::string root = base;
+  if (!never_negative) {
+    root.clear();
+    printer_.print_call("MAX", {"IN1", "IN2"}, {base, zero}, root);
+  }
+  std::string largest;
+  printer_.print_largest(false, Strength::Loosest, largest);
+  std::string of_zero;
+  printer_.print_call("SEL", {"G", "IN0", "IN1"}, {exponent + " > " + zero, largest, zero}, of_zero);
+
+  append(text, fmt::format("IF {} = {} THEN {} := {};\n", exponent, real("1.0"), name, base));
+  line(fmt::format("ELSIF {1} = {2} THEN {0} := {3} * {3};", name, exponent, real("2.0"), base), text);
+  line(fmt::format("ELSIF {1} = {2} THEN {0} := SQRT({3});", name, exponent, real("0.5"), root), text);
+  line(fmt::format("ELSIF {1} = {2} THEN {0} := {3};", name, exponent, zero, real("1.0")), text);
+  line(fmt::format("ELSIF {1} > {2} THEN {0} := {3};", name, base, zero, power), text);
+  if (!never_negative) {  // a number below 0 has powers of whole exponents only; beyond 2^31 they are not tried
+    line(fmt::format("ELSIF {1} < {2} THEN {0} := {2};", name, base, zero), text);
+    line(fmt::format("  IF ABS({}) < {} THEN", exponent, real("2147483648.0")), text);
+    line(fmt::format("    IF {0}({1}({2})) = {2} THEN {3} := {4}; END_IF;",
+                     printer_.float32() ? "DINT_TO_REAL" : "DINT_TO_LREAL",
+                     printer_.float32() ? "REAL_TO_DINT" : "LREAL_TO_DINT", exponent, name, power),
+         text);
+    line("  END_IF;", text);
+  }
+  line(fmt::format("ELSE {} := {}; END_IF;", name, of_zero), text);
+}
+
+/// Towards zero; saturated at the ends of DINT, and 0 for what is not a number.
+void StWriter::define_integer(const Value& value, const std::string& name, std::string& text) {
+  const std::string real = printer_.text(value.args[0], Strength::Primary);
+  append(text, fmt::format("IF {} >= {} THEN {} := 2147483647;\n", real, printer_.real("2147483648.0"), name));
+  line(fmt::format("ELSIF {1} > ({2}) THEN {0} := TRUNC({1});", name, real, printer_.real("-2147483648.0")), text);
+  line(fmt::format("ELSIF {1} = {1} THEN {0} := -2147483647 - 1;", name, real), text);
+  line(fmt::format("ELSE {} := 0; END_IF;", name), text);
+}
+
+}  // namespace hysteron

@@ -1,0 +1,72 @@
+// What the back-ends write for one small diagram, to the byte. HYSTERON_UPDATE_GOLDENS=1 writes the files anew: read
+// the difference before it is committed.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "codegen/backends/c/c.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/st/st.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+/// A signal at two rates, a guarded power, an array, a bound at infinity, and an input of the name that a PLC needs.
+constexpr std::string_view golden_diagram = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
+  VAR_INPUT
+    TARGET : LREAL;          (* @unit um @min -10 @max 10 @doc where the stage is to go *)
+    RESET  : BOOL := FALSE;  (* @doc of the integral alone *)
+    SHAPE  : LREAL := 1.5;   (* @param @min 0.5 @max 3 @doc exponent, µ-law *)
+  END_VAR
+  VAR_OUTPUT
+    U    : LREAL;  (* @unit um *)
+    NEAR : BOOL;
+    N    : DINT;
+  END_VAR
+  VAR
+    CURVE  : HY_TABLE := (COUNT := 3, X := [-1.0, 0.0, 2.0], Y := [-2.0, 0.0, 1.0]);
+    BOUND  : HY_LIMIT := (MN := -5.0);
+    SLOWER : HY_SAMPLE;  (* @every 4 *)
+    BACK   : HY_HOLD;
+    SUM    : HY_INTEGRAL;
+  END_VAR
+
+  CURVE(XIN := TARGET);
+  BOUND(XIN := CURVE.XOUT);
+  SLOWER(XIN := BOUND.XOUT);
+  BACK(XIN := SLOWER.XOUT);
+  SUM(XIN := BACK.XOUT, R1 := RESET);
+  U := TARGET;
+  NEAR := ABS(SUM.XOUT) ** SHAPE < 1.0 XOR RESET;
+  N := LREAL_TO_DINT(TARGET / SUM.XOUT) MOD 7;
+END_FUNCTION_BLOCK
+)";
+
+void hold_against_golden(const GeneratedFile& file, const std::string& folder) {
+  const std::string path = std::string(HYSTERON_SOURCE_DIR) + "/tests/codegen/backends/goldens/" + folder + "_" + file.name;
+  if (std::getenv("HYSTERON_UPDATE_GOLDENS") != nullptr) {
+    std::ofstream(path, std::ios::binary) << file.text;
+  }
+  EXPECT_EQ(file.text, test::contents_of(path)) << path;
+}
+
+TEST(Goldens, OfEveryTargetAreKeptToTheByte) {
+  const Program program = compile_text(std::string(golden_diagram));
+  for (const char* const dialect : {"portable", "codesys", "twincat", "siemens-scl"}) {
+    for (const GeneratedFile& file : generate_st(program, {.dialect = *st_dialect(dialect)})) {
+      hold_against_golden(file, dialect);
+    }
+  }
+  hold_against_golden(generate_st(program, {.dialect = *st_dialect("portable"), .float32 = true}).front(), "real");
+  for (const GeneratedFile& file : generate_c(program)) {
+    hold_against_golden(file, "c");
+  }
+  hold_against_golden(generate_c(program, {.float32 = true}).back(), "c_float");
+  hold_against_golden(generate_cpp_header(program), "cpp");
+}
+
+}  // namespace
+}  // namespace hysteron::testing

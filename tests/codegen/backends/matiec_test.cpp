@@ -1,0 +1,102 @@
+// Structured Text against the interpreter through an outside compiler: MATIEC, where HYSTERON_MATIEC names its folder.
+// HYSTERON_MATIEC_DIAGRAMS says how many random diagrams are tried.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/st/st.hpp"
+#include "tests/codegen/backends/recorded_run.hpp"
+#include "tests/codegen/random_program.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+constexpr std::size_t matiec_steps = 400;  // the host resets in the middle
+
+constexpr std::string_view matiec_host_head = R"(#include <stdio.h>
+#include "iec_std_lib.h"
+#include "accessor.h"
+#include "POUS.h"
+TIME __CURRENT_TIME;
+BOOL __DEBUG;
+#include "POUS.c"
+#define RUN(BLOCK, NUMBER) { \
+  static BLOCK block; \
+  BLOCK##_init__(&block, 0); \
+  char name[500]; \
+  snprintf(name, sizeof(name), "%s/in%d", folder, NUMBER); \
+  FILE* in = fopen(name, "rb"); \
+  snprintf(name, sizeof(name), "%s/out%d", folder, NUMBER); \
+  FILE* out = fopen(name, "wb"); \
+  int step = 0; \
+  for (double row[6]; fread(row, sizeof(row), 1, in) == 1; ++step) { \
+    block.RESET.value = step == 200; \
+    block.X1.value = row[0]; block.X2.value = row[1]; block.X3.value = row[2]; \
+    block.B1.value = row[3] != 0; block.B2.value = row[4] != 0; block.N1.value = (DINT)row[5]; \
+    BLOCK##_body__(&block); \
+    const double results[6] = {block.Y0.value, block.Y1.value, block.Y2.value, block.Y3.value, \
+                               block.Q.value, block.N.value}; \
+    fwrite(results, sizeof(results), 1, out); \
+  } \
+  fclose(in); \
+  fclose(out); }
+int main(int argc, char** argv) {
+  const char* folder = argv[argc - 1];
+)";
+
+TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
+  const char* const matiec = std::getenv("HYSTERON_MATIEC");
+  if (matiec == nullptr) {
+    GTEST_SKIP() << "HYSTERON_MATIEC names no folder of MATIEC";
+  }
+  const char* const wanted = std::getenv("HYSTERON_MATIEC_DIAGRAMS");
+  const std::size_t diagrams = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 20;
+  constexpr std::size_t at_once = 20;  // in one file
+  std::size_t equal = 0;
+  std::size_t finite = 0;
+  std::size_t steps = 0;
+  for (std::size_t first = 0; first < diagrams; first += at_once) {
+    const test::ScratchFolder folder;
+    std::string text;
+    std::string host(matiec_host_head);
+    std::vector<RecordedRun> runs;
+    for (std::size_t i = 0; i < std::min(at_once, diagrams - first); ++i) {
+      const std::size_t seed = first + i;
+      const Program program = RandomDiagram(seed + 3000, fmt::format("P{}", i), seed % 2 == 0 ? 8 : 30).program();
+      runs.push_back(record<double>(program, matiec_steps, seed));
+      write_doubles(folder / fmt::format("in{}", i), runs.back().inputs);
+      text += generate_st(program, {.dialect = *st_dialect("portable")})[0].text;
+      host += fmt::format("  RUN(P{0}, {0})\n", i);
+    }
+    folder.write("all.st", text);
+    folder.write("main.c", host + "  return 0;\n}\n");
+    const std::string path = folder.path().string();
+    const std::string build = fmt::format(
+        "cd {0} && {1}/iec2c -I {1}/lib -T {0} all.st > log 2>&1 && cc -O0 -w -fwrapv {2} -I{1}/lib/C -I. main.c -lm "
+        "-o "
+        "run >> log 2>&1 && ./run {0}",
+        path, matiec, cpp_numeric_flags);
+    ASSERT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      // MATIEC's ABS leaves -0 as it is.
+      const std::size_t same = equal_steps(runs[i], read_doubles(folder / fmt::format("out{}", i)), true);
+      EXPECT_GE(same, std::min(runs[i].first_exception, matiec_steps)) << "diagram " << first + i;
+      equal += same == matiec_steps ? 1 : 0;
+      finite += runs[i].first_exception > matiec_steps ? 1 : 0;
+      steps += same;
+    }
+  }
+  std::printf(
+      "MATIEC: %zu random diagrams, %zu of them without an exception of arithmetic; %zu equal in all %zu steps; "
+      "%zu steps equal\n",
+      diagrams, finite, equal, matiec_steps, steps);
+}
+
+}  // namespace
+}  // namespace hysteron::testing

@@ -1,0 +1,194 @@
+// What generated Structured Text owes to its compilers: names, characters, literals; and the same bytes each time.
+#include "codegen/backends/st/st.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cctype>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "codegen/backends/st/words.hpp"
+#include "support/errors.hpp"
+#include "tests/codegen/random_program.hpp"
+#include "tests/codegen/backends/st_as_cpp.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string st_of(const std::string& diagram, std::string_view dialect = "portable") {
+  return generate_st(compile_text(diagram), {.dialect = *st_dialect(dialect)}).front().text;
+}
+
+/// The names that a block declares, its own among them.
+std::vector<std::string> declared_names(const std::string& text) {
+  const auto tokens = StAsCpp(text).tokens();
+  std::vector<std::string> names{tokens.at(1)};
+  bool in_section = false;
+  bool names_follow = false;
+  for (const std::string& token : tokens) {
+    if (token.starts_with("VAR")) {
+      in_section = names_follow = true;
+    } else if (token == "END_VAR") {
+      in_section = false;
+    } else if (in_section && names_follow && token != "CONSTANT" && token != ",") {
+      if (token == ":") {
+        names_follow = false;
+      } else {
+        names.push_back(token);
+      }
+    } else if (token == ";") {
+      names_follow = true;
+    }
+  }
+  return names;
+}
+
+TEST(StText, OfRandomProgramsIsPortable) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Program program = RandomDiagram(seed + 500, "P", 40).program();
+    const std::string text =
+        generate_st(program, {.dialect = *st_dialect("portable"), .float32 = seed % 2 == 1})[0].text;
+    std::set<std::string> seen;
+    for (const std::string& name : declared_names(text)) {
+      EXPECT_FALSE(is_st_word(name)) << name;
+      EXPECT_TRUE(seen.insert(name).second) << name << " is declared twice";
+      EXPECT_EQ(name.find("__"), std::string::npos) << name;
+      EXPECT_NE(name.back(), '_') << name;
+      EXPECT_TRUE(std::isalpha(static_cast<unsigned char>(name.front()))) << name;
+    }
+    EXPECT_GT(seen.size(), 40U);
+    for (const char letter : text) {
+      ASSERT_TRUE(letter == '\n' || (letter >= ' ' && letter <= '~')) << "seed " << seed;
+    }
+    for (const std::string& token : StAsCpp(text).tokens()) {
+      EXPECT_NE(token, "inf");
+      EXPECT_NE(token, "nan");
+    }
+    EXPECT_EQ(text, generate_st(program, {.dialect = *st_dialect("portable"), .float32 = seed % 2 == 1})[0].text);
+  }
+}
+
+TEST(StText, NamesThatACompilerKeepsAreChangedAndTheHeadSaysSo) {
+  const std::string diagram =
+      "FUNCTION_BLOCK SERVO (* @ts 1ms *) VAR_INPUT REF, RESET, SERVO : LREAL; NAME : LREAL; END_VAR\n"
+      "VAR_OUTPUT S : LREAL; END_VAR VAR LREAL_TO : HY_GAIN; END_VAR\n"
+      "LREAL_TO(XIN := REF + RESET + SERVO + NAME); S := LREAL_TO.XOUT; END_FUNCTION_BLOCK";
+  const std::string text = st_of(diagram);
+  EXPECT_THAT(text, HasSubstr("REF is called REF_2"));
+  EXPECT_THAT(text, HasSubstr("S is called S_2"));
+  EXPECT_THAT(text, HasSubstr("FUNCTION_BLOCK SERVO_2\n")) << "its input keeps the name";
+  EXPECT_THAT(text, HasSubstr("RESET_ALL : BOOL := FALSE;"));
+  EXPECT_THAT(text, HasSubstr("IF RESET_ALL OR NOT STARTED THEN"));
+  EXPECT_THAT(text, HasSubstr("    NAME : LREAL;"));
+  EXPECT_THAT(st_of(diagram, "siemens-scl"), HasSubstr("NAME is called NAME_2"));
+}
+
+TEST(StText, WordsAreThoseOfTheStandardAndOfTheVendors) {
+  for (const char* const word : {"IF", "end_function_block", "Sel", "LIMIT", "R_TRIG", "LREAL_TO_DINT", "ST", "PID",
+                                 "ADR", "PERSISTENT", "REF", "S"}) {
+    EXPECT_TRUE(is_st_word(word)) << word;
+  }
+  for (const char* const word : {"REFERENCE_1", "X_TO_Y", "SUM", "XIN", "NAME", "VERSION"}) {
+    EXPECT_FALSE(is_st_word(word)) << word;
+  }
+  EXPECT_TRUE(is_scl_word("Version"));
+  EXPECT_TRUE(is_scl_word("IF"));
+}
+
+TEST(StText, ABoundThatIsNoneIsTheLargestNumber) {
+  const std::string diagram =
+      "FUNCTION_BLOCK B (* @ts 1ms *) VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR L : HY_LIMIT; "
+      "END_VAR L(XIN := X); Y := L.XOUT; END_FUNCTION_BLOCK";
+  EXPECT_THAT(st_of(diagram), HasSubstr("L_MX : LREAL := 3.4028234663852886E38;"));
+  EXPECT_THAT(st_of(diagram), HasSubstr("L_MN : LREAL := -3.4028234663852886E38;"));
+  EXPECT_THAT(st_of(diagram, "twincat"), HasSubstr("L_MX : LREAL := 1.7976931348623157E308;"));
+  EXPECT_THAT(generate_st(compile_text(diagram), {.dialect = *st_dialect("codesys"), .float32 = true})[0].text,
+              HasSubstr("L_MX : REAL := 3.4028235E38;"));
+}
+
+std::string body_of_expression(const std::string& expression, std::string_view dialect = "portable") {
+  const std::string text =
+      st_of(fmt::format("FUNCTION_BLOCK E (* @ts 1ms *) VAR_INPUT X, Z : LREAL; N, M : DINT; B, C, D : BOOL; END_VAR\n"
+                        "VAR_OUTPUT Y : LREAL; K : DINT; Q : BOOL; END_VAR {} END_FUNCTION_BLOCK",
+                        expression),
+            dialect);
+  return text.substr(text.find("END_IF;\n\n") + 9);
+}
+
+TEST(StText, WhatWouldStopAPlcIsGuarded) {
+  const auto y = [](const std::string& expression) {
+    return body_of_expression("Y := " + expression + "; K := 0; Q := FALSE;");
+  };
+  EXPECT_THAT(y("X / Z"), HasSubstr("  IF Z <> 0.0 THEN Y_QUOTIENT := X / Z;\n"
+                                    "  ELSE Y_QUOTIENT := SEL(X < 0.0, SEL(X > 0.0, 0.0, LARGEST), -LARGEST); END_IF;\n"
+                                    "  Y := Y_QUOTIENT;\n"));
+  EXPECT_THAT(y("X / 2.0"), HasSubstr("  Y := X / 2.0;\n"));
+  EXPECT_THAT(y("X / (1.0 + ABS(Z))"), HasSubstr("  Y := X / (1.0 + ABS(Z));\n"));
+  EXPECT_THAT(y("X / SEL(Z > 0.0, 1.0, Z)"), HasSubstr("  Y := X / SEL(0.0 < Z, 1.0, Z);\n"));
+  EXPECT_THAT(y("X / SEL(Z > 0.0, Z, 1.0)"), HasSubstr("IF Y_CHOICE <> 0.0 THEN")) << "Z is at or below 0 there";
+  EXPECT_THAT(y("1.0 / Z"), HasSubstr("ELSE Y_QUOTIENT := LARGEST; END_IF;"));
+  EXPECT_THAT(y("SQRT(X)"), HasSubstr("  Y := SQRT(MAX(X, 0.0));\n"));
+  EXPECT_THAT(y("SQRT(ABS(X))"), HasSubstr("  Y := SQRT(ABS(X));\n"));
+  EXPECT_THAT(y("LN(X)"), HasSubstr("  Y := LN(SEL(X > 0.0, 1.2E-38, X));\n"));
+  EXPECT_THAT(y("ASIN(X)"), HasSubstr("  Y := ASIN(LIMIT(-1.0, X, 1.0));\n"));
+  EXPECT_THAT(y("X ** 3.0"), HasSubstr("  Y := EXPT(X, LREAL#3.0);\n"));
+  EXPECT_THAT(y("X ** 2.0"), HasSubstr("  Y := X * X;\n"));
+  EXPECT_THAT(y("X ** 1.5"), HasSubstr("  Y := EXPT(MAX(X, 0.0), LREAL#1.5);\n"));
+  EXPECT_THAT(y("X ** (-2.0)"), HasSubstr("IF X <> 0.0 THEN Y_POWER := EXPT(X, LREAL#-2.0);\n"));
+  EXPECT_THAT(y("X ** (-0.5)"), HasSubstr("IF X > 0.0 THEN Y_POWER := EXPT(X, LREAL#-0.5);\n"));
+  EXPECT_THAT(y("X ** Z"), HasSubstr("  ELSIF X > 0.0 THEN Y_POWER := EXPT(X, Z);\n"));
+}
+
+TEST(StText, IntegersKeepTheirRange) {
+  const auto k = [](const std::string& expression) {
+    return body_of_expression("Y := 0.0; K := " + expression + "; Q := FALSE;");
+  };
+  EXPECT_THAT(k("N / M"), HasSubstr("  IF M = 0 THEN K_QUOTIENT := 0;\n  ELSIF M = -1 THEN K_QUOTIENT := 0 - N;\n"
+                                    "  ELSE K_QUOTIENT := N / M; END_IF;\n"));
+  EXPECT_THAT(k("N MOD 7"), HasSubstr("  K := N MOD 7;\n"));
+  EXPECT_THAT(k("TRUNC(X)"), HasSubstr("  IF X >= 2147483648.0 THEN K_WHOLE := 2147483647;\n"));
+  EXPECT_THAT(k("MAX(1, N)"), HasSubstr("  K := MAX(DINT#1, N);\n")) << "a plain 1 may be taken for a USINT";
+}
+
+TEST(StText, OperatorsOfTruthValuesKeepTheirOrder) {
+  const auto q = [](const std::string& expression) {
+    return body_of_expression("Y := 0.0; K := 0; Q := " + expression + ";");
+  };
+  EXPECT_THAT(q("(B XOR C) AND D"), HasSubstr("  Q := (B XOR C) AND D;\n"));
+  EXPECT_THAT(q("B XOR (C AND D)"), HasSubstr("  Q := B XOR (C AND D);\n"));
+  EXPECT_THAT(q("NOT (B OR C)"), HasSubstr("  Q := NOT (B OR C);\n"));
+}
+
+TEST(StText, DialectsDifferWhereTheirCompilersDo) {
+  const std::string scl = body_of_expression("Y := MAX(X, Z) ** 3.0; K := SEL(B, N, M); Q := FALSE;", "siemens-scl");
+  EXPECT_THAT(scl, HasSubstr("#Y := (MAX(IN1 := #X, IN2 := #Z)) ** (LREAL#3.0);\n"));
+  EXPECT_THAT(scl, HasSubstr("#K := SEL(G := #B, IN0 := #N, IN1 := #M);\n"));
+  EXPECT_THAT(scl, HasSubstr("END_FUNCTION_BLOCK\n"));
+  const std::string codesys = body_of_expression("Y := X; K := 0; Q := FALSE;", "codesys");
+  EXPECT_THAT(codesys, Not(HasSubstr("END_FUNCTION_BLOCK")));
+  EXPECT_FALSE(st_dialect("rockwell"));
+}
+
+TEST(StText, CommentsAreTheUsersWordsInAscii) {
+  const std::string text = st_of(
+      "FUNCTION_BLOCK C (* @ts 1ms *) VAR_INPUT X : LREAL; (* @unit um @doc 3·10⁻² µm, (x) *) END_VAR\n"
+      "VAR_OUTPUT Y : LREAL; END_VAR Y := X; END_FUNCTION_BLOCK");
+  EXPECT_THAT(text, HasSubstr("X : LREAL;  (* [um] 3*10?^2 um, (x) *)"));
+}
+
+TEST(StText, ADiagramWithoutASampleTimeIsRefused) {
+  try {
+    st_of("FUNCTION_BLOCK C VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := X; END_FUNCTION_BLOCK");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().all().front().number, error::missing_sample_time);
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::testing

@@ -22,6 +22,9 @@
 #include "blocks/dead_band.hpp"
 #include "blocks/dead_time.hpp"
 #include "blocks/delay.hpp"
+#include "blocks/delay_bool.hpp"
+#include "blocks/delay_dint.hpp"
+#include "blocks/delay_word.hpp"
 #include "blocks/derivative.hpp"
 #include "blocks/derivative4.hpp"
 #include "blocks/derivative_filtered.hpp"
@@ -143,7 +146,7 @@ using Catalogue = BlockList<
     OnDelay, OffDelay, PulseTimer, Blink, UpCounter, DownCounter, UpDownCounter,
     // dynamics
     Derivative, Derivative4, DerivativeFiltered, Integral, IntegralForward, IntegralBounded, IntegralForwardBounded,
-    Delay, DeadTime, Lag, LeadLag, SecondOrder,
+    Delay, DelayBool, DelayInt, DelayWord, DeadTime, Lag, LeadLag, SecondOrder,
     // effects: what a machine does and its model does not
     Offset, Drift, ThermalDrift, GainDrift, Creep, Relaxation, CoulombFriction, StribeckFriction, DahlFriction,
     AsymmetricFriction, LoadFriction, ViscousFriction, ValveStiction, Cogging, CyclicForce, PeriodicError, CyclicError,

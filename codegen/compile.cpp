@@ -8,6 +8,7 @@
 
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/elaborate.hpp"
+#include "codegen/graph/portability.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "codegen/graph/units.hpp"
 #include "support/errors.hpp"
@@ -27,6 +28,7 @@ void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics)
   for (Diagnostic& one : list) {
     if (any_order && one.number == error::hidden_delay) {
       one.severity = Severity::Warning;
+      one.mend = "With --any-order this is this step's value all the same. " + one.mend;
     }
     diagnostics.add(std::move(one));
   }
@@ -38,17 +40,44 @@ bool blocks_work(const Diagnostics& diagnostics) {
   });
 }
 
+/// Whether nothing is wrong but loops.
+bool has_only_loops(const Diagnostics& diagnostics) {
+  return std::ranges::all_of(diagnostics.all(), [](const Diagnostic& one) {
+    return one.severity != Severity::Error || one.number == error::algebraic_loop;
+  });
+}
+
 /// All blocks of a file, elaborated each by itself, those that others contain first.
 struct Checked {
   Definitions definitions;
   std::vector<Program> programs;  ///< beside definitions.list
 };
 
+/// Reports reads on the wrong side of a call. Says whether the loops of a block have been told as memory: HY402 in
+/// place of HY401. Where the order of the text means nothing they are loops.
+bool check_order(const Definitions& definitions, std::uint32_t index, const Graph& graph, bool any_order,
+                 Diagnostics& own) {
+  const bool has_loops = own.has_errors();
+  Diagnostics found;
+  const bool memory = check_text_order(definitions, index, graph, found) && !any_order;
+  if (has_loops && !memory) {
+    return false;  // with the loop cut, the order can be told
+  }
+  for (const Diagnostic& one : own.all()) {
+    if (one.number != error::algebraic_loop) {
+      found.add(one);
+    }
+  }
+  own = std::move(found);
+  return has_loops;
+}
+
 Checked check_all(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
                   Diagnostics& diagnostics) {
   Checked result{.definitions = define(std::move(source), diagnostics), .programs = {}};
   Definitions& definitions = result.definitions;
   result.programs.resize(definitions.list.size());
+  bool blocked = false;  // a loop that is told as memory leaves no order of computation
   for (const std::uint32_t index : definitions.callees_first) {
     Definition& definition = definitions.list[index];
     Program& program = result.programs[index];
@@ -60,11 +89,14 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, const Comp
         elaboration.noisy_outputs = options.noisy_outputs;
       }
       program.graph = elaborate(definitions, index, own, elaboration, &places);
-      if (!own.has_errors() && !blocks_work(diagnostics)) {
+      blocked = blocked || blocks_work(diagnostics);
+      if (!own.has_errors() && !blocked) {
         program.schedule = schedule(program.graph, places, own);
       }
-      if (!own.has_errors() && !blocks_work(diagnostics)) {
-        check_text_order(definitions, index, program.graph, own);
+      if (!blocked && has_only_loops(own)) {
+        blocked = check_order(definitions, index, program.graph, options.any_order, own);
+      }
+      if (!blocked && !blocks_work(own)) {
         units::check(program.graph, program.schedule, own);
         const auto late = outputs_with_feedthrough(program.graph);
         definition.late.assign(definition.variables.size(), true);
@@ -144,6 +176,9 @@ void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diag
   const Checked checked = check_all(std::move(source), {}, found);
   const std::vector<bool> contained = find_contained(checked.definitions);
   for (std::size_t i = 0; i < contained.size(); ++i) {
+    if (!blocks_work(found)) {
+      check_portability(checked.definitions, static_cast<std::uint32_t>(i), found);
+    }
     if (!contained[i]) {
       warn_of_time(checked.definitions, i, found);
     }
@@ -195,17 +230,40 @@ Program compile_text(std::string text, const CompileOptions& options) {
   return compile_source(std::move(parsed), options, syntax, warnings);
 }
 
-std::string format_text(std::string path, std::string text, Diagnostics& diagnostics) {
+namespace {
+
+/// What formatting says of reads whose statement the data flow would have elsewhere: to move one changes what an IEC
+/// compiler makes of the text, so it is refused, unless the text's order means nothing.
+void report_order(const Diagnostics& found, bool any_order, Diagnostics& diagnostics) {
+  Diagnostics order;
+  for (Diagnostic one : found.all()) {
+    if (one.number == error::hidden_delay || one.number == error::read_after_call) {
+      one.severity = any_order ? Severity::Warning : Severity::Error;
+      order.add(std::move(one));
+    }
+  }
+  tidy_up(order, any_order, diagnostics);
+}
+
+}  // namespace
+
+std::string format_text(std::string path, std::string text, Diagnostics& diagnostics, const FormatOptions& options) {
   auto parsed = language::parse(std::move(path), std::move(text), diagnostics);
   if (diagnostics.has_errors()) {
     return *parsed.text;
   }
   const auto source = std::make_shared<const language::SourceFile>(std::move(parsed));
   Diagnostics found;
-  const Checked checked = check_all(source, {}, found);
+  const Checked checked = check_all(source, {.any_order = options.any_order}, found);
+  if (!blocks_work(found)) {
+    report_order(found, options.any_order, diagnostics);
+  }
+  if (diagnostics.has_errors()) {
+    return *source->text;
+  }
   language::StatementOrders orders(source->blocks.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
-    if (!blocks_work(found)) {
+    if (options.any_order && !blocks_work(found)) {
       orders[i] = statement_order(checked.definitions, static_cast<std::uint32_t>(i), checked.programs[i].graph);
     }
   }

@@ -21,7 +21,7 @@ struct Program {
 
 struct CompileOptions {
   std::string top{};                         ///< which FUNCTION_BLOCK; empty: the only one that no other contains
-  bool any_order = false;                    ///< statements may stand in any order: HY402 becomes a warning
+  bool any_order = false;                    ///< the order of statements means nothing: HY402 becomes a warning
   bool keep_names = false;                   ///< Graph::named is filled, which costs time and memory
   std::vector<NoisyOutput> noisy_outputs{};  ///< of the block that `top` names
 };
@@ -40,8 +40,15 @@ Program compile_file(const std::string& path, const CompileOptions& options, Dia
 /// The same for a text in memory.
 Program compile_text(std::string text, const CompileOptions& options = {});
 
-/// The text in the house's layout, with the statements of each block in the order of the data flow. Diagnostics that
-/// keep it from being understood are added; hidden delays are mended, not reported.
-std::string format_text(std::string path, std::string text, Diagnostics& diagnostics);
+struct FormatOptions {
+  bool any_order = false;  ///< the order of the statements means nothing: they are put into that of the data flow
+};
+
+/// The text in the house's layout. Diagnostics that keep it from being understood are added, and the text is given
+/// back as it was. So are, as errors, the reads of HY402 and HY405: there the text means one thing here and another in
+/// an IEC compiler, and no layout may choose. With `any_order` the statements are sorted, and what was moved is a
+/// warning.
+std::string format_text(std::string path, std::string text, Diagnostics& diagnostics,
+                        const FormatOptions& options = {});
 
 }  // namespace hysteron

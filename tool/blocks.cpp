@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codegen/backends/reference/block_page.hpp"
+#include "codegen/graph/other_names.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "tool/block_card.hpp"
@@ -21,6 +22,7 @@ constexpr std::string_view blocks_examples = R"(Examples:
   hysteron blocks                 all blocks, by group
   hysteron blocks HY_LAG          equation, pins, units, ranges, defaults, feedthrough, delay
   hysteron blocks lag --json
+  hysteron blocks FT_PT1          by the name of another library: OSCAT, CODESYS, Simulink
   hysteron blocks --markdown      the reference of the whole library
 
 A unit with a quote, such as 'x, stands for whatever unit is connected; 'x/s is that unit per second.
@@ -36,7 +38,7 @@ struct BlocksOptions {
 };
 
 const BlockType& find_block(const std::string& name) {
-  for (const auto& candidate : {name, "HY_" + name}) {
+  for (const auto& candidate : {name, "HY_" + name, std::string(block_of_other_name(name))}) {
     if (const BlockType* const block = find_block_type(candidate)) {
       return *block;
     }

@@ -15,8 +15,11 @@ constexpr std::string_view fmt_examples = R"(Examples:
   hysteron fmt plant.st                     format in place
   hysteron fmt --check src/*.st             for a build server: lists what would change
   hysteron fmt --stdout /dev/stdin < a.st   for an editor
+  hysteron fmt --any-order drawn.st         sorts the statements by the data flow
 
-Comments are kept; formatting twice changes nothing. A file with syntax errors is left as it is.
+Comments are kept; formatting twice changes nothing. A file with syntax errors is left as it is, and so is one that
+reads a value on the wrong side of its assignment or call (HY402, HY405): to move it would change what an IEC compiler
+makes of the text. --any-order says that the order means nothing, as in what a drawing tool wrote.
 Exit codes: 0 done; 1 with --check, files would change; 2 a file cannot be read, understood or written.
 )";
 
@@ -24,6 +27,7 @@ struct FmtOptions {
   std::vector<std::string> files;
   bool check = false;
   bool to_stdout = false;
+  bool any_order = false;
 };
 
 int format_files(const FmtOptions& options, Console& console) {
@@ -34,9 +38,12 @@ int format_files(const FmtOptions& options, Console& console) {
       const auto text = read_text_file(path);
       Diagnostics own;
       console.sources().put(path, text);
-      const auto formatted = format_text(path, text, own);
+      const auto formatted = format_text(path, text, own, {.any_order = options.any_order});
       if (own.has_errors()) {
         throw InputError(own);
+      }
+      if (!own.all().empty()) {
+        console.report(own);
       }
       if (options.check) {
         if (formatted != text) {
@@ -68,6 +75,7 @@ Action add_fmt(CLI::App& app) {
   app.add_option("FILE", options->files, "Diagrams, files in Structured Text.")->required()->option_text(" ");
   auto* const check = app.add_flag("--check", options->check, "Changes nothing; lists the files that would change.");
   app.add_flag("--stdout", options->to_stdout, "Prints the formatted text instead of writing it.")->excludes(check);
+  app.add_flag("--any-order", options->any_order, "The order of the statements means nothing: sorts them.");
   app.footer(std::string(fmt_examples));
   return [options](Console& console) { return format_files(*options, console); };
 }

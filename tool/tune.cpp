@@ -175,7 +175,7 @@ Action add_tune(CLI::App& app) {
   app.add_option("--start", options->starts, "Fits from N points spread over the bounds, and keeps the best.")
       ->check(CLI::Range(1, 1000000))
       ->option_text("N");
-  app.add_flag("--any-order", options->diagram.any_order, "The statements may stand in any order.");
+  app.add_flag("--any-order", options->diagram.any_order, "The order of the statements means nothing.");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(tune_examples));
   return [options](Console& console) { return tune(*options, console); };

@@ -9,6 +9,7 @@
 #include <ranges>
 
 #include "codegen/graph/names.hpp"
+#include "codegen/graph/other_names.hpp"
 #include "codegen/graph/units.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -444,6 +445,9 @@ std::string Reader::nearest_block(std::string_view name) const {
   std::string prefixed = "HY_" + upper(name);
   if (find_block_type(prefixed) != nullptr) {
     return prefixed;
+  }
+  if (const std::string_view block = block_of_other_name(name); !block.empty()) {
+    return std::string(block);
   }
   std::vector<std::string_view> candidates;
   for (const BlockType& type : block_types()) {

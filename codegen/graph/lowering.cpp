@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -40,28 +41,6 @@ double fold(Op op, std::span<const double> args) {
     default:
       return info(op).result == Type::Bool ? (comparison(op, as_real(0), as_real(1)) ? 1.0 : 0.0)
                                            : real_operation(op, as_real(0), as_real(1));
-  }
-}
-
-struct Function {
-  std::string_view name;
-  Op op;
-};
-constexpr std::array unary_functions{
-    Function{"ABS", Op::Abs},   Function{"SQRT", Op::Sqrt}, Function{"LN", Op::Log},     Function{"EXP", Op::Exp},
-    Function{"SIN", Op::Sin},   Function{"COS", Op::Cos},   Function{"TAN", Op::Tan},    Function{"ASIN", Op::Asin},
-    Function{"ACOS", Op::Acos}, Function{"ATAN", Op::Atan}, Function{"TRUNC", Op::ToInt}};
-
-Op select_for(Type type) {
-  switch (type) {
-    case Type::Int:
-      return Op::SelectInt;
-    case Type::Bool:
-      return Op::SelectBool;
-    case Type::Word:
-      return Op::SelectWord;
-    default:
-      return Op::Select;
   }
 }
 
@@ -272,161 +251,6 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
     const Wire result = row.swapped ? apply(*op, {right, left}, span) : apply(*op, {left, right}, span);
     return row.op == Operator::Equal && left.type == Type::Bool ? apply(Op::Not, {result}, span) : result;
   }
-  return {};
-}
-
-// LREAL_TO_DINT rounds to the nearest, ties to even, as IEC 60559 and the standard say.
-Wire Lowering::round_to_int(Wire x, language::Span span) {
-  const Wire whole = apply(Op::ToInt, {x}, span);
-  const Wire rest = apply(Op::Subtract, {x, apply(Op::ToReal, {whole}, span)}, span);
-  const Wire odd = apply(
-      Op::IntNotEqual,
-      {apply(Op::IntModulo, {whole, builder_.literal(Type::Int, 2)}, span), builder_.literal(Type::Int, 0)}, span);
-  const auto beyond = [&](double half) {
-    const Wire limit = builder_.literal(Type::Real, half);
-    const Wire end = builder_.literal(
-        Type::Int, half > 0 ? std::numeric_limits<std::int32_t>::max() : std::numeric_limits<std::int32_t>::min());
-    const Wire past = half > 0 ? apply(Op::Less, {limit, rest}, span) : apply(Op::Less, {rest, limit}, span);
-    const Wire inside = apply(Op::IntNotEqual, {whole, end}, span);  // at its ends DINT saturates
-    const Wire tie = apply(Op::And, {apply(Op::Equal, {rest, limit}, span), odd}, span);
-    return apply(Op::And, {apply(Op::Or, {past, tie}, span), inside}, span);
-  };
-  const Wire one = builder_.literal(Type::Int, 1);
-  const Wire up = apply(Op::IntAdd, {whole, one}, span);
-  const Wire down = apply(Op::IntSubtract, {whole, one}, span);
-  return apply(Op::SelectInt, {beyond(0.5), up, apply(Op::SelectInt, {beyond(-0.5), down, whole}, span)}, span);
-}
-
-Wire Lowering::lower_call(const language::FunctionCall& call, language::Span span) {
-  const std::string name = language::upper(call.function.text);
-  std::vector<Wire> args;
-  for (const auto& argument : call.arguments) {
-    args.push_back(expression(argument.value));
-    if (args.back().from == Wire::From::Nothing) {
-      return {};
-    }
-  }
-  const auto wrong = [&](std::string_view form) {
-    report_(error::unknown_function, span, fmt::format("{} does not take these arguments", name),
-            fmt::format("Write {}.", form));
-    return Wire{};
-  };
-  const auto all = [&](Type type, std::size_t count) {
-    bool good = args.size() == count;
-    for (const Wire& arg : args) {
-      good = good && arg.type == type;
-    }
-    return good;
-  };
-  // Formal arguments are put in the order of the standard.
-  const auto formal = [&](std::initializer_list<std::string_view> order) {
-    std::vector<Wire> sorted(args.size());
-    bool named = !call.arguments.empty() && !call.arguments.front().formal.text.empty();
-    if (!named) {
-      return true;
-    }
-    std::vector<bool> taken(args.size(), false);
-    for (std::size_t i = 0; i < args.size(); ++i) {
-      std::size_t place = 0;
-      bool found = false;
-      for (const auto wanted : order) {
-        if (language::same_name(call.arguments[i].formal.text, wanted) && place < sorted.size() && !taken[place]) {
-          sorted[place] = args[i];
-          taken[place] = found = true;
-        }
-        ++place;
-      }
-      if (!found) {
-        return false;
-      }
-    }
-    args = sorted;
-    return true;
-  };
-
-  for (const Function& function : unary_functions) {
-    if (name == function.name) {
-      if (!formal({"IN"}) || args.size() != 1) {
-        return wrong(fmt::format("{}(X) with an LREAL", name));
-      }
-      if (name == "ABS" && all(Type::Int, 1)) {
-        return apply(Op::IntMax, {args[0], apply(Op::IntNegate, {args[0]}, span)}, span);
-      }
-      return all(Type::Real, 1) ? apply(function.op, {args[0]}, span) : wrong(fmt::format("{}(X) with an LREAL", name));
-    }
-  }
-  if (name == "LOG") {
-    return formal({"IN"}) && all(Type::Real, 1)
-               ? apply(Op::Divide, {apply(Op::Log, {args[0]}, span), builder_.literal(Type::Real, 2.302585092994046)},
-                       span)
-               : wrong("LOG(X) with an LREAL");
-  }
-  if (name == "EXPT") {
-    if (formal({"IN1", "IN2"}) && args.size() == 2 && args[1].type == Type::Int) {
-      args[1] = GraphBuilder::is_literal(args[1]) ? builder_.literal(Type::Real, builder_.value(args[1]))
-                                                  : apply(Op::ToReal, {args[1]}, span);
-    }
-    return all(Type::Real, 2) ? apply(Op::Power, {args[0], args[1]}, span) : wrong("EXPT(BASE, EXPONENT) with LREALs");
-  }
-  if (name == "MIN" || name == "MAX") {
-    if (!formal({"IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7", "IN8"}) || args.size() < 2 ||
-        !(all(Type::Real, args.size()) || all(Type::Int, args.size()))) {
-      return wrong(fmt::format("{}(A, B, …) with two or more LREALs or DINTs", name));
-    }
-    const bool real = args[0].type == Type::Real;
-    const Op op = name == "MIN" ? (real ? Op::Min : Op::IntMin) : (real ? Op::Max : Op::IntMax);
-    Wire result = args[0];
-    for (std::size_t i = 1; i < args.size(); ++i) {
-      result = apply(op, {result, args[i]}, span);
-    }
-    return result;
-  }
-  if (name == "LIMIT") {
-    if (!formal({"MN", "IN", "MX"}) || !(all(Type::Real, 3) || all(Type::Int, 3))) {
-      return wrong("LIMIT(MN, IN, MX) with three LREALs or three DINTs");
-    }
-    const bool real = args[0].type == Type::Real;
-    return apply(real ? Op::Min : Op::IntMin, {apply(real ? Op::Max : Op::IntMax, {args[1], args[0]}, span), args[2]},
-                 span);
-  }
-  if (name == "SEL") {
-    if (!formal({"G", "IN0", "IN1"}) || args.size() != 3 || args[0].type != Type::Bool ||
-        args[1].type != args[2].type) {
-      return wrong("SEL(G, IN0, IN1) with a BOOL and two values of one type: IN1 where G is TRUE");
-    }
-    return apply(select_for(args[1].type), {args[0], args[2], args[1]}, span);
-  }
-  if (name == "MUX") {
-    bool good = args.size() >= 3 && args[0].type == Type::Int &&
-                formal({"K", "IN0", "IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7"});
-    for (std::size_t i = 2; good && i < args.size(); ++i) {
-      good = args[i].type == args[1].type;
-    }
-    if (!good) {
-      return wrong("MUX(K, IN0, IN1, …) with a DINT and values of one type");
-    }
-    Wire result = args.back();  // a K outside selects the nearest end
-    for (std::size_t i = args.size() - 1; i-- > 1;) {
-      const Wire past =
-          apply(Op::IntLessEqual, {args[0], builder_.literal(Type::Int, static_cast<double>(i - 1))}, span);
-      result = apply(select_for(args[1].type), {past, args[i], result}, span);
-    }
-    return result;
-  }
-  if (name == "DINT_TO_LREAL") {
-    return all(Type::Int, 1) ? apply(Op::ToReal, {args[0]}, span) : wrong("DINT_TO_LREAL(N) with a DINT");
-  }
-  if (name == "LREAL_TO_DINT") {
-    return all(Type::Real, 1) ? round_to_int(args[0], span) : wrong("LREAL_TO_DINT(X) with an LREAL");
-  }
-  if (name == "BOOL_TO_DINT") {
-    return all(Type::Bool, 1)
-               ? apply(Op::SelectInt, {args[0], builder_.literal(Type::Int, 1), builder_.literal(Type::Int, 0)}, span)
-               : wrong("BOOL_TO_DINT(B) with a BOOL");
-  }
-  report_(error::unknown_function, call.function.span, fmt::format("there is no function '{}'", call.function.text),
-          "Known: ABS SQRT LN LOG EXP EXPT SIN COS TAN ASIN ACOS ATAN TRUNC MIN MAX LIMIT SEL MUX DINT_TO_LREAL "
-          "LREAL_TO_DINT BOOL_TO_DINT.");
   return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -42,6 +43,9 @@ class GraphBuilder {
   std::uint32_t next_number_ = 0;
 };
 
+/// The names of a function's arguments in their order, by its name in upper case: G, IN0, IN1 of SEL.
+std::span<const std::string_view> formal_arguments(std::string_view function);
+
 /// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
 class Lowering {
  public:
@@ -59,6 +63,7 @@ class Lowering {
   Wire lower_binary(const language::Binary& binary, language::Span span);
   Wire lower_call(const language::FunctionCall& call, language::Span span);
   Wire round_to_int(Wire x, language::Span span);
+  Wire angle_of(Wire y, Wire x, language::Span span);
   Wire expression(language::ExpressionId id);
   Wire apply(Op op, std::initializer_list<Wire> operands, language::Span span) {
     return builder_.operation(op, operands, path_, span);

@@ -374,7 +374,10 @@ class Scheduler {
     const std::uint32_t last = last_task(task.node);
     bool ready = tasks_[last].update && last != index;
     if (ready) {
-      for_each_dependence(last, [&](std::uint32_t other, std::uint32_t /*pin*/) { ready = ready && finished_[other]; });
+      // What the update reads of this very task is known only behind it: a delay that is wired to itself.
+      for_each_dependence(last, [&](std::uint32_t other, std::uint32_t pin) {
+        ready = ready && finished_[other] && (other != index || pin == none);
+      });
     }
     if (ready) {
       updated_early_.resize(graph_.nodes.size(), false);

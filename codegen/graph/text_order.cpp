@@ -6,8 +6,14 @@
 #include <functional>
 #include <optional>
 #include <queue>
+#include <set>
 #include <unordered_map>
 
+#include "blocks/delay.hpp"
+#include "blocks/delay_bool.hpp"
+#include "blocks/delay_dint.hpp"
+#include "blocks/delay_word.hpp"
+#include "codegen/graph/names.hpp"
 #include "codegen/graph/schedule.hpp"
 #include "support/errors.hpp"
 
@@ -16,15 +22,55 @@ namespace {
 
 using language::upper;
 
+/// On which side of a call or assignment a read has the same value here and in an IEC compiler.
+enum class Side : std::uint8_t {
+  Behind,        ///< depends on this step's inputs: before, an IEC compiler has last cycle's value, which is HY402
+  RatherBehind,  ///< an output of a FUNCTION_BLOCK that memory alone decides: here it is this step's on both sides
+  RatherBefore,  ///< the same of a block of the library, whose call moves its memory on
+};
+
 /// A read of a variable or of an instance's output in a statement.
 struct Read {
   std::uint32_t statement = 0;
   std::uint32_t variable = 0;
-  bool late = true;    ///< depends on this step's inputs: to be read after the call or assignment
-  bool strict = true;  ///< early outputs of library blocks: elsewhere, only a read before the call is right
+  Side side = Side::Behind;
   language::Span span{};
   std::string text{};
 };
+
+/// Whether an output of a block is worked out from what the block remembers.
+bool has_memory(const BlockTrace& trace, std::size_t output) {
+  std::vector<ValueId> open{trace.outputs[output]};
+  std::vector<bool> seen(trace.tape.size(), false);
+  while (!open.empty()) {
+    const ValueId id = open.back();
+    open.pop_back();
+    if (id == no_value || seen[id]) {
+      continue;
+    }
+    seen[id] = true;
+    const Value& value = trace.tape[id];
+    if (value.op == Op::Cell) {
+      return true;
+    }
+    open.insert(open.end(), value.args.begin(), value.args.end());
+  }
+  return false;
+}
+
+/// The block of the library that remembers a value of a type for one step.
+std::string_view delay_of(Type type) {
+  switch (type) {
+    case Type::Bool:
+      return DelayBool::about.name;
+    case Type::Int:
+      return DelayInt::about.name;
+    case Type::Word:
+      return DelayWord::about.name;
+    default:
+      return Delay::about.name;
+  }
+}
 
 class Order {
  public:
@@ -56,25 +102,52 @@ class Order {
   }
 
   void check(Diagnostics& diagnostics) const {
+    std::set<std::pair<std::uint32_t, std::string>> told;  // X := X + (U - X) reads X twice, and is told once
     for (const Read& read : reads_) {
       const std::uint32_t writer = *writer_[read.variable];
-      if (read.late && read.statement <= writer) {
-        const bool call = std::holds_alternative<language::Call>(definition_.block->statements[writer]);
-        diagnostics.error(
-            error::hidden_delay, source_.place(read.span),
-            fmt::format("hidden delay: {} is read before it is {}", read.text, call ? "called" : "assigned"),
-            "In an IEC compiler this would be last cycle's value. Move this statement behind that one, as `hysteron "
-            "fmt` does, or read it through a HY_DELAY.",
-            {{source_.place(statement_span(writer)), call ? "called here" : "assigned here"}});
-      } else if (!read.late && read.strict && read.statement > writer) {
-        diagnostics.warning(
-            error::read_after_call, source_.place(read.span),
-            fmt::format("{} does not depend on this step's inputs, and is read after its call", read.text),
-            "Here it is this step's value; an IEC compiler with the block library would give the next one. Move the "
-            "reading statement before the call, as `hysteron fmt` does.",
-            {{source_.place(statement_span(writer)), "called here"}});
+      const bool before = read.statement <= writer;
+      if (before != (read.side == Side::RatherBefore) && told.emplace(read.statement, upper(read.text)).second) {
+        if (read.side == Side::Behind) {
+          report_hidden_delay(read, writer, diagnostics);
+        } else {
+          report_other_meaning(read, writer, diagnostics);
+        }
       }
     }
+  }
+
+  /// Whether every circle among the statements goes through a variable that is read before it is assigned: memory, as
+  /// an IEC compiler has it, and no algebraic loop.
+  [[nodiscard]] bool loops_are_memory() const {
+    const std::size_t count = definition_.block->statements.size();
+    std::vector<std::vector<std::uint32_t>> readers(count);
+    std::vector<std::uint32_t> waits_for(count, 0);
+    for (const Read& read : reads_) {
+      const std::uint32_t writer = *writer_[read.variable];
+      const bool remembered = read.statement <= writer && !is_call(writer);
+      if (read.side == Side::Behind && !remembered) {
+        readers[writer].push_back(read.statement);
+        ++waits_for[read.statement];
+      }
+    }
+    std::vector<std::uint32_t> free;
+    for (std::uint32_t s = 0; s < count; ++s) {
+      if (waits_for[s] == 0) {
+        free.push_back(s);
+      }
+    }
+    std::size_t placed = 0;
+    while (!free.empty()) {
+      const std::uint32_t statement = free.back();
+      free.pop_back();
+      ++placed;
+      for (const std::uint32_t reader : readers[statement]) {
+        if (--waits_for[reader] == 0) {
+          free.push_back(reader);
+        }
+      }
+    }
+    return placed == count;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> sorted() const {
@@ -86,12 +159,14 @@ class Order {
     std::vector<std::uint32_t> should(count, 0);
     for (const Read& read : reads_) {
       const std::uint32_t writer = *writer_[read.variable];
-      if (writer == read.statement || (!read.late && !read.strict)) {
+      if (writer == read.statement) {
         continue;
       }
-      const auto [first, second] = read.late ? std::pair{writer, read.statement} : std::pair{read.statement, writer};
-      after[first].emplace_back(second, read.late);
-      ++(read.late ? must : should)[second];
+      const auto [first, second] =
+          read.side == Side::RatherBefore ? std::pair{read.statement, writer} : std::pair{writer, read.statement};
+      const bool late = read.side == Side::Behind;
+      after[first].emplace_back(second, late);
+      ++(late ? must : should)[second];
     }
     using FirstInText = std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>>;
     FirstInText ready;
@@ -140,6 +215,77 @@ class Order {
   }
 
  private:
+  [[nodiscard]] bool is_call(std::uint32_t statement) const {
+    return std::holds_alternative<language::Call>(definition_.block->statements[statement]);
+  }
+
+  /// A name for a delay that the block does not declare yet: LAST_BEFORE.
+  [[nodiscard]] std::string delay_name(std::string_view variable) const {
+    std::string name = fmt::format("{}_BEFORE", variable);
+    for (int i = 2; definition_.by_name.contains(upper(name)); ++i) {
+      name = fmt::format("{}_BEFORE_{}", variable, i);
+    }
+    return name;
+  }
+
+  void report_hidden_delay(const Read& read, std::uint32_t writer, Diagnostics& diagnostics) const {
+    const Declared& declared = definition_.variables[read.variable];
+    const std::string name = delay_name(declared.field.name);
+    const Type type = type_of(read);
+    const std::string start =
+        declared.has_preset ? fmt::format(" := (X0 := {})", literal_text(type, declared.field.preset)) : "";
+    diagnostics.error(
+        error::hidden_delay, source_.place(read.span),
+        fmt::format("hidden delay: {} is read before it is {}", read.text, is_call(writer) ? "called" : "assigned"),
+        fmt::format("An IEC compiler has last cycle's value here: memory. If that is meant, declare {0} : {1}{2}; call "
+                    "{0}(XIN := {3}); and read {0}.XOUT here. {4}",
+                    name, delay_of(type), start, read.text,
+                    read.statement == writer
+                        ? "Within one step a value cannot depend on itself."
+                        : "If this step's value is meant, move this statement behind that one, as `hysteron fmt "
+                          "--any-order` does."),
+        {{source_.place(statement_span(writer)), is_call(writer) ? "called here" : "assigned here"}});
+  }
+
+  void report_other_meaning(const Read& read, std::uint32_t writer, Diagnostics& diagnostics) const {
+    const std::vector<Note> notes{{source_.place(statement_span(writer)), "called here"}};
+    if (read.side == Side::RatherBefore) {
+      diagnostics.warning(
+          error::read_after_call, source_.place(read.span),
+          fmt::format("{} does not depend on this step's inputs, and is read after its call", read.text),
+          "Here it is this step's value; an IEC compiler with the block library would give the next one. Move the "
+          "reading statement before the call, as `hysteron fmt --any-order` does.",
+          notes);
+    } else {
+      diagnostics.warning(
+          error::read_after_call, source_.place(read.span),
+          fmt::format("{} is known without this step's inputs, and is read before its call", read.text),
+          "Here it is this step's value; an IEC compiler would give that of last cycle. Move the reading statement "
+          "behind the call; in a loop, put the HY_DELAY that is inside into this block.",
+          notes);
+    }
+  }
+
+  /// The type of what is read.
+  [[nodiscard]] Type type_of(const Read& read) const {
+    const Declared& declared = definition_.variables[read.variable];
+    const std::string_view pin =
+        std::string_view(read.text).substr(std::min(read.text.size(), read.text.find('.') + 1));
+    if (declared.kind == Declared::Kind::LibraryBlock) {
+      for (const Field& output : declared.block->outputs) {
+        if (language::same_name(output.name, pin)) {
+          return output.type;
+        }
+      }
+    } else if (declared.kind == Declared::Kind::UserBlock) {
+      const Definition& inner = definitions_.list[declared.definition];
+      if (const auto output = inner.by_name.find(upper(pin)); output != inner.by_name.end()) {
+        return inner.variables[output->second].field.type;
+      }
+    }
+    return declared.field.type;
+  }
+
   [[nodiscard]] language::Span statement_span(std::uint32_t statement) const {
     return std::visit([](const auto& one) { return one.span; }, definition_.block->statements[statement]);
   }
@@ -177,15 +323,16 @@ class Order {
       }
       for (std::size_t port = 0; port < declared.block->outputs.size(); ++port) {
         if (language::same_name(declared.block->outputs[port].name, reference.pin.text)) {
-          read.late = declared.block->states.empty() || has_feedthrough(graph_, graph_.nodes[node->second], port);
+          if (!declared.block->states.empty() && !has_feedthrough(graph_, graph_.nodes[node->second], port)) {
+            read.side = has_memory(declared.block->trace, port) ? Side::RatherBefore : Side::RatherBehind;
+          }
         }
       }
     } else if (declared.kind == Declared::Kind::UserBlock) {
       const Definition& inner = definitions_.list[declared.definition];
       const auto output = inner.by_name.find(upper(reference.pin.text));
       if (output != inner.by_name.end() && output->second < inner.late.size()) {
-        read.late = inner.late[output->second];
-        read.strict = false;
+        read.side = inner.late[output->second] ? Side::Behind : Side::RatherBehind;
       }
     }
     reads_.push_back(std::move(read));
@@ -202,9 +349,11 @@ class Order {
 
 }  // namespace
 
-void check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
+bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
                       Diagnostics& diagnostics) {
-  Order(definitions, definition, graph).check(diagnostics);
+  const Order order(definitions, definition, graph);
+  order.check(diagnostics);
+  return order.loops_are_memory();
 }
 
 std::vector<std::uint32_t> statement_order(const Definitions& definitions, std::uint32_t definition,

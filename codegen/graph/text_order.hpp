@@ -1,9 +1,9 @@
 // The order of the text against the order of the data flow.
 //
-// In any IEC compiler, an output that is read before its instance is called holds last cycle's value. So that an
-// accepted file means the same there and here: an output that depends on this step's inputs is read after the call
-// (else HY402, a hidden delay), and an output that depends on the state alone, such as a delay's, is read before it
-// (else HY405, a warning: elsewhere it is already the next value). Formatting puts statements in such an order.
+// An IEC compiler executes the text from top to bottom, and a variable keeps its value between two calls. So that an
+// accepted file means the same there and here: what depends on this step's inputs is read after its assignment or call
+// (else HY402: last cycle's value, memory that nobody declared). An output of a library block that depends on memory
+// alone, such as a delay's, is read before the call, and one of a FUNCTION_BLOCK behind it (else HY405, a warning).
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,10 @@
 
 namespace hysteron {
 
-/// Reports reads that stand on the wrong side of a call. `graph` is the definition elaborated by itself.
-void check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
+/// Reports reads that stand on the wrong side of a call. `graph` is the definition elaborated by itself. Says whether
+/// every circle in it goes through a variable that is read before its assignment: a loop there would be memory in an
+/// IEC compiler, and HY402 has told it.
+bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
                       Diagnostics& diagnostics);
 
 /// The statements of a definition in the order of the data flow, by index; the order of the text where that leaves a

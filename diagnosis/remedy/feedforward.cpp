@@ -318,7 +318,8 @@ Feedforward feedforward_of(const Program& program, std::string_view input, std::
     Inverter inverter(program, static_cast<std::uint32_t>(from - program.graph.inputs.data()), ts);
     inverter.walk(to->wire);
     Diagnostics diagnostics;
-    std::string text = format_text("feedforward.st", written(program, *from, *to, inverter), diagnostics);
+    std::string text =
+        format_text("feedforward.st", written(program, *from, *to, inverter), diagnostics, {.any_order = true});
     (void)compile_text(text);
     result.text = std::move(text);
     result.notes = inverter.text().notes();

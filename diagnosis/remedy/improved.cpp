@@ -43,13 +43,14 @@ std::size_t hidden_delays(const std::string& text) {
 
 std::string improved_text(const Variant& variant, const std::string& path) {
   Diagnostics diagnostics;
-  std::string text = format_text(path, variant.text, diagnostics);
+  std::string text = format_text(path, variant.text, diagnostics, {.any_order = true});
   std::size_t left = hidden_delays(text);
   for (const Applied& applied : variant.effects) {
     if (left == 0) {
       break;
     }
-    std::string other = format_text(path, written_as_sum(text, variant.program->graph.name, applied), diagnostics);
+    std::string other =
+        format_text(path, written_as_sum(text, variant.program->graph.name, applied), diagnostics, {.any_order = true});
     if (const std::size_t there = hidden_delays(other); there < left) {
       text = std::move(other);
       left = there;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -22,7 +23,10 @@ TEST(Contract, AnEffectPassesItsInputThroughWhereNeutral) {
     if (B::about.effect.empty()) {
       return;
     }
-    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) { in.XIN = out.XOUT; }) {
+    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) {
+                    { in.XIN } -> std::same_as<double&>;
+                    { out.XOUT } -> std::same_as<double&>;
+                  }) {
       auto params = presets<DoubleParams<B>>();
       EXPECT_GT(neutralise(params), 0) << "an effect has a neutral setting";
 
@@ -135,7 +139,10 @@ TEST(Contract, ABorderBetweenRatesOnlyPassesOn) {
       return;
     }
     ++borders;
-    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) { in.XIN = out.XOUT; }) {
+    if constexpr (requires(DoubleIn<B> in, typename B::template Out<double> out) {
+                    { in.XIN } -> std::same_as<double&>;
+                    { out.XOUT } -> std::same_as<double&>;
+                  }) {
       EXPECT_FALSE(HasMemory<B>);
       Stepper<B> block(1.0);
       auto in = presets<DoubleIn<B>>();

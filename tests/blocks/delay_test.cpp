@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "blocks/dead_time.hpp"
+#include "blocks/delay_bool.hpp"
+#include "blocks/delay_dint.hpp"
+#include "blocks/delay_word.hpp"
 #include "tests/blocks/random_io.hpp"
 #include "tests/blocks/stepper.hpp"
 
@@ -20,6 +23,24 @@ TEST(Delay, GivesTheInputOfTheStepBefore) {
   EXPECT_EQ(block({.XIN = 2.0, .R1 = false}).XOUT, 1.0);
   EXPECT_EQ(block({.XIN = 3.0, .R1 = true}).XOUT, 9.0);
   EXPECT_EQ(block({.XIN = 4.0, .R1 = false}).XOUT, 3.0);
+}
+
+TEST(Delay, OfAnyOtherTypeGivesTheValueOfTheStepBefore) {
+  Stepper<DelayBool> truth(1.0, {.X0 = true});
+  EXPECT_EQ(truth({.XIN = false, .R1 = false}).XOUT, true);
+  EXPECT_EQ(truth({.XIN = true, .R1 = false}).XOUT, false);
+  EXPECT_EQ(truth({.XIN = false, .R1 = false}).XOUT, true);
+  EXPECT_EQ(truth({.XIN = false, .R1 = true}).XOUT, true) << "at a reset X0";
+  Stepper<DelayInt> number(1.0, {.X0 = -9});
+  EXPECT_EQ(number({.XIN = 2147483647, .R1 = false}).XOUT, -9);
+  EXPECT_EQ(number({.XIN = 4, .R1 = false}).XOUT, 2147483647)
+      << "every digit is kept, which an LREAL of 32 bits would not";
+  EXPECT_EQ(number({.XIN = 5, .R1 = true}).XOUT, -9);
+  EXPECT_EQ(number({.XIN = 6, .R1 = false}).XOUT, 5);
+  Stepper<DelayWord> word(1.0, {.X0 = 0x8001});
+  EXPECT_EQ(word({.XIN = 0xFFFF, .R1 = false}).XOUT, 0x8001);
+  EXPECT_EQ(word({.XIN = 1, .R1 = false}).XOUT, 0xFFFF);
+  EXPECT_EQ(word({.XIN = 2, .R1 = true}).XOUT, 0x8001);
 }
 
 TEST(DeadTime, IsAWalkBackInTheRecord) {

@@ -48,6 +48,14 @@ std::vector<int> compiled(const std::string& text) {
   return numbers_of(diagnostics);
 }
 
+/// With what `check` alone tells.
+std::vector<int> checked(const std::string& text) {
+  Diagnostics diagnostics;
+  auto file = language::parse("page.st", text, diagnostics);
+  check(std::make_shared<const language::SourceFile>(std::move(file)), diagnostics);
+  return numbers_of(diagnostics);
+}
+
 /// Compiled, and laid out to be run.
 std::vector<int> run(const std::string& text) {
   try {
@@ -64,8 +72,11 @@ std::vector<std::pair<int, Checker>> diagram_errors() {
   for (const auto& title : error_titles()) {
     if (title.number < 500) {
       const bool is_run = title.number == error::missing_sample_time;
-      list.emplace_back(title.number,
-                        title.number < 200 ? Checker(parsed) : (is_run ? Checker(run) : Checker(compiled)));
+      const bool is_checked = title.number == error::other_meaning_elsewhere;
+      list.emplace_back(title.number, title.number < 200 ? Checker(parsed)
+                                      : is_run           ? Checker(run)
+                                      : is_checked       ? Checker(checked)
+                                                         : Checker(compiled));
     }
   }
   return list;

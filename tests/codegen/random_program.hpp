@@ -50,7 +50,7 @@ class RandomDiagram {
       case Type::Bool:
         return pick(2) != 0 ? "TRUE" : "FALSE";
       default:
-        return "";
+        return fmt::format("WORD#{}", pick(65536));
     }
   }
 
@@ -113,7 +113,7 @@ class RandomDiagram {
     if (field.type == Type::Int) {
       return fmt::format("{}", static_cast<int>(low + std::floor(unit() * (std::min(high, low + 5.0) - low + 1.0))));
     }
-    return field.type == Type::Bool ? literal(Type::Bool) : fmt::format("{:.6f}", low + unit() * (high - low));
+    return field.type == Type::Bool || field.type == Type::Word ? literal(field.type) : fmt::format("{:.6f}", low + unit() * (high - low));
   }
 
   void write(int instances) {

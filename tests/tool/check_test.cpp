@@ -72,12 +72,26 @@ y:=b.XOUT;
 end_function_block
 )";
 
-TEST(Fmt, PutsStatementsInOrderAndIsIdempotent) {
+/// To move the read would change what an IEC compiler makes of the text.
+TEST(Fmt, MovesNoStatementOfItsOwnAccord) {
+  const test::Workbench bench;
+  bench.write("p.st", disorderly);
+  for (const std::string options : {"", "--check ", "--stdout "}) {
+    const auto outcome = bench.shell("hysteron fmt " + options + "p.st");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("HY402 error"), HasSubstr("HY_DELAY"), HasSubstr("--any-order")));
+  }
+  EXPECT_EQ(bench.read("p.st"), disorderly);
+}
+
+TEST(Fmt, InAnyOrderPutsStatementsInOrderAndIsIdempotent) {
   const test::Workbench bench;
   bench.write("p.st", disorderly);
   EXPECT_EQ(bench.shell("hysteron check p.st").code, 1);  // b reads last cycle's a
-  const auto outcome = bench.shell("hysteron fmt p.st");
+  const auto outcome = bench.shell("hysteron fmt --any-order p.st");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("HY402 warning")) << "what was moved is told";
   EXPECT_EQ(outcome.out, "p.st formatted\n");
   const auto formatted = bench.read("p.st");
   EXPECT_LT(formatted.find("XIN := x"), formatted.find("(* the second *)"));
@@ -89,21 +103,21 @@ TEST(Fmt, PutsStatementsInOrderAndIsIdempotent) {
 TEST(Fmt, CheckChangesNothing) {
   const test::Workbench bench;
   bench.write("p.st", disorderly);
-  const auto outcome = bench.shell("hysteron fmt --check p.st");
+  const auto outcome = bench.shell("hysteron fmt --any-order --check p.st");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "p.st would change\n");
   EXPECT_EQ(bench.read("p.st"), disorderly);
-  EXPECT_EQ(bench.shell("hysteron fmt p.st && hysteron fmt --check p.st").code, 0);
+  EXPECT_EQ(bench.shell("hysteron fmt --any-order p.st && hysteron fmt --check p.st").code, 0);
 }
 
 TEST(Fmt, StdoutLeavesTheFile) {
   const test::Workbench bench;
   bench.write("p.st", disorderly);
-  const auto outcome = bench.shell("hysteron fmt --stdout p.st");
+  const auto outcome = bench.shell("hysteron fmt --any-order --stdout p.st");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(bench.read("p.st"), disorderly);
-  EXPECT_EQ(outcome.out, bench.shell("hysteron fmt --stdout /dev/stdin < p.st").out);
-  EXPECT_EQ(bench.shell("hysteron fmt p.st; cat p.st").out, "p.st formatted\n" + outcome.out);
+  EXPECT_EQ(outcome.out, bench.shell("hysteron fmt --any-order --stdout /dev/stdin < p.st").out);
+  EXPECT_EQ(bench.shell("hysteron fmt --any-order p.st; cat p.st").out, "p.st formatted\n" + outcome.out);
 }
 
 TEST(Fmt, AFileWithSyntaxErrorsStays) {
@@ -111,7 +125,7 @@ TEST(Fmt, AFileWithSyntaxErrorsStays) {
   const std::string broken = "FUNCTION_BLOCK P\nVAR x : LREAL END_VAR\n";
   bench.write("broken.st", broken);
   bench.write("p.st", disorderly);
-  const auto outcome = bench.shell("hysteron fmt broken.st p.st");
+  const auto outcome = bench.shell("hysteron fmt --any-order broken.st p.st");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("broken.st:2"));
   EXPECT_EQ(bench.read("broken.st"), broken);

@@ -87,7 +87,7 @@ std::string response_diagram(const BlockType& block) {
                   duration_text(stimulus.sample_time), declarations("VAR_INPUT", inputs),
                   declarations("VAR_OUTPUT", outputs), body(block, stimulus));
   Diagnostics diagnostics;
-  std::string formatted = format_text(std::string(block.about.name), text, diagnostics);
+  std::string formatted = format_text(std::string(block.about.name), text, diagnostics, {.any_order = true});
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
   }

@@ -31,7 +31,7 @@ language::ExpressionId root(const language::SourceFile& file) {
   return std::get<language::Assignment>(file.blocks.at(0).statements.at(0)).value;
 }
 
-std::string tree(const std::string& text) {
+std::string expression_tree(const std::string& text) {
   const auto file = parse_expression(text);
   return Dump(file).expression(root(file));
 }
@@ -203,42 +203,42 @@ TEST(Expression, PrecedenceIsThatOfASecondEvaluator) {
 }
 
 TEST(Expression, TreesOfTheStandard) {
-  EXPECT_EQ(tree("A + B * C ** D"), "(A + (B * (C ** D)))");
-  EXPECT_EQ(tree("A ** B ** C"), "((A ** B) ** C)");
-  EXPECT_EQ(tree("A - B - C"), "((A - B) - C)");
-  EXPECT_EQ(tree("A / B * C MOD D"), "(((A / B) * C) MOD D)");
-  EXPECT_EQ(tree("-A * B"), "((- A) * B)");
-  EXPECT_EQ(tree("A ** -B"), "(A ** (- B))");
-  EXPECT_EQ(tree("A - -B"), "(A - (- B))");
-  EXPECT_EQ(tree("NOT A = B"), "((NOT A) = B)");
-  EXPECT_EQ(tree("A OR B XOR C AND D"), "(A OR (B XOR (C AND D)))");
-  EXPECT_EQ(tree("a or b Xor c & d"), "(a OR (b XOR (c AND d)))");
-  EXPECT_EQ(tree("A = B < C"), "(A = (B < C))");
-  EXPECT_EQ(tree("A + 1.0 >= B AND C <> D"), "(((A + 1r) >= B) AND (C <> D))");
-  EXPECT_EQ(tree("(A + B) * C"), "((A + B) * C)");
-  EXPECT_EQ(tree("MAX(A, -B.XOUT, SIN(0.5)) + 1.0"), "(MAX(A, (- B.XOUT), SIN(0.5r)) + 1r)");
-  EXPECT_EQ(tree("LIMIT(MN := 0.0, IN := A = B, MX := 1.0)"), "LIMIT(MN := 0r, IN := (A = B), MX := 1r)");
-  EXPECT_EQ(tree("F()"), "F()");
+  EXPECT_EQ(expression_tree("A + B * C ** D"), "(A + (B * (C ** D)))");
+  EXPECT_EQ(expression_tree("A ** B ** C"), "((A ** B) ** C)");
+  EXPECT_EQ(expression_tree("A - B - C"), "((A - B) - C)");
+  EXPECT_EQ(expression_tree("A / B * C MOD D"), "(((A / B) * C) MOD D)");
+  EXPECT_EQ(expression_tree("-A * B"), "((- A) * B)");
+  EXPECT_EQ(expression_tree("A ** -B"), "(A ** (- B))");
+  EXPECT_EQ(expression_tree("A - -B"), "(A - (- B))");
+  EXPECT_EQ(expression_tree("NOT A = B"), "((NOT A) = B)");
+  EXPECT_EQ(expression_tree("A OR B XOR C AND D"), "(A OR (B XOR (C AND D)))");
+  EXPECT_EQ(expression_tree("a or b Xor c & d"), "(a OR (b XOR (c AND d)))");
+  EXPECT_EQ(expression_tree("A = B < C"), "(A = (B < C))");
+  EXPECT_EQ(expression_tree("A + 1.0 >= B AND C <> D"), "(((A + 1r) >= B) AND (C <> D))");
+  EXPECT_EQ(expression_tree("(A + B) * C"), "((A + B) * C)");
+  EXPECT_EQ(expression_tree("MAX(A, -B.XOUT, SIN(0.5)) + 1.0"), "(MAX(A, (- B.XOUT), SIN(0.5r)) + 1r)");
+  EXPECT_EQ(expression_tree("LIMIT(MN := 0.0, IN := A = B, MX := 1.0)"), "LIMIT(MN := 0r, IN := (A = B), MX := 1r)");
+  EXPECT_EQ(expression_tree("F()"), "F()");
 }
 
 TEST(Expression, Literals) {
-  EXPECT_EQ(tree("42"), "42i");
-  EXPECT_EQ(tree("1_000"), "1000i");
-  EXPECT_EQ(tree("16#Ff"), "255i");
-  EXPECT_EQ(tree("16#7FFF_FFFF"), "2147483647i");
-  EXPECT_EQ(tree("8#17"), "15i");
-  EXPECT_EQ(tree("2#1010_0001"), "161i");
-  EXPECT_EQ(tree("2147483647"), "2147483647i");
-  EXPECT_EQ(tree("-2147483648"), "-2147483648i");
-  EXPECT_EQ(tree("-5"), "(- 5i)");
-  EXPECT_EQ(tree("DINT#3"), "3i");
-  EXPECT_EQ(tree("dint#-2147483648"), "-2147483648i");
-  EXPECT_EQ(tree("DINT#16#FF"), "255i");
-  EXPECT_EQ(tree("WORD#16#FFFF"), "65535w");
-  EXPECT_EQ(tree("TRUE"), "TRUE");
-  EXPECT_EQ(tree("false"), "FALSE");
-  EXPECT_EQ(tree("BOOL#TRUE"), "TRUE");
-  EXPECT_EQ(tree("bool#0"), "FALSE");
+  EXPECT_EQ(expression_tree("42"), "42i");
+  EXPECT_EQ(expression_tree("1_000"), "1000i");
+  EXPECT_EQ(expression_tree("16#Ff"), "255i");
+  EXPECT_EQ(expression_tree("16#7FFF_FFFF"), "2147483647i");
+  EXPECT_EQ(expression_tree("8#17"), "15i");
+  EXPECT_EQ(expression_tree("2#1010_0001"), "161i");
+  EXPECT_EQ(expression_tree("2147483647"), "2147483647i");
+  EXPECT_EQ(expression_tree("-2147483648"), "-2147483648i");
+  EXPECT_EQ(expression_tree("-5"), "(- 5i)");
+  EXPECT_EQ(expression_tree("DINT#3"), "3i");
+  EXPECT_EQ(expression_tree("dint#-2147483648"), "-2147483648i");
+  EXPECT_EQ(expression_tree("DINT#16#FF"), "255i");
+  EXPECT_EQ(expression_tree("WORD#16#FFFF"), "65535w");
+  EXPECT_EQ(expression_tree("TRUE"), "TRUE");
+  EXPECT_EQ(expression_tree("false"), "FALSE");
+  EXPECT_EQ(expression_tree("BOOL#TRUE"), "TRUE");
+  EXPECT_EQ(expression_tree("bool#0"), "FALSE");
 }
 
 double real(const std::string& text) {

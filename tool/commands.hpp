@@ -34,6 +34,7 @@ struct Command {
 Action add_check(CLI::App& app);
 Action add_fmt(CLI::App& app);
 Action add_draw(CLI::App& app);
+Action add_record(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
 Action add_tune(CLI::App& app);

@@ -115,9 +115,10 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("NAME[ms]");
   app.add_option("--rate", options.rate, "Rows per second of a record without times, or the time between two.")
       ->option_text("1kHz");
-  app.add_option("--column", options.columns,
-                 "The column that holds a signal of the diagram, by name or by number from 1 on, and its unit where the "
-                 "file states another; may be repeated.")
+  app.add_option(
+         "--column", options.columns,
+         "The column that holds a signal of the diagram, by name or by number from 1 on, and its unit where the "
+         "file states another; may be repeated.")
       ->option_text("U=NAME[mV]")
       ->allow_extra_args(false);
   app.add_option("--skip", options.skip, "Leaves out that many lines at the top of the file.")->option_text("N");

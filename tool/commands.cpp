@@ -19,6 +19,9 @@ std::span<const Command> commands() {
       Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
       Command{"map", "Prints the registers of a served diagram.", add_map},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+      Command{"explain", "Explains an error by its number.", add_explain},
+      Command{"man", "Prints a manual page.", add_man},
+      Command{"completion", "Prints the completion for a shell.", add_completion},
   };
   return list;
 }

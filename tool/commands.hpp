@@ -44,5 +44,8 @@ Action add_serve(CLI::App& app);
 Action add_replay(CLI::App& app);
 Action add_map(CLI::App& app);
 Action add_blocks(CLI::App& app);
+Action add_explain(CLI::App& app);
+Action add_man(CLI::App& app);
+Action add_completion(CLI::App& app);
 
 }  // namespace hysteron::tool

@@ -209,7 +209,8 @@ int diagnose(DiagnoseOptions options, Console& console) {
   check_effects(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
-  input.records = read_measured_records(options.logs, options.record, program, false, warnings);
+  input.records =
+      read_measured_records(options.logs, with_settings(options.record, input.file.record), program, false, warnings);
   for (const std::string& column : options.ignored) {
     input.file.diagnose.ignore.push_back({.text = column});
   }

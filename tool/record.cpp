@@ -38,6 +38,7 @@ Exit codes: 0 read; 1 read, but a column holds no numbers; 2 the file cannot be 
 struct RecordCommandOptions {
   std::string file;
   std::string picture;
+  std::string parameters;
   RecordOptions record;
   bool json = false;
 };
@@ -144,7 +145,11 @@ int show(const RecordCommandOptions& options, Console& console) {
   }
   const std::string bytes = read_text_file(options.file);
   console.sources().put(options.file, bytes);
-  const records::Record record = records::parse_record(options.file, bytes, read_options(options.record));
+  const RecordOptions reading =
+      options.parameters.empty()
+          ? options.record
+          : with_settings(options.record, parameters::read_parameter_file(options.parameters).record);
+  const records::Record record = records::parse_record(options.file, bytes, read_options(reading));
   if (record.columns().empty()) {
     Diagnostics faults;
     for (const records::Record::Unreadable& one : record.unreadable()) {
@@ -168,6 +173,8 @@ Action add_record(CLI::App& app) {
   const auto options = std::make_shared<RecordCommandOptions>();
   app.add_option("LOG", options->file, "The record.")->required()->option_text("LOG");
   add_record_options(app, options->record);
+  app.add_option("--params", options->parameters, "Takes [record] of a parameter file, where no option says otherwise.")
+      ->option_text("P.toml");
   app.add_option("--picture", options->picture, "Draws the columns over the time.")->option_text("FILE.svg");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(record_examples));

@@ -132,8 +132,36 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("linear|hold|average");
 }
 
+RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings) {
+  const std::pair<std::string_view, std::string*> texts[] = {
+      {"time", &options.time}, {"rate", &options.rate},       {"skip", &options.skip},        {"range", &options.range},
+      {"rows", &options.rows}, {"decimal", &options.decimal}, {"resample", &options.resample}};
+  for (const auto& [key, value] : settings.settings) {
+    const auto* const found = std::ranges::find_if(texts, [&](const auto& text) { return text.first == key; });
+    if (found != std::end(texts) && found->second->empty()) {
+      *found->second = value.text;
+    }
+  }
+  for (const auto& [name, value] : settings.columns) {
+    const auto is_given = [&](const std::string& one) {
+      return equal_ignoring_case(trimmed(std::string_view(one).substr(0, one.find('='))), name);
+    };
+    if (std::ranges::none_of(options.columns, is_given)) {
+      options.columns.push_back(fmt::format("{}={}", name, value.text));
+    }
+  }
+  return options;
+}
+
 records::ReadOptions read_options(const RecordOptions& options, const Program* program) {
-  records::ReadOptions result{.skip = options.skip};
+  records::ReadOptions result;
+  if (!options.skip.empty()) {
+    const auto lines = whole(options.skip);
+    if (!lines) {
+      refuse("--skip", options.skip, "write how many lines at the top are no part of the record, such as --skip 3.");
+    }
+    result.skip = *lines;
+  }
   std::tie(result.time, result.time_unit) = name_and_unit(options.time);
   take_range(options, result);
   if (!options.rate.empty()) {

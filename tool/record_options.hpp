@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "codegen/parameters/parameter_file.hpp"
 #include "records/read_options.hpp"
 #include "records/record.hpp"
 #include "tool/console.hpp"
@@ -21,7 +22,7 @@ struct RecordOptions {
   std::string time{};                  ///< NAME or NAME[ms]
   std::string rate{};                  ///< 1kHz, 1 ms
   std::vector<std::string> columns{};  ///< U=MAIN.u
-  std::size_t skip = 0;
+  std::string skip{};
   std::string range{};  ///< 2s..8s
   std::string rows{};   ///< 1..60
   std::string decimal{};
@@ -30,6 +31,9 @@ struct RecordOptions {
 
 /// The options --time, --rate, --column, --skip, --range, --rows, --decimal and --resample.
 void add_record_options(CLI::App& app, RecordOptions& options);
+
+/// The same, with what [record] of a parameter file says where no option does.
+[[nodiscard]] RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings);
 
 /// What they say. Throws InputError HY730 for one that says nothing. With a diagram, a record is resampled to its
 /// sample time.

@@ -147,7 +147,11 @@ int run(const RunOptions& options, Console& console) {
   refuse_ports_named_as_time(diagnostics);
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
-  records::Record record = records::parse_record(options.input, log, read_options(options.record, &program));
+  const RecordOptions reading =
+      options.diagram.parameters.empty()
+          ? options.record
+          : with_settings(options.record, parameters::read_parameter_file(options.diagram.parameters).record);
+  records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
   fit_to_diagram(record, program, !options.summary, diagnostics);
   settle_sample_time(record, program, diagnostics);
   const Drive drive = drive_from(record, program, {}, diagnostics);

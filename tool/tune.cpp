@@ -122,7 +122,7 @@ int tune(const TuneOptions& options, Console& console) {
   refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
   const std::vector<records::Record> records =
-      read_measured_records(options.logs, options.record, program, true, warnings);
+      read_measured_records(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
 
   OutputErrorFit fit;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "codegen/compile.hpp"
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "support/text_file.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"

@@ -8,6 +8,7 @@
 
 #include "examples/08_served_stage/stage.hpp"
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"
 #include "tests/support/scratch_folder.hpp"

@@ -72,6 +72,27 @@ TEST(RecordCommand, InputsWithoutAColumnAndColumnsWithoutAPortAreTold) {
   }
 }
 
+TEST(RecordCommand, WhatHoldsForAllRecordsStandsInTheParameterFile) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("p.toml",
+              std::string(parameters) + "[record]\ntime = \"x[ms]\"\n[record.columns]\nU = \"MAIN.u\"\nY = 3\n");
+  bench.write("log.csv", "x,MAIN.u,MAIN.y,z\n0,0,0,1\n1,1,3,1\n2,0.5,1.5,1\n3,-0.2,-0.6,1\n");
+  EXPECT_EQ(bench.shell("hysteron tune p.st --log log.csv --params p.toml --out tuned.toml").code, 0);
+  EXPECT_THAT(bench.read("tuned.toml"), HasSubstr("U = \"MAIN.u\""));
+  const auto run = bench.shell("hysteron run p.st --in log.csv --params tuned.toml --out out.csv --summary");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("RMSE against"));
+  const auto shown = bench.shell("hysteron record log.csv --params p.toml --column U=z");
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("\nU "));
+  bench.write("bad.toml", "[record]\ntmie = \"x\"\n[record.columns]\n\"a b\" = \"x\"\nU = true\n");
+  const auto refused = bench.shell("hysteron record log.csv --params bad.toml").err;
+  EXPECT_THAT(refused, HasSubstr("did you mean time?"));
+  EXPECT_THAT(refused, HasSubstr("no name of a signal"));
+  EXPECT_THAT(refused, HasSubstr("U must be a text"));
+}
+
 TEST(RecordCommand, OptionsThatSayNothingAreRefused) {
   const test::Workbench bench;
   bench.write("log.csv", "t,u\n0,0\n1,1\n2,0\n");

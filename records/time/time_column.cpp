@@ -89,6 +89,9 @@ std::vector<std::size_t> candidates(const Table& table) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
+    if (!column.has_values) {
+      continue;
+    }
     if (is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) || is_time_of_signal(table, i) ||
         (i == 0 && column.is_named && time_unit(column.unit))) {
       result.push_back(i);
@@ -241,16 +244,24 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
   const Raw raw =
       raw_times(stamps, is_clock_kind(column.kind), date || column.kind == CellKind::DateTime, unit.is_epoch);
   Found result;
-  result.grid = find_time_grid(raw.values, column.resolution);
-  result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
-  if (result.grid.fault) {
-    result.grid.fault->step = unit.unit.seconds(result.grid.fault->step);
-    result.grid.fault->usual = unit.unit.seconds(result.grid.fault->usual);
-    result.grid.fault->off = unit.unit.seconds(result.grid.fault->off);
-  }
   result.seconds = raw.values;
   for (double& value : result.seconds) {
     value = unit.unit.seconds(value);
+  }
+  // Of decimal units the grid is found as they were printed; a minute is no round number of them.
+  const bool decimal = unit.unit.over == 1;
+  PrintedResolution resolution = column.resolution;
+  if (!decimal) {
+    resolution.scale(unit.unit.seconds(1.0));
+  }
+  result.grid = find_time_grid(decimal ? raw.values : result.seconds, resolution);
+  if (decimal) {
+    result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
+  }
+  if (decimal && result.grid.fault) {
+    result.grid.fault->step = unit.unit.seconds(result.grid.fault->step);
+    result.grid.fault->usual = unit.unit.seconds(result.grid.fault->usual);
+    result.grid.fault->off = unit.unit.seconds(result.grid.fault->off);
   }
   if (unit.is_epoch || date || column.kind == CellKind::DateTime) {
     const double since = unit.is_epoch ? unit.unit.seconds(raw_value(stamps.front())) : raw_value(stamps.front());

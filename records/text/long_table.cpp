@@ -80,6 +80,9 @@ Table widened(Table table) {
                       of_time.stamps.back().fraction == now.fraction && !has[signal].back();
     if (!same) {
       of_time.stamps.push_back(now);
+      if (of_time.kind == CellKind::Number) {
+        of_time.values.push_back(table.columns[*time].values[row]);
+      }
       for (std::size_t s = 0; s < signals.size(); ++s) {
         signals[s].values.push_back(0.0);
         has[s].push_back(false);
@@ -89,7 +92,6 @@ Table widened(Table table) {
     has[signal].back() = !std::ranges::binary_search(of_values.missing, row);
   }
   result.rows = of_time.stamps.size();
-  of_time.values.assign(result.rows, 0.0);
   for (std::size_t s = 0; s < signals.size(); ++s) {
     for (std::size_t row = 0; row < result.rows; ++row) {
       if (!has[s][row]) {

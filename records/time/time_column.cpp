@@ -180,25 +180,25 @@ std::string date_text(std::int64_t seconds) {
                      time.minutes().count(), time.seconds().count());
 }
 
-/// The times of a column in its own unit, from its first where they are dates.
-struct Raw {
-  std::vector<double> values{};
-  std::optional<std::string> began{};
-};
-Raw raw_times(const std::vector<Stamp>& stamps, bool is_clock, bool is_date, bool is_epoch) {
-  Raw result;
-  result.values.reserve(stamps.size());
+/// The times of a column in its own unit. Numbers that count from the record's begin are those that were printed, to
+/// the bit; dates, and numbers that count from elsewhere, count from the first row.
+std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp>& stamps, bool is_date,
+                              bool is_epoch) {
+  const bool is_clock = is_clock_kind(column.kind);
   const Stamp first = stamps.front();
-  const bool relative = is_clock || is_epoch || std::abs(raw_value(first)) > longest_record;
+  if (!is_clock && !is_epoch && std::abs(raw_value(first)) <= longest_record) {
+    return column.values;
+  }
+  std::vector<double> result;
+  result.reserve(stamps.size());
   std::int64_t days = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     // Midnight: a time of day without a date begins anew.
     if (is_clock && !is_date && k > 0 && stamps[k].whole < stamps[k - 1].whole - seconds_a_day / 2) {
       ++days;
     }
-    result.values.push_back(relative ? static_cast<double>(stamps[k].whole + seconds_a_day * days - first.whole) +
-                                           (stamps[k].fraction - first.fraction)
-                                     : raw_value(stamps[k]));
+    result.push_back(static_cast<double>(stamps[k].whole + seconds_a_day * days - first.whole) +
+                     (stamps[k].fraction - first.fraction));
   }
   return result;
 }
@@ -241,10 +241,9 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
       stamps[k].whole += table.columns[*date].stamps[k].whole;
     }
   }
-  const Raw raw =
-      raw_times(stamps, is_clock_kind(column.kind), date || column.kind == CellKind::DateTime, unit.is_epoch);
+  const std::vector<double> raw = raw_times(column, stamps, date || column.kind == CellKind::DateTime, unit.is_epoch);
   Found result;
-  result.seconds = raw.values;
+  result.seconds = raw;
   for (double& value : result.seconds) {
     value = unit.unit.seconds(value);
   }
@@ -254,7 +253,7 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
   if (!decimal) {
     resolution.scale(unit.unit.seconds(1.0));
   }
-  result.grid = find_time_grid(decimal ? raw.values : result.seconds, resolution);
+  result.grid = find_time_grid(decimal ? raw : result.seconds, resolution);
   if (decimal) {
     result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
   }

@@ -170,6 +170,22 @@ TEST(Dress, ColumnsThatNobodyAsksForMayHoldWhatTheyWill) {
   EXPECT_THROW((void)record.column("y"), InputError);
 }
 
+/// 1.118 is read as that number, and not as 1 and 0.118.
+TEST(Dress, TimesHaveTheBitsOfTheirDigits) {
+  std::string text = "t [ms],u\n";
+  std::string seconds = "t,u\n";
+  for (int k = 0; k < 3000; ++k) {
+    text += fmt::format("{},1\n", k);
+    seconds += fmt::format("{:.3f},1\n", 1e-3 * k);
+  }
+  const Record a = parse_record("log.csv", text);
+  const Record b = parse_record("log.csv", seconds);
+  for (std::size_t k = 0; k < 3000; ++k) {
+    EXPECT_EQ(b.time()[k], std::stod(fmt::format("{:.3f}", 1e-3 * static_cast<double>(k))));
+    EXPECT_EQ(a.time()[k], b.time()[k]);
+  }
+}
+
 TEST(Dress, TruthsAreOneAndZero) {
   const Record record = parse_record("log.csv", "t,u,v\n0,TRUE,on\n1,false,OFF\n2,True,On\n");
   EXPECT_THAT(record.column("u").values, ElementsAre(1.0, 0.0, 1.0));

@@ -62,6 +62,13 @@ struct Rival {
   double probability = 0.0;
 };
 
+/// What an improved diagram will leave of a further record of the machine, RMS with its 95 % interval.
+struct NextRecord {
+  double rms = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// The gap of one output, RMS in its unit.
 struct GapFinding {
   std::string signal{};
@@ -73,6 +80,7 @@ struct GapFinding {
   double closed = 0.0;  ///< of the gap between nominal and floor, on held-out blocks
   double closed_low = 0.0;
   double closed_high = 0.0;
+  std::optional<NextRecord> next{};
 };
 
 struct EdgeFinding {

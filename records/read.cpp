@@ -207,6 +207,20 @@ void refuse_inventing(const Table& table, const Times& times, double sample_time
                    : fmt::format("if its times are in {}, say so: --time {}[{}].", unit, times.column, unit));
 }
 
+/// What stands in these rows, which rise, is taken away.
+void leave_out(const std::vector<std::size_t>& rows, std::vector<double>& values) {
+  std::size_t kept = 0;
+  auto next = rows.begin();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (next != rows.end() && *next == k) {
+      ++next;
+    } else {
+      values[kept++] = values[k];
+    }
+  }
+  values.resize(kept);
+}
+
 Record record_of(Table table, const ReadOptions& options) {
   rename(table, options);
   if (table.source != nullptr) {
@@ -235,6 +249,10 @@ Record record_of(Table table, const ReadOptions& options) {
     if (std::ranges::find(times.used, i) != times.used.end()) {
       continue;
     }
+    const bool bridged = resample && column.is_gappy && column.missing.size() + 1 < table.rows;
+    if (bridged) {
+      column.fault.reset();
+    }
     if (auto fault = fault_of(table, i)) {
       unreadable.push_back({.name = column.name, .fault = std::move(*fault)});
       continue;
@@ -245,7 +263,11 @@ Record record_of(Table table, const ReadOptions& options) {
     std::vector<double> values = std::move(column.values);
     if (resample) {
       const auto own = std::ranges::find(times.own, i, &Times::Own::column);
-      const std::span<const double> at = own != times.own.end() ? own->seconds : times.seconds;
+      std::vector<double> at = own != times.own.end() ? own->seconds : times.seconds;
+      if (bridged) {
+        leave_out(column.missing, at);
+        leave_out(column.missing, values);
+      }
       // A switch is on or off: nothing lies between.
       const Resampling way = column.kind == CellKind::Truth ? Resampling::Hold : options.resampling;
       values = resampled(at, values, grid.seconds, way, cost);

@@ -1,6 +1,7 @@
 // What a file holds before any of it is a signal over time: what every reader of a format gives.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,11 @@ struct TableColumn {
   std::vector<double> values{};            ///< of numbers and truths
   std::vector<Stamp> stamps{};             ///< of times, and of numbers that may be times
   PrintedResolution resolution{};          ///< of the same
+  std::vector<std::size_t> missing{};      ///< rows whose cell is empty or no finite number, rising
+  bool is_gappy = false;                   ///< all that is wrong with it is missing
+  bool has_values = false;                 ///< at least one of its cells is not empty
+  std::vector<std::uint32_t> words{};      ///< of a column that names signals: which word of the dictionary
+  std::vector<std::string> dictionary{};   ///< its words, in the order in which they come
   std::optional<Diagnostic> fault{};       ///< the first cell that is no value
   std::optional<std::string> ambiguity{};  ///< a date that could be another
   Place place{};                           ///< of its name

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/findings/next_record.hpp"
 #include "diagnosis/model/task.hpp"
 #include "diagnosis/verdict/held_out.hpp"
 
@@ -29,6 +30,7 @@ std::vector<GapFinding> gaps_of(const Task& task, const Graph& graph, const GapR
     gap.closed = share.closed;
     gap.closed_low = share.low;
     gap.closed_high = share.high;
+    gap.next = next_record(after[output], task.scales[output]);
     result.push_back(std::move(gap));
   }
   return result;

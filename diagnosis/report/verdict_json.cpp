@@ -94,6 +94,21 @@ Json gap_of(const GapFinding& gap) {
           {"floor_evidence", gap.floor.evidence}};
 }
 
+/// What each output's RMS will be on a further record.
+Json prediction_of(const std::vector<GapFinding>& gaps) {
+  Json list = Json::array();
+  for (const GapFinding& gap : gaps) {
+    if (gap.next) {
+      list.push_back({{"signal", gap.signal},
+                      {"unit", gap.unit},
+                      {"rms", number(gap.next->rms)},
+                      {"low", number(gap.next->low)},
+                      {"high", number(gap.next->high)}});
+    }
+  }
+  return list;
+}
+
 Json where_of(const Diagnosis& found) {
   Json edges = Json::array();
   for (const EdgeFinding& edge : found.edges) {
@@ -192,6 +207,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"evidence", law_sets_of(found.evidence)},
                   {"unknown_score", number(found.unknown_score)},
                   {"gap", gap_of(found.gap)},
+                  {"prediction", prediction_of(found.gaps)},
                   {"where", where_of(found)},
                   {"split", split_of(found)},
                   {"cannot_tell", found.cannot_tell},

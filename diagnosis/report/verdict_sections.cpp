@@ -145,6 +145,13 @@ std::string closed_text(const GapFinding& gap) {
          (interval ? fmt::format(" ({} … {})", part(gap.closed_low), part(gap.closed_high)) : std::string());
 }
 
+std::string next_text(const GapFinding& gap) {
+  return gap.next ? fmt::format(" On a further record it will be <strong>{}</strong>, with 95 % between {} and {}.",
+                                escaped(quantity(gap.next->rms, gap.unit)), escaped(quantity(gap.next->low, gap.unit)),
+                                escaped(quantity(gap.next->high, gap.unit)))
+                  : std::string();
+}
+
 std::string gap_table(const std::vector<GapFinding>& gaps) {
   if (gaps.size() < 2) {
     return {};
@@ -254,8 +261,8 @@ std::string gap_section(const Diagnosis& diagnosis) {
   }
   return fmt::format(
       "<section class=\"far\"><h2>How far</h2>\n<p>Gap of <strong>{}</strong>, RMS: <strong>{}</strong> of what lay "
-      "above the floor is closed, on held-out blocks with 95 % interval.</p>\n{}{}</section>\n",
-      escaped(gap.signal), closed_text(gap), picture, gap_table(diagnosis.gaps));
+      "above the floor is closed, on held-out blocks with 95 % interval.{}</p>\n{}{}</section>\n",
+      escaped(gap.signal), closed_text(gap), next_text(gap), picture, gap_table(diagnosis.gaps));
 }
 
 std::string calibration_section(const Diagnosis& diagnosis) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "records/text/cell_value.hpp"
+#include "records/text/channel_head.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -165,6 +166,13 @@ class HeadReader {
         first_row_(block.first) {}
 
   void read() {
+    if (const auto channels = channel_head(head_, first_row_, cells_in_row_, layout_.separator)) {
+      for (const std::string& name : channels->names) {
+        layout_.columns.push_back({.name = "t", .unit = channels->time_unit});
+        layout_.columns.push_back({.name = name});
+      }
+      return;
+    }
     std::vector<Cell> cells;
     if (!step_up(cells)) {
       take_names_of_comment();

@@ -10,6 +10,7 @@
 
 #include "records/text/encoding.hpp"
 #include "records/text/layout.hpp"
+#include "records/text/long_table.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -51,8 +52,11 @@ class Reader {
           fmt::format("The record has {}; the sample time needs two.", table_.rows == 0 ? "no rows" : "one row"),
           "record at least two rows.");
     }
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      table_.columns[i].has_values = seen_[i];
+    }
     table_.source = std::move(source_);
-    return std::move(table_);
+    return widened(std::move(table_));
   }
 
  private:
@@ -212,6 +216,9 @@ class Reader {
         column.ambiguity = std::string(cell.text);
       }
     }
+    if (column.kind == CellKind::Text && names_signals(column.name)) {
+      take_word(column, cell.text);
+    }
     if (!same) {
       fault(column, line, cell, value);
       return;
@@ -315,7 +322,21 @@ class Reader {
                                        number_text(layout_.counted->start), number_text(layout_.counted->increment)));
   }
 
+  /// Numbers words in the order in which they come.
+  static void take_word(TableColumn& column, std::string_view word) {
+    const auto known = std::ranges::find(column.dictionary, word);
+    column.words.push_back(static_cast<std::uint32_t>(known - column.dictionary.begin()));
+    if (known == column.dictionary.end()) {
+      column.dictionary.emplace_back(word);
+    }
+  }
+
   void fault(TableColumn& column, const Line& line, const Cell& cell, const CellValue& value) {
+    const bool missing = value.kind == CellKind::Empty || value.kind == CellKind::NotFinite;
+    if (missing) {
+      column.missing.push_back(source_->rows.size() - 1);
+    }
+    column.is_gappy = missing && (!column.fault || column.is_gappy);
     if (column.fault) {
       return;
     }
@@ -343,7 +364,8 @@ class Reader {
       case CellKind::Empty:
         found.number = error::text_for_number;
         found.cause = fmt::format("Column {} has no number in this row.", column.name);
-        found.mend = cut + ", or record the signal again.";
+        found.mend =
+            cut + "; where the signal has a rate of its own, bring it to the others: --resample hold, or linear.";
         break;
       default:
         found.number = error::text_for_number;

@@ -89,6 +89,9 @@ std::vector<std::size_t> candidates(const Table& table) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];
+    if (!column.has_values) {
+      continue;
+    }
     if (is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) || is_time_of_signal(table, i) ||
         (i == 0 && column.is_named && time_unit(column.unit))) {
       result.push_back(i);
@@ -177,25 +180,25 @@ std::string date_text(std::int64_t seconds) {
                      time.minutes().count(), time.seconds().count());
 }
 
-/// The times of a column in its own unit, from its first where they are dates.
-struct Raw {
-  std::vector<double> values{};
-  std::optional<std::string> began{};
-};
-Raw raw_times(const std::vector<Stamp>& stamps, bool is_clock, bool is_date, bool is_epoch) {
-  Raw result;
-  result.values.reserve(stamps.size());
+/// The times of a column in its own unit. Numbers that count from the record's begin are those that were printed, to
+/// the bit; dates, and numbers that count from elsewhere, count from the first row.
+std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp>& stamps, bool is_date,
+                              bool is_epoch) {
+  const bool is_clock = is_clock_kind(column.kind);
   const Stamp first = stamps.front();
-  const bool relative = is_clock || is_epoch || std::abs(raw_value(first)) > longest_record;
+  if (!is_clock && !is_epoch && std::abs(raw_value(first)) <= longest_record) {
+    return column.values;
+  }
+  std::vector<double> result;
+  result.reserve(stamps.size());
   std::int64_t days = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     // Midnight: a time of day without a date begins anew.
     if (is_clock && !is_date && k > 0 && stamps[k].whole < stamps[k - 1].whole - seconds_a_day / 2) {
       ++days;
     }
-    result.values.push_back(relative ? static_cast<double>(stamps[k].whole + seconds_a_day * days - first.whole) +
-                                           (stamps[k].fraction - first.fraction)
-                                     : raw_value(stamps[k]));
+    result.push_back(static_cast<double>(stamps[k].whole + seconds_a_day * days - first.whole) +
+                     (stamps[k].fraction - first.fraction));
   }
   return result;
 }
@@ -238,19 +241,26 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
       stamps[k].whole += table.columns[*date].stamps[k].whole;
     }
   }
-  const Raw raw =
-      raw_times(stamps, is_clock_kind(column.kind), date || column.kind == CellKind::DateTime, unit.is_epoch);
+  const std::vector<double> raw = raw_times(column, stamps, date || column.kind == CellKind::DateTime, unit.is_epoch);
   Found result;
-  result.grid = find_time_grid(raw.values, column.resolution);
-  result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
-  if (result.grid.fault) {
+  result.seconds = raw;
+  for (double& value : result.seconds) {
+    value = unit.unit.seconds(value);
+  }
+  // Of decimal units the grid is found as they were printed; a minute is no round number of them.
+  const bool decimal = unit.unit.over == 1;
+  PrintedResolution resolution = column.resolution;
+  if (!decimal) {
+    resolution.scale(unit.unit.seconds(1.0));
+  }
+  result.grid = find_time_grid(decimal ? raw : result.seconds, resolution);
+  if (decimal) {
+    result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
+  }
+  if (decimal && result.grid.fault) {
     result.grid.fault->step = unit.unit.seconds(result.grid.fault->step);
     result.grid.fault->usual = unit.unit.seconds(result.grid.fault->usual);
     result.grid.fault->off = unit.unit.seconds(result.grid.fault->off);
-  }
-  result.seconds = raw.values;
-  for (double& value : result.seconds) {
-    value = unit.unit.seconds(value);
   }
   if (unit.is_epoch || date || column.kind == CellKind::DateTime) {
     const double since = unit.is_epoch ? unit.unit.seconds(raw_value(stamps.front())) : raw_value(stamps.front());

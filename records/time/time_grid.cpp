@@ -101,12 +101,12 @@ void PrintedResolution::take(std::string_view number) {
 }
 
 double PrintedResolution::quantum(double time) const {
-  const double finest = power_of_ten(finest_exponent_);
+  const double finest = scale_ * power_of_ten(finest_exponent_);
   if (time == 0.0 || significant_digits_ == 0) {
     return finest;
   }
-  const int leading = static_cast<int>(std::floor(std::log10(std::abs(time))));
-  return std::max(finest, power_of_ten(leading + 1 - significant_digits_));
+  const int leading = static_cast<int>(std::floor(std::log10(std::abs(time / scale_))));
+  return std::max(finest, scale_ * power_of_ten(leading + 1 - significant_digits_));
 }
 
 TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& resolution) {

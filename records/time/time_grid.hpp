@@ -19,7 +19,11 @@ class PrintedResolution {
   /// of the finest decimal and, for times printed to a number of significant digits, the last of those.
   [[nodiscard]] double quantum(double time) const;
 
+  /// For times that were multiplied after they were read: minutes as seconds.
+  void scale(double factor) { scale_ *= factor; }
+
  private:
+  double scale_ = 1.0;
   int finest_exponent_ = 300;  ///< of ten, of the last digit
   int significant_digits_ = 0;
 };

@@ -21,6 +21,7 @@ constexpr TimeUnit milli{"ms", 1, 1000};
 constexpr TimeUnit micro{"us", 1, 1'000'000};
 constexpr TimeUnit nano{"ns", 1, 1'000'000'000};
 constexpr TimeUnit filetime{"100 ns", 1, 10'000'000};
+constexpr TimeUnit day_millionth{"1e-6 d", 864, 10000};  // of WinCC
 constexpr TimeUnit minute{"min", 60, 1};
 constexpr TimeUnit hour{"h", 3600, 1};
 constexpr TimeUnit day{"d", 86400, 1};
@@ -58,6 +59,7 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"100 ns", filetime},
     {"ticks", filetime},
     {"filetime", filetime},
+    {"1e-6 d", day_millionth},
     {"min", minute},
     {"mins", minute},
     {"minute", minute},

@@ -28,7 +28,8 @@ std::string table(std::string_view head, std::string_view row, double time_scale
   std::string text(head);
   for (int k = 0; k < rows; ++k) {
     text += fmt::format(fmt::runtime(row), fmt::arg("t", time_scale * k), fmt::arg("u", u_of(k)),
-                        fmt::arg("y", 3.0 * u_of(k)), fmt::arg("k", k));
+                        fmt::arg("y", 3.0 * u_of(k)), fmt::arg("k", k), fmt::arg("m", k / 60000.0),
+                        fmt::arg("d", fmt::format("{:.9f}", k / 86.4).substr(1)));
     text += '\n';
   }
   return text + std::string(tail);
@@ -72,6 +73,7 @@ std::vector<Dress> dresses() {
       {"milliseconds by unit", table("t [ms],u,y\n", "{k},{u:.4f},{y:.4f}")},
       {"milliseconds by name", table("t_ms,u,y\n", "{k},{u:.4f},{y:.4f}")},
       {"microseconds", table("Time/us,u,y\n", "{k}000,{u:.4f},{y:.4f}")},
+      {"minutes", table("time [min],u,y\n", "{m:.12f},{u:.4f},{y:.4f}")},
       {"row of units", table("time,u,y\nms,V,um\n", "{k},{u:.4f},{y:.4f}")},
       {"row of units in brackets", table("time,u,y\n(ms),(V),(um)\n\n", "{k},{u:.4f},{y:.4f}")},
       {"oscilloscope",
@@ -115,6 +117,15 @@ std::vector<Dress> dresses() {
       {"no names", table("", plain), {.time = "1", .columns = {{"u", "2"}, {"y", "3"}}}},
       {"paths", table("time,MAIN.u,MAIN.y\n", plain), {.columns = {{"u", "MAIN.u"}, {"y", "MAIN.y"}}}},
       {"lines above", table("1,2,3,4\nt,u,y\n", plain), {.skip = 1}},
+      {"Scope of TwinCAT",
+       table("Name\tScope\nFile\tX\n\nName\tu\tName\ty\nSampleTime[ms]\t1\tSampleTime[ms]\t1\nPort\t851\tPort\t851\n\n",
+             "{k}\t{u:.4f}\t{k}\t{y:.4f}")},
+      {"WinCC",
+       table("\"VarName\";\"TimeString\";\"VarValue\";\"Validity\";\"Time_ms\"\n",
+             "u;03.06.2024 10:00:00;{u:.4f};1;45446416666{d}\ny;03.06.2024 10:00:00;{y:.4f};1;45446416666{d}")},
+      {"Influx",
+       table("#datatype,string,long,dateTime,double\n#default,_result,,,\n,result,table,_time,_field,_value\n",
+             ",,0,2024-06-03T10:00:00.{k:03}Z,u,{u:.4f}\n,,0,2024-06-03T10:00:00.{k:03}Z,y,{y:.4f}")},
       {"Windows-1252", table("t,u [V],y [\xB5m]\n", plain)},
       {"byte order mark", table("\xEF\xBB\xBFt,u,y\n", plain)},
   };
@@ -157,6 +168,22 @@ TEST(Dress, ColumnsThatNobodyAsksForMayHoldWhatTheyWill) {
   ASSERT_EQ(record.unreadable().size(), 3U);
   EXPECT_THROW((void)record.find("state"), InputError);
   EXPECT_THROW((void)record.column("y"), InputError);
+}
+
+/// 1.118 is read as that number, and not as 1 and 0.118.
+TEST(Dress, TimesHaveTheBitsOfTheirDigits) {
+  std::string text = "t [ms],u\n";
+  std::string seconds = "t,u\n";
+  for (int k = 0; k < 3000; ++k) {
+    text += fmt::format("{},1\n", k);
+    seconds += fmt::format("{:.3f},1\n", 1e-3 * k);
+  }
+  const Record a = parse_record("log.csv", text);
+  const Record b = parse_record("log.csv", seconds);
+  for (std::size_t k = 0; k < 3000; ++k) {
+    EXPECT_EQ(b.time()[k], std::stod(fmt::format("{:.3f}", 1e-3 * static_cast<double>(k))));
+    EXPECT_EQ(a.time()[k], b.time()[k]);
+  }
 }
 
 TEST(Dress, TruthsAreOneAndZero) {
@@ -209,6 +236,18 @@ TEST(Dress, SignalsWithTimesOfTheirOwnAreBroughtTogether) {
   EXPECT_THAT(record.time(), ElementsAre(0.5, 1.5, 2.5));
   EXPECT_THAT(record.column("u").values, ElementsAre(5.0, 15.0, 25.0));
   EXPECT_THAT(record.column("y").values, ElementsAre(5.0, 15.0, 25.0));
+}
+
+TEST(Dress, ASignalAtARateOfItsOwnIsBroughtToTheOthers) {
+  const std::string text = "t,u,y\n0,0,0\n1,1,\n2,2,6\n3,3,\n4,4,12\n";
+  EXPECT_THROW((void)parse_record("log.csv", text).column("y"), InputError);
+  EXPECT_THAT(parse_record("log.csv", text, {.resampling = Resampling::Linear}).column("y").values,
+              ElementsAre(0.0, 3.0, 6.0, 9.0, 12.0));
+  EXPECT_THAT(parse_record("log.csv", text, {.resampling = Resampling::Hold}).column("y").values,
+              ElementsAre(0.0, 0.0, 6.0, 6.0, 12.0));
+  // A word among the numbers is no gap.
+  EXPECT_THROW((void)parse_record("log.csv", "t,y\n0,0\n1,\n2,x\n3,4\n", {.resampling = Resampling::Hold}).column("y"),
+               InputError);
 }
 
 TEST(Dress, MidnightIsNoStepBack) {

@@ -9,7 +9,7 @@ the gap; twins are effects of other families that write the same signal in that 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trials.measured.bases import WITHHELD
 from trials.measured.sources import Folder, Log, Own, Source
@@ -73,6 +73,9 @@ CARS = tuple(Log(f"40_{run}.csv") for run in (0, 1, 10, 2))
 DRIVES = tuple(Log(f"log{number}.csv") for number in (1, 2, 3))
 RAW_VOLTS = Log("raw_sin_sin.csv", column="u", formula=lambda row: row["pwm"] / 885.0 * row["volts"])
 
+RESAMPLED = '\n[record]\nresample = "linear"\n'
+"""What the product's own message advises for a log with jitter and gaps."""
+
 IN_THE_LOOP = "the axis turns often and slowly enough; the gap shows in the effort"
 COARSE = "the speed is a difference of readings, and coarse where it is low"
 ONE_LOAD = "one run has too few loads to part a friction that grows with them from one that does not"
@@ -96,7 +99,7 @@ MACHINES = (
     Case("xl330 pendulum, square in time", "xl330 pendulum", plain("xl330-pendulum", BOTH_SINES[1]), (EITHER,), False, ONE_LOAD),
     Case("xl330 pendulum, all three", "xl330 pendulum", plain("xl330-pendulum", Log("sin_sin.csv"), *BOTH_SINES), (GROWING,), True,
          "0.024 rad are left by one that grows with the load, 0.056 by Coulomb's"),
-    Case("xl330 pendulum, as logged", "xl330 pendulum", plain("xl330-pendulum", RAW_VOLTS), (EITHER,), False, ONE_LOAD),
+    Case("xl330 pendulum, as logged", "xl330 pendulum", replace(plain("xl330-pendulum", RAW_VOLTS), settings=RESAMPLED), (EITHER,), False, ONE_LOAD),
     Case("car, one log", "car", plain("car-steering", CARS[2]), (CURVE, LATE), False, BENT),
     Case("car, four logs", "car", plain("car-steering", *CARS), (CURVE, LATE), False, BENT),
     Case("hair dryer", "hair dryer", plain("dryer"), (Cause.of("linear_dynamics", "delay"),), True, "a random binary signal, three samples late"),

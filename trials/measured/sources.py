@@ -51,6 +51,8 @@ class Folder:
     logs: tuple[Log, ...]
     rewrite: tuple[tuple[str, str], ...] = ()
     """Replacements in the diagram: another sample time for a thinned log."""
+    settings: str = ""
+    """What the parameter file says besides: how the logs are read, where a log as it is leaves that open."""
 
     def logs_of(self, data: Path) -> list[str]:
         """The text of each log."""
@@ -64,7 +66,7 @@ class Folder:
                 raise ValueError(f"{self.folder}/{self.diagram} has {old!r} {text.count(old)} times, not once")
             text = text.replace(old, new)
         logs = {name: log for name, log in zip(LOGS, self.logs_of(data), strict=False)}
-        return {"plant.st": text, "params.toml": (data / self.folder / self.parameters).read_text(), **logs}
+        return {"plant.st": text, "params.toml": (data / self.folder / self.parameters).read_text() + self.settings, **logs}
 
     def exists(self, data: Path) -> bool:
         """Whether all of it is there."""

@@ -1,0 +1,19 @@
+// What the improved diagram will leave of a further record of the machine.
+//
+//   ln RMS = m ± t(0.975, n − 1)·s·√(1 + 1/n),   m and s of ln RMS over n blocks that the fit has not seen
+//
+// The next record is taken for one more block: another day may differ from this one as much as its parts differ among
+// themselves. It is the prediction interval of a normal sample (G. J. Hahn, W. Q. Meeker, Statistical Intervals, 1991).
+#pragma once
+
+#include <optional>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/verdict/held_out.hpp"
+
+namespace hysteron::diagnosis {
+
+/// `scale` is what the residuals are in units of. Nothing of less than three blocks, or of residuals that are 0.
+[[nodiscard]] std::optional<NextRecord> next_record(const HeldOut& unseen, double scale);
+
+}  // namespace hysteron::diagnosis

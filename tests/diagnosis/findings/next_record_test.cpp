@@ -1,0 +1,62 @@
+#include "diagnosis/findings/next_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace hysteron::diagnosis {
+namespace {
+
+HeldOut blocks_of(const std::vector<double>& rms) {
+  HeldOut result;
+  for (const double one : rms) {
+    result.squares.push_back(one * one * 100.0);
+    result.counts.push_back(100.0);
+  }
+  return result;
+}
+
+TEST(NextRecord, EqualBlocksLeaveNoDoubt) {
+  const auto next = next_record(blocks_of({0.5, 0.5, 0.5, 0.5}), 2.0);
+  ASSERT_TRUE(next);
+  EXPECT_NEAR(next->rms, 1.0, 1e-12);
+  EXPECT_NEAR(next->low, 1.0, 1e-12);
+  EXPECT_NEAR(next->high, 1.0, 1e-12);
+}
+
+TEST(NextRecord, ScalesWithItsUnit) {
+  const HeldOut blocks = blocks_of({0.5, 0.7, 0.4, 1.1});
+  const auto one = next_record(blocks, 1.0);
+  const auto thousand = next_record(blocks, 1000.0);
+  EXPECT_NEAR(thousand->low, 1000.0 * one->low, 1e-9);
+  EXPECT_NEAR(thousand->high, 1000.0 * one->high, 1e-9);
+  EXPECT_LT(one->low, one->rms);
+  EXPECT_GT(one->high, one->rms);
+}
+
+TEST(NextRecord, TooFewBlocksSayNothing) {
+  EXPECT_FALSE(next_record(blocks_of({0.5, 0.7}), 1.0));
+  EXPECT_FALSE(next_record(blocks_of({0.0, 0.0, 0.0, 0.0}), 1.0));
+}
+
+/// Of log-normal blocks, 95 of 100 further ones lie in the interval.
+TEST(NextRecord, HoldsWhatItPromises) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0.0, 0.4);
+  int inside = 0;
+  constexpr int trials = 4000;
+  for (int k = 0; k < trials; ++k) {
+    std::vector<double> rms(12);
+    for (double& one : rms) {
+      one = std::exp(normal(random));
+    }
+    const auto next = next_record(blocks_of(rms), 1.0);
+    const double further = std::exp(normal(random));
+    inside += next->low <= further && further <= next->high ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(inside) / trials, 0.95, 0.015);
+}
+
+}  // namespace
+}  // namespace hysteron::diagnosis

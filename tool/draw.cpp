@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,9 +11,8 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/overwriting.hpp"
-#include "support/text_file.hpp"
 #include "tool/commands.hpp"
-#include "tool/process.hpp"
+#include "tool/graphviz.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -53,40 +51,6 @@ std::string format_of(const std::string& out) {
                    "end the name of --out in .svg, .png, .pdf or .dot.");
 }
 
-std::string graphviz() {
-  const char* const named = std::getenv("GRAPHVIZ_DOT");
-  const std::string name = named != nullptr && *named != '\0' ? named : "dot";
-  if (const auto found = find_program(name)) {
-    return found->string();
-  }
-  throw InputError(
-      error::no_graphviz, {},
-      named != nullptr && *named != '\0'
-          ? fmt::format("GRAPHVIZ_DOT is \"{}\", which cannot be run.", name)
-          : std::string("There is no program dot on the path: Graphviz is not installed."),
-      "install the Debian package graphviz, or name another dot by GRAPHVIZ_DOT; --out NAME.dot needs none.");
-}
-
-/// What Graphviz makes of a text, all of it.
-std::string drawn(const std::string& text, const std::string& format) {
-  const std::string program = graphviz();
-  const TemporaryFolder folder(fs::temp_directory_path());
-  const fs::path source = folder.path() / "diagram.dot";
-  const fs::path picture = folder.path() / "picture";
-  const fs::path complaints = folder.path() / "complaints";
-  write_file_atomically(source, text);
-  const int code = run_program({program, "-T" + format, source.string()}, {.output = picture, .errors = complaints});
-  std::error_code unknown;
-  if (code != 0 || fs::file_size(picture, unknown) == 0 || unknown) {
-    std::string said = fs::exists(complaints) ? read_text_file(complaints.string()) : "";
-    said = said.substr(0, said.find('\n'));
-    throw InputError(error::graphviz_failed, {},
-                     fmt::format("{} ended with {}{}{}.", program, code, said.empty() ? "" : ": ", said),
-                     "see whether this dot draws anything: echo 'digraph {a}' | dot -Tsvg; --out NAME.dot needs none.");
-  }
-  return read_text_file(picture.string());
-}
-
 int draw(const DrawOptions& options, Console& console) {
   const std::string format = format_of(options.out);
   Diagnostics warnings;
@@ -102,7 +66,7 @@ int draw(const DrawOptions& options, Console& console) {
         fmt::format("The diagram has {} boxes; {} are the most that are drawn.", diagram.boxes, most_boxes),
         "draw a block of it by --top NAME, or take the text by --out NAME.dot.");
   }
-  write_file_atomically(options.out, format == "dot" ? diagram.text : drawn(diagram.text, format));
+  write_file_atomically(options.out, format == "dot" ? diagram.text : drawn_by_graphviz(diagram.text, format, "--out NAME.dot"));
   console.print(fmt::format("{}: {} boxes\n", options.out, diagram.boxes));
   return exit_ok;
 }

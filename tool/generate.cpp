@@ -10,6 +10,7 @@
 
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/plcopen/plcopen.hpp"
 #include "codegen/backends/st/st.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
@@ -18,6 +19,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/generate_host.hpp"
+#include "tool/graphviz.hpp"
 #include "tool/host_sources.hpp"
 
 namespace hysteron::tool {
@@ -30,11 +32,14 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --target c --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
+  hysteron generate feedforward.st --target plcopen --body fbd --out plc
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
 The dialects of st: portable, codesys, twincat, siemens-scl.
+plcopen: NAME.xml, a project in PLCopen TC6 XML. --body st holds the step as text, --body fbd the diagram as a network,
+with the blocks that it calls. Its dialects: portable, openplc (plc.xml), codesys, twincat.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
 the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
@@ -45,6 +50,7 @@ struct GenerateOptions {
   DiagramOptions diagram;
   std::string target;
   std::string dialect;
+  std::string body;
   std::string config;
   std::string folder;
   bool host = false;
@@ -71,6 +77,16 @@ constexpr std::array targets{
                                 {.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
                                  .float32 = options.diagram.float32});
            }},
+    Target{"plcopen",
+           [](const Program& program, const GenerateOptions& options) {
+             return generate_plcopen(
+                 program, {.dialect = options.dialect.empty() ? "portable" : options.dialect,
+                           .body = equal_ignoring_case(options.body, "fbd") ? PlcopenBody::Network : PlcopenBody::Text,
+                           .float32 = options.diagram.float32,
+                           .place = [](const std::string& dot) {
+                             return drawn_by_graphviz(dot, "plain", "--body st");
+                           }});
+           }},
 };
 
 const Target* find_target(std::string_view name) {
@@ -93,6 +109,36 @@ void refuse_foreign_file(const fs::path& path, const std::string& text) {
   }
 }
 
+std::vector<std::string_view> target_names() {
+  std::vector<std::string_view> names;
+  for (const Target& one : targets) {
+    names.push_back(one.name);
+  }
+  return names;
+}
+
+void check_dialect(const GenerateOptions& options) {
+  const bool text = equal_ignoring_case(options.target, "st");
+  const bool project = equal_ignoring_case(options.target, "plcopen");
+  if (!options.dialect.empty() && !text && !project) {
+    throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text or of PLCopen XML.",
+                     "write --target st or --target plcopen, or leave out --dialect.");
+  }
+  if (!options.dialect.empty() && !(text ? st_dialect(options.dialect).has_value() : is_plcopen_dialect(options.dialect))) {
+    throw InputError(
+        error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
+        fmt::format("the dialects are: {}.", text ? std::string(st_dialect_names()) : plcopen_dialect_names()));
+  }
+  if (!options.body.empty() && !project) {
+    throw InputError(error::bad_usage, {}, "A body is chosen for PLCopen XML.",
+                     "write --target plcopen, or leave out --body.");
+  }
+  if (!options.body.empty() && !equal_ignoring_case(options.body, "st") && !equal_ignoring_case(options.body, "fbd")) {
+    throw InputError(error::bad_usage, {}, fmt::format("There is no body {}.", options.body),
+                     "the bodies are: st, fbd.");
+  }
+}
+
 void check_usage(const GenerateOptions& options) {
   if (options.target.empty() && !options.host) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
@@ -100,16 +146,9 @@ void check_usage(const GenerateOptions& options) {
   }
   if (!options.target.empty() && find_target(options.target) == nullptr) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no target {}.", options.target),
-                     "the targets are: cpp, c, st.");
+                     fmt::format("the targets are: {}.", fmt::join(target_names(), ", ")));
   }
-  if (!options.dialect.empty() && !equal_ignoring_case(options.target, "st")) {
-    throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text.",
-                     "write --target st, or leave out --dialect.");
-  }
-  if (!options.dialect.empty() && !st_dialect(options.dialect)) {
-    throw InputError(error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
-                     fmt::format("the dialects are: {}.", st_dialect_names()));
-  }
+  check_dialect(options);
   if (options.host == options.config.empty()) {
     throw InputError(error::bad_usage, {},
                      options.host ? "A host needs its run file." : "A run file is for a host, and none is asked for.",
@@ -153,10 +192,12 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text).")
-      ->option_text("cpp|c|st");
-  app.add_option("--dialect", options->dialect, "Of Structured Text; portable where none is given.")
+  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text), plcopen (PLCopen XML).")
+      ->option_text("cpp|c|st|plcopen");
+  app.add_option("--dialect", options->dialect, "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");
+  app.add_option("--body", options->body, "Of PLCopen XML: the step as text, or the diagram as a network.")
+      ->option_text("st|fbd");
   app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
   app.add_option("--config", options->config, "The run file of the host.")->option_text("RUN.toml");
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")

@@ -58,20 +58,6 @@ bool has_memory(const BlockTrace& trace, std::size_t output) {
   return false;
 }
 
-/// The block of the library that remembers a value of a type for one step.
-std::string_view delay_of(Type type) {
-  switch (type) {
-    case Type::Bool:
-      return DelayBool::about.name;
-    case Type::Int:
-      return DelayInt::about.name;
-    case Type::Word:
-      return DelayWord::about.name;
-    default:
-      return Delay::about.name;
-  }
-}
-
 class Order {
  public:
   Order(const Definitions& definitions, std::uint32_t index, const Graph& graph)
@@ -348,6 +334,23 @@ class Order {
 };
 
 }  // namespace
+
+bool is_remembered(const Graph& graph, const Node& node, std::size_t output) {
+  return node.block != nullptr && !has_feedthrough(graph, node, output) && has_memory(node.block->trace, output);
+}
+
+std::string_view delay_of(Type type) {
+  switch (type) {
+    case Type::Bool:
+      return DelayBool::about.name;
+    case Type::Int:
+      return DelayInt::about.name;
+    case Type::Word:
+      return DelayWord::about.name;
+    default:
+      return Delay::about.name;
+  }
+}
 
 bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
                       Diagnostics& diagnostics) {

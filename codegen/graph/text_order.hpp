@@ -6,7 +6,9 @@
 // alone, such as a delay's, is read before the call, and one of a FUNCTION_BLOCK behind it (else HY405, a warning).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "codegen/graph/definition.hpp"
@@ -19,6 +21,13 @@ namespace hysteron {
 /// IEC compiler, and HY402 has told it.
 bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
                       Diagnostics& diagnostics);
+
+/// Whether an output of a library block hands out what the block remembers, and nothing of this step: it is to be read
+/// before the call.
+bool is_remembered(const Graph& graph, const Node& node, std::size_t output);
+
+/// The block of the library that remembers a value of a type for one step.
+std::string_view delay_of(Type type);
 
 /// The statements of a definition in the order of the data flow, by index; the order of the text where that leaves a
 /// choice.

@@ -22,7 +22,8 @@ Op literal_op(Type type) {
 
 class RoutineBuilder {
  public:
-  explicit RoutineBuilder(const Program& program) : program_(program), graph_(program.graph) {}
+  RoutineBuilder(const Program& program, const RoutineOptions& options)
+      : program_(program), graph_(program.graph), options_(options) {}
 
   Routine run() {
     place_cells();
@@ -35,8 +36,10 @@ class RoutineBuilder {
       write_action(action);
     }
     for (std::uint32_t i = 0; i < graph_.outputs.size(); ++i) {
-      routine_.step.push_back(
-          {.kind = Statement::Kind::SetOutput, .target = i, .value = value_of_wire(graph_.outputs[i].wire)});
+      const Wire& wire = graph_.outputs[i].wire;
+      routine_.step.push_back({.kind = Statement::Kind::SetOutput,
+                               .target = i,
+                               .value = is_ahead(wire) ? value_ahead(wire) : value_of_wire(wire)});
     }
     count_uses();
     drop_unused();
@@ -159,6 +162,19 @@ class RoutineBuilder {
       }
     }
     return laid[id] = result;
+  }
+
+  [[nodiscard]] bool is_ahead(const Wire& wire) const {
+    return options_.outputs_ahead && wire.from == Wire::From::Node && graph_.nodes[wire.index].block != nullptr &&
+           !has_feedthrough(graph_, graph_.nodes[wire.index], wire.port);
+  }
+
+  /// An output worked out once more, behind the assignments to all cells.
+  ValueId value_ahead(const Wire& wire) {
+    const BlockTrace& trace = graph_.nodes[wire.index].block->trace;
+    routine_.tape.forget();
+    std::vector<ValueId> laid(trace.tape.size(), no_value);
+    return lay(wire.index, trace.outputs[wire.port], laid);
   }
 
   // --- actions ---
@@ -440,6 +456,7 @@ class RoutineBuilder {
 
   const Program& program_;
   const Graph& graph_;
+  RoutineOptions options_;
   Routine routine_;
   std::vector<std::uint32_t> first_cell_;
   std::vector<std::uint32_t> first_output_;
@@ -453,8 +470,8 @@ class RoutineBuilder {
 
 }  // namespace
 
-Routine make_routine(const Program& program) {
-  return RoutineBuilder(program).run();
+Routine make_routine(const Program& program, const RoutineOptions& options) {
+  return RoutineBuilder(program, options).run();
 }
 
 bool has_infinite_parameter(const Graph& graph) {

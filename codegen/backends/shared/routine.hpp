@@ -64,7 +64,13 @@ struct Routine {
   }
 };
 
-Routine make_routine(const Program& program);
+struct RoutineOptions {
+  /// An output of the diagram that depends on memory alone is that of the memory as it has been moved on: the value of
+  /// the next step, for whoever reads it before the next call.
+  bool outputs_ahead = false;
+};
+
+Routine make_routine(const Program& program, const RoutineOptions& options = {});
 
 /// Whether a parameter begins with a value that is infinite or not a number.
 bool has_infinite_parameter(const Graph& graph);

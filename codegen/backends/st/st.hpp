@@ -4,15 +4,9 @@
 #include <vector>
 
 #include "codegen/backends/shared/generated_file.hpp"
-#include "codegen/backends/st/dialect.hpp"
-#include "codegen/compile.hpp"
+#include "codegen/backends/st/pou.hpp"
 
 namespace hysteron {
-
-struct StOptions {
-  StDialect dialect{};
-  bool float32 = false;  ///< REAL in place of LREAL
-};
 
 /// The block and, where the dialect has files for both, a program that calls it. The text depends on the program
 /// alone, to the byte. Throws InputError: HY404 where the diagram states no sample time, HY732 where a name is longer

@@ -1,0 +1,292 @@
+#include "codegen/backends/st/pou.hpp"
+
+#include <fmt/format.h>
+
+#include "codegen/backends/shared/generated_file.hpp"
+#include "codegen/backends/st/comment.hpp"
+#include "codegen/backends/st/names.hpp"
+#include "codegen/backends/st/printer.hpp"
+#include "codegen/graph/defaults.hpp"
+#include "codegen/graph/sample_time.hpp"
+#include "codegen/program_hash.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron {
+namespace {
+
+constexpr std::size_t widest_line = 110;
+
+std::string value_text(const StVariable& variable) {
+  return variable.length == 1 ? variable.values.front() : fmt::format("[{}]", fmt::join(variable.values, ", "));
+}
+
+class StBlock {
+ public:
+  StBlock(const Program& program, const StOptions& options)
+      : program_(program),
+        graph_(program.graph),
+        dialect_(options.dialect),
+        float32_(options.float32),
+        routine_(make_routine(program, {.outputs_ahead = options.outputs_ahead})),
+        names_(graph_, routine_, dialect_),
+        printer_(graph_, routine_, names_.layout(), names_.own(), dialect_, float32_),
+        writer_(graph_, routine_, printer_, names_.identifiers(), names_.layout(), names_.own()) {}
+
+  StBlockAndCaller run() {
+    refuse_long_names(graph_, routine_, names_.layout(), dialect_);
+    StBlockAndCaller made;
+    made.block.name = names_.block();
+    made.block.body = write_body();
+    made.block.head = head();
+    made.block.sections = sections();
+    made.caller = caller();
+    return made;
+  }
+
+ private:
+  std::string write_body() {
+    std::string reset;
+    writer_.write_reset_body(reset);
+    std::string started;
+    printer_.print_variable(names_.started(), started);
+    std::string first = "  IF ";
+    printer_.print_variable(names_.reset(), first);
+    append(first, " OR NOT ", started, " THEN\n", reset, "    ", started, " := TRUE;\n  END_IF;\n\n");
+    writer_.write(routine_.step, first);
+    writer_.write_counter(first);
+    return first;
+  }
+
+  // --- the declaration ---
+
+  [[nodiscard]] std::string type(Type of) const { return std::string(st_type(of, float32_)); }
+
+  [[nodiscard]] StVariable of_field(std::string_view name, const Field& field, std::string remark) const {
+    return {.name = std::string(name),
+            .type = type(field.type),
+            .length = field.length,
+            .values = {},
+            .remark = std::move(remark)};
+  }
+
+  [[nodiscard]] StVariable of_port(std::string_view name, const Port& port, std::string_view meaning,
+                                   bool with_value) const {
+    StVariable variable{.name = std::string(name),
+                        .type = type(port.type),
+                        .remark = st_remark(port.unit, port.minimum, port.maximum, false, meaning)};
+    if (with_value) {
+      variable.values.push_back(printer_.literal(port.type, port.preset));
+    }
+    return variable;
+  }
+
+  [[nodiscard]] std::vector<StSection> sections() const {
+    std::vector<StSection> list;
+    if (dialect_.shape == StDialect::Shape::Source) {
+      std::vector<StVariable> both = inputs();
+      for (StVariable& one : parameters()) {
+        both.push_back(std::move(one));
+      }
+      list.push_back({.keyword = "VAR_INPUT", .variables = std::move(both)});
+    } else {
+      list.push_back({.keyword = "VAR_INPUT", .variables = inputs()});
+      list.push_back(
+          {.keyword = "VAR_INPUT", .remark = "parameters, at their tuned values", .variables = parameters()});
+    }
+    list.push_back({.keyword = "VAR_OUTPUT", .variables = outputs()});
+    list.push_back({.keyword = "VAR CONSTANT", .variables = constants()});
+    list.push_back({.keyword = "VAR", .remark = "memory, from step to step", .variables = memory()});
+    list.push_back({.keyword = dialect_.temporary_section ? "VAR_TEMP" : "VAR",
+                    .remark = "values within a step",
+                    .variables = locals(),
+                    .names_share_lines = true});
+    std::erase_if(list, [](const StSection& one) { return one.variables.empty(); });
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> inputs() const {
+    std::vector<StVariable> list;
+    for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
+      const Port& port = graph_.inputs[i];
+      list.push_back(of_port(names_.layout().inputs[i], port, port.meaning, has_default(graph_, port)));
+    }
+    list.push_back({.name = std::string(names_.reset()),
+                    .type = "BOOL",
+                    .values = {"FALSE"},
+                    .remark = "TRUE: the memory begins anew, before this step"});
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> parameters() const {
+    std::vector<StVariable> list;
+    for (std::size_t i = 0; i < graph_.parameters.size(); ++i) {
+      const Field& field = graph_.parameters[i].field;
+      list.push_back(of_field(names_.layout().parameters[i].name, field,
+                              st_remark(field.unit, field.minimum, field.maximum, field.above_minimum, field.meaning)));
+      for (std::size_t element = 0; element < field.length; ++element) {
+        list.back().values.push_back(printer_.literal(field.type, graph_.parameters[i].value[element]));
+      }
+    }
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> outputs() const {
+    std::vector<StVariable> list;
+    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
+      list.push_back(of_port(names_.layout().outputs[i], graph_.outputs[i], graph_.outputs[i].meaning, false));
+    }
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> constants() const {
+    std::vector<StVariable> list;
+    const auto add = [&](std::string_view name, double value, std::string_view remark) {
+      list.push_back({.name = std::string(name),
+                      .type = type(Type::Real),
+                      .values = {printer_.literal(Type::Real, value)},
+                      .remark = std::string(remark)});
+    };
+    if (printer_.uses_sample_time) {
+      add(names_.own().sample_time, graph_.sample_time(), "sample time, in seconds");
+    }
+    if (printer_.uses_largest) {
+      add(names_.own().largest, infinity, "stands for infinity");
+    }
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> memory() const {
+    std::vector<StVariable> list;
+    for (std::size_t i = 0; i < routine_.cells.size(); ++i) {
+      const Field& field = routine_.cells[i].field;
+      list.push_back(of_field(names_.layout().cells[i].name, field, std::string(field.meaning)));
+    }
+    list.push_back(
+        {.name = std::string(names_.started()), .type = "BOOL", .values = {"FALSE"}, .remark = "a step has run"});
+    return list;
+  }
+
+  [[nodiscard]] std::vector<StVariable> locals() const {
+    std::vector<StVariable> list;
+    for (const StLocal& local : writer_.locals) {
+      list.push_back({.name = std::string(local.name), .type = type(local.type)});
+    }
+    if (writer_.uses_place) {
+      list.push_back(
+          {.name = std::string(names_.own().place), .type = "DINT", .remark = "place in an array"});
+    }
+    return list;
+  }
+
+  std::string head() const {
+    std::string text = fmt::format(
+        "(* {}: generated by Hysteron from a block diagram; edit the diagram, not this file.\n\n", graph_.name);
+    append(
+        text,
+        fmt::format("   Call each instance once in every cycle of a task of {} ms, and in no other: its sample "
+                    "time is {} s.\n",
+                    number_text(static_cast<double>(graph_.sample_time_ns) * 1e-6), number_text(graph_.sample_time())));
+    append(text, "   Its first call, and ", names_.reset(), ", let its memory begin anew.\n");
+    append(text, fmt::format("   State: {} bytes. Operations a step: {} (calls of EXP, LN, EXPT and the like: {}).\n",
+                             state_bytes(routine_, float32_), routine_.operations, routine_.function_calls));
+    append(text,
+           fmt::format("   Dialect: {}. Hash of diagram and parameters: {}.\n", dialect_.name, program_hash(program_)));
+    append(text, names_.renamed());
+    append(text, "\n", st_comment(schedule_lines(program_, "  ", "and so on.")), "*)\n");
+    return text;
+  }
+
+  // --- what calls it ---
+
+  [[nodiscard]] StPou caller() {
+    const std::string instance(names_.identifiers().make({graph_.name, "1"}));
+    StPou program;
+    program.name = names_.identifiers().make({graph_.name, "program"});
+    program.head = fmt::format(
+        "(* An example of a program that calls {}; generated by Hysteron. Its task has a cycle of {} ms. *)\n",
+        names_.block(), number_text(static_cast<double>(graph_.sample_time_ns) * 1e-6));
+    StSection section{.keyword = "VAR", .variables = {{.name = instance, .type = std::string(names_.block())}}};
+    std::string arguments;
+    for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
+      const Port& port = graph_.inputs[i];
+      const std::string_view name = names_.layout().inputs[i];
+      section.variables.push_back(of_port(name, port, port.meaning, true));
+      append(arguments, arguments.empty() ? "" : ", ", name, " := ", name);
+    }
+    std::string results;
+    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
+      const std::string_view name = names_.layout().outputs[i];
+      section.variables.push_back(of_port(name, graph_.outputs[i], "", false));
+      append(results, "  ", name, " := ", instance, ".", name, ";\n");
+    }
+    program.sections.push_back(std::move(section));
+    program.body = fmt::format("  {}({}{}{} := FALSE);\n{}", instance, arguments, arguments.empty() ? "" : ", ",
+                               names_.reset(), results);
+    return program;
+  }
+
+  const Program& program_;
+  const Graph& graph_;
+  StDialect dialect_;
+  bool float32_;
+  Routine routine_;
+  StBlockNames names_;
+  StPrinter printer_;
+  StWriter writer_;
+};
+
+void append_declaration(std::string& text, std::string_view names, const StVariable& variable) {
+  append(text, "    ", names, " : ",
+         variable.length > 1 ? fmt::format("ARRAY[0..{}] OF ", variable.length - 1) : std::string(), variable.type);
+  if (!variable.values.empty()) {
+    append(text, " := ", value_text(variable));
+  }
+  text += ';';
+  if (!variable.remark.empty()) {
+    append(text, "  (* ", st_comment(variable.remark), " *)");
+  }
+  text += '\n';
+}
+
+void append_names(std::string& text, const std::vector<StVariable>& variables) {
+  std::string line;
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const StVariable& one = variables[i];
+    append(line, line.empty() ? "" : ", ", one.name);
+    const bool last = i + 1 == variables.size() || variables[i + 1].type != one.type ||
+                      !one.remark.empty() || !variables[i + 1].remark.empty();
+    if (last || line.size() + variables[i + 1].name.size() > widest_line) {
+      append_declaration(text, line, one);
+      line.clear();
+    }
+  }
+}
+
+}  // namespace
+
+std::string st_declarations(const std::vector<StSection>& sections) {
+  std::string text;
+  for (const StSection& section : sections) {
+    append(text, "  ", section.keyword);
+    if (!section.remark.empty()) {
+      append(text, "  (* ", section.remark, " *)");
+    }
+    text += '\n';
+    if (section.names_share_lines) {
+      append_names(text, section.variables);
+    } else {
+      for (const StVariable& one : section.variables) {
+        append_declaration(text, one.name, one);
+      }
+    }
+    text += "  END_VAR\n";
+  }
+  return text;
+}
+
+StBlockAndCaller make_st_pou(const Program& program, const StOptions& options) {
+  require_sample_time(program.graph);
+  return StBlock(program, options).run();
+}
+
+}  // namespace hysteron

@@ -1,0 +1,56 @@
+// A FUNCTION_BLOCK in Structured Text in its parts: its head, what it declares, its body. A text shows them one behind
+// the other, an XML file each in its own element.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codegen/backends/st/dialect.hpp"
+#include "codegen/compile.hpp"
+
+namespace hysteron {
+
+struct StOptions {
+  StDialect dialect{};
+  bool float32 = false;        ///< REAL in place of LREAL
+  bool outputs_ahead = false;  ///< see RoutineOptions
+};
+
+/// One declared name.
+struct StVariable {
+  std::string name{};
+  std::string type{};                 ///< of an element, where it is an array
+  std::uint16_t length = 1;           ///< above 1: ARRAY[0..length - 1]
+  std::vector<std::string> values{};  ///< the initial value: none, one, or those of the elements
+  std::string remark{};               ///< unit, range and meaning, not yet a comment
+};
+
+struct StSection {
+  std::string keyword{};  ///< VAR_INPUT, VAR CONSTANT, …
+  std::string remark{};
+  std::vector<StVariable> variables{};
+  bool names_share_lines = false;  ///< variables of one type that follow each other are declared together
+};
+
+struct StPou {
+  std::string name{};
+  std::string head{};  ///< a comment
+  std::vector<StSection> sections{};
+  std::string body{};
+};
+
+/// A program, and what is called around it.
+struct StBlockAndCaller {
+  StPou block{};
+  StPou caller{};  ///< a PROGRAM that calls one instance in each cycle
+};
+
+/// Throws InputError: HY404 where the diagram states no sample time, HY732 where a name is longer than the dialect
+/// allows.
+StBlockAndCaller make_st_pou(const Program& program, const StOptions& options);
+
+/// The sections as text.
+std::string st_declarations(const std::vector<StSection>& sections);
+
+}  // namespace hysteron

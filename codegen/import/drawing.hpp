@@ -1,0 +1,69 @@
+// A PLCopen TC6 project as it was drawn: POUs, their variables, and the elements of their networks, before anything is
+// known of their meaning.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "support/diagnostic.hpp"
+
+namespace hysteron::import {
+
+struct Link {
+  std::uint64_t element = 0;  ///< its localId
+  std::string pin{};
+};
+
+struct DrawnPin {
+  std::string name{};
+  bool negated = false;
+  bool edge = false;  ///< of an input: only its rise or fall counts
+  std::vector<Link> links{};
+  std::string expression{};  ///< in place of links
+};
+
+struct DrawnElement {
+  std::string kind{};  ///< the name of its XML element: block, inVariable, contact, …
+  std::uint64_t id = 0;
+  std::uint32_t order = 0;  ///< of execution; 0: not stated
+  double x = 0.0;
+  double y = 0.0;
+  std::string text{};      ///< expression, type of a block, variable of a contact or coil, name of a connector
+  std::string instance{};  ///< of a block
+  bool negated = false;
+  std::string storage{};  ///< set, reset; of a coil
+  std::string edge{};     ///< rising, falling; of a contact or coil
+  std::vector<DrawnPin> inputs{};
+  std::vector<DrawnPin> outputs{};
+  std::uint32_t line = 0;
+};
+
+struct DrawnVariable {
+  enum class Section : std::uint8_t { Input, Output, Local, Constant };
+  Section section = Section::Local;
+  std::string name{};
+  std::string type{};
+  std::string initial{};
+  std::string remark{};
+  std::uint32_t line = 0;
+};
+
+struct DrawnPou {
+  std::string name{};
+  std::string kind{};  ///< functionBlock, function, program
+  std::string remark{};
+  std::string cycle{};     ///< of the task that runs it: T#20ms
+  std::string language{};  ///< ST, FBD, LD, …; empty without a body
+  std::string text{};      ///< of ST
+  std::vector<DrawnVariable> variables{};
+  std::vector<DrawnElement> elements{};
+  std::uint32_t line = 0;
+};
+
+/// Reads a project. Throws InputError: HY743 where the text is no PLCopen XML or larger than any project is, HY744
+/// where a variable is of a kind that no diagram has.
+std::vector<DrawnPou> read_project(const std::string& file, const std::string& text);
+
+}  // namespace hysteron::import

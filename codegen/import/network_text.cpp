@@ -1,0 +1,586 @@
+#include "codegen/import/network_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+#include "codegen/graph/names.hpp"
+#include "codegen/graph/other_names.hpp"
+#include "codegen/graph/text_order.hpp"
+#include "codegen/import/expression.hpp"
+#include "codegen/import/types.hpp"
+#include "codegen/plcopen/functions.hpp"
+#include "codegen/plcopen/tc6.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::import {
+namespace {
+
+/// Chains of elements that feed each other; each takes some of the stack.
+constexpr std::size_t deepest_chain = 1000;
+
+/// A longer expression gets a variable.
+constexpr std::size_t longest_expression = 300;
+
+using plcopen::OperatorFunction;
+
+struct Value {
+  std::string text{};
+  std::optional<Type> type{};
+};
+
+class Reader {
+ public:
+  Reader(const std::string& file, const DrawnPou& pou, const OwnBlocks& own) : file_(file), pou_(pou), own_(own) {
+    for (std::size_t i = 0; i < pou.elements.size(); ++i) {
+      const DrawnElement& element = pou.elements[i];
+      by_id_.emplace(element.id, i);
+      if (element.kind == tc6::connector) {
+        connectors_.emplace(in_capitals(element.text), i);
+      }
+      for (const DrawnPin& pin : element.inputs) {
+        for (const Link& link : pin.links) {
+          ++readers_[link.element];
+        }
+      }
+    }
+    for (const DrawnVariable& variable : pou.variables) {
+      taken_.insert(in_capitals(variable.name));
+      variables_.emplace(in_capitals(variable.name), &variable);
+    }
+    states_.resize(pou.elements.size());
+  }
+
+  NetworkText run() {
+    refuse_what_is_no_network();
+    for (const std::size_t i : order_of_execution()) {
+      run_element(i);
+    }
+    for (const auto& [key, delay] : delays_) {
+      made_.statements += fmt::format("  {}(XIN := {});\n", delay.instance, delay.value);
+      made_.locals += fmt::format("    {} : {}{};\n", delay.instance, delay_of(delay.type),
+                                  delay.start.empty() ? "" : fmt::format(" := (X0 := {})", delay.start));
+    }
+    if (refused_.has_errors()) {
+      throw InputError(std::move(refused_));
+    }
+    made_.called.assign(called_.begin(), called_.end());
+    made_.assigned.assign(assigned_.begin(), assigned_.end());
+    return std::move(made_);
+  }
+
+ private:
+  struct State {
+    bool begun = false;
+    bool done = false;
+    Value value{};         ///< of a function, once done
+    std::string variable{};  ///< that holds it
+  };
+  struct Delay {
+    std::string instance{};
+    std::string value{};
+    std::string start{};
+    Type type = Type::Real;
+  };
+
+  void refuse(const DrawnElement& element, std::string_view why, std::string mend) {
+    if (!told_.insert(&element).second) {
+      return;
+    }
+    const std::string name = element.instance.empty() ? element.text : fmt::format("{} {}", element.text, element.instance);
+    refused_.error(error::untranslatable_element, {.file = file_, .line = element.line, .column = 1},
+                   fmt::format("{}{}{} (localId {}) of {}: {}", element.kind, name.empty() ? "" : " ", name, element.id,
+                               pou_.name, why),
+                   std::move(mend));
+  }
+
+  void refuse_what_is_no_network() {
+    static const std::set<std::string_view> known{tc6::in_variable, tc6::out_variable, tc6::block,     tc6::connector,
+                                                  tc6::continuation, tc6::contact,     tc6::coil,      tc6::left_rail,
+                                                  tc6::right_rail,   tc6::comment,     "vendorElement"};
+    std::map<std::string, int> targets;
+    std::set<std::string> instances;
+    for (const DrawnElement& element : pou_.elements) {
+      if (!known.contains(element.kind)) {
+        refuse(element, "no diagram has such an element", "Draw it with blocks and variables, or write it as text.");
+      }
+      if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
+        if (++targets[in_capitals(element.text)] == 2) {
+          refuse(element, "it is assigned twice", "Assign it once: choose between the values by SEL or OR.");
+        }
+        assigned_somewhere_.insert(in_capitals(element.text));
+      }
+      if (element.kind == tc6::block && !element.instance.empty() &&
+          !instances.insert(in_capitals(element.instance)).second) {
+        refuse(element, "the instance is called twice", "Call it once, or declare another instance.");
+      }
+      if (!element.edge.empty() && element.edge != "none") {
+        refuse(element, "it takes an edge", "Put an R_TRIG or F_TRIG there.");
+      }
+      if (!element.storage.empty() && element.storage != "none") {
+        refuse(element, "it sets or resets", "Put an SR or RS there.");
+      }
+    }
+  }
+
+  /// Those with an order come first, then what assigns, then the blocks, each from the top, as editors do it.
+  [[nodiscard]] std::vector<std::size_t> order_of_execution() const {
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < pou_.elements.size(); ++i) {
+      const std::string& kind = pou_.elements[i].kind;
+      if (kind == tc6::block || kind == tc6::out_variable || kind == tc6::coil) {
+        list.push_back(i);
+      }
+    }
+    std::ranges::stable_sort(list, [&](std::size_t left, std::size_t right) {
+      const DrawnElement& a = pou_.elements[left];
+      const DrawnElement& b = pou_.elements[right];
+      const auto rank = [](const DrawnElement& one) { return one.order != 0 ? 0 : one.kind == tc6::block ? 2 : 1; };
+      if (rank(a) != rank(b)) {
+        return rank(a) < rank(b);
+      }
+      return a.order != b.order ? a.order < b.order : a.y != b.y ? a.y < b.y : a.x < b.x;
+    });
+    return list;
+  }
+
+  // --- elements ---
+
+  void run_element(std::size_t index) {
+    const DrawnElement& element = pou_.elements[index];
+    State& state = states_[index];
+    if (state.begun) {
+      return;
+    }
+    state.begun = true;
+    if (element.kind != tc6::block) {
+      run_assignment(element);
+    } else if (element.instance.empty()) {
+      run_function(element, state);
+    } else {
+      run_call(element);
+    }
+    state.done = true;
+  }
+
+  void run_assignment(const DrawnElement& element) {
+    const auto target = variables_.find(in_capitals(element.text));
+    if (target == variables_.end()) {
+      return refuse(element, "it assigns what the POU does not declare", "Declare it as an output or a local variable.");
+    }
+    Value value = element.inputs.empty() ? Value{} : input_value(element, element.inputs.front());
+    if (value.text.empty()) {
+      return refuse(element, "nothing is connected to it", "Connect it, or take it out.");
+    }
+    assigned_.insert(in_capitals(element.text));
+    made_.statements +=
+        fmt::format("  {} := {};\n", target->second->name, element.negated ? negated(value.text) : value.text);
+  }
+
+  static std::string negated(const std::string& text) { return fmt::format("(NOT {})", text); }
+
+  void run_function(const DrawnElement& element, State& state) {
+    const OperatorFunction* const own = plcopen::operator_of(element.text);
+    const std::string name = own != nullptr ? std::string(own->name) : known_function(element.text);
+    if (name.empty()) {
+      return refuse_unknown(element);
+    }
+    std::vector<Value> arguments;
+    for (std::size_t i = 0; i < element.inputs.size(); ++i) {
+      const DrawnPin& pin = element.inputs[i];
+      if (is_enable(element, pin)) {
+        continue;
+      }
+      const Value value = input_value(element, pin);
+      if (value.text.empty()) {
+        continue;
+      }
+      const std::size_t place = plcopen::place_of(name, pin.name).value_or(arguments.size());
+      arguments.resize(std::max(arguments.size(), place + 1));
+      arguments[place] = value;
+    }
+    const bool complete = std::ranges::none_of(arguments, [](const Value& one) { return one.text.empty(); });
+    if (arguments.empty() || !complete) {
+      return refuse(element, "an input is not connected", "Connect all its inputs.");
+    }
+    state.value = name == "MOVE" ? arguments.front() : applied(own, name, arguments);
+    const bool shared = readers_[element.id] > 1 || state.value.text.size() > longest_expression;
+    if ((shared || !state.variable.empty()) && state.value.type) {
+      const std::string variable = state.variable.empty() ? new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
+      made_.locals += fmt::format("    {} : {};\n", variable, type_name(*state.value.type));
+      made_.statements += fmt::format("  {} := {};\n", variable, state.value.text);
+      state.value.text = variable;
+    }
+  }
+
+  static Value applied(const OperatorFunction* own, const std::string& name, const std::vector<Value>& arguments) {
+    Value result{.type = arguments.back().type};
+    if (own == nullptr) {
+      for (const Value& one : arguments) {
+        result.text += (result.text.empty() ? "" : ", ") + one.text;
+      }
+      result.text = fmt::format("{}({})", name, result.text);
+      result.type = name == "TRUNC" || name.ends_with("_TO_DINT") ? Type::Int
+                    : name.ends_with("_TO_LREAL")                 ? Type::Real
+                                                                  : result.type;
+      return result;
+    }
+    for (const Value& one : arguments) {
+      result.type = result.type ? result.type : one.type;
+    }
+    if (own->op == language::Operator::Not) {
+      result.text = negated(arguments.front().text);
+      return result;
+    }
+    result.type = own->is_comparison ? Type::Bool : result.type;
+    result.text = arguments.front().text;
+    for (std::size_t i = 1; i < arguments.size(); ++i) {
+      result.text = fmt::format("({} {} {})", result.text, own->symbol, arguments[i].text);
+    }
+    return result;
+  }
+
+  void refuse_unknown(const DrawnElement& element) {
+    const std::string_view other = block_of_other_name(element.text);
+    refuse(element, fmt::format("the library has no {}", element.text),
+           other.empty() ? "Draw it with blocks of the library, or bring its POU along in the export."
+                         : fmt::format("Draw it with {}, which does its job.", other));
+  }
+
+  /// EN that is always TRUE means nothing.
+  bool is_enable(const DrawnElement& element, const DrawnPin& pin) {
+    if (!equal_ignoring_case(pin.name, "EN")) {
+      return false;
+    }
+    const Value value = input_value(element, pin);
+    if (!value.text.empty() && !equal_ignoring_case(value.text, "TRUE")) {
+      refuse(element, "EN decides whether it runs", "Choose between its result and the old value by SEL.");
+    }
+    return true;
+  }
+
+  void run_call(const DrawnElement& element) {
+    const auto declared = variables_.find(in_capitals(element.instance));
+    const auto own = own_.find(in_capitals(element.text));
+    const BlockType* const block = own == own_.end() ? known_block(element.text) : nullptr;
+    if (own == own_.end() && block == nullptr) {
+      return refuse_unknown(element);
+    }
+    if (declared == variables_.end()) {
+      return refuse(element, "the instance is not declared", "Declare it in the POU.");
+    }
+    std::string arguments;
+    std::set<std::string> wired;
+    for (const DrawnPin& pin : element.inputs) {
+      if (is_enable(element, pin)) {
+        continue;
+      }
+      if (!has_input(own == own_.end() ? nullptr : own->second, block, pin.name)) {
+        if (!pin.links.empty() || !pin.expression.empty()) {
+          refuse(element, fmt::format("{} has no input {}", block != nullptr ? block->about.name : element.text, pin.name),
+                 "See the inputs by: hysteron blocks NAME.");
+        }
+        continue;
+      }
+      const Value value = input_value(element, pin);
+      if (!value.text.empty()) {
+        wired.insert(in_capitals(pin.name));
+        arguments += fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", pin.name, value.text);
+      }
+    }
+    for (std::size_t i = 0; block != nullptr && i < block->inputs.size(); ++i) {
+      const Field& field = block->inputs[i];
+      if (field.required && !wired.contains(in_capitals(field.name))) {  // as in every IEC compiler
+        arguments += fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", field.name, literal_text(field.type, 0.0));
+      }
+    }
+    called_.insert(in_capitals(element.instance));
+    made_.statements += fmt::format("  {}({});\n", declared->second->name, arguments);
+  }
+
+  static bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin) {
+    if (own != nullptr) {
+      return std::ranges::any_of(own->variables, [&](const DrawnVariable& one) {
+        return one.section == DrawnVariable::Section::Input && equal_ignoring_case(one.name, pin);
+      });
+    }
+    for (std::size_t i = 0; i < block->pin_count(); ++i) {
+      if (equal_ignoring_case(block->pin(i).name, pin)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // --- values ---
+
+  /// What reaches a pin; empty where nothing does. Several wires are an OR, as in a ladder.
+  Value input_value(const DrawnElement& element, const DrawnPin& pin) {
+    if (pin.edge) {
+      refuse(element, fmt::format("its input {} takes an edge", pin.name), "Put an R_TRIG or F_TRIG before it.");
+    }
+    Value result;
+    if (!pin.expression.empty()) {
+      result = expression_value(element, pin.expression);
+    }
+    for (const Link& link : pin.links) {
+      const Value one = link_value(element, link);
+      result = result.text.empty() ? one : Value{fmt::format("({} OR {})", result.text, one.text), Type::Bool};
+    }
+    if (pin.negated && !result.text.empty()) {
+      result.text = negated(result.text);
+    }
+    return result;
+  }
+
+  Value link_value(const DrawnElement& reader, const Link& link) {
+    const auto found = by_id_.find(link.element);
+    if (found == by_id_.end()) {
+      refuse(reader, fmt::format("it is connected to localId {}, which is not there", link.element),
+             "Export the POU again.");
+      return {"FALSE", std::nullopt};
+    }
+    if (++depth_ > deepest_chain) {
+      --depth_;
+      refuse(reader, "too many elements feed each other in a row", "Assign what is between them to a variable.");
+      return {"FALSE", std::nullopt};
+    }
+    Value value = element_value(found->second, link, reader);
+    --depth_;
+    return value;
+  }
+
+  Value element_value(std::size_t index, const Link& link, const DrawnElement& reader) {
+    const DrawnElement& element = pou_.elements[index];
+    if (element.kind == tc6::in_variable) {
+      Value value = expression_value(element, element.text);
+      value.text = element.negated ? negated(value.text) : value.text;
+      return value;
+    }
+    if (element.kind == tc6::left_rail) {
+      return {"TRUE", Type::Bool};
+    }
+    if (element.kind == tc6::contact) {
+      return contact_value(element);
+    }
+    if (element.kind == tc6::coil) {
+      return element.inputs.empty() ? Value{} : input_value(element, element.inputs.front());
+    }
+    if (element.kind == tc6::continuation || element.kind == tc6::connector) {
+      const auto from = connectors_.find(in_capitals(element.text));
+      if (from == connectors_.end() || pou_.elements[from->second].inputs.empty()) {
+        refuse(element, "no connector of this name feeds it", "Draw the connector, or connect it directly.");
+        return {"FALSE", std::nullopt};
+      }
+      return input_value(pou_.elements[from->second], pou_.elements[from->second].inputs.front());
+    }
+    if (element.kind == tc6::block) {
+      if (reader.order == 0) {
+        run_element(index);  // what feeds an element without an order of its own runs before it
+      }
+      return element.instance.empty() ? function_value(index) : output_value(element, link.pin);
+    }
+    refuse(reader, fmt::format("it is connected to a {}", element.kind), "Connect it to a block or a variable.");
+    return {"FALSE", std::nullopt};
+  }
+
+  Value contact_value(const DrawnElement& element) {
+    Value own = expression_value(element, element.text);
+    own.text = element.negated ? negated(own.text) : own.text;
+    const Value before = element.inputs.empty() ? Value{"TRUE", Type::Bool} : input_value(element, element.inputs.front());
+    return before.text == "TRUE" ? own : Value{fmt::format("({} AND {})", before.text, own.text), Type::Bool};
+  }
+
+  /// Read before it is worked out, a function's result is the last cycle's.
+  Value function_value(std::size_t index) {
+    State& state = states_[index];
+    const DrawnElement& element = pou_.elements[index];
+    if (state.done) {
+      return state.value;
+    }
+    const std::optional<Type> type = result_type(element);
+    if (!type) {
+      refuse(element, "it is in a loop, and its type cannot be told", "Put a variable into the loop.");
+      return {"FALSE", std::nullopt};
+    }
+    if (state.variable.empty()) {
+      state.variable = new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
+    }
+    return delayed(state.variable, *type, "");
+  }
+
+  [[nodiscard]] std::optional<Type> result_type(const DrawnElement& element) const {
+    const OperatorFunction* const own = plcopen::operator_of(element.text);
+    if (own != nullptr && own->is_comparison) {
+      return Type::Bool;
+    }
+    for (const DrawnPin& pin : element.inputs) {
+      for (const Link& link : pin.links) {
+        const auto found = by_id_.find(link.element);
+        if (found != by_id_.end() && pou_.elements[found->second].kind == tc6::in_variable && !equal_ignoring_case(pin.name, "G")) {
+          if (const auto type = type_of_text(pou_.elements[found->second].text)) {
+            return type;
+          }
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Type> type_of_text(const std::string& text) const {
+    const auto variable = variables_.find(in_capitals(text));
+    if (variable != variables_.end()) {
+      const auto known = known_type(variable->second->type);
+      return known ? std::optional(known->type) : std::nullopt;
+    }
+    return type_of_literal(with_known_literals(text));
+  }
+
+  Value output_value(const DrawnElement& element, const std::string& pin) {
+    const auto negation = std::ranges::find_if(
+        element.outputs, [&](const DrawnPin& one) { return equal_ignoring_case(one.name, pin); });
+    const std::string& name = !pin.empty()                ? pin
+                              : !element.outputs.empty() ? element.outputs.front().name
+                                                         : pin;
+    Value value = pin_value(element, element.instance, name);
+    if (negation != element.outputs.end() && negation->negated) {
+      value.text = negated(value.text);
+    }
+    return value;
+  }
+
+  /// INSTANCE.PIN, as a wire or a text names it.
+  Value pin_value(const DrawnElement& reader, const std::string& instance, const std::string& pin) {
+    const auto declared = variables_.find(in_capitals(instance));
+    if (declared == variables_.end()) {
+      refuse(reader, fmt::format("{} is not declared", instance), "Declare it in the POU.");
+      return {"FALSE", std::nullopt};
+    }
+    const std::string text = fmt::format("{}.{}", declared->second->name, pin);
+    const bool called = called_.contains(in_capitals(instance));
+    if (const auto own = own_.find(in_capitals(declared->second->type)); own != own_.end()) {
+      for (const DrawnVariable& one : own->second->variables) {
+        if (one.section == DrawnVariable::Section::Output && equal_ignoring_case(one.name, pin)) {
+          const auto type = known_type(one.type);
+          return called || !type ? Value{text, type ? std::optional(type->type) : std::nullopt}
+                                 : delayed(text, type->type, "");
+        }
+      }
+    } else if (const BlockType* const block = known_block(declared->second->type)) {
+      for (std::size_t i = 0; i < block->outputs.size(); ++i) {
+        if (equal_ignoring_case(block->outputs[i].name, pin)) {
+          return block_output(reader, *block, i, {text, block->outputs[i].type}, called);
+        }
+      }
+    }
+    refuse(reader, fmt::format("{} has no output {}", instance, pin), "See its outputs by: hysteron blocks NAME.");
+    return {"FALSE", std::nullopt};
+  }
+
+  /// What hands out memory alone is read before its call: behind it, the block has moved on.
+  Value block_output(const DrawnElement& reader, const BlockType& block, std::size_t output, Value value, bool called) {
+    const PinSet& pins = block.trace.feedthrough[output];
+    bool direct = false;
+    for (std::size_t i = 0; i < block.inputs.size(); ++i) {
+      direct = direct || pins.contains(i);
+    }
+    const bool remembers = !direct && !block.states.empty();
+    if (called && remembers) {
+      refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
+             "Let it run before the block: give it the lower executionOrderId.");
+    }
+    return called || remembers ? value : delayed(value.text, *value.type, "");
+  }
+
+  Value delayed(const std::string& text, Type type, const std::string& start) {
+    Delay& delay = delays_[in_capitals(text)];
+    if (delay.instance.empty()) {
+      std::string base = text + "_LAST";
+      std::ranges::replace(base, '.', '_');
+      delay = {.instance = new_name(base), .value = text, .start = start, .type = type};
+    }
+    return {delay.instance + ".XOUT", type};
+  }
+
+  Value expression_value(const DrawnElement& element, const std::string& text) {
+    const auto read = [&](const std::string& name, const std::string& pin) {
+      return pin.empty() ? variable_text(element, name) : pin_value(element, name, pin).text;
+    };
+    const auto rewritten = rewrite_expression(with_known_literals(text), read);
+    if (!rewritten) {
+      refuse(element, fmt::format("\"{}\" is no expression of a diagram", text.substr(0, longest_expression)),
+             "Write it with operators and functions that docs/reference/language.md lists.");
+      return {"FALSE", std::nullopt};
+    }
+    const auto dot = text.find('.');
+    std::optional<Type> type = type_of_text(text);
+    if (!type && dot != std::string::npos && variables_.contains(in_capitals(text.substr(0, dot)))) {
+      type = output_type(text.substr(0, dot), text.substr(dot + 1));
+    }
+    return {*rewritten, type};
+  }
+
+  [[nodiscard]] std::optional<Type> output_type(const std::string& instance, const std::string& pin) const {
+    const DrawnVariable& declared = *variables_.at(in_capitals(instance));
+    if (const BlockType* const block = known_block(declared.type)) {
+      for (const Field& field : block->outputs) {
+        if (equal_ignoring_case(field.name, pin)) {
+          return field.type;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::string variable_text(const DrawnElement& element, const std::string& name) {
+    const auto found = variables_.find(in_capitals(name));
+    if (found == variables_.end()) {
+      refuse(element, fmt::format("{} is not declared in the POU", name), "Make it an input of the POU.");
+      return "FALSE";
+    }
+    const DrawnVariable& variable = *found->second;
+    const auto type = known_type(variable.type);
+    const bool last_cycles = assigned_somewhere_.contains(in_capitals(name)) && !assigned_.contains(in_capitals(name));
+    return last_cycles && type ? delayed(variable.name, type->type, with_known_literals(variable.initial)).text
+                               : variable.name;
+  }
+
+  std::string new_name(std::string base) {
+    base = is_reserved(base) || !taken_.insert(in_capitals(base)).second ? base + "_1" : base;
+    for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1)); ++number) {
+      base = base.substr(0, base.rfind('_')) + fmt::format("_{}", number);
+    }
+    taken_.insert(in_capitals(base));
+    return base;
+  }
+
+  const std::string& file_;
+  const DrawnPou& pou_;
+  const OwnBlocks& own_;
+  std::unordered_map<std::uint64_t, std::size_t> by_id_;
+  std::map<std::string, std::size_t> connectors_;
+  std::unordered_map<std::uint64_t, std::size_t> readers_;  ///< by localId: how many wires leave it
+  std::map<std::string, const DrawnVariable*> variables_;
+  std::vector<State> states_;  ///< by element
+  std::map<std::string, Delay> delays_;
+  std::set<std::string> taken_;  ///< names, in capitals
+  std::set<std::string> assigned_somewhere_;
+  std::set<std::string> assigned_;
+  std::set<std::string> called_;
+  std::set<const DrawnElement*> told_;
+  std::size_t depth_ = 0;
+  Diagnostics refused_;
+  NetworkText made_;
+};
+
+}  // namespace
+
+NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own) {
+  return Reader(file, pou, own).run();
+}
+
+}  // namespace hysteron::import

@@ -1,0 +1,30 @@
+// From the elements of a network to the statements of a diagram.
+//
+// The elements run in the order that an editor gives them: by their order of execution, then by their place, and what
+// feeds an element runs before it. A value that is read before it is worked out is the last cycle's: it becomes a
+// HY_DELAY.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "codegen/import/drawing.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::import {
+
+/// What the network of one POU may call, by name in capitals: the POUs of the project that are no library blocks.
+using OwnBlocks = std::map<std::string, const DrawnPou*>;
+
+struct NetworkText {
+  std::string locals{};      ///< declarations of what the network has beside the POU's own variables
+  std::string statements{};
+  std::vector<std::string> called{};    ///< instances, in capitals
+  std::vector<std::string> assigned{};  ///< variables, in capitals
+};
+
+/// Throws InputError HY744 with every element that no diagram can express.
+NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own);
+
+}  // namespace hysteron::import

@@ -1,0 +1,158 @@
+#include "codegen/import/types.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <utility>
+
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::import {
+namespace {
+
+struct TypeRow {
+  std::string_view name;
+  KnownType known;
+};
+constexpr std::string_view wider = "it has 64 bits here, and other last places";
+constexpr std::string_view longer = "it is a DINT here, and wraps elsewhere";
+constexpr std::array types{
+    TypeRow{"LREAL", {Type::Real}},       TypeRow{"REAL", {Type::Real, wider}}, TypeRow{"BOOL", {Type::Bool}},
+    TypeRow{"DINT", {Type::Int}},         TypeRow{"INT", {Type::Int, longer}},  TypeRow{"SINT", {Type::Int, longer}},
+    TypeRow{"USINT", {Type::Int, longer}}, TypeRow{"UINT", {Type::Int, longer}}, TypeRow{"WORD", {Type::Word}},
+    TypeRow{"TIME", {Type::Real, "it is an LREAL in seconds here"}},
+    TypeRow{"LTIME", {Type::Real, "it is an LREAL in seconds here"}}};
+
+struct Renamed {
+  std::string_view name;
+  std::string_view here;
+};
+constexpr std::array conversions{
+    Renamed{"REAL_TO_LREAL", "MOVE"},          Renamed{"LREAL_TO_REAL", "MOVE"},
+    Renamed{"INT_TO_DINT", "MOVE"},            Renamed{"INT_TO_REAL", "DINT_TO_LREAL"},
+    Renamed{"INT_TO_LREAL", "DINT_TO_LREAL"},  Renamed{"DINT_TO_REAL", "DINT_TO_LREAL"},
+    Renamed{"REAL_TO_DINT", "LREAL_TO_DINT"},  Renamed{"REAL_TO_INT", "LREAL_TO_DINT"},
+    Renamed{"LREAL_TO_INT", "LREAL_TO_DINT"},  Renamed{"BOOL_TO_INT", "BOOL_TO_DINT"},
+    Renamed{"TIME_TO_LREAL", ""}};  // seconds in some compilers, milliseconds in others
+
+constexpr std::array<std::string_view, 22> functions{
+    "MOVE", "ABS",   "SQRT", "LN",  "LOG", "EXP",   "SIN", "COS", "TAN",           "ASIN",          "ACOS",
+    "ATAN", "TRUNC", "EXPT", "MIN", "MAX", "LIMIT", "SEL", "MUX", "DINT_TO_LREAL", "LREAL_TO_DINT", "BOOL_TO_DINT"};
+
+bool is_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+}  // namespace
+
+std::optional<KnownType> known_type(std::string_view name) {
+  const auto* const found =
+      std::ranges::find_if(types, [&](const TypeRow& one) { return equal_ignoring_case(one.name, name); });
+  return found == types.end() ? std::nullopt : std::optional(found->known);
+}
+
+const BlockType* known_block(std::string_view name) {
+  const BlockType* const own = find_block_type(name);
+  return own != nullptr ? own : find_block_type(fmt::format("HY_{}", name));
+}
+
+std::string known_function(std::string_view name) {
+  for (const Renamed& one : conversions) {
+    if (equal_ignoring_case(one.name, name)) {
+      return std::string(one.here);
+    }
+  }
+  const bool known = std::ranges::any_of(functions, [&](std::string_view one) { return equal_ignoring_case(one, name); });
+  return known ? in_capitals(name) : "";
+}
+
+std::optional<double> seconds_of(std::string_view literal) {
+  const auto mark = literal.find('#');
+  if (mark == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::string kind = in_capitals(literal.substr(0, mark));
+  if (kind != "T" && kind != "TIME" && kind != "LT" && kind != "LTIME") {
+    return std::nullopt;
+  }
+  std::string digits;
+  std::ranges::copy_if(literal.substr(mark + 1), std::back_inserter(digits), [](char c) { return c != '_'; });
+  std::string_view rest = digits;
+  const bool negative = rest.starts_with('-');
+  rest.remove_prefix(negative ? 1 : 0);
+  double seconds = 0.0;
+  bool any = false;
+  while (!rest.empty()) {
+    double number = 0.0;
+    const auto [stop, problem] = std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
+    if (problem != std::errc{}) {
+      return std::nullopt;
+    }
+    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+    std::size_t letters = 0;
+    while (letters < rest.size() && std::isalpha(static_cast<unsigned char>(rest[letters])) != 0) {
+      ++letters;
+    }
+    const std::string unit = in_capitals(rest.substr(0, letters));
+    rest.remove_prefix(letters);
+    // A division by a whole number is rounded once: 0.1 of T#100ms is that of the text.
+    constexpr std::array<std::pair<std::string_view, double>, 4> parts{
+        {{"S", 1.0}, {"MS", 1e3}, {"US", 1e6}, {"NS", 1e9}}};
+    constexpr std::array<std::pair<std::string_view, double>, 3> multiples{{{"D", 86400.0}, {"H", 3600.0}, {"M", 60.0}}};
+    bool known = false;
+    for (const auto& [name, divisor] : parts) {
+      if (unit == name) {
+        seconds += number / divisor;
+        known = true;
+      }
+    }
+    for (const auto& [name, factor] : multiples) {
+      if (unit == name) {
+        seconds += number * factor;
+        known = true;
+      }
+    }
+    if (!known) {
+      return std::nullopt;
+    }
+    any = true;
+  }
+  return any ? std::optional(negative ? -seconds : seconds) : std::nullopt;
+}
+
+std::string with_known_literals(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!is_letter(text[i])) {
+      result += text[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < text.size() && is_letter(text[end])) {
+      ++end;
+    }
+    std::string word(text.substr(i, end - i));
+    if (end < text.size() && text[end] == '#') {
+      std::size_t stop = end + 1;
+      while (stop < text.size() && (is_letter(text[stop]) || text[stop] == '.' || (stop == end + 1 && text[stop] == '-'))) {
+        ++stop;
+      }
+      if (const auto seconds = seconds_of(text.substr(i, stop - i))) {
+        result += real_literal(*seconds);
+        i = stop;
+        continue;
+      }
+      const auto known = known_type(word);
+      word = known && known->type == Type::Real  ? "LREAL"
+             : known && known->type == Type::Int ? "DINT"
+                                                 : word;
+    }
+    result += word;
+    i = end;
+  }
+  return result;
+}
+
+}  // namespace hysteron::import

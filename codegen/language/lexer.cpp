@@ -146,16 +146,20 @@ void Lexer::skip_line() {
   const auto start = at_;
   const auto end = text_.find('\n', at_);
   at_ = end == std::string_view::npos ? size_ : static_cast<std::uint32_t>(end);
-  error(error::foreign_comment, start, 2, "A comment that begins with // is not portable.",
-        "Write it as (* … *), which every IEC compiler reads.");
+  if (!foreign_) {
+    error(error::foreign_comment, start, 2, "A comment that begins with // is not portable.",
+          "Write it as (* … *), which every IEC compiler reads.");
+  }
 }
 
 void Lexer::skip_foreign_comment() {
   const auto start = at_;
   const auto end = text_.find("*/", at_ + 2);
   at_ = end == std::string_view::npos ? size_ : static_cast<std::uint32_t>(end) + 2;
-  error(error::foreign_comment, start, 2, "A comment between /* and */ is not portable.",
-        "Write it as (* … *), which every IEC compiler reads.");
+  if (!foreign_) {
+    error(error::foreign_comment, start, 2, "A comment between /* and */ is not portable.",
+          "Write it as (* … *), which every IEC compiler reads.");
+  }
 }
 
 void Lexer::skip_comment() {
@@ -164,7 +168,7 @@ void Lexer::skip_comment() {
   bool nested = false;
   std::size_t star = text_.find('*', body);
   for (; star != std::string_view::npos; star = text_.find('*', star + 1)) {
-    if (star > body && text_[star - 1] == '(' && !nested) {
+    if (star > body && text_[star - 1] == '(' && !nested && !foreign_) {
       nested = true;
       error(error::foreign_comment, static_cast<std::uint32_t>(star) - 1, 2,
             "A comment inside a comment is not portable: the editions of the standard differ on where it ends.",
@@ -194,6 +198,9 @@ void Lexer::skip_pragma() {
     end = start;
   }
   at_ = static_cast<std::uint32_t>(end) + 1;
+  if (foreign_ && end != start) {
+    return;
+  }
   error(error::pragma, start, 1, "A pragma {…} is not part of a diagram: each compiler reads it in its own way.",
         "Remove it; what is said of a variable stands in a comment such as (* @unit um *).");
 }
@@ -219,7 +226,7 @@ Token Lexer::identifier() {
     return typed(start);
   }
   Token word = token(Symbol::Identifier, start);
-  if (last == '_' || doubled) {
+  if ((last == '_' || doubled) && !foreign_) {
     error(error::name_not_portable, start, word.length,
           fmt::format("The name {} {}, which IEC 61131-3 does not allow.", text_.substr(start, word.length),
                       doubled ? "has two underscores in a row" : "ends in an underscore"),

@@ -81,7 +81,9 @@ class Reader {
       const auto index = static_cast<std::uint32_t>(definitions_.list.size());
       Definition& definition = definitions_.list.emplace_back();
       definition.block = &block;
-      check_name(block.name);
+      if (!block.sequential) {  // what PLC compilers have inside, a library of blocks may define
+        check_name(block.name);
+      }
       if (find_block_type(block.name.text) != nullptr) {
         error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
               "Choose another name; names that begin with HY_ belong to the library.");
@@ -126,7 +128,9 @@ class Reader {
 
   template <class Declare>
   void add_variable(Definition& definition, const Variable& variable, std::string_view name, Declare declare) {
-    check_name({name, variable.name.span});
+    if (!definition.block->sequential) {
+      check_name({name, variable.name.span});
+    }
     if (find_block_type(name) != nullptr) {
       error(error::reserved_name, variable.name.span, fmt::format("'{}' is a block of the library", name),
             "Choose another name; names that begin with HY_ belong to the library.");
@@ -144,6 +148,9 @@ class Reader {
     Graph scratch;
     GraphBuilder builder(scratch);
     const auto report = [&](int number, language::Span span, std::string cause, std::string mend) {
+      if (number == error::other_meaning_elsewhere) {
+        return;  // told when the body is executed
+      }
       definition.usable = false;
       error(number, span, std::move(cause), std::move(mend));
     };

@@ -129,6 +129,10 @@ void Elaborator::elaborate(const Instance& instance) {
 void Elaborator::elaborate_body(const Instance& instance) {
   const Definition& definition = *instance.definition;
   const auto report = [&](int number, Span span, std::string cause, std::string mend) {
+    if (number == error::other_meaning_elsewhere) {
+      diagnostics_.warning(number, source_.place(span), std::move(cause), std::move(mend));
+      return;
+    }
     error(number, span, std::move(cause), std::move(mend));
   };
   const auto add_parameter = [&](Parameter parameter) -> Wire {

@@ -19,7 +19,7 @@ namespace hysteron::language::body {
 struct Literal {
   enum class Kind : std::uint8_t { Whole, Real, Truth, Time };
   Kind kind = Kind::Whole;
-  double value = 0.0;       ///< a time in seconds; a whole number up to 2^53 is exact
+  double value = 0.0;       ///< a time in milliseconds; a whole number up to 2^53 is exact
   std::string_view type{};  ///< what stands before #; empty where nothing does
 };
 

@@ -206,17 +206,21 @@ bool BodyParser::initial(body::Initial& value) {
   const auto begin = now().offset;
   bool right = true;
   if (accept(Symbol::LeftBracket)) {
+    ++depth_;
     do {
       right = element(value);
     } while (right && accept(Symbol::Comma));
+    --depth_;
     right = right && expect(Symbol::RightBracket, "`,` or `]`");
   } else if (is(Symbol::LeftParenthesis) && ahead().symbol == Symbol::Identifier &&
              ahead(2).symbol == Symbol::Assign) {
     advance();
+    ++depth_;
     do {
       auto& [member, inner] = value.members.emplace_back();
       right = name(member, "the name of a member") && expect(Symbol::Assign, "`:=`") && initial(inner);
     } while (right && accept(Symbol::Comma));
+    --depth_;
     right = right && expect(Symbol::RightParenthesis, "`,` or `)`");
   } else {
     value.value = expression();

@@ -176,7 +176,7 @@ ExpressionId BodyParser::typed() {
   if (same_name(type, "T") || same_name(type, "TIME")) {
     literal.kind = body::Literal::Kind::Time;
     literal.type = {};
-    if (!seconds_of_time(value, literal.value)) {
+    if (!milliseconds_of_time(value, literal.value)) {
       reporter_.error(error::malformed_number, span, fmt::format("`{}` is not a time.", text),
                       "Write parts with their units, the largest first: T#1m30s, T#5.5ms.");
       return no_expression;

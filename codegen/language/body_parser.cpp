@@ -100,6 +100,14 @@ body::Unit BodyParser::block(FunctionBlock& block, std::size_t index, std::vecto
   body::Unit unit;
   const auto begin = now().offset;
   advance();
+  while (is(Symbol::Identifier) && ahead().symbol == Symbol::Identifier &&
+         (same_name(word(now()), "PUBLIC") || same_name(word(now()), "INTERNAL") || same_name(word(now()), "FINAL") ||
+          same_name(word(now()), "ABSTRACT"))) {
+    if (same_name(word(now()), "ABSTRACT")) {
+      refuse(span_of(now()), "A block without a body of its own is ABSTRACT.", "Bring in the blocks that extend it.");
+    }
+    advance();
+  }
   name(unit.name, "the name of the FUNCTION_BLOCK");
   block.name = unit.name;
   declarations.push_back({.begin = begin, .end = last_end_, .block = index, .is_head = true});
@@ -122,11 +130,11 @@ body::Unit BodyParser::block(FunctionBlock& block, std::size_t index, std::vecto
 /// Behind the statements stand the end, or methods, which are refused one by one.
 void BodyParser::finish(body::Unit& unit, std::string_view end) {
   while (!is(Symbol::End) && !is(end)) {
-    if (is("METHOD") || is("ACTION")) {
+    if (is("METHOD") || is("ACTION") || (is(Symbol::Identifier) && same_name(word(now()), "PROPERTY"))) {
       const std::string closing = fmt::format("END_{}", upper(word(now())));
-      refuse(span_of(now()), fmt::format("The {} {} is a second body of {}.", word(now()), word(ahead()), unit.name.text),
+      refuse(span_of(now()), fmt::format("This {} is a second body of {}.", word(now()), unit.name.text),
              "Write it as a FUNCTION of its own, or into the body.");
-      while (!is(Symbol::End) && !is(closing)) {
+      while (!is(Symbol::End) && !same_name(word(now()), closing)) {
         advance();
       }
       advance();
@@ -146,7 +154,9 @@ void BodyParser::finish(body::Unit& unit, std::string_view end) {
 
 bool BodyParser::ends_list() const {
   return is(Symbol::End) || now().keyword == Keyword::ControlEnd || now().keyword == Keyword::EndFunctionBlock ||
-         now().keyword == Keyword::UnitEnd || now().keyword == Keyword::Unit || is("ELSE") || is("ELSIF") ||
+         now().keyword == Keyword::UnitEnd || now().keyword == Keyword::Unit ||
+         (is(Symbol::Identifier) && same_name(word(now()), "PROPERTY") && ahead().symbol == Symbol::Identifier) ||
+         is("ELSE") || is("ELSIF") ||
          is("UNTIL");
 }
 
@@ -263,10 +273,9 @@ bool BodyParser::if_statement(body::If& node) {
   if (accept("ELSE")) {
     statements(node.otherwise);
   }
-  if (!expect("END_IF")) {
-    return false;
-  }
-  return end_of_statement();
+  const bool ended = expect("END_IF");
+  accept(Symbol::Semicolon);  // which some leave out here
+  return ended;
 }
 
 bool BodyParser::label(body::Label& one) {
@@ -308,10 +317,9 @@ bool BodyParser::case_statement(body::Case& node) {
     accept(Symbol::Colon);
     statements(node.otherwise);
   }
-  if (!expect("END_CASE")) {
-    return false;
-  }
-  return end_of_statement();
+  const bool ended = expect("END_CASE");
+  accept(Symbol::Semicolon);  // which some leave out here
+  return ended;
 }
 
 bool BodyParser::for_statement(body::For& node) {
@@ -324,10 +332,9 @@ bool BodyParser::for_statement(body::For& node) {
     return true;
   }
   statements(node.statements);
-  if (!expect("END_FOR")) {
-    return false;
-  }
-  return end_of_statement();
+  const bool ended = expect("END_FOR");
+  accept(Symbol::Semicolon);  // which some leave out here
+  return ended;
 }
 
 /// An assignment or a call.

@@ -210,6 +210,9 @@ void Lexer::skip_illegal() {
   while (at_ < size_ && class_of(text_[at_]) == Illegal) {
     ++at_;
   }
+  if (foreign_ && text_[start] == '^') {
+    return;  // a pointer: refused where it stands
+  }
   error(error::illegal_character, start, at_ - start, shown(text_.substr(start)) + " has no meaning in a diagram.",
         std::string(mend_of_illegal(text_[start])));
 }

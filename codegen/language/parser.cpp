@@ -64,6 +64,9 @@ void Parser::read_file() {
   std::vector<Comment> comments = lexer_.comments();
   std::erase_if(comments, within);
   comments.insert(comments.end(), bodies_comments_.begin(), bodies_comments_.end());
+  if (!parts_.empty()) {
+    std::erase_if(comments, [&](const Comment& comment) { return has_no_key_of_ours(text_, comment.span); });
+  }
   attach_annotations(file_, comments, declarations_, reporter_);
 }
 

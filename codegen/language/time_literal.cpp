@@ -20,7 +20,7 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 }  // namespace
 
-bool seconds_of_time(std::string_view written, double& seconds) {
+bool milliseconds_of_time(std::string_view written, double& milliseconds) {
   std::string text;
   for (const char c : written) {
     text += c == '_' ? std::string() : std::string(1, lower(c));
@@ -48,7 +48,7 @@ bool seconds_of_time(std::string_view written, double& seconds) {
     nanoseconds += number * units_of_time[next++].nanoseconds;
     at = name_end;
   }
-  seconds = (negative ? -nanoseconds : nanoseconds) / 1e9;
+  milliseconds = (negative ? -nanoseconds : nanoseconds) / 1e6;
   return !text.empty() && next > 0;
 }
 

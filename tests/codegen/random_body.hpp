@@ -23,10 +23,10 @@ VAR R : INT; END_VAR
   CLAMP := R - 1;
 END_FUNCTION
 FUNCTION_BLOCK COUNTER (* @body *)
-VAR_INPUT UP : BOOL; STEP : INT := 1; END_VAR
+VAR_INPUT UP : BOOL; INC : INT := 1; END_VAR
 VAR_OUTPUT COUNT : INT; END_VAR
 VAR_IN_OUT SUM : LREAL; END_VAR
-  IF UP THEN COUNT := COUNT + STEP; SUM := SUM * 0.5 + 1.0; END_IF;
+  IF UP THEN COUNT := COUNT + INC; SUM := SUM * 0.5 + 1.0; END_IF;
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK {} (* @ts 1ms @body *)
 VAR_INPUT X1 : LREAL; X2 : LREAL; X3 : LREAL; B1 : BOOL; B2 : BOOL; N1 : DINT; END_VAR
@@ -164,7 +164,7 @@ VAR_TEMP H : INT; END_VAR
       case 10:
         return fmt::format("T1(UP := {}, SUM := L2);", truth(1));
       case 11:
-        return fmt::format("T2.STEP := {}; T2(UP := C1, SUM := F[1], COUNT => I2);", small());
+        return fmt::format("T2.INC := {}; T2(UP := C1, SUM := F[1], COUNT => I2);", small());
       case 12:
         return "Q := NOT Q; N := N + A[J];";
       default:

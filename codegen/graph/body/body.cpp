@@ -78,6 +78,7 @@ std::vector<BorderPort> Body::ports() {
       set_initial(*made, one.initial);
     }
     port.initial = leaves_[made->leaf].initial;
+    port.initial = port.type == Plain::Time ? port.initial / 1000.0 : port.initial;
     list.push_back(std::move(port));
   }
   return list;

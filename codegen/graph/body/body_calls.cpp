@@ -205,11 +205,7 @@ void Body::invoke_library(Place& place, language::Span span) {
     computer_.at(path_for(leaves_[leaf].path), place_of(span));
     const Wire wire{Wire::From::Node, type.outputs[i].type, static_cast<std::uint16_t>(i), node};
     const Plain plain = leaves_[leaf].type;
-    Value taken{.wire = wire, .type = plain};
-    if (is_integer(plain)) {
-      taken = computer_.taken(wire, plain);
-    }
-    write(leaf, taken);
+    write(leaf, is_integer(plain) || plain == Plain::Time ? computer_.taken(wire, plain) : Value{.wire = wire, .type = plain});
   }
 }
 

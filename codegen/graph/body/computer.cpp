@@ -78,6 +78,9 @@ Value Computer::operation(Op op, std::initializer_list<Value> operands, Plain ty
 }
 
 Value Computer::taken(Wire wire, Plain type) {
+  if (type == Plain::Time) {  // seconds at the border, as everywhere; inside, whole milliseconds are exact
+    return {.wire = apply(Op::Multiply, {wire, builder_.literal(Type::Real, 1000.0)}), .type = type};
+  }
   if (!is_integer(type)) {
     return fit({.wire = wire, .type = type, .wide = true}, type);
   }
@@ -88,6 +91,9 @@ Value Computer::taken(Wire wire, Plain type) {
 }
 
 Wire Computer::given(const Value& value) {
+  if (value.type == Plain::Time) {
+    return apply(Op::Divide, {value.wire, builder_.literal(Type::Real, 1000.0)});
+  }
   return info(value.type).carrier == Type::Word ? apply(Op::IntToWord, {value.wire}) : value.wire;
 }
 
@@ -190,9 +196,24 @@ Value Computer::convert(const Value& value, Plain type) {
     return value;
   }
   if (from == Family::Duration || to == Family::Duration) {
-    return value.type == type ? value
-                              : refused(error::type_mismatch, "compilers differ on the unit of a TIME as a number",
-                                        "Hand the time over as an LREAL in seconds, or write it as a literal T#….");
+    if (value.type == type) {
+      return value;
+    }
+    if (from == Family::Truth || to == Family::Truth) {
+      return refused(error::type_mismatch, fmt::format("there is no {}_TO_{}", info(value.type).name, info(type).name),
+                     "Compare the time with T#0s.");
+    }
+    report_(error::other_meaning_elsewhere, span_,
+            "a TIME as a number is counted in milliseconds here, as in CODESYS, TwinCAT and SIMATIC; MATIEC counts seconds",
+            "Divide times by times, or compare them with literals T#…, where the text shall mean the same everywhere.");
+    Value number = value;  // a number of milliseconds, whichever of the two it is
+    number.type = from == Family::Duration ? Plain::Lreal : value.type;
+    if (to == Family::Duration) {
+      number = convert(number, Plain::Lreal);
+      number.type = Plain::Time;
+      return number;
+    }
+    return convert(number, type);
   }
   if (to == Family::Truth) {
     if (from == Family::Truth) {

@@ -277,8 +277,8 @@ Token Lexer::typed(std::uint32_t start) {
   const auto type = text_.substr(start, at_ - start);
   ++at_;
   if (!is_elementary_type(type) && is_digit(peek())) {
-    // A time or a date, perhaps: T#1m_2.5s, DT#2024-01-31-12:00:00.
-    while (at_ < size_ && (is_word(text_[at_]) || text_[at_] == '.' ||
+    // A time or a date, perhaps: T#1m_2.5s, DT#2024-01-31-12:00:00; or a number with a base, DWORD#16#FF.
+    while (at_ < size_ && (is_word(text_[at_]) || text_[at_] == '.' || (text_[at_] == '#' && is_word(peek(1))) ||
                            ((text_[at_] == '-' || text_[at_] == ':') && is_digit(peek(1))))) {
       ++at_;
     }

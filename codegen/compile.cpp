@@ -124,6 +124,9 @@ std::vector<bool> find_contained(const Definitions& definitions) {
         contained[declared.definition] = true;
       }
     }
+    for (const std::uint32_t inner : definition.in_place) {
+      contained[inner] = true;
+    }
   }
   return contained;
 }

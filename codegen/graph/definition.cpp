@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ranges>
 
+#include "codegen/graph/body/body.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "codegen/graph/units.hpp"
@@ -26,7 +27,7 @@ using Keys = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 7> input_keys{"unit", "min", "max", "param", "neutral", "role", "doc"};
 constexpr std::array<std::string_view, 2> value_keys{"unit", "doc"};
 constexpr std::array<std::string_view, 3> instance_keys{"every", "phase", "doc"};
-constexpr std::array<std::string_view, 4> block_keys{"ts", "effect", "family", "doc"};
+constexpr std::array<std::string_view, 5> block_keys{"ts", "effect", "family", "doc", "body"};
 
 /// The most that a block may hold, and the most levels of blocks in blocks.
 constexpr std::uint64_t most_instances = 2'000'000;
@@ -80,7 +81,9 @@ class Reader {
       const auto index = static_cast<std::uint32_t>(definitions_.list.size());
       Definition& definition = definitions_.list.emplace_back();
       definition.block = &block;
-      check_name(block.name);
+      if (!block.sequential) {  // what PLC compilers have inside, a library of blocks may define
+        check_name(block.name);
+      }
       if (find_block_type(block.name.text) != nullptr) {
         error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
               "Choose another name; names that begin with HY_ belong to the library.");
@@ -91,8 +94,13 @@ class Reader {
       }
     }
     for (auto& definition : definitions_.list) {
-      read(definition);
+      if (definition.block->sequential) {
+        read_sequential(definition);
+      } else {
+        read(definition);
+      }
     }
+    find_in_place();
     sort_by_calls();
     limit_size();
   }
@@ -110,6 +118,90 @@ class Reader {
   }
 
   void read(Definition& definition) {
+    read_head(definition);
+    definition.variables.reserve(definition.block->variables.size());
+    definition.by_name.reserve(definition.block->variables.size());
+    for (const Variable& variable : definition.block->variables) {
+      add_variable(definition, variable, variable.name.text, [&] { return declare(variable); });
+    }
+  }
+
+  template <class Declare>
+  void add_variable(Definition& definition, const Variable& variable, std::string_view name, Declare declare) {
+    if (!definition.block->sequential) {
+      check_name({name, variable.name.span});
+    }
+    if (find_block_type(name) != nullptr) {
+      error(error::reserved_name, variable.name.span, fmt::format("'{}' is a block of the library", name),
+            "Choose another name; names that begin with HY_ belong to the library.");
+    }
+    if (!definition.by_name.emplace(upper(name), static_cast<std::uint32_t>(definition.variables.size())).second) {
+      error(error::duplicate_name, variable.name.span, fmt::format("'{}' is declared twice", name),
+            "Rename one of the two; upper and lower case do not differ.");
+    }
+    definition.variables.push_back(declare());
+  }
+
+  /// Of a sequential body: the border. What is inside of it, the body knows.
+  void read_sequential(Definition& definition) {
+    read_head(definition);
+    Graph scratch;
+    GraphBuilder builder(scratch);
+    const auto report = [&](int number, language::Span span, std::string cause, std::string mend) {
+      if (number == error::other_meaning_elsewhere) {
+        return;  // told when the body is executed
+      }
+      definition.usable = false;
+      error(number, span, std::move(cause), std::move(mend));
+    };
+    bodies::Body body(*source_.bodies, source_.bodies->units[definition.block->body],
+                      {.builder = builder, .report = report, .add_parameter = [](const auto&) { return Wire{}; }});
+    for (const bodies::BorderPort& port : body.ports()) {
+      const Variable& variable = definition.block->variables[port.declaration];
+      add_variable(definition, variable, port.name, [&] { return declare_border(variable, port, false); });
+      if (port.role == language::body::Role::InOut && port.assigned) {
+        const auto& name = definitions_.names.emplace_back(std::string(port.name) + "_OUT");
+        add_variable(definition, variable, name, [&] { return declare_border(variable, port, true); });
+        definition.variables.back().field.name = name;
+      }
+    }
+  }
+
+  Declared declare_border(const Variable& variable, const bodies::BorderPort& port, bool output) {
+    Declared declared;
+    declared.variable = &variable;
+    declared.field.name = variable.name.text;
+    declared.field.type = bodies::info(port.type).carrier;
+    declared.field.preset = port.initial;
+    declared.has_preset = true;  // IEC 61131-3: what is not connected has its initial value
+    output = output || port.role == language::body::Role::Output;
+    declared.kind = output ? Declared::Kind::Output : Declared::Kind::Input;
+    if (!output || port.role == language::body::Role::Output) {
+      check_keys(variable.annotations, output ? Keys(value_keys) : Keys(input_keys));
+    }
+    for (const Annotation& annotation : variable.annotations) {
+      annotate(annotation, false, declared);
+    }
+    check_role(variable, declared);
+    return declared;
+  }
+
+  /// Which blocks of the file each body executes in place.
+  void find_in_place() {
+    for (Definition& definition : definitions_.list) {
+      if (!definition.block->sequential) {
+        continue;
+      }
+      for (const Variable& variable : definition.block->variables) {
+        const auto found = definitions_.by_name.find(upper(variable.type.text));
+        if (found != definitions_.by_name.end()) {
+          definition.in_place.push_back(found->second);
+        }
+      }
+    }
+  }
+
+  void read_head(Definition& definition) {
     definition.sample_time_span = definition.block->name.span;
     check_keys(definition.block->annotations, block_keys);
     for (const Annotation& annotation : definition.block->annotations) {
@@ -125,23 +217,6 @@ class Reader {
       } else if (key == "FAMILY") {
         take_family(annotation, definition);
       }
-    }
-    definition.variables.reserve(definition.block->variables.size());
-    definition.by_name.reserve(definition.block->variables.size());
-    for (const Variable& variable : definition.block->variables) {
-      check_name(variable.name);
-      if (find_block_type(variable.name.text) != nullptr) {
-        error(error::reserved_name, variable.name.span,
-              fmt::format("'{}' is a block of the library", variable.name.text),
-              "Choose another name; names that begin with HY_ belong to the library.");
-      }
-      if (!definition.by_name
-               .emplace(upper(variable.name.text), static_cast<std::uint32_t>(definition.variables.size()))
-               .second) {
-        error(error::duplicate_name, variable.name.span, fmt::format("'{}' is declared twice", variable.name.text),
-              "Rename one of the two; upper and lower case do not differ.");
-      }
-      definition.variables.push_back(declare(variable));
     }
   }
 

@@ -67,6 +67,7 @@ class Elaborator {
   /// A parameter that nothing in the text drives: it may be set from outside.
   Wire open_parameter(const std::string& path, const Declared& declared, double value);
   void elaborate(const Instance& instance);
+  void elaborate_body(const Instance& instance);
   void note_unit(const Instance& instance, std::size_t variable);
   void note_name(const Instance& instance, std::size_t variable);
   Rate rate_within(Rate outer, const Declared& declared);

@@ -29,8 +29,11 @@ double fold(Op op, std::span<const double> args) {
   if (op == Op::ToInt) {
     return to_int(args[0]);
   }
-  if (op == Op::ToReal) {
+  if (op == Op::ToReal || op == Op::WordToInt) {
     return args[0];
+  }
+  if (op == Op::IntToWord) {
+    return int_to_word(as_int(0));
   }
   switch (info(op).operand) {
     case Type::Int:

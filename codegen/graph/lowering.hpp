@@ -55,6 +55,9 @@ class Lowering {
   Lowering(GraphBuilder& builder, const language::SourceFile& source, Resolve resolve, Report report)
       : builder_(builder), source_(source), resolve_(std::move(resolve)), report_(std::move(report)) {}
 
+  /// LREAL_TO_DINT as operations of a graph.
+  static Wire rounded(GraphBuilder& builder, Wire x, const std::string& path, language::Span span);
+
   /// The wire that carries the expression; From::Nothing where an error was reported. `path` names what it feeds.
   Wire lower(language::ExpressionId id, const std::string& path);
 

@@ -79,6 +79,14 @@ Wire Lowering::round_to_int(Wire x, language::Span span) {
   return apply(Op::SelectInt, {beyond(0.5), up, apply(Op::SelectInt, {beyond(-0.5), down, whole}, span)}, span);
 }
 
+Wire Lowering::rounded(GraphBuilder& builder, Wire x, const std::string& path, language::Span span) {
+  static const language::SourceFile no_text;
+  Lowering lowering(
+      builder, no_text, [](const auto&, auto) { return Wire{}; }, [](int, auto, auto, auto) {});
+  lowering.path_ = path;
+  return lowering.round_to_int(x, span);
+}
+
 // The angle of a point by one division and one arctangent, the smaller coordinate over the larger: no divisor is 0
 // where a PLC would stop, and derivatives are right on the axes. At the origin it is 0.
 Wire Lowering::angle_of(Wire y, Wire x, language::Span span) {

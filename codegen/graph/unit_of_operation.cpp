@@ -36,6 +36,7 @@ MaybeUnit unit_of_operation(Op op, std::span<const MaybeUnit> operands, std::opt
       return same(1, 2);
     case Op::Negate:
     case Op::Abs:
+    case Op::ToSingle:
       return operands[0];
     case Op::Multiply:
     case Op::Divide: {

@@ -30,6 +30,10 @@ void run_operation(const Instruction<S>& at) {
     *static_cast<std::int32_t*>(at.out) = to_int(real(0));
   } else if constexpr (op == Op::ToReal) {
     *static_cast<S*>(at.out) = to_real<S>(integer(0));
+  } else if constexpr (op == Op::WordToInt) {
+    *static_cast<std::int32_t*>(at.out) = *static_cast<const std::uint16_t*>(at.pins[0]);
+  } else if constexpr (op == Op::IntToWord) {
+    *static_cast<std::uint16_t*>(at.out) = int_to_word(integer(0));
   } else if constexpr (about.operand == Type::Real && about.result == Type::Real && about.arity > 0) {
     *static_cast<S*>(at.out) = real_operation(op, real(0), real(about.arity - 1));
   } else if constexpr (about.operand == Type::Real && about.result == Type::Bool) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "support/errors.hpp"
 
@@ -60,6 +61,15 @@ std::vector<Annotation> annotations_of(std::string_view text, Span comment) {
     i = inside.find('@', i);
   }
   return found;
+}
+
+bool has_no_key_of_ours(std::string_view text, Span comment) {
+  static constexpr std::array<std::string_view, 13> keys{"body", "doc",   "effect", "every", "family", "max", "min",
+                                                         "neutral", "param", "phase",  "role",  "ts",     "unit"};
+  const auto found = annotations_of(text, comment);
+  return std::none_of(found.begin(), found.end(), [](const Annotation& one) {
+    return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return same_name(key, one.key); });
+  });
 }
 
 void attach_annotations(SourceFile& file, const std::vector<Comment>& comments,

@@ -34,4 +34,7 @@ std::vector<Annotation> annotations_of(std::string_view text, Span comment);
 void attach_annotations(SourceFile& file, const std::vector<Comment>& comments,
                         const std::vector<Declaration>& declarations, Reporter& reporter);
 
+/// Whether a comment of a PLC program, in which @ may mean anything, holds none of the keys that are ours.
+bool has_no_key_of_ours(std::string_view text, Span comment);
+
 }  // namespace hysteron::language

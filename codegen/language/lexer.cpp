@@ -146,16 +146,20 @@ void Lexer::skip_line() {
   const auto start = at_;
   const auto end = text_.find('\n', at_);
   at_ = end == std::string_view::npos ? size_ : static_cast<std::uint32_t>(end);
-  error(error::foreign_comment, start, 2, "A comment that begins with // is not portable.",
-        "Write it as (* … *), which every IEC compiler reads.");
+  if (!foreign_) {
+    error(error::foreign_comment, start, 2, "A comment that begins with // is not portable.",
+          "Write it as (* … *), which every IEC compiler reads.");
+  }
 }
 
 void Lexer::skip_foreign_comment() {
   const auto start = at_;
   const auto end = text_.find("*/", at_ + 2);
   at_ = end == std::string_view::npos ? size_ : static_cast<std::uint32_t>(end) + 2;
-  error(error::foreign_comment, start, 2, "A comment between /* and */ is not portable.",
-        "Write it as (* … *), which every IEC compiler reads.");
+  if (!foreign_) {
+    error(error::foreign_comment, start, 2, "A comment between /* and */ is not portable.",
+          "Write it as (* … *), which every IEC compiler reads.");
+  }
 }
 
 void Lexer::skip_comment() {
@@ -164,7 +168,7 @@ void Lexer::skip_comment() {
   bool nested = false;
   std::size_t star = text_.find('*', body);
   for (; star != std::string_view::npos; star = text_.find('*', star + 1)) {
-    if (star > body && text_[star - 1] == '(' && !nested) {
+    if (star > body && text_[star - 1] == '(' && !nested && !foreign_) {
       nested = true;
       error(error::foreign_comment, static_cast<std::uint32_t>(star) - 1, 2,
             "A comment inside a comment is not portable: the editions of the standard differ on where it ends.",
@@ -194,6 +198,9 @@ void Lexer::skip_pragma() {
     end = start;
   }
   at_ = static_cast<std::uint32_t>(end) + 1;
+  if (foreign_ && end != start) {
+    return;
+  }
   error(error::pragma, start, 1, "A pragma {…} is not part of a diagram: each compiler reads it in its own way.",
         "Remove it; what is said of a variable stands in a comment such as (* @unit um *).");
 }
@@ -202,6 +209,9 @@ void Lexer::skip_illegal() {
   const auto start = at_;
   while (at_ < size_ && class_of(text_[at_]) == Illegal) {
     ++at_;
+  }
+  if (foreign_ && text_[start] == '^') {
+    return;  // a pointer: refused where it stands
   }
   error(error::illegal_character, start, at_ - start, shown(text_.substr(start)) + " has no meaning in a diagram.",
         std::string(mend_of_illegal(text_[start])));
@@ -219,7 +229,7 @@ Token Lexer::identifier() {
     return typed(start);
   }
   Token word = token(Symbol::Identifier, start);
-  if (last == '_' || doubled) {
+  if ((last == '_' || doubled) && !foreign_) {
     error(error::name_not_portable, start, word.length,
           fmt::format("The name {} {}, which IEC 61131-3 does not allow.", text_.substr(start, word.length),
                       doubled ? "has two underscores in a row" : "ends in an underscore"),
@@ -267,8 +277,8 @@ Token Lexer::typed(std::uint32_t start) {
   const auto type = text_.substr(start, at_ - start);
   ++at_;
   if (!is_elementary_type(type) && is_digit(peek())) {
-    // A time or a date, perhaps: T#1m_2.5s, DT#2024-01-31-12:00:00.
-    while (at_ < size_ && (is_word(text_[at_]) || text_[at_] == '.' ||
+    // A time or a date, perhaps: T#1m_2.5s, DT#2024-01-31-12:00:00; or a number with a base, DWORD#16#FF.
+    while (at_ < size_ && (is_word(text_[at_]) || text_[at_] == '.' || (text_[at_] == '#' && is_word(peek(1))) ||
                            ((text_[at_] == '-' || text_[at_] == ':') && is_digit(peek(1))))) {
       ++at_;
     }

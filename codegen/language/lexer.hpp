@@ -30,6 +30,14 @@ class Lexer {
 
   [[nodiscard]] const std::vector<Comment>& comments() const { return comments_; }
 
+  /// Goes on at an offset.
+  void go_to(std::uint32_t offset) {
+    at_ = offset;
+    previous_end_ = offset;
+  }
+  /// Takes what PLC compilers write beside the standard: // and /* */, pragmas, comments in comments, any underscore.
+  void take_foreign() { foreign_ = true; }
+
  private:
   void skip_blank();
   void skip_line();
@@ -54,6 +62,7 @@ class Lexer {
   std::uint32_t previous_end_ = 0;
   bool line_ended_ = true;  ///< since the last token or trailing comment
   bool no_brace_ahead_ = false;
+  bool foreign_ = false;
   Comments kept_;
   Reporter* reporter_;
   std::vector<Comment> comments_;

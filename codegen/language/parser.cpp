@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "codegen/language/body_parser.hpp"
 #include "support/errors.hpp"
 #include "support/utf8.hpp"
 
@@ -27,14 +28,23 @@ Parser::Parser(SourceFile& file, Reporter& reporter)
   const auto likely = std::min(text_.size() / 20, most_reserved);
   file_.expressions.reserve(likely);
   heights_.reserve(likely);
+  parts_ = parts_with_bodies(text_);
+  if (!parts_.empty()) {
+    lexer_.take_foreign();  // who writes bodies writes them as PLC compilers take them, and so the blocks beside them
+  }
   for (auto& token : window_) {
     token = lexer_.next();
   }
 }
 
 void Parser::read_file() {
+  const auto library = parts_.empty() ? nullptr : std::make_shared<body::Library>();
+  file_.bodies = library;
   while (!is(Symbol::End)) {
-    if (is(Keyword::FunctionBlock)) {
+    const auto part = std::ranges::find(parts_, now().offset, &TextPart::begin);
+    if (part != parts_.end()) {
+      part_with_body(*part, *library);
+    } else if (is(Keyword::FunctionBlock)) {
       function_block();
     } else {
       outside();
@@ -44,7 +54,49 @@ void Parser::read_file() {
     error(error::no_function_block, {0, 0}, "There is no FUNCTION_BLOCK in this file.",
           "Write FUNCTION_BLOCK, a name, the declarations, the calls, and END_FUNCTION_BLOCK.");
   }
-  attach_annotations(file_, lexer_.comments(), declarations_, reporter_);
+  // The window of tokens has read on into the parts with bodies: what stands in them is theirs.
+  const auto within = [&](const Comment& comment) {
+    return std::ranges::any_of(parts_, [&](const TextPart& part) {
+      return (part.kind != TextPart::Kind::Block || part.sequential) && comment.span.offset >= part.begin &&
+             comment.span.offset < part.end;
+    });
+  };
+  std::vector<Comment> comments = lexer_.comments();
+  std::erase_if(comments, within);
+  comments.insert(comments.end(), bodies_comments_.begin(), bodies_comments_.end());
+  if (!parts_.empty()) {
+    std::erase_if(comments, [&](const Comment& comment) { return has_no_key_of_ours(text_, comment.span); });
+  }
+  attach_annotations(file_, comments, declarations_, reporter_);
+}
+
+void Parser::part_with_body(const TextPart& part, body::Library& library) {
+  const auto index = file_.blocks.size();
+  Reporter unheard;  // of a block that is a diagram, errors are told as those of one
+  const bool diagram = part.kind == TextPart::Kind::Block && !part.sequential;
+  BodyParser reader(file_, library, diagram ? unheard : reporter_, part.begin, part.end);
+  if (part.kind == TextPart::Kind::Types) {
+    reader.types();
+  } else if (part.kind == TextPart::Kind::Function) {
+    library.units.push_back(reader.function());
+  } else if (diagram) {
+    FunctionBlock unused;
+    std::vector<Declaration> none;
+    library.units.push_back(reader.block(unused, index, none));
+    function_block();
+    file_.blocks[index].body = static_cast<std::uint32_t>(library.units.size() - 1);
+    return;
+  } else {
+    FunctionBlock block{.body = static_cast<std::uint32_t>(library.units.size()), .sequential = true};
+    library.units.push_back(reader.block(block, index, declarations_));
+    file_.blocks.push_back(std::move(block));
+  }
+  bodies_comments_.insert(bodies_comments_.end(), reader.comments().begin(), reader.comments().end());
+  lexer_.go_to(part.end);
+  for (auto& token : window_) {
+    token = lexer_.next();
+  }
+  accept(Symbol::Semicolon);
 }
 
 void Parser::outside() {

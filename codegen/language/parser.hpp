@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "codegen/language/annotation.hpp"
+#include "codegen/language/body_blocks.hpp"
 #include "codegen/language/lexer.hpp"
 #include "codegen/language/literal.hpp"
 #include "codegen/language/reporter.hpp"
@@ -31,6 +32,8 @@ class Parser {
   // Blocks and sections: parser.cpp.
   void outside();
   void function_block();
+  /// A part of a file with sequential bodies: it is read as such, and a block that a diagram can say as one, too.
+  void part_with_body(const TextPart& part, body::Library& library);
   void section(FunctionBlock& block);
   void declaration(FunctionBlock& block, Section section);
   bool declared_names();
@@ -97,6 +100,8 @@ class Parser {
   std::vector<std::uint16_t> heights_;  ///< of the tree below each expression
   std::vector<Declaration> declarations_;
   std::vector<Name> names_;  ///< of the declaration at hand
+  std::vector<TextPart> parts_;  ///< of a file with sequential bodies
+  std::vector<Comment> bodies_comments_;
 };
 
 }  // namespace hysteron::language

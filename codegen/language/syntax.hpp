@@ -136,18 +136,26 @@ struct Variable {
   std::vector<Annotation> annotations{};
 };
 
+namespace body {
+struct Library;
+}
+
 struct FunctionBlock {
+  static constexpr std::uint32_t no_body = std::numeric_limits<std::uint32_t>::max();
   Name name{};
   std::vector<Annotation> annotations{};
   std::vector<Variable> variables{};
   std::vector<Statement> statements{};
   Span span{};
+  std::uint32_t body = no_body;  ///< which unit of SourceFile::bodies its text is, too
+  bool sequential = false;       ///< it is that unit: it has no statements of a diagram
 };
 
 struct SourceFile {
   std::string path{};
   std::shared_ptr<const std::string> text{};  ///< all views and spans point into it
   std::vector<FunctionBlock> blocks{};
+  std::shared_ptr<const body::Library> bodies{};  ///< null where no block of the file is sequential
   std::vector<Expression> expressions{};
   std::vector<std::uint32_t> line_starts{};  ///< the offset at which each line begins
   bool valid = false;                        ///< read without a syntax error

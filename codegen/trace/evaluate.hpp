@@ -11,6 +11,7 @@ namespace hysteron {
 
 /// DINT arithmetic: wraps at the ends; a division or remainder by zero gives 0.
 inline std::int32_t wrap(std::int64_t x) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(x)); }
+inline std::uint32_t bits(std::int32_t x) { return static_cast<std::uint32_t>(x); }
 inline std::int32_t int_operation(Op op, std::int32_t a, std::int32_t b) {
   const auto x = static_cast<std::int64_t>(a);
   const auto y = static_cast<std::int64_t>(b);
@@ -29,10 +30,28 @@ inline std::int32_t int_operation(Op op, std::int32_t a, std::int32_t b) {
       return wrap(-x);
     case Op::IntMin:
       return min(a, b);
+    case Op::IntAnd:
+      return wrap(bits(a) & bits(b));
+    case Op::IntOr:
+      return wrap(bits(a) | bits(b));
+    case Op::IntXor:
+      return wrap(bits(a) ^ bits(b));
+    case Op::IntShiftLeft:
+      return wrap(bits(a) << (bits(b) & 31U));
+    case Op::IntShiftRight:
+      return wrap(bits(a) >> (bits(b) & 31U));
     default:
       return max(a, b);
   }
 }
+
+/// The nearest number that an IEC REAL holds.
+template <MachineReal S>
+S single(S x) {
+  return static_cast<S>(static_cast<float>(x));
+}
+/// The lower 16 bits.
+inline std::uint16_t int_to_word(std::int32_t x) { return static_cast<std::uint16_t>(bits(x) & 0xFFFFU); }
 
 template <class S>
 S real_operation(Op op, const S& a, const S& b) {
@@ -71,6 +90,8 @@ S real_operation(Op op, const S& a, const S& b) {
       return power(a, b);
     case Op::Min:
       return min(a, b);
+    case Op::ToSingle:
+      return single(a);
     default:
       return max(a, b);
   }

@@ -50,6 +50,12 @@ enum class Op : std::uint8_t {
   IntNegate,
   IntMin,
   IntMax,
+  // the bits of integers; a shift is by a literal from 1 to 31, zeros come in on either side
+  IntAnd,
+  IntOr,
+  IntXor,
+  IntShiftLeft,
+  IntShiftRight,
   // comparison of reals, of integers
   Less,
   LessEqual,
@@ -71,6 +77,9 @@ enum class Op : std::uint8_t {
   SelectWord,
   ToInt,
   ToReal,
+  ToSingle,   ///< the nearest number that an IEC REAL (32 bits) holds
+  WordToInt,  ///< 0 to 65535
+  IntToWord,  ///< the lower 16 bits
   At  ///< element of an array: array, index
 };
 
@@ -155,6 +164,16 @@ constexpr OperationInfo info(Op op) {
       return {"min", 2, Type::Int, Type::Int};
     case IntMax:
       return {"max", 2, Type::Int, Type::Int};
+    case IntAnd:
+      return {"bits and", 2, Type::Int, Type::Int};
+    case IntOr:
+      return {"bits or", 2, Type::Int, Type::Int};
+    case IntXor:
+      return {"bits xor", 2, Type::Int, Type::Int};
+    case IntShiftLeft:
+      return {"shift left", 2, Type::Int, Type::Int};
+    case IntShiftRight:
+      return {"shift right", 2, Type::Int, Type::Int};
     case Less:
       return {"<", 2, Type::Bool, Type::Real};
     case LessEqual:
@@ -191,6 +210,12 @@ constexpr OperationInfo info(Op op) {
       return {"to_int", 1, Type::Int, Type::Real};
     case ToReal:
       return {"to_real", 1, Type::Real, Type::Int};
+    case ToSingle:
+      return {"to_single", 1, Type::Real, Type::Real};
+    case WordToInt:
+      return {"word_to_int", 1, Type::Int, Type::Word};
+    case IntToWord:
+      return {"int_to_word", 1, Type::Word, Type::Int};
     case At:
       return {"at", 2, Type::Real, Type::Real};
   }

@@ -19,6 +19,7 @@
 #include "codegen/backends/cpp/cpp_host.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/parameters/apply.hpp"
+#include "tests/codegen/random_body.hpp"
 #include "tests/codegen/random_program.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -107,7 +108,8 @@ void hold_generated_against_interpreted() {
   for (int i = 0; i < programs; ++i) {
     const std::string name = "P" + std::to_string(i);
     const RandomDiagram diagram(static_cast<std::uint64_t>(i) + 1000 * sizeof(Real), name, instances);
-    const Program program = diagram.program();
+    const auto seed = static_cast<std::uint64_t>(i) + 3300 + sizeof(Real);
+    const Program program = i % 4 == 3 ? RandomBody(seed, name, 10).program() : diagram.program();
     expected.push_back(interpreted<Real>(program));
     const GeneratedFile header = generate_cpp_header(program, {.float32 = sizeof(Real) == 4});
     std::ofstream(folder.path() / header.name) << header.text;

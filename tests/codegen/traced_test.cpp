@@ -106,7 +106,10 @@ class TapeRun {
       case Op::ToInt:
         return to_int(arg(0));
       case Op::ToReal:
+      case Op::WordToInt:
         return arg(0);
+      case Op::IntToWord:
+        return int_to_word(whole(0));
       default:
         break;
     }

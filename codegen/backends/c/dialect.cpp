@@ -39,6 +39,14 @@ constexpr SpellingTable c_operations(bool float32) {
       {Op::IntNegate, call("int_negate")},
       {Op::IntMin, call("int_min")},
       {Op::IntMax, call("int_max")},
+      {Op::IntAnd, call("int_and")},
+      {Op::IntOr, call("int_or")},
+      {Op::IntXor, call("int_xor")},
+      {Op::IntShiftLeft, call("int_shift_left")},
+      {Op::IntShiftRight, call("int_shift_right")},
+      {Op::WordToInt, call("(int32_t)")},
+      {Op::IntToWord, call("int_to_word")},
+      {Op::ToSingle, call("to_single")},
       {Op::ToInt, call("to_int")},
       {Op::ToReal, call(float32 ? "(float)" : "(double)")},
   });
@@ -178,6 +186,36 @@ static int32_t wrap(int64_t x) {{
   return (b == 0) ? 0 : wrap((int64_t)a % (int64_t)b);
 }}
 )"},
+    CHelper{"int_and", R"(static int32_t int_and(int32_t a, int32_t b) {{
+  return wrap((int64_t)((uint32_t)a & (uint32_t)b));
+}}
+)"},
+    CHelper{"int_or", R"(static int32_t int_or(int32_t a, int32_t b) {{
+  return wrap((int64_t)((uint32_t)a | (uint32_t)b));
+}}
+)"},
+    CHelper{"int_xor", R"(static int32_t int_xor(int32_t a, int32_t b) {{
+  return wrap((int64_t)((uint32_t)a ^ (uint32_t)b));
+}}
+)"},
+    CHelper{"int_shift_left", R"(static int32_t int_shift_left(int32_t a, int32_t places) {{
+  return wrap((int64_t)((uint32_t)a << (uint32_t)places));
+}}
+)"},
+    CHelper{"int_shift_right", R"(static int32_t int_shift_right(int32_t a, int32_t places) {{
+  return wrap((int64_t)((uint32_t)a >> (uint32_t)places));
+}}
+)"},
+    CHelper{"int_to_word", R"(// The lower 16 bits.
+static uint16_t int_to_word(int32_t x) {{
+  return (uint16_t)((uint32_t)x & 0xFFFFU);
+}}
+)"},
+    CHelper{"to_single", R"(// The nearest number of 32 bits.
+static {real} to_single({real} x) {{
+  return ({real})(float)x;
+}}
+)"},
     CHelper{"int_negate", R"(static int32_t int_negate(int32_t a) {{
   return wrap(-(int64_t)a);
 }}
@@ -207,7 +245,7 @@ std::set<std::string_view> c_helpers_of(const Routine& routine) {
     names.insert("place");
   }
   if (std::ranges::any_of(names, [](std::string_view name) {
-        return name.starts_with("int_") && name != "int_min" && name != "int_max";
+        return name.starts_with("int_") && name != "int_min" && name != "int_max" && name != "int_to_word";
       })) {
     names.insert("wrap");
   }

@@ -86,6 +86,27 @@ inline std::int32_t wrap(std::int64_t x) noexcept { return static_cast<std::int3
     Helper{any_of({Op::IntModulo}),
            "inline std::int32_t modulo(std::int32_t a, std::int32_t b) noexcept { return b == 0 ? 0 : "
            "wrap(std::int64_t{a} % b); }\n"},
+    Helper{any_of({Op::IntAnd, Op::IntOr, Op::IntXor, Op::IntShiftLeft, Op::IntShiftRight}),
+           R"(inline std::uint32_t bits(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
+)"},
+    Helper{any_of({Op::IntAnd}),
+           "inline std::int32_t bits_and(std::int32_t a, std::int32_t b) noexcept { return "
+           "static_cast<std::int32_t>(bits(a) & bits(b)); }\n"},
+    Helper{any_of({Op::IntOr}),
+           "inline std::int32_t bits_or(std::int32_t a, std::int32_t b) noexcept { return "
+           "static_cast<std::int32_t>(bits(a) | bits(b)); }\n"},
+    Helper{any_of({Op::IntXor}),
+           "inline std::int32_t bits_xor(std::int32_t a, std::int32_t b) noexcept { return "
+           "static_cast<std::int32_t>(bits(a) ^ bits(b)); }\n"},
+    Helper{any_of({Op::IntShiftLeft}),
+           "inline std::int32_t shift_left(std::int32_t a, std::int32_t places) noexcept { return "
+           "static_cast<std::int32_t>(bits(a) << bits(places)); }\n"},
+    Helper{any_of({Op::IntShiftRight}),
+           "inline std::int32_t shift_right(std::int32_t a, std::int32_t places) noexcept { return "
+           "static_cast<std::int32_t>(bits(a) >> bits(places)); }\n"},
+    Helper{any_of({Op::ToSingle}), R"(// The nearest number of 32 bits.
+inline Real single(Real x) noexcept { return static_cast<Real>(static_cast<float>(x)); }
+)"},
     Helper{any_of({Op::IntNegate}),
            "inline std::int32_t negate(std::int32_t a) noexcept { return wrap(-std::int64_t{a}); }\n"},
 };

@@ -70,6 +70,17 @@ std::string_view word_for_result(Op op) {
       return "whole";
     case Op::ToReal:
       return "number";
+    case Op::ToSingle:
+      return "rounded";
+    case Op::IntAnd:
+    case Op::IntOr:
+    case Op::IntXor:
+    case Op::IntShiftLeft:
+    case Op::IntShiftRight:
+    case Op::WordToInt:
+      return "bits";
+    case Op::IntToWord:
+      return "word";
     case Op::At:
       return "element";
     default:

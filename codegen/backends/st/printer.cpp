@@ -216,6 +216,26 @@ void StPrinter::print_special(const Value& value, int outer, std::string& out) c
     case Op::At:
       print(first, out);
       return print_place(value.args[1], length_of(first), out);
+    case Op::IntAnd:
+    case Op::IntOr:
+    case Op::IntXor:
+      return append(out, "DWORD_TO_DINT(DINT_TO_DWORD(", argument(first), ")",
+                    value.op == Op::IntAnd ? " AND " : (value.op == Op::IntOr ? " OR " : " XOR "), "DINT_TO_DWORD(",
+                    argument(value.args[1]), "))");
+    case Op::IntShiftLeft:
+    case Op::IntShiftRight: {
+      std::string shifted;
+      print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"},
+                 {"DINT_TO_DWORD(" + argument(first) + ")", text(value.args[1])}, shifted);
+      return append(out, "DWORD_TO_DINT(", shifted, ")");
+    }
+    case Op::WordToInt:
+      return append(out, "WORD_TO_DINT(", text(first), ")");
+    case Op::IntToWord:  // from its lower bits, since some compilers saturate
+      return append(out, "DWORD_TO_WORD(DINT_TO_DWORD(", argument(first), ") AND DWORD#16#0000FFFF)");
+    case Op::ToSingle:
+      return float32_ ? print(first, outer, out)
+                      : append(out, "REAL_TO_LREAL(LREAL_TO_REAL(", text(first), "))");
     case Op::ToReal:
       return append(out, float32_ ? "DINT_TO_REAL(" : "DINT_TO_LREAL(", argument(first), ")");
     case Op::Min:

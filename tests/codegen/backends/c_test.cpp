@@ -10,6 +10,7 @@
 
 #include "codegen/backends/cpp/cpp.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
+#include "tests/codegen/random_body.hpp"
 #include "tests/codegen/random_program.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -87,7 +88,8 @@ void hold_c_against_interpreted(std::string_view compiler) {
   std::vector<RecordedRun> runs;
   for (std::size_t i = 0; i < c_programs; ++i) {
     const RandomDiagram diagram(i + 1000 * sizeof(Real) + 77, fmt::format("P{}", i), 30);
-    const Program program = diagram.program();
+    const std::uint64_t seed = i + 7700 + sizeof(Real);
+    const Program program = i % 4 == 3 ? RandomBody(seed, fmt::format("P{}", i), 10).program() : diagram.program();
     runs.push_back(record<Real>(program, c_steps, i));
     write_doubles(folder / fmt::format("in{}", i), runs.back().inputs);
     for (const GeneratedFile& file : generate_c(program, {.float32 = sizeof(Real) == 4})) {

@@ -25,6 +25,20 @@ using REAL = float;
 using DINT = std::int32_t;
 using WORD = std::uint16_t;
 using BOOL = bool;
+struct DWORD {  // AND, OR and XOR are written as those of truth values
+  std::uint32_t bits;
+  friend DWORD operator&&(DWORD a, DWORD b) { return {a.bits & b.bits}; }
+  friend DWORD operator||(DWORD a, DWORD b) { return {a.bits | b.bits}; }
+  friend DWORD operator!=(DWORD a, DWORD b) { return {a.bits ^ b.bits}; }
+};
+inline DWORD DINT_TO_DWORD(DINT x) { return {static_cast<std::uint32_t>(x)}; }
+inline DINT DWORD_TO_DINT(DWORD x) { return static_cast<DINT>(x.bits); }
+inline WORD DWORD_TO_WORD(DWORD x) { return static_cast<WORD>(x.bits); }
+inline DINT WORD_TO_DINT(WORD x) { return x; }
+inline DWORD SHL(DWORD x, int places) { return {x.bits << places}; }
+inline DWORD SHR(DWORD x, int places) { return {x.bits >> places}; }
+inline REAL LREAL_TO_REAL(LREAL x) { return static_cast<REAL>(x); }
+inline LREAL REAL_TO_LREAL(REAL x) { return x; }
 template <class T> T MIN(T a, T b) { return b < a ? b : a; }
 template <class T> T MAX(T a, T b) { return b > a ? b : a; }
 template <class T> T LIMIT(T low, T x, T high) { return MIN(MAX(x, low), high); }
@@ -155,6 +169,9 @@ class StAsCpp {
     }
     if (token.starts_with("WORD#16#")) {
       return "WORD(0x" + token.substr(8) + ")";
+    }
+    if (token.starts_with("DWORD#16#")) {
+      return "DWORD{0x" + token.substr(9) + "}";
     }
     return token.substr(0, hash) + "(" + token.substr(hash + 1) + ")";
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "codegen/backends/cpp/cpp.hpp"
+#include "tests/codegen/random_body.hpp"
 #include "tests/codegen/random_program.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/backends/st_as_cpp.hpp"
@@ -30,7 +31,8 @@ void hold_st_against_interpreted() {
   std::vector<RecordedRun> runs;
   for (std::size_t i = 0; i < st_programs; ++i) {
     const RandomDiagram diagram(i + 1000 * sizeof(Real) + 7, fmt::format("P{}", i), i % 2 == 0 ? 8 : 30);
-    const Program program = diagram.program();
+    const std::uint64_t seed = i + 5500 + sizeof(Real);
+    const Program program = i % 4 == 3 ? RandomBody(seed, fmt::format("P{}", i), 10).program() : diagram.program();
     runs.push_back(record<Real>(program, st_steps, i));
     write_doubles(at(fmt::format("in{}", i)), runs.back().inputs);
     text += StAsCpp(generate_st(program, {.dialect = *st_dialect("portable"), .float32 = sizeof(Real) == 4})[0].text)

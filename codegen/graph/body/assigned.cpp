@@ -1,0 +1,76 @@
+#include "codegen/graph/body/assigned.hpp"
+
+namespace hysteron::bodies {
+
+namespace syntax = language::body;
+using language::upper;
+
+namespace {
+
+class Walk {
+ public:
+  explicit Walk(const syntax::Library& library) : library_(library) {}
+
+  void statements(const syntax::Statements& list) {
+    for (const syntax::Statement& one : list) {
+      if (const auto* assign = std::get_if<syntax::Assign>(&one.node)) {
+        names.insert(upper(assign->target.name.text));
+        expression(assign->value);
+      } else if (const auto* call = std::get_if<syntax::Invoke>(&one.node)) {
+        names.insert(upper(call->instance.name.text));
+        arguments(call->arguments);
+      } else if (const auto* choice = std::get_if<syntax::If>(&one.node)) {
+        for (const syntax::Branch& branch : choice->branches) {
+          expression(branch.condition);
+          statements(branch.statements);
+        }
+        statements(choice->otherwise);
+      } else if (const auto* cases = std::get_if<syntax::Case>(&one.node)) {
+        expression(cases->selector);
+        for (const syntax::Arm& arm : cases->arms) {
+          statements(arm.statements);
+        }
+        statements(cases->otherwise);
+      } else if (const auto* loop = std::get_if<syntax::For>(&one.node)) {
+        names.insert(upper(loop->variable.text));
+        statements(loop->statements);
+      }
+    }
+  }
+
+  std::set<std::string> names{};
+
+ private:
+  void arguments(const std::vector<syntax::Argument>& list) {
+    for (const syntax::Argument& one : list) {
+      if (const auto* access = std::get_if<syntax::Access>(&library_.expressions[one.value].node)) {
+        names.insert(upper(access->name.text));  // it may be a VAR_IN_OUT
+      }
+      expression(one.value);
+    }
+  }
+
+  void expression(language::ExpressionId id) {
+    const auto& node = library_.expressions[id].node;
+    if (const auto* unary = std::get_if<syntax::Unary>(&node)) {
+      expression(unary->operand);
+    } else if (const auto* binary = std::get_if<syntax::Binary>(&node)) {
+      expression(binary->left);
+      expression(binary->right);
+    } else if (const auto* call = std::get_if<syntax::Call>(&node)) {
+      arguments(call->arguments);
+    }
+  }
+
+  const syntax::Library& library_;
+};
+
+}  // namespace
+
+std::set<std::string> assigned_names(const Source& source) {
+  Walk walk(*source.library);
+  walk.statements(source.unit->statements);
+  return std::move(walk.names);
+}
+
+}  // namespace hysteron::bodies

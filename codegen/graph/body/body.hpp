@@ -1,0 +1,155 @@
+// A sequential body as a graph: it is executed once with wires for values.
+//
+// An IF executes both sides and merges them by SEL; a CASE is a chain of them; a FOR is unrolled; a RETURN, EXIT or
+// CONTINUE under a condition merges what follows with what stood before. A variable that is read before it is written
+// in the step is a cell of memory: a HY_DELAY of its type that is wired to what the variable holds at the end. Blocks
+// and functions of one's own are executed in place. A block of the library is a node: it can be called once in a
+// step, and under no condition, since its memory moves on in every step.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "codegen/graph/body/computer.hpp"
+#include "codegen/graph/body/place.hpp"
+
+namespace hysteron::bodies {
+
+/// What a body needs of the graph around it.
+struct Surroundings {
+  GraphBuilder& builder;
+  Computer::Report report;
+  std::function<Wire(Parameter)> add_parameter;  ///< one that may be set from outside
+  std::string path{};                            ///< of the instance: "" or ending in a dot
+  Rate rate{};
+  double sample_time = 0.0;                      ///< 0: not stated
+};
+
+/// A plain variable at the border of a block.
+struct BorderPort {
+  std::string name{};
+  Plain type = Plain::Bool;
+  language::body::Role role = language::body::Role::Input;
+  double initial = 0.0;
+  language::Name written{};
+  std::size_t declaration = 0;  ///< beside Unit::declarations
+  bool assigned = false;        ///< the body writes it
+};
+
+class Body {
+ public:
+  Body(const language::body::Library& library, const language::body::Unit& unit, Surroundings around);
+
+  /// The inputs, outputs and VAR_IN_OUT of the block. One that is an array or a structure is reported.
+  std::vector<BorderPort> ports();
+  /// Executes the body: `inputs` by name in upper case. Gives the wires of outputs and VAR_IN_OUT by name.
+  std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
+
+ private:
+  struct Leaf {
+    Plain type = Plain::Bool;
+    double initial = 0.0;
+    std::string path{};
+    language::Span span{};
+    bool memory = true;      ///< keeps its value between steps
+    std::optional<Value> cell{};
+    std::uint32_t node = 0;  ///< of the cell
+  };
+  struct State {
+    std::vector<std::optional<Value>> values{};  ///< by leaf; none: what the cell holds
+    Value returned{};                            ///< whether a RETURN was met, and so on
+    Value exited{};
+    Value continued{};
+  };
+  /// A place that an access means under a condition; without one, always.
+  struct Choice {
+    Place* place = nullptr;
+    std::optional<Value> condition{};
+    int bit = -1;
+  };
+
+  // Places: body_places.cpp.
+  std::unique_ptr<Place> make(const TypeRef& type, const std::string& path, language::Span span, bool memory);
+  void make_members(Place& place, const std::vector<Member>& members, bool memory);
+  void make_pins(Place& place, const std::string& path, language::Span span);
+  std::uint32_t make_leaf(Plain type, double initial, const std::string& path, language::Span span, bool memory);
+  void set_initial(Place& place, const language::body::Initial& initial);
+  bool constant(language::ExpressionId id, double& value);
+  /// What a leaf held at the end of the step before.
+  Value cell(std::uint32_t leaf);
+  Value read(std::uint32_t leaf) { return state_.values[leaf] ? *state_.values[leaf] : cell(leaf); }
+  void write(std::uint32_t leaf, const Value& value);
+  std::vector<Choice> choices(const language::body::Access& access);
+  bool step_into(std::vector<Choice>& list, const language::body::Step& step, const language::body::Access& access);
+  bool index_into(std::vector<Choice>& list, const Value& index, language::Span span);
+  Place* find(const language::body::Access& access);
+  std::optional<Value> named_constant(const language::body::Access& access);
+  Value read(const language::body::Access& access);
+  void assign(const language::body::Access& access, const Value& value, language::Span span);
+  void copy(Place& to, Place& from, language::Span span);
+  void close_cells();
+  void restart(Place& place);
+
+  // Statements: body_statements.cpp.
+  void execute(const language::body::Statements& list, std::size_t from = 0);
+  void execute(const language::body::Statement& statement);
+  void choose(const Value& condition, const std::function<void()>& yes, const std::function<void()>& no);
+  void branches(const std::vector<language::body::Branch>& list, std::size_t at,
+                const language::body::Statements& otherwise);
+  void arms(const language::body::Case& node, const Value& selector, std::size_t at);
+  Value selected(const language::body::Arm& arm, const Value& selector);
+  void loop(const language::body::For& node, language::Span span);
+  void rounds(const language::body::For& node, std::uint32_t leaf, double at, double to, double by);
+  State merged(const Value& condition, State yes, State no);
+  Value stopped();
+
+  // Expressions: body_values.cpp.
+  Value value(language::ExpressionId id);
+  Value literal(const language::body::Literal& literal);
+  Value condition(language::ExpressionId id);
+
+  // Calls: body_calls.cpp; functions of the language: body_functions.cpp.
+  void invoke(const language::body::Invoke& node, language::Span span);
+  void invoke_unit(Place& place, const language::body::Invoke& node);
+  void invoke_library(Place& place, language::Span span);
+  void hand_over(Place& place, const std::vector<language::body::Argument>& arguments);
+  void hand_back(Place& place, const std::vector<language::body::Argument>& arguments);
+  void enter(Place& place, const Source& source);
+  Value call(const language::body::Call& call, language::Span span);
+  Value call_unit(const Source& source, const language::body::Call& call, language::Span span);
+  std::optional<Value> conversion(const std::string& name, const std::vector<Value>& values);
+  std::optional<Value> function(const std::string& name, std::vector<Value>& values);
+  std::optional<Value> of_number(const std::string& name, const std::vector<Value>& values);
+  std::optional<Value> chosen(const std::string& name, std::vector<Value>& values);
+
+  const std::set<std::string>& assigned(const Source& source);
+  Value refuse(int number, language::Span span, std::string cause, std::string mend);
+  [[nodiscard]] const language::body::Expression& expression(language::ExpressionId id) const {
+    return source_.library->expressions[id];
+  }
+  [[nodiscard]] language::Span place_of(language::Span span) const { return standard_call_.value_or(span); }
+  std::string path_for(std::string_view name);
+  Surroundings around_;
+  Computer computer_;
+  Source source_;  ///< of the statements that are executed now
+  Types types_;
+  std::unique_ptr<Place> root_{};
+  Place* scope_ = nullptr;
+  std::vector<Leaf> leaves_{};
+  State state_{};
+  int conditions_ = 0;  ///< under how many a statement stands
+  int level_ = 0;       ///< of calls in calls
+  std::size_t executed_ = 0;
+  std::map<std::string, int> paths_{};
+  std::set<std::string> node_paths_{};
+  std::map<const language::body::Unit*, std::set<std::string>> assigned_{};  ///< what each writes, in upper case
+  std::vector<std::pair<std::uint32_t, language::Span>> open_pins_{};  ///< not given before their block was called
+  std::optional<language::Span> standard_call_{};  ///< within a block of the standard: where it was called
+};
+
+}  // namespace hysteron::bodies

@@ -1,0 +1,234 @@
+// The functions of the standard in sequential bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "codegen/graph/body/body.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::bodies {
+
+namespace syntax = language::body;
+using language::Operator;
+using language::upper;
+
+namespace {
+
+struct NumberFunction {
+  std::string_view name;
+  Op op;
+};
+constexpr std::array number_functions{
+    NumberFunction{"SQRT", Op::Sqrt}, NumberFunction{"LN", Op::Log},    NumberFunction{"EXP", Op::Exp},
+    NumberFunction{"SIN", Op::Sin},   NumberFunction{"COS", Op::Cos},   NumberFunction{"TAN", Op::Tan},
+    NumberFunction{"ASIN", Op::Asin}, NumberFunction{"ACOS", Op::Acos}, NumberFunction{"ATAN", Op::Atan}};
+
+struct OperatorFunction {
+  std::string_view name;
+  Operator op;
+};
+/// The operators under their names as functions.
+constexpr std::array operator_functions{
+    OperatorFunction{"ADD", Operator::Add},          OperatorFunction{"SUB", Operator::Subtract},
+    OperatorFunction{"MUL", Operator::Multiply},     OperatorFunction{"DIV", Operator::Divide},
+    OperatorFunction{"MOD", Operator::Modulo},       OperatorFunction{"GT", Operator::Greater},
+    OperatorFunction{"GE", Operator::GreaterEqual},  OperatorFunction{"EQ", Operator::Equal},
+    OperatorFunction{"LE", Operator::LessEqual},     OperatorFunction{"LT", Operator::Less},
+    OperatorFunction{"NE", Operator::NotEqual},      OperatorFunction{"AND", Operator::And},
+    OperatorFunction{"OR", Operator::Or},            OperatorFunction{"XOR", Operator::Xor}};
+
+/// Arguments in the order of the standard, where they are named.
+std::vector<std::string> formal_names(const std::string& function) {
+  std::vector<std::string> names;
+  if (function == "SHL" || function == "SHR" || function == "ROL" || function == "ROR") {
+    return {"IN", "N"};
+  }
+  for (const auto one : formal_arguments(function)) {
+    names.emplace_back(one);
+  }
+  return names;
+}
+
+}  // namespace
+
+Value Body::call(const syntax::Call& call, language::Span span) {
+  const std::string name = upper(call.function.text);
+  if (const Source source = types_.find_unit(name, true); source.unit != nullptr) {
+    return call_unit(source, call, span);
+  }
+  if (scope_ != nullptr && scope_->find(name) != nullptr) {
+    return refuse(error::refused_in_body, call.function.span, fmt::format("'{}' is called inside of an expression", call.function.text),
+                  "Call the instance as a statement before, and read its output here.");
+  }
+  std::vector<Value> values(call.arguments.size());
+  const auto formals = formal_names(name);
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const syntax::Argument& one = call.arguments[i];
+    std::size_t at = i;
+    if (!one.formal.text.empty()) {
+      at = static_cast<std::size_t>(std::ranges::find(formals, upper(one.formal.text)) - formals.begin());
+    }
+    const bool taken = at >= values.size() || values[at].valid();
+    if (one.output || taken) {
+      return refuse(error::unknown_function, span, fmt::format("{} does not take these arguments", name),
+                    "Give them in the order of the standard.");
+    }
+    values[at] = value(one.value);
+    if (!values[at].valid()) {
+      return {};
+    }
+  }
+  computer_.at(place_of(span));
+  for (const auto& found : {conversion(name, values), of_number(name, values), chosen(name, values), function(name, values)}) {
+    if (found) {
+      return *found;
+    }
+  }
+  return refuse(error::unknown_function, call.function.span, fmt::format("there is no function '{}'", call.function.text),
+                "Put its FUNCTION into this file, or use one of the standard.");
+}
+
+std::optional<Value> Body::conversion(const std::string& name, const std::vector<Value>& values) {
+  const auto mark = name.find("TO_");
+  if (mark == std::string::npos || values.size() != 1 || (mark > 0 && name[mark - 1] != '_')) {
+    return std::nullopt;
+  }
+  Plain to = Plain::Bool;
+  Plain from = Plain::Bool;
+  const std::string_view first = mark == 0 ? std::string_view() : std::string_view(name).substr(0, mark - 1);
+  std::string_view second = std::string_view(name).substr(mark + 3);
+  if (!plain_of(second, to) || (!first.empty() && !plain_of(first, from))) {
+    return std::nullopt;
+  }
+  Value given = values[0];
+  if (!first.empty()) {
+    given = computer_.assignable(given, from, name);
+  }
+  return given.valid() ? computer_.convert(given, to) : given;
+}
+
+std::optional<Value> Body::of_number(const std::string& name, const std::vector<Value>& values) {
+  const auto as_number = [&](const Value& value) {
+    const Plain type = value.type == Plain::Real ? Plain::Real : Plain::Lreal;
+    return is_number(value.type) ? (value.type == Plain::Real ? computer_.fit(value, type) : value)
+                                 : computer_.assignable(value, type, name);
+  };
+  // The C library computes in LREAL; the function of a REAL gives a REAL.
+  const auto result = [&](Op op, std::initializer_list<Value> operands, Plain type) {
+    Value number = computer_.operation(op, operands, type);
+    number.wide = true;
+    return type == Plain::Real ? computer_.fit(number, type) : number;
+  };
+  for (const NumberFunction& one : number_functions) {
+    if (name == one.name && values.size() == 1) {
+      const Value number = as_number(values[0]);
+      return number.valid() ? result(one.op, {number}, number.type) : number;
+    }
+  }
+  if (name == "LOG" && values.size() == 1) {
+    const Value number = as_number(values[0]);
+    if (!number.valid()) {
+      return number;
+    }
+    const Value log = computer_.operation(Op::Log, {number}, Plain::Lreal);
+    return result(Op::Divide, {log, computer_.literal(Plain::Lreal, 2.302585092994046)}, number.type);
+  }
+  if (name == "EXPT" && values.size() == 2) {
+    Value power = computer_.binary(Operator::Power, as_number(values[0]), values[1]);
+    return power.valid() && power.type == Plain::Real ? computer_.fit(power, Plain::Real) : power;
+  }
+  if (name == "TRUNC" && values.size() == 1) {
+    const Value number = as_number(values[0]);
+    return number.valid() ? computer_.truncated(number, Plain::Dint) : number;
+  }
+  if (name == "ABS" && values.size() == 1) {
+    const Value& x = values[0];
+    if (is_integer(x.type)) {
+      const Value kept = computer_.fit(x, x.type);
+      const Value below = computer_.binary(Operator::Less, kept, computer_.literal(x.type, 0.0));
+      return computer_.fit(computer_.select(below, computer_.negative(kept), kept), x.type);
+    }
+    const Value number = as_number(x);
+    return number.valid() ? result(Op::Abs, {number}, number.type) : number;
+  }
+  return std::nullopt;
+}
+
+std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& values) {
+  const auto compare = [&](Operator op, const Value& a, const Value& b) { return computer_.binary(op, a, b); };
+  const auto meet_all = [&](std::size_t first) {
+    for (std::size_t round = 0; round < 2; ++round) {
+      for (std::size_t i = first + 1; i < values.size(); ++i) {
+        if (!computer_.meet(values[first], values[i], name)) {
+          return false;
+        }
+      }
+    }
+    std::for_each(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
+                  [&](Value& one) { one = computer_.fit(one, one.type); });
+    return true;
+  };
+  if ((name == "MIN" || name == "MAX") && values.size() >= 2) {
+    if (!meet_all(0)) {
+      return Value{};
+    }
+    Value best = values[0];
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      best = computer_.select(compare(name == "MIN" ? Operator::Less : Operator::Greater, values[i], best), values[i], best);
+    }
+    return best;
+  }
+  if (name == "LIMIT" && values.size() == 3) {
+    if (!meet_all(0)) {
+      return Value{};
+    }
+    const Value above = computer_.select(compare(Operator::Greater, values[0], values[1]), values[0], values[1]);
+    return computer_.select(compare(Operator::Less, values[2], above), values[2], above);
+  }
+  if (name == "SEL" && values.size() == 3) {
+    const Value choice = computer_.assignable(values[0], Plain::Bool, "G of SEL");
+    return choice.valid() && meet_all(1) ? computer_.select(choice, values[2], values[1]) : Value{};
+  }
+  if (name == "MUX" && values.size() >= 3 && is_integer(values[0].type)) {
+    if (!meet_all(1)) {
+      return Value{};
+    }
+    Value result = values.back();
+    for (std::size_t i = values.size() - 1; i-- > 1;) {
+      const Value here = compare(Operator::LessEqual, values[0], computer_.literal(Plain::Dint, static_cast<double>(i - 1), true));
+      result = computer_.select(here, values[i], result);
+    }
+    return result;
+  }
+  return std::nullopt;
+}
+
+std::optional<Value> Body::function(const std::string& name, std::vector<Value>& values) {
+  for (const OperatorFunction& one : operator_functions) {
+    if (name == one.name && values.size() >= 2) {
+      Value result = values[0];
+      for (std::size_t i = 1; i < values.size(); ++i) {
+        result = computer_.binary(one.op, result, values[i]);
+      }
+      return result;
+    }
+  }
+  if ((name == "NOT" || name == "MOVE") && values.size() == 1) {
+    return name == "NOT" ? computer_.inverse(values[0]) : values[0];
+  }
+  const bool shift = name == "SHL" || name == "SHR";
+  const bool rotate = name == "ROL" || name == "ROR";
+  if ((shift || rotate) && values.size() == 2) {
+    if (!is_integer(values[0].type) || !is_integer(values[1].type)) {
+      return computer_.refused(error::type_mismatch, fmt::format("{} takes bits and a number of places", name),
+                               "Give it a BYTE, a WORD or a DWORD, and an INT.");
+    }
+    const bool left = name[2] == 'L';
+    return shift ? computer_.shifted(values[0], values[1], left) : computer_.rotated(values[0], values[1], left);
+  }
+  return std::nullopt;
+}
+
+}  // namespace hysteron::bodies

@@ -1,0 +1,447 @@
+// Where values are kept, and what an access means.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "codegen/graph/body/body.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::bodies {
+
+namespace syntax = language::body;
+using language::Operator;
+using language::upper;
+
+namespace {
+
+constexpr std::size_t most_leaves = 20'000;
+constexpr std::size_t most_choices = 4096;
+
+Plain plain_of_pin(Type type, bool timer) {
+  switch (type) {
+    case Type::Bool:
+      return Plain::Bool;
+    case Type::Int:
+      return Plain::Dint;
+    case Type::Word:
+      return Plain::Word;
+    default:
+      return timer ? Plain::Time : Plain::Lreal;
+  }
+}
+
+std::string_view delay_of(Plain type) {
+  switch (info(type).family) {
+    case Family::Truth:
+      return "HY_DELAY_BOOL";
+    case Family::Number:
+    case Family::Duration:
+      return "HY_DELAY";
+    default:
+      return "HY_DELAY_DINT";
+  }
+}
+
+}  // namespace
+
+std::uint32_t Body::make_leaf(Plain type, double initial, const std::string& path, language::Span span, bool memory) {
+  if (leaves_.size() == most_leaves) {
+    refuse(error::refused_in_body, span, fmt::format("this body has more than {} variables", most_leaves),
+           "Every element of an array is one: use fewer.");
+  }
+  leaves_.push_back({.type = type, .initial = initial, .path = path, .span = span, .memory = memory});
+  state_.values.emplace_back();
+  if (!memory) {
+    state_.values.back() = computer_.literal(type, initial);
+  }
+  return static_cast<std::uint32_t>(leaves_.size() - 1);
+}
+
+void Body::make_pins(Place& place, const std::string& path, language::Span span) {
+  const auto add = [&](const Field& field) {
+    auto part = std::make_unique<Place>();
+    part->path = path + "." + upper(field.name);
+    const Plain plain = plain_of_pin(field.type, place.type->timer);
+    part->leaf = make_leaf(plain, plain == Plain::Time ? field.preset * 1000.0 : field.preset, part->path, span, true);
+    place.parts.push_back(std::move(part));
+    place.members.push_back({.name = upper(field.name)});
+  };
+  for (std::size_t pin = 0; pin < place.type->block->pin_count(); ++pin) {
+    add(place.type->block->pin(pin));
+  }
+  for (const Field& output : place.type->block->outputs) {
+    Field field = output;
+    field.preset = 0.0;
+    add(field);
+  }
+  place.aliases.resize(place.parts.size(), nullptr);
+}
+
+std::unique_ptr<Place> Body::make(const TypeRef& type, const std::string& path, language::Span span, bool memory) {
+  auto place = std::make_unique<Place>();
+  place->type = type;
+  place->path = path;
+  switch (type->kind) {
+    case BodyType::Kind::Plain:
+      place->leaf = make_leaf(type->plain, type->start, path, span, memory);
+      break;
+    case BodyType::Kind::Array:
+      for (std::int64_t i = type->low; i <= type->high && leaves_.size() <= most_leaves; ++i) {
+        place->parts.push_back(make(type->element, fmt::format("{}_{}", path, i < 0 ? fmt::format("M{}", -i) : fmt::format("{}", i)), span, memory));
+      }
+      break;
+    case BodyType::Kind::Library:
+      make_pins(*place, path, span);
+      break;
+    default: {
+      const Source outer = source_;
+      if (type->kind == BodyType::Kind::Block) {
+        source_ = type->source;
+      }
+      make_members(*place, type->members, memory);
+      source_ = outer;
+    }
+  }
+  if (type->initial != nullptr) {
+    set_initial(*place, *type->initial);
+  }
+  return place;
+}
+
+void Body::make_members(Place& place, const std::vector<Member>& members, bool memory) {
+  const bool unit = place.type == nullptr || place.type->kind == BodyType::Kind::Block;
+  for (const Member& member : members) {
+    const bool fixed = member.role == syntax::Role::Constant || member.role == syntax::Role::Temporary ||
+                       (unit && member.role == syntax::Role::Local && member.type->kind != BodyType::Kind::Block &&
+                        member.type->kind != BodyType::Kind::Library &&
+                        !assigned(source_).contains(member.name));
+    const std::string path = place.path.empty() ? member.name : place.path + (unit ? "." : "_") + member.name;
+    auto part = make(member.type, path, place_of(member.written.span), memory && !fixed);
+    if (member.initial != nullptr && member.initial->given()) {
+      set_initial(*part, *member.initial);
+    }
+    place.parts.push_back(std::move(part));
+    place.members.push_back(member);
+    place.aliases.push_back(nullptr);
+  }
+}
+
+void Body::set_initial(Place& place, const syntax::Initial& initial) {
+  if (place.leaf != Place::no_leaf) {
+    Leaf& leaf = leaves_[place.leaf];
+    if (initial.value == language::no_expression) {
+      refuse(error::type_mismatch, initial.span, fmt::format("'{}' takes one value", place.path), "Write it without brackets.");
+      return;
+    }
+    computer_.at(place_of(expression(initial.value).span));
+    const Value given = computer_.assignable(value(initial.value), leaf.type, leaf.path);
+    double number = 0.0;
+    if (given.valid() && !computer_.constant(given, number)) {
+      refuse(error::type_mismatch, initial.span, fmt::format("the initial value of '{}' is not a constant", leaf.path),
+             "Write a literal or an operation on constants.");
+    }
+    leaf.initial = number;
+    if (!leaf.memory && given.valid()) {
+      state_.values[place.leaf] = given;
+    }
+    return;
+  }
+  std::size_t at = 0;
+  for (const syntax::Initial& element : initial.elements) {
+    double count = 1.0;
+    if (element.repeat != language::no_expression) {
+      constant(element.repeat, count);
+    }
+    for (; count > 0.0 && at < place.parts.size(); count -= 1.0) {
+      Place& part = *place.parts[at++];
+      if (element.given()) {
+        set_initial(part, element);
+      }
+    }
+  }
+  for (const auto& [name, inner] : initial.members) {
+    if (Place* const part = place.find(upper(name.text))) {
+      set_initial(*part, inner);
+    } else {
+      refuse(error::unknown_pin, name.span, fmt::format("there is no member '{}'", name.text), "Name one that is declared.");
+    }
+  }
+}
+
+/// Puts variables back to their initial values: those of a function in each call, VAR_TEMP of a block.
+void Body::restart(Place& place) {
+  if (place.leaf != Place::no_leaf) {
+    write(place.leaf, computer_.literal(leaves_[place.leaf].type, leaves_[place.leaf].initial));
+  }
+  for (const auto& part : place.parts) {
+    restart(*part);
+  }
+}
+
+bool Body::constant(language::ExpressionId id, double& number) {
+  const Value result = value(id);
+  return result.valid() && computer_.constant(result, number);
+}
+
+Value Body::cell(std::uint32_t leaf) {
+  Leaf& one = leaves_[leaf];
+  if (one.cell) {
+    return *one.cell;
+  }
+  std::string path = around_.path + one.path + "_LAST";
+  for (int n = 2; !node_paths_.insert(path).second; ++n) {
+    path = fmt::format("{}{}_LAST_{}", around_.path, one.path, n);
+  }
+  const BlockType* const type = find_block_type(delay_of(one.type));
+  one.node = around_.builder.block(*type, path, around_.rate, one.span);
+  const Node& node = around_.builder.graph().nodes[one.node];
+  const Value initial = computer_.literal(one.type, one.initial);
+  auto& wires = around_.builder.graph().wires;
+  wires[node.first_wire + 1] = around_.builder.literal(Type::Bool, 0.0);
+  wires[node.first_wire + 2] = initial.wire;
+  const Wire wire{Wire::From::Node, type->outputs[0].type, 0, one.node};
+  one.cell = Value{.wire = wire, .type = one.type, .low = 0, .high = 0};
+  if (is_integer(one.type)) {
+    one.cell->low = info(one.type).width == 32 ? lowest(Plain::Dint) : lowest(one.type);
+    one.cell->high = std::min(highest(one.type), highest(Plain::Dint));
+  }
+  return *one.cell;
+}
+
+void Body::close_cells() {
+  auto& graph = around_.builder.graph();
+  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    if (leaves_[leaf].cell) {
+      graph.wires[graph.nodes[leaves_[leaf].node].first_wire] = read(leaf).wire;
+    }
+  }
+  for (const auto& [leaf, span] : open_pins_) {
+    if (state_.values[leaf]) {
+      refuse(error::refused_in_body, span, fmt::format("'{}' is assigned behind the call of its block", leaves_[leaf].path),
+             "Assign it before the call.");
+    }
+  }
+}
+
+void Body::write(std::uint32_t leaf, const Value& value) {
+  if (value.valid()) {
+    state_.values[leaf] = value;
+  }
+}
+
+std::optional<Value> Body::named_constant(const syntax::Access& access) {
+  const std::string name = upper(access.name.text);
+  if (access.type.empty() && scope_ != nullptr && scope_->find(name) != nullptr) {
+    return std::nullopt;
+  }
+  double number = 0.0;
+  const bool qualified = access.steps.size() == 1 && !access.steps.front().member.text.empty();
+  if (qualified && types_.enumerator(access.name.text, access.steps.front().member.text, number)) {
+    return computer_.literal(Plain::Dint, number, true);
+  }
+  if (!access.steps.empty()) {
+    return std::nullopt;
+  }
+  if (types_.enumerator(access.type, access.name.text, number)) {
+    return computer_.literal(Plain::Dint, number, true);
+  }
+  for (const syntax::Declaration& one : source_.unit->declarations) {
+    Plain type = Plain::Bool;
+    if (one.role == syntax::Role::Constant && upper(one.name.text) == name && plain_of(one.type.name.text, type) &&
+        one.initial.value != language::no_expression && level_ < 20) {
+      ++level_;
+      const Value result = computer_.assignable(value(one.initial.value), type, name);
+      --level_;
+      return result;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<Body::Choice> Body::choices(const syntax::Access& access) {
+  Place* const root = scope_ == nullptr ? nullptr : scope_->find(upper(access.name.text));
+  if (root == nullptr) {
+    // What was declared with a type that was refused has been told.
+    const bool told = std::ranges::any_of(source_.unit->declarations, [&](const syntax::Declaration& one) {
+      return language::same_name(one.name.text, access.name.text);
+    });
+    if (!told || scope_ == nullptr) {
+      refuse(error::unknown_name, access.name.span, fmt::format("'{}' is not declared", access.name.text),
+             "Declare it in a VAR section; variables outside of the block come in as VAR_INPUT.");
+    }
+    return {};
+  }
+  std::vector<Choice> list{{.place = root}};
+  for (const syntax::Step& step : access.steps) {
+    if (!step_into(list, step, access)) {
+      return {};
+    }
+  }
+  return list;
+}
+
+bool Body::step_into(std::vector<Choice>& list, const syntax::Step& step, const syntax::Access& access) {
+  if (step.bit >= 0) {
+    const Place& place = *list.front().place;
+    if (place.leaf == Place::no_leaf || !is_integer(leaves_[place.leaf].type) ||
+        step.bit >= info(leaves_[place.leaf].type).width) {
+      refuse(error::type_mismatch, access.span, fmt::format("'{}' has no bit {}", access.name.text, step.bit),
+             "Name a bit of a BYTE, a WORD or a DWORD, from 0 on.");
+      return false;
+    }
+    std::ranges::for_each(list, [&](Choice& one) { one.bit = step.bit; });
+    return true;
+  }
+  if (step.indexes.empty()) {
+    const std::string name = upper(step.member.text);
+    for (Choice& one : list) {
+      Place* const part = one.place->find(name);
+      if (part == nullptr) {
+        refuse(error::unknown_pin, step.member.span, fmt::format("'{}' has no member '{}'", access.name.text, step.member.text),
+               "Name an input or output of the instance, or a member of the structure.");
+        return false;
+      }
+      one.place = part;
+    }
+    return true;
+  }
+  for (const language::ExpressionId id : step.indexes) {
+    const Value index = value(id);
+    if (!index.valid() || !index_into(list, index, expression(id).span)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A variable index means each of the elements under a condition; one outside of the array, the nearest end.
+bool Body::index_into(std::vector<Choice>& list, const Value& index, language::Span span) {
+  std::vector<Choice> next;
+  for (const Choice& one : list) {
+    if (one.place->type == nullptr || one.place->type->kind != BodyType::Kind::Array || !is_integer(index.type)) {
+      refuse(error::type_mismatch, span, "this index stands behind what is no array, or is no whole number",
+             "Index an ARRAY by an INT or a DINT.");
+      return false;
+    }
+    const BodyType& array = *one.place->type;
+    double known = 0.0;
+    if (computer_.constant(index, known)) {
+      if (known < static_cast<double>(array.low) || known > static_cast<double>(array.high)) {
+        refuse(error::refused_access, span, fmt::format("the index {} lies outside of {}..{}", known, array.low, array.high),
+               "Index an element that there is.");
+        return false;
+      }
+      Choice chosen = one;
+      chosen.place = one.place->parts[static_cast<std::size_t>(known - static_cast<double>(array.low))].get();
+      next.push_back(chosen);
+      continue;
+    }
+    for (std::int64_t i = array.low; i <= array.high; ++i) {
+      Choice chosen = one;
+      chosen.place = one.place->parts[static_cast<std::size_t>(i - array.low)].get();
+      const Operator op = i == array.low ? Operator::LessEqual : (i == array.high ? Operator::GreaterEqual : Operator::Equal);
+      const Value here = array.low == array.high ? computer_.truth(true)
+                                                 : computer_.binary(op, index, computer_.literal(Plain::Dint, static_cast<double>(i), true));
+      chosen.condition = one.condition ? computer_.binary(Operator::And, *one.condition, here) : here;
+      next.push_back(std::move(chosen));
+    }
+  }
+  if (next.size() > most_choices) {
+    refuse(error::refused_in_body, span, fmt::format("this access means one of more than {} elements", most_choices), "Use a smaller array.");
+    return false;
+  }
+  list = std::move(next);
+  return true;
+}
+
+Place* Body::find(const syntax::Access& access) {
+  const auto list = choices(access);
+  if (list.size() > 1) {
+    refuse(error::refused_in_body, access.span, "which variable this is, is not known before it runs",
+           "Use a constant index here.");
+  }
+  return list.size() == 1 ? list.front().place : nullptr;
+}
+
+Value Body::read(const syntax::Access& access) {
+  if (const auto known = named_constant(access)) {
+    return *known;
+  }
+  if (!access.type.empty()) {
+    return refuse(error::unknown_name, access.span, fmt::format("there is no value {}#{}", access.type, access.name.text),
+                  "Name a value of an enumeration in this file.");
+  }
+  const auto list = choices(access);
+  Value result;
+  for (std::size_t i = list.size(); i-- > 0;) {
+    const Choice& one = list[i];
+    if (one.place->leaf == Place::no_leaf) {
+      return refuse(error::type_mismatch, access.span, fmt::format("'{}' is no single value", access.name.text),
+                    "Name one of its members, outputs or elements.");
+    }
+    Value here = read(one.place->leaf);
+    if (one.bit >= 0) {
+      here = computer_.shifted(here, computer_.literal(Plain::Dint, one.bit), false);
+      here = computer_.binary(Operator::And, here, computer_.literal(here.type, 1.0));
+      here = computer_.binary(Operator::NotEqual, here, computer_.literal(here.type, 0.0));
+    }
+    result = i + 1 == list.size() ? here : computer_.select(*one.condition, here, result);
+  }
+  return result;
+}
+
+void Body::assign(const syntax::Access& access, const Value& value, language::Span span) {
+  const auto list = choices(access);
+  if (list.empty() || !value.valid()) {
+    return;
+  }
+  const std::string root = upper(access.name.text);
+  const auto member = std::ranges::find(scope_->members, root, &Member::name);
+  if (member != scope_->members.end() && member->role == syntax::Role::Constant) {
+    refuse(error::double_drive, access.name.span, fmt::format("'{}' cannot be assigned to", access.name.text),
+           "It is a constant: declare it between VAR and END_VAR.");
+    return;
+  }
+  for (const Choice& one : list) {
+    if (one.place->leaf == Place::no_leaf) {
+      refuse(error::type_mismatch, span, fmt::format("'{}' is no single value", access.name.text),
+             "Assign to one of its members or elements.");
+      return;
+    }
+    const Plain type = leaves_[one.place->leaf].type;
+    Value kept;
+    if (one.bit >= 0) {
+      const double mask = static_cast<double>(std::int64_t{1} << one.bit);
+      const Value old = read(one.place->leaf);
+      const Value all = computer_.literal(type, static_cast<double>((std::int64_t{1} << info(type).width) - 1) - mask);
+      const Value cleared = computer_.binary(Operator::And, old, all);
+      const Value set = computer_.binary(Operator::Or, cleared, computer_.literal(type, mask));
+      const Value truth = computer_.assignable(value, Plain::Bool, "a bit");
+      kept = truth.valid() ? computer_.fit(computer_.select(truth, set, cleared), type) : Value{};
+    } else {
+      kept = computer_.assignable(value, type, std::string(access.name.text));
+    }
+    if (!kept.valid()) {
+      return;
+    }
+    write(one.place->leaf, one.condition ? computer_.select(*one.condition, kept, read(one.place->leaf)) : kept);
+  }
+}
+
+void Body::copy(Place& to, Place& from, language::Span span) {
+  if (to.leaf != Place::no_leaf && from.leaf != Place::no_leaf) {
+    write(to.leaf, computer_.assignable(read(from.leaf), leaves_[to.leaf].type, to.path));
+    return;
+  }
+  if (to.parts.size() != from.parts.size() || to.leaf != from.leaf ||
+      (to.type && to.type->kind != BodyType::Kind::Array && to.type->kind != BodyType::Kind::Structure)) {
+    refuse(error::type_mismatch, span, fmt::format("'{}' and '{}' are not of one type", to.path, from.path),
+           "Copy an array or a structure into one of the same type.");
+    return;
+  }
+  for (std::size_t i = 0; i < to.parts.size(); ++i) {
+    copy(*to.parts[i], *from.parts[i], span);
+  }
+}
+
+}  // namespace hysteron::bodies

@@ -1,0 +1,86 @@
+// Arithmetic of sequential bodies on the wires of a graph.
+//
+// Intermediate results are wider than their operands, as C has it, into which IEC compilers translate: integers are
+// computed with 32 bits, and a REAL with a literal or an LREAL as an LREAL. A number is taken to the width of its type
+// where it is kept in a variable or handed to a function. MATIEC gives the same bits.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "codegen/graph/body/types.hpp"
+#include "codegen/graph/lowering.hpp"
+
+namespace hysteron::bodies {
+
+struct Value {
+  Wire wire{};
+  Plain type = Plain::Bool;
+  bool loose = false;  ///< a literal without a type: it takes that of its neighbour
+  bool wide = false;   ///< a REAL that was not yet rounded to 32 bits
+  std::int64_t low = 0;
+  std::int64_t high = 0;  ///< integers: what it may be, between these
+  [[nodiscard]] bool valid() const { return wire.from != Wire::From::Nothing; }
+};
+
+class Computer {
+ public:
+  using Report = Types::Report;
+  Computer(GraphBuilder& builder, Report report) : builder_(builder), report_(std::move(report)) {}
+
+  /// What the next operations feed, and where they are written.
+  void at(std::string path, language::Span span) {
+    path_ = std::move(path);
+    span_ = span;
+  }
+  [[nodiscard]] language::Span span() const { return span_; }
+  void at(language::Span span) { span_ = span; }
+
+  Value literal(Plain type, double value, bool loose = false);
+  Value truth(bool value) { return literal(Plain::Bool, value ? 1.0 : 0.0); }
+  [[nodiscard]] bool constant(const Value& value, double& number) const;
+  [[nodiscard]] bool is_true(const Value& value) const;
+  [[nodiscard]] bool is_false(const Value& value) const;
+
+  /// From a port or a cell of the graph, and to it.
+  Value taken(Wire wire, Plain type);
+  Wire given(const Value& value);
+
+  /// The value as a type keeps it: integers wrap to its width, a REAL is rounded. Of one family.
+  Value fit(const Value& value, Plain type);
+  /// What an assignment to a variable of the type takes; invalid, and an error, where it takes none.
+  Value assignable(const Value& value, Plain type, const std::string& target);
+  /// X_TO_Y.
+  Value convert(const Value& value, Plain type);
+  Value truncated(const Value& value, Plain type);
+
+  Value negative(const Value& value);
+  Value inverse(const Value& value);
+  Value binary(language::Operator op, Value left, Value right);
+  Value select(const Value& condition, const Value& yes, const Value& no);
+  Value shifted(const Value& value, const Value& places, bool left);
+  Value rotated(const Value& value, const Value& places, bool left);
+  /// Both as the type that the two have in common; false, and an error, where there is none.
+  bool meet(Value& left, Value& right, std::string_view what);
+  Value operation(Op op, std::initializer_list<Value> operands, Plain type);
+  Value refused(int number, std::string cause, std::string mend);
+
+ private:
+  Wire apply(Op op, std::initializer_list<Wire> operands) { return builder_.operation(op, operands, path_, span_); }
+  Wire whole(std::int64_t value);
+  Wire real_of(const Value& value);
+  Value whole_of(Wire real, Plain type, bool round);
+  Value integer(Op op, const Value& left, const Value& right, Plain type);
+  Value compared(language::Operator op, const Value& left, const Value& right);
+  Value bits(language::Operator op, const Value& left, const Value& right, Plain type);
+  Value divided(bool remainder, const Value& left, const Value& right, Plain type);
+  static Value ranged(Wire wire, Plain type, std::int64_t low, std::int64_t high);
+
+  GraphBuilder& builder_;
+  Report report_;
+  std::string path_{};
+  language::Span span_{};
+};
+
+}  // namespace hysteron::bodies

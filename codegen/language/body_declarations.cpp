@@ -1,0 +1,260 @@
+// Declarations of sequential bodies: sections, types and initial values.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "codegen/language/body_parser.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::language {
+
+using body::Role;
+
+bool BodyParser::starts_section() const {
+  return now().keyword == Keyword::Var || now().keyword == Keyword::VarInput || now().keyword == Keyword::VarOutput ||
+         now().keyword == Keyword::RefusedSection;
+}
+
+void BodyParser::sections(body::Unit& unit, FunctionBlock* block, std::size_t index,
+                          std::vector<Declaration>* declarations) {
+  while (starts_section()) {
+    section(unit, block, index, declarations);
+  }
+}
+
+void BodyParser::section(body::Unit& unit, FunctionBlock* block, std::size_t index,
+                         std::vector<Declaration>* declarations) {
+  Role role = is("VAR_INPUT")    ? Role::Input
+              : is("VAR_OUTPUT") ? Role::Output
+              : is("VAR_IN_OUT") ? Role::InOut
+              : is("VAR_TEMP")   ? Role::Temporary
+                                 : Role::Local;
+  if (now().keyword == Keyword::RefusedSection && role == Role::Local) {
+    reporter_.error(error::refused_section, span_of(now()), fmt::format("{} reaches out of the block.", word(now())),
+                    "Hand the variable over as VAR_INPUT, VAR_OUTPUT or VAR_IN_OUT.");
+  }
+  advance();
+  while (now().keyword == Keyword::Constant || now().keyword == Keyword::Qualifier) {
+    role = is("CONSTANT") && role == Role::Local ? Role::Constant : role;
+    advance();
+  }
+  while (!is("END_VAR") && !is(Symbol::End) && !starts_section() && now().keyword != Keyword::EndFunctionBlock) {
+    const auto begin = now().offset;
+    const auto first = unit.declarations.size();
+    if (!declaration(role, unit.declarations)) {
+      unit.declarations.resize(first);
+      while (!is("END_VAR") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
+        advance();
+      }
+    }
+    if (block == nullptr) {
+      continue;
+    }
+    for (std::size_t i = first; i < unit.declarations.size(); ++i) {
+      const Section section = role == Role::Input || role == Role::InOut ? Section::Input
+                              : role == Role::Output                     ? Section::Output
+                              : role == Role::Constant                   ? Section::Constant
+                                                                         : Section::Local;
+      block->variables.push_back(
+          {.name = unit.declarations[i].name, .type = unit.declarations[i].type.name, .section = section});
+    }
+    declarations->push_back({.begin = begin,
+                             .end = last_end_,
+                             .block = index,
+                             .first_variable = first,
+                             .variable_count = unit.declarations.size() - first});
+  }
+  if (!accept("END_VAR")) {
+    reporter_.error(error::missing_end, span_of(now()), "This section has no END_VAR.",
+                    "Write END_VAR behind its last declaration.");
+  }
+  accept(Symbol::Semicolon);
+}
+
+bool BodyParser::declaration(Role role, std::vector<body::Declaration>& list) {
+  const auto first = list.size();
+  do {
+    if (!name(list.emplace_back().name, "the name of a variable")) {
+      return false;
+    }
+  } while (accept(Symbol::Comma));
+  if (is("AT")) {
+    reporter_.error(error::direct_address, span_of(now()), "AT binds the block to an address of one machine.",
+                    "Make it a VAR_INPUT or VAR_OUTPUT.");
+    return false;
+  }
+  body::Declaration common{.role = role};
+  if (!expect(Symbol::Colon, "`:` and a type") || !type(common.type)) {
+    return false;
+  }
+  // MOTOR(SPEED := 1.0) sets up an instance as := ( … ) does.
+  const bool setup = is(Symbol::LeftParenthesis) && ahead().symbol == Symbol::Identifier;
+  if ((accept(Symbol::Assign) || setup) && !initial(common.initial)) {
+    return false;
+  }
+  for (std::size_t i = first; i < list.size(); ++i) {
+    const Name name = list[i].name;
+    list[i] = common;
+    list[i].name = name;
+  }
+  return expect(Symbol::Semicolon, "`;`");
+}
+
+bool BodyParser::array_type(body::TypeSpec& spec) {
+  if (!expect(Symbol::LeftBracket, "`[` and the bounds")) {
+    return false;
+  }
+  do {
+    body::Label bounds;
+    bounds.low = expression();
+    if (bounds.low == no_expression || !expect(Symbol::Dot, "`..` between the bounds")) {
+      return false;
+    }
+    if (is(Symbol::Number) && word(now()).front() == '.') {
+      bounds.high = number();
+    } else {
+      accept(Symbol::Dot);
+      bounds.high = expression();
+    }
+    if (bounds.high == no_expression) {
+      return false;
+    }
+    spec.dimensions.emplace_back(bounds.low, bounds.high);
+  } while (accept(Symbol::Comma));
+  return expect(Symbol::RightBracket, "`]`") && expect("OF") && type(spec);
+}
+
+bool BodyParser::enumeration(body::TypeSpec& spec) {
+  do {
+    auto& [value, number] = spec.values.emplace_back(Name{}, no_expression);
+    if (!name(value, "the name of a value")) {
+      return false;
+    }
+    if (accept(Symbol::Assign) && (number = expression()) == no_expression) {
+      return false;
+    }
+  } while (accept(Symbol::Comma));
+  if (!expect(Symbol::RightParenthesis, "`,` or `)`")) {
+    return false;
+  }
+  if (is(Symbol::Identifier)) {  // (A, B) INT: what it is kept in
+    advance();
+  }
+  return true;
+}
+
+bool BodyParser::structure(body::TypeSpec& spec) {
+  while (!is("END_STRUCT") && !is(Symbol::End)) {
+    if (!declaration(Role::Local, spec.fields)) {
+      return false;
+    }
+  }
+  return expect("END_STRUCT");
+}
+
+bool BodyParser::type(body::TypeSpec& spec) {
+  const auto place = span_of(now());
+  if (accept("ARRAY")) {
+    return array_type(spec);
+  }
+  if (accept("STRUCT")) {
+    spec.name = {word({.offset = place.offset, .length = place.length}), place};
+    return structure(spec);
+  }
+  if (accept(Symbol::LeftParenthesis)) {
+    spec.name = {word({.offset = place.offset, .length = place.length}), place};
+    return enumeration(spec);
+  }
+  if (is("POINTER") || is("REF_TO") || (is(Symbol::Identifier) && same_name(word(now()), "REFERENCE"))) {
+    return refuse(place, fmt::format("A body has no {}.", word(now())),
+                  "Hand the variable over as VAR_IN_OUT, or use an array and an index.");
+  }
+  if (!name(spec.name, "a type")) {
+    return false;
+  }
+  for (const auto* text : {"STRING", "WSTRING", "CHAR", "WCHAR"}) {
+    if (same_name(spec.name.text, text)) {
+      return refuse(place, fmt::format("A body has no {}.", spec.name.text),
+                    "Take the text out: a block here computes with numbers and truth values.");
+    }
+  }
+  for (const auto* text : {"LINT", "ULINT", "LWORD", "LTIME", "DATE", "LDATE", "DATE_AND_TIME", "DT", "LDT", "TOD",
+                           "TIME_OF_DAY", "LTOD"}) {
+    if (same_name(spec.name.text, text)) {
+      return refuse(place, fmt::format("A body has no {}: its numbers have 32 bits, or are LREAL.", spec.name.text),
+                    "Use DINT, UDINT, DWORD, TIME or LREAL.");
+    }
+  }
+  return true;
+}
+
+bool BodyParser::element(body::Initial& list) {
+  auto& one = list.elements.emplace_back();
+  const bool repeated = is(Symbol::Number) && ahead().symbol == Symbol::LeftParenthesis;
+  if (repeated) {
+    one.repeat = number();
+    advance();
+  }
+  if (repeated && is(Symbol::RightParenthesis)) {
+    advance();
+    return true;
+  }
+  return initial(one) && (!repeated || expect(Symbol::RightParenthesis, "`)`"));
+}
+
+bool BodyParser::initial(body::Initial& value) {
+  const auto begin = now().offset;
+  bool right = true;
+  if (accept(Symbol::LeftBracket)) {
+    ++depth_;
+    do {
+      right = element(value);
+    } while (right && accept(Symbol::Comma));
+    --depth_;
+    right = right && expect(Symbol::RightBracket, "`,` or `]`");
+  } else if (is(Symbol::LeftParenthesis) && ahead().symbol == Symbol::Identifier &&
+             ahead(2).symbol == Symbol::Assign) {
+    advance();
+    ++depth_;
+    do {
+      auto& [member, inner] = value.members.emplace_back();
+      right = name(member, "the name of a member") && expect(Symbol::Assign, "`:=`") && initial(inner);
+    } while (right && accept(Symbol::Comma));
+    --depth_;
+    right = right && expect(Symbol::RightParenthesis, "`,` or `)`");
+  } else {
+    value.value = expression();
+    right = value.value != no_expression;
+    // The older form of a list: A : ARRAY[0..2] OF INT := 1, 2, 3;
+    if (right && is(Symbol::Comma) && ahead(2).symbol != Symbol::Assign && depth_ == 0) {
+      value.elements.push_back({.value = std::exchange(value.value, no_expression)});
+      while (right && accept(Symbol::Comma)) {
+        right = element(value);
+      }
+    }
+  }
+  value.span = since(begin);
+  return right;
+}
+
+void BodyParser::types() {
+  advance();
+  while (!is("END_TYPE") && !is(Symbol::End)) {
+    body::TypeDefinition one;
+    if (name(one.name, "the name of a type") && expect(Symbol::Colon, "`:` and a type") && type(one.type) &&
+        (!accept(Symbol::Assign) || initial(one.initial))) {
+      accept(Symbol::Semicolon);
+      library_.types.push_back(std::move(one));
+      continue;
+    }
+    while (!is("END_TYPE") && !is(Symbol::End) && !accept(Symbol::Semicolon)) {
+      advance();
+    }
+  }
+  if (!accept("END_TYPE")) {
+    reporter_.error(error::missing_end, span_of(now()), "This TYPE has no END_TYPE.",
+                    "Write END_TYPE behind the last type.");
+  }
+}
+
+}  // namespace hysteron::language

@@ -1,0 +1,181 @@
+// Sequential bodies: what they compute, against a second reading; what is refused; when a block is one.
+#include "codegen/graph/body/body.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "codegen/language/time_literal.hpp"
+#include "support/errors.hpp"
+#include "tests/codegen/backends/recorded_run.hpp"
+#include "tests/codegen/random_body.hpp"
+#include "tests/codegen/sequential_body.hpp"
+
+namespace hysteron::testing {
+namespace {
+
+std::vector<std::string> faults_of(const std::string& text) {
+  Diagnostics found;
+  const auto source = std::make_shared<const language::SourceFile>(language::parse("t", text, found));
+  if (!found.has_errors()) {
+    check(source, found);
+  }
+  std::vector<std::string> list;
+  for (const Diagnostic& one : found.all()) {
+    list.push_back(fmt::format("{}:{}", one.number, one.place.line));
+  }
+  return list;
+}
+using Faults = std::vector<std::string>;
+
+/// The outputs of one step after another, for inputs by row.
+std::vector<double> run_body(const std::string& text, const std::vector<std::vector<double>>& rows) {
+  const Program program = compile_text(text);
+  Machine<double> machine(program, 0.01);
+  std::vector<double> results;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      machine.set_input(i, row[i]);
+    }
+    machine.step();
+    for (std::size_t i = 0; i < program.graph.outputs.size(); ++i) {
+      results.push_back(machine.output(i));
+    }
+  }
+  return results;
+}
+
+TEST(Bodies, RandomOnesComputeWhatTheirStatementsSay) {
+  constexpr std::size_t bodies = 150;
+  constexpr std::size_t steps = 60;
+  static const std::vector<std::string> inputs{"X1", "X2", "X3", "B1", "B2", "N1"};
+  static const std::vector<std::string> outputs{"Y0", "Y1", "Y2", "Y3", "Q", "N"};
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const RandomBody body(i + 4242, "P", i % 3 == 0 ? 4 : 14);
+    const Program program = body.program();
+    Diagnostics none;
+    const auto source = language::parse("t", body.text(), none);
+    SequentialBody reading(*source.bodies, "P");
+    Machine<double> machine(program);
+    const auto rows = random_rows(steps, i);
+    for (std::size_t k = 0; k < steps; ++k) {
+      for (std::size_t pin = 0; pin < inputs.size(); ++pin) {
+        machine.set_input(pin, rows[k * inputs.size() + pin]);
+        reading.set(inputs[pin], rows[k * inputs.size() + pin]);
+      }
+      machine.step();
+      reading.step();
+      for (std::size_t pin = 0; pin < outputs.size(); ++pin) {
+        ASSERT_TRUE(same_bits(machine.output(pin), reading.get(outputs[pin])))
+            << "body " << i << ", step " << k << ", " << outputs[pin] << ": " << machine.output(pin) << " for "
+            << reading.get(outputs[pin]) << "\n" << body.text();
+      }
+    }
+  }
+}
+
+TEST(Bodies, AVariableThatIsReadFirstIsMemory) {
+  const std::string text =
+      "FUNCTION_BLOCK F VAR_INPUT UP : BOOL; END_VAR VAR_OUTPUT N : INT := 32766; END_VAR\n"
+      "IF UP THEN N := N + 1; END_IF; END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(text, {{1}, {0}, {1}, {1}}), (std::vector<double>{32767, 32767, -32768, -32767}));
+}
+
+TEST(Bodies, AnInstanceThatIsNotCalledKeepsWhatItHas) {
+  const std::string text =
+      "FUNCTION_BLOCK F VAR_INPUT ON : BOOL; CLK : BOOL; END_VAR VAR_OUTPUT N : INT; END_VAR\n"
+      "VAR C : CTU; END_VAR IF ON THEN C(CU := CLK, R := FALSE, PV := 9); END_IF; N := C.CV; END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(text, {{1, 1}, {1, 0}, {0, 1}, {0, 0}, {1, 1}}), (std::vector<double>{1, 1, 1, 1, 2}));
+}
+
+TEST(Bodies, ATimerTakesTimesOfTheText) {
+  const std::string text =
+      "FUNCTION_BLOCK F (* @ts 10ms *) VAR_INPUT ON : BOOL; END_VAR VAR_OUTPUT Q : BOOL; END_VAR\n"
+      "VAR T : TON; WAIT : TIME := T#20ms; END_VAR T(IN := ON, PT := WAIT); Q := T.Q; END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(text, {{1}, {1}, {1}, {0}, {1}}), (std::vector<double>{0, 0, 1, 0, 0}));
+}
+
+TEST(Bodies, AVarInOutAtTheBorderIsAnInputAndAnOutput) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK F VAR_IN_OUT X : LREAL; END_VAR X := X * 2.0; END_FUNCTION_BLOCK");
+  ASSERT_NE(find_port(program.graph.inputs, "X"), nullptr);
+  EXPECT_NE(find_port(program.graph.outputs, "X_OUT"), nullptr);
+}
+
+TEST(Bodies, ADiagramWiresABodyLikeAnyBlock) {
+  const std::string text =
+      "FUNCTION_BLOCK HOLD VAR_INPUT X : LREAL; TAKE : BOOL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+      "IF TAKE THEN Y := X; END_IF; END_FUNCTION_BLOCK\n"
+      "FUNCTION_BLOCK TOP VAR_INPUT X : LREAL; B : BOOL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR VAR H : HOLD; END_VAR\n"
+      "H(X := X + 1.0, TAKE := B); Y := H.Y; END_FUNCTION_BLOCK";
+  const Program program = compile_text(text, {.top = "TOP"});
+  Machine<double> machine(program, 0.01);
+  std::vector<double> results;
+  for (const auto& [x, take] : {std::pair{1.0, 1.0}, {5.0, 0.0}, {7.0, 1.0}}) {
+    machine.set_input(0, x);
+    machine.set_input(1, take);
+    machine.step();
+    results.push_back(machine.output(0));
+  }
+  EXPECT_EQ(results, (std::vector<double>{2, 2, 8}));
+}
+
+TEST(Bodies, AnUnmarkedTextThatADiagramCanSayStaysOne) {
+  const std::string twice = "VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := X; Y := Y + 1.0; END_FUNCTION_BLOCK";
+  EXPECT_EQ(faults_of("FUNCTION_BLOCK F " + twice), (Faults{fmt::format("{}:1", error::double_drive)}));
+  EXPECT_EQ(faults_of("FUNCTION_BLOCK F (* @body *) " + twice), Faults{});
+  EXPECT_EQ(run_body("FUNCTION_BLOCK F (* @body *) " + twice, {{1}, {2}}), (std::vector<double>{2, 3}));
+}
+
+TEST(Bodies, EveryLineThatStandsInTheWayIsToldOnce) {
+  EXPECT_EQ(faults_of("FUNCTION_BLOCK F\nVAR_INPUT X : INT; END_VAR\nVAR P : POINTER TO INT; S : STRING; END_VAR\n"
+                      "WHILE X > 1 DO\n  X := X - 1;\nEND_WHILE;\nP^ := 3;\nEND_FUNCTION_BLOCK"),
+            (Faults{"129:3", "129:3", "129:4", "129:7"}));
+  EXPECT_EQ(faults_of("FUNCTION_BLOCK F\nVAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; B : BOOL; END_VAR\n"
+                      "IF X THEN Y := 1; END_IF;\nY := NOWHERE;\nB := X;\nY := X + B;\nEND_FUNCTION_BLOCK"),
+            (Faults{"207:3", "203:4", "207:5", "207:6"}));
+}
+
+TEST(Bodies, LoopsAndCallsHaveBounds) {
+  const auto loop = [](const std::string& to) {
+    return "FUNCTION_BLOCK F VAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; END_VAR VAR I : INT; END_VAR\nFOR I := 1 TO " +
+           to + " DO Y := Y + I; END_FOR; END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(faults_of(loop("10")), Faults{});
+  EXPECT_EQ(faults_of(loop("X")), Faults{"129:2"});
+  EXPECT_EQ(faults_of(loop("30000")), Faults{"129:2"});
+  EXPECT_FALSE(faults_of("FUNCTION A : INT VAR_INPUT X : INT; END_VAR A := A(X); END_FUNCTION\n"
+                         "FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR Y := A(1); END_FUNCTION_BLOCK").empty());
+  EXPECT_FALSE(faults_of("FUNCTION_BLOCK F VAR X : F; N : INT; END_VAR X(); END_FUNCTION_BLOCK").empty());
+}
+
+TEST(Bodies, ABlockOfTheLibraryIsCalledOnceAndUnderNoCondition) {
+  const auto with = [](const std::string& statements) {
+    return "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : LREAL; B : BOOL; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
+           "VAR L : HY_GAIN; END_VAR\n" + statements + " END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(faults_of(with("L(XIN := X, K := 2.0);")), Faults{});
+  EXPECT_EQ(faults_of(with("IF B THEN L(XIN := X); END_IF;")), Faults{"218:3"});
+  EXPECT_EQ(faults_of(with("IF B THEN RETURN; END_IF;\nL(XIN := X);")), Faults{"218:4"});
+  EXPECT_EQ(faults_of(with("L(XIN := X);\nL(XIN := X);")), Faults{"205:4"});
+}
+
+TEST(Bodies, DurationsAreWholeMilliseconds) {
+  double time = 0.0;
+  for (const auto& [text, expected] : {std::pair{"1m30s", 90000.0}, {"5.5ms", 5.5}, {"-2h", -7200000.0}, {"50us", 0.05}, {"1d_2h", 93600000.0}}) {
+    ASSERT_TRUE(language::milliseconds_of_time(text, time)) << text;
+    EXPECT_EQ(time, expected) << text;
+  }
+  for (const auto* text : {"", "5", "s", "1s1m", "1.5m2s", "3x", "-"}) {
+    EXPECT_FALSE(language::milliseconds_of_time(text, time)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace hysteron::testing

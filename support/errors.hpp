@@ -116,6 +116,7 @@ inline constexpr int foreign_file = 731;
 inline constexpr int name_too_long = 732;
 inline constexpr int no_graphviz = 740;
 inline constexpr int graphviz_failed = 741;
+inline constexpr int fmu_without_binary = 748;
 inline constexpr int run_file_syntax = 801;
 inline constexpr int run_key_twice = 802;
 inline constexpr int unknown_run_key = 803;

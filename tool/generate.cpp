@@ -17,6 +17,7 @@
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
+#include "tool/fmu.hpp"
 #include "tool/generate_host.hpp"
 #include "tool/host_sources.hpp"
 
@@ -30,11 +31,13 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --target c --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
+  hysteron generate plant.st --target fmu --fmi 2 --out models
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
 The dialects of st: portable, codesys, twincat, siemens-scl.
+fmu: NAME.fmu, for co-simulation in FMI 3.0 or 2.0, with sources and, where there is a C compiler, a binary.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
 the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
@@ -45,6 +48,7 @@ struct GenerateOptions {
   DiagramOptions diagram;
   std::string target;
   std::string dialect;
+  std::string fmi;
   std::string config;
   std::string folder;
   bool host = false;
@@ -53,23 +57,28 @@ struct GenerateOptions {
 
 struct Target {
   std::string_view name;
-  std::vector<GeneratedFile> (*generate)(const Program& program, const GenerateOptions& options);
+  std::vector<GeneratedFile> (*generate)(const Program& program, const GenerateOptions& options, Diagnostics& warnings);
 };
 
 constexpr std::array targets{
     Target{"cpp",
-           [](const Program& program, const GenerateOptions& options) {
+           [](const Program& program, const GenerateOptions& options, Diagnostics& /*warnings*/) {
              return generate_cpp(program, {.float32 = options.diagram.float32});
            }},
-    Target{"c",
-           [](const Program& program, const GenerateOptions& options) {
-             return generate_c(program, {.float32 = options.diagram.float32});
-           }},
+    Target{"c", [](const Program& program, const GenerateOptions& options,
+                   Diagnostics& /*warnings*/) { return generate_c(program, {.float32 = options.diagram.float32}); }},
     Target{"st",
-           [](const Program& program, const GenerateOptions& options) {
+           [](const Program& program, const GenerateOptions& options, Diagnostics& /*warnings*/) {
              return generate_st(program,
                                 {.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
                                  .float32 = options.diagram.float32});
+           }},
+    Target{"fmu",
+           [](const Program& program, const GenerateOptions& options, Diagnostics& warnings) {
+             return std::vector{pack_fmu(program,
+                                         {.version = options.fmi == "2" ? FmiVersion::Two : FmiVersion::Three,
+                                          .float32 = options.diagram.float32},
+                                         warnings)};
            }},
 };
 
@@ -100,7 +109,7 @@ void check_usage(const GenerateOptions& options) {
   }
   if (!options.target.empty() && find_target(options.target) == nullptr) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no target {}.", options.target),
-                     "the targets are: cpp, c, st.");
+                     "the targets are: cpp, c, st, fmu.");
   }
   if (!options.dialect.empty() && !equal_ignoring_case(options.target, "st")) {
     throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text.",
@@ -109,6 +118,14 @@ void check_usage(const GenerateOptions& options) {
   if (!options.dialect.empty() && !st_dialect(options.dialect)) {
     throw InputError(error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
                      fmt::format("the dialects are: {}.", st_dialect_names()));
+  }
+  if (!options.fmi.empty() && !equal_ignoring_case(options.target, "fmu")) {
+    throw InputError(error::bad_usage, {}, "A version of FMI is one of an FMU.",
+                     "write --target fmu, or leave out --fmi.");
+  }
+  if (!options.fmi.empty() && options.fmi != "2" && options.fmi != "3") {
+    throw InputError(error::bad_usage, {}, fmt::format("There is no version {} of FMI here.", options.fmi),
+                     "write --fmi 2 or --fmi 3.");
   }
   if (options.host == options.config.empty()) {
     throw InputError(error::bad_usage, {},
@@ -127,7 +144,7 @@ int generate(const GenerateOptions& options, Console& console) {
   std::vector<OutputFile> files;
   for (GeneratedFile& file :
        options.host ? generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})
-                    : find_target(options.target)->generate(program, options)) {
+                    : find_target(options.target)->generate(program, options, warnings)) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = std::move(file.text)});
     refuse_to_overwrite({.file = files.back().path.string(), .mend = "give another folder for --out."}, inputs);
     if (!options.force) {
@@ -153,10 +170,11 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text).")
-      ->option_text("cpp|c|st");
+  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text), fmu (FMI).")
+      ->option_text("cpp|c|st|fmu");
   app.add_option("--dialect", options->dialect, "Of Structured Text; portable where none is given.")
       ->option_text("DIALECT");
+  app.add_option("--fmi", options->fmi, "The version of FMI of an FMU; 3 where none is given.")->option_text("2|3");
   app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
   app.add_option("--config", options->config, "The run file of the host.")->option_text("RUN.toml");
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")

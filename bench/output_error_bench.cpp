@@ -5,7 +5,7 @@
 #include <span>
 
 #include "codegen/parameters/parameter_file.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "records/data_folder.hpp"
 #include "tuning/output_error.hpp"
 
@@ -18,7 +18,7 @@ void output_error_fit(benchmark::State& state) {
     state.SkipWithError("left out: no measured record (set HYSTERON_DATA)");
     return;
   }
-  const records::Record record = records::read_csv(path->string());
+  const records::Record record = records::read_record(path->string());
   const std::string example = HYSTERON_SOURCE_DIR "/examples/04_piezo_stack/";
   Diagnostics warnings;
   const Program plant = compile_file(example + "plant.st", {}, warnings);

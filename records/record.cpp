@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "records/source_text.hpp"
+#include "records/text/source_text.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -44,9 +44,17 @@ std::vector<std::string> Record::names() const {
 }
 
 const Column* Record::find(std::string_view name) const {
-  const auto found = std::find_if(columns_.begin(), columns_.end(),
-                                  [&](const Column& column) { return equal_ignoring_case(column.name, name); });
-  return found == columns_.end() ? nullptr : &*found;
+  const auto is_it = [&](const auto& column) { return equal_ignoring_case(column.name, name); };
+  const auto found = std::ranges::find_if(columns_, is_it);
+  if (found != columns_.end()) {
+    return &*found;
+  }
+  if (const auto unreadable = std::ranges::find_if(unreadable_, is_it); unreadable != unreadable_.end()) {
+    Diagnostics list;
+    list.add(unreadable->fault);
+    throw InputError(list);
+  }
+  return nullptr;
 }
 
 const Column& Record::column(std::string_view name) const {
@@ -54,12 +62,19 @@ const Column& Record::column(std::string_view name) const {
     return *found;
   }
   const auto known = names();
-  const auto near = nearest_name(name, known);
+  // MAIN.fbAxis.u for U: what a controller records has the path of its variable before the name.
+  const auto ends_so = std::ranges::find_if(known, [&](const std::string& one) {
+    return one.size() > name.size() && equal_ignoring_case(one.substr(one.size() - name.size()), name) &&
+           std::string_view("._:/ ").find(one[one.size() - name.size() - 1]) != std::string_view::npos;
+  });
+  const std::string near = ends_so != known.end() ? *ends_so : std::string(nearest_name(name, known));
   throw InputError(error::missing_column, header_,
                    fmt::format("There is no column {}; the columns are {}.", name,
                                known.empty() ? std::string("t alone") : fmt::format("t, {}", fmt::join(known, ", "))),
-                   near.empty() ? fmt::format("record the signal, or give the column that holds it the name {}.", name)
-                                : fmt::format("if {} is meant, give it the name {}.", near, name));
+                   near.empty()
+                       ? fmt::format("record the signal, or say which column it is, as --column {}=NAME.", name)
+                       : fmt::format("if {} is meant, say so: --column {}={}.", near, name,
+                                     near.find(' ') == std::string::npos ? near : "\"" + near + "\""));
 }
 
 Place Record::place(std::string_view column, std::size_t row) const {
@@ -84,6 +99,11 @@ void Record::replace(std::string_view name, std::vector<double> values) {
   columns_[static_cast<std::size_t>(&column(name) - columns_.data())].values = std::move(values);
 }
 
+void Record::replace(std::string_view name, std::vector<double> values, std::string unit) {
+  replace(name, std::move(values));
+  columns_[static_cast<std::size_t>(&column(name) - columns_.data())].unit = std::move(unit);
+}
+
 void Record::remove(std::string_view name) {
   std::erase_if(columns_, [&](const Column& column) { return equal_ignoring_case(column.name, name); });
 }
@@ -99,8 +119,11 @@ Record Record::slice(RowRange rows) const {
   };
   Record result(cut(time_), sample_time_, {}, header_, source_);
   result.first_row_ = first_row_ + rows.first;
+  result.unreadable_ = unreadable_;
+  result.notes_ = notes_;
+  result.time_name_ = time_name_;
   for (const Column& column : columns_) {
-    result.add({column.name, column.unit, cut(column.values)});
+    result.add({column.name, column.unit, cut(column.values), column.in_file});
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "support/diagnostic.hpp"
@@ -18,6 +19,8 @@ struct Column {
   std::string name{};
   std::string unit{};  ///< as written in the header, `u [V]`; empty where none is given
   std::vector<double> values{};
+  std::string in_file{};  ///< what the file calls it, where that is another name
+  [[nodiscard]] const std::string& name_in_file() const { return in_file.empty() ? name : in_file; }
 };
 
 /// Rows first, first + 1, … last − 1.
@@ -48,7 +51,7 @@ class Record {
 
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] std::vector<std::string> names() const;
-  /// Null where there is no such column.
+  /// Null where there is no such column. Throws InputError where there is one whose cells are no numbers.
   [[nodiscard]] const Column* find(std::string_view name) const;
   /// Throws InputError HY502, which names the columns there are, where there is no such column.
   [[nodiscard]] const Column& column(std::string_view name) const;
@@ -63,9 +66,29 @@ class Record {
   /// Replaces the values of a column. Throws InputError HY502 where there is none, std::invalid_argument on another
   /// number of values.
   void replace(std::string_view name, std::vector<double> values);
+  /// The same in another unit.
+  void replace(std::string_view name, std::vector<double> values, std::string unit);
 
   /// Takes a column away, where there is one.
   void remove(std::string_view name);
+
+  /// Columns of the file that hold no numbers, each with what is wrong. Nobody is troubled by them who does not ask.
+  struct Unreadable {
+    std::string name{};
+    Diagnostic fault{};
+  };
+  [[nodiscard]] const std::vector<Unreadable>& unreadable() const { return unreadable_; }
+  void add_unreadable(std::string name, Diagnostic fault) {
+    unreadable_.push_back({.name = std::move(name), .fault = std::move(fault)});
+  }
+
+  /// What was understood of a file that it does not say outright, a sentence each without capital and point.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  void note(std::string text) { notes_.push_back(std::move(text)); }
+
+  /// What the file calls the column of the time; empty where it has none.
+  [[nodiscard]] const std::string& time_name() const { return time_name_; }
+  void set_time_name(std::string name) { time_name_ = std::move(name); }
 
   /// The rows of a range, with their times as they are.
   [[nodiscard]] Record slice(RowRange rows) const;
@@ -81,6 +104,9 @@ class Record {
   Place header_;
   std::shared_ptr<const SourceText> source_;
   std::size_t first_row_ = 0;  ///< in the source
+  std::vector<Unreadable> unreadable_{};
+  std::vector<std::string> notes_{};
+  std::string time_name_ = "t";
 };
 
 }  // namespace hysteron::records

@@ -9,6 +9,7 @@ std::span<const Command> commands() {
       Command{"check", "Checks diagrams: syntax, names, types, wires, units, loops.", add_check},
       Command{"fmt", "Formats diagrams, and never changes what they mean.", add_fmt},
       Command{"draw", "Draws a diagram as a picture.", add_draw},
+      Command{"record", "Says what was understood of a measured record.", add_record},
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},
@@ -18,6 +19,9 @@ std::span<const Command> commands() {
       Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
       Command{"map", "Prints the registers of a served diagram.", add_map},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+      Command{"explain", "Explains an error by its number.", add_explain},
+      Command{"man", "Prints a manual page.", add_man},
+      Command{"completion", "Prints the completion for a shell.", add_completion},
   };
   return list;
 }

@@ -34,6 +34,7 @@ struct Command {
 Action add_check(CLI::App& app);
 Action add_fmt(CLI::App& app);
 Action add_draw(CLI::App& app);
+Action add_record(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
 Action add_tune(CLI::App& app);
@@ -43,5 +44,8 @@ Action add_serve(CLI::App& app);
 Action add_replay(CLI::App& app);
 Action add_map(CLI::App& app);
 Action add_blocks(CLI::App& app);
+Action add_explain(CLI::App& app);
+Action add_man(CLI::App& app);
+Action add_completion(CLI::App& app);
 
 }  // namespace hysteron::tool

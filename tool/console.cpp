@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "support/errors.hpp"
+#include "support/utf8.hpp"
 #include "tool/commands.hpp"
 
 namespace hysteron::tool {
@@ -14,6 +15,12 @@ void Console::print(std::string_view text) {
   if (write_error_ == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
     write_error_ = errno;
   }
+}
+
+void Console::note(std::string_view file, std::string_view text) {
+  (void)std::fflush(stdout);
+  const auto line = fmt::format("note: {}: {}\n", printable(file), printable(text));
+  (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 void Console::report(const Diagnostics& diagnostics) {

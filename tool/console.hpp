@@ -15,6 +15,9 @@ class Console {
   /// Results. Where the reader of a pipe has gone, what is left is dropped without a word.
   void print(std::string_view text);
 
+  /// What was understood of an input, `note: log.csv: ...`, to the standard error.
+  static void note(std::string_view file, std::string_view text);
+
   /// Diagnostics with the lines that they speak of, and their count.
   void report(const Diagnostics& diagnostics);
 

@@ -27,8 +27,8 @@
 #include "tool/commands.hpp"
 #include "tool/diagnose_report.hpp"
 #include "tool/diagram.hpp"
-#include "tool/measured_records.hpp"
 #include "tool/option_values.hpp"
+#include "tool/record_options.hpp"
 #include "tool/replayed.hpp"
 #include "tool/writable.hpp"
 
@@ -56,6 +56,7 @@ records or command line, and nothing is written.
 
 struct DiagnoseOptions {
   DiagramOptions diagram;
+  RecordOptions record;
   std::vector<std::string> logs;
   std::string output;
   std::vector<std::string> effects;
@@ -208,7 +209,8 @@ int diagnose(DiagnoseOptions options, Console& console) {
   check_effects(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
-  input.records = read_measured_records(options.logs);
+  input.records =
+      read_measured_records(options.logs, with_settings(options.record, input.file.record), program, false, warnings);
   for (const std::string& column : options.ignored) {
     input.file.diagnose.ignore.push_back({.text = column});
   }
@@ -245,6 +247,7 @@ Action add_diagnose(CLI::App& app) {
       ->required()
       ->option_text("LOG.csv")
       ->allow_extra_args(false);
+  add_record_options(app, options->record);
   app.add_option("--params", options->diagram.parameters, "Its tuned parameters.")->required()->option_text("P.toml");
   app.add_option("--out", options->output, "A folder for what is found.")->required()->option_text("DIR");
   app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")

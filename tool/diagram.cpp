@@ -15,7 +15,8 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram) {
   options.add_option("--top", diagram.top, "The block to take, where the file has several that no other contains.")
       ->option_text("NAME");
   options.add_flag("--float32", diagram.float32, "LREAL is a 32-bit float, as on a target without a double.");
-  options.add_flag("--any-order", diagram.any_order, "The order of the statements means nothing: HY402 becomes a warning.");
+  options.add_flag("--any-order", diagram.any_order,
+                   "The order of the statements means nothing: HY402 becomes a warning.");
 }
 
 Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {

@@ -11,8 +11,8 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr double width = 860.0;
-constexpr double height = 300.0;
+constexpr double width = line_plot_width;
+constexpr double height = line_plot_height;
 constexpr double left = 70.0;
 constexpr double right = 20.0;
 constexpr double top = 34.0;

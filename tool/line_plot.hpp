@@ -7,6 +7,10 @@
 
 namespace hysteron::tool {
 
+/// Of a plot, in the unit of the picture.
+inline constexpr double line_plot_width = 860.0;
+inline constexpr double line_plot_height = 300.0;
+
 struct Line {
   std::string name{};
   std::string colour{};  ///< as CSS writes it

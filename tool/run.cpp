@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -17,6 +17,7 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/output_record.hpp"
+#include "tool/record_options.hpp"
 #include "tool/writable.hpp"
 #include "tuning/simulation.hpp"
 
@@ -39,6 +40,7 @@ diagram, the parameters or the record, and nothing is written.
 
 struct RunOptions {
   DiagramOptions diagram;
+  RecordOptions record;
   std::string input;
   std::string output;
   std::vector<std::string> traces;
@@ -145,7 +147,12 @@ int run(const RunOptions& options, Console& console) {
   refuse_ports_named_as_time(diagnostics);
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
-  const records::Record record = records::parse_csv(options.input, log);
+  const RecordOptions reading =
+      options.diagram.parameters.empty()
+          ? options.record
+          : with_settings(options.record, parameters::read_parameter_file(options.diagram.parameters).record);
+  records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
+  fit_to_diagram(record, program, !options.summary, diagnostics);
   settle_sample_time(record, program, diagnostics);
   const Drive drive = drive_from(record, program, {}, diagnostics);
 
@@ -200,6 +207,7 @@ Action add_run(CLI::App& app) {
       ->option_text("PATH")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_record_options(app, options->record);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(run_examples));
   return [options](Console& console) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "tool/compiled.hpp"
@@ -99,7 +99,7 @@ std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<
   if (!std::filesystem::exists(planned.golden, unknown)) {
     return failure(fmt::format("the golden record {} is missing; write it with --update, and look it over", name));
   }
-  const records::Record golden = records::read_csv(name);
+  const records::Record golden = records::read_record(name);
   if (golden.size() != planned.drive.steps) {
     return failure(fmt::format("the golden record {} has {} rows, the case {} steps; write it anew with --update", name,
                                golden.size(), planned.drive.steps));

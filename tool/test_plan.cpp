@@ -9,10 +9,11 @@
 #include "codegen/graph/defaults.hpp"
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/parameters/apply.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "tuning/record_units.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -111,7 +112,8 @@ class CasePlan {
   void settle_steps() {
     Drive& drive = planned_.drive;
     if (!test().csv.text.empty()) {
-      record_ = read_named(test().csv, folder_, records::read_csv);
+      record_ = read_named(test().csv, folder_, [](const std::string& path) { return records::read_record(path); });
+      convert_units(*record_, planned_.program, diagnostics_);
       settle_sample_time(*record_, planned_.program, diagnostics_);
       const auto rows = record_->size();
       if (test().steps.value_or(0) > rows) {

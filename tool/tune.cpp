@@ -15,7 +15,7 @@
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
-#include "tool/measured_records.hpp"
+#include "tool/record_options.hpp"
 #include "tool/tune_report.hpp"
 #include "tool/writable.hpp"
 
@@ -68,6 +68,7 @@ class InterruptWatch {
 
 struct TuneOptions {
   DiagramOptions diagram;
+  RecordOptions record;
   std::vector<std::string> logs;
   std::string output;
   std::string report;
@@ -120,7 +121,8 @@ int tune(const TuneOptions& options, Console& console) {
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
   refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
-  const std::vector<records::Record> records = read_measured_records(options.logs);
+  const std::vector<records::Record> records =
+      read_measured_records(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
 
   OutputErrorFit fit;
@@ -164,6 +166,7 @@ Action add_tune(CLI::App& app) {
       ->required()
       ->option_text("LOG.csv")
       ->allow_extra_args(false);
+  add_record_options(app, options->record);
   app.add_option("--params", options->diagram.parameters, "Parameters, with those to be fitted in tables [fit].")
       ->required()
       ->option_text("P.toml");

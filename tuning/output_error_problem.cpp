@@ -200,7 +200,7 @@ class Builder {
           records_.empty() ? "give a record."
           : records_.front().names().empty()
               ? "record an output beside the time: its only column is t."
-              : fmt::format("name the output in the diagram as the record does; its columns are {}.",
+              : fmt::format("say which column holds it, as --column {}=NAME; the columns are {}.", names.front(),
                             fmt::join(records_.front().names(), ", ")));
     }
   }

@@ -8,7 +8,7 @@
 
 #include "codegen/graph/defaults.hpp"
 #include "codegen/interpreter/machine.hpp"
-#include "records/time_grid.hpp"
+#include "records/time/time_grid.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 
@@ -105,10 +105,11 @@ std::string duration_text(double seconds) {
 }
 
 /// A record that is slower by just a thousand or a million was most likely not written in seconds.
-std::string unit_advice(double ratio) {
-  for (const auto& [name, factor] : {std::pair{"milliseconds", 1e3}, {"microseconds", 1e6}}) {
-    if (std::abs(ratio / factor - 1.0) < 0.01) {
-      return fmt::format("if its column t is in {}, divide it by {:.0f}: times are in seconds. Else ", name, factor);
+std::string unit_advice(double ratio, const std::string& time) {
+  for (const auto& [name, unit, factor] :
+       {std::tuple{"milliseconds", "ms", 1e3}, {"microseconds", "us", 1e6}, {"nanoseconds", "ns", 1e9}}) {
+    if (!time.empty() && std::abs(ratio / factor - 1.0) < 0.05) {
+      return fmt::format("if its times are in {}, read it with --time {}[{}]. Else ", name, time, unit);
     }
   }
   return {};
@@ -187,12 +188,14 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
   if (span_of_deviations(record, stated) <= 1.25 * last_decimal + 0.02 * stated) {
     return;
   }
-  diagnostics.error(error::sample_time_mismatch, record.place("t", 1),
-                    fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded),
-                                graph.name, number_text(stated)),
-                    fmt::format("{}state @ts {} in the diagram, or resample the record to {} s.",
-                                unit_advice(recorded / stated), duration_text(recorded), number_text(stated)),
-                    {{.place = graph.place(graph.sample_time_span), .text = "the sample time of the diagram"}});
+  diagnostics.error(
+      error::sample_time_mismatch, record.place("t", 1),
+      fmt::format("The record has a sample time of {} s, {} one of {} s.", number_text(recorded), graph.name,
+                  number_text(stated)),
+      fmt::format("{}state @ts {} in the diagram, or bring the record to {} s: --resample linear, or hold "
+                  "for encoders and commands.",
+                  unit_advice(recorded / stated, record.time_name()), duration_text(recorded), number_text(stated)),
+      {{.place = graph.place(graph.sample_time_span), .text = "the sample time of the diagram"}});
 }
 
 std::vector<Signal> interpret(const Program& program, const Drive& drive, const std::vector<Wire>& watched,

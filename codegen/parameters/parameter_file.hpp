@@ -92,6 +92,16 @@ struct DiagnoseSettings {
   std::vector<PlacedText> ignore{};  ///< columns of the records that the diagnosis does not look at
 };
 
+/// How records are read where no option says otherwise: keys and texts are those of the tool's options.
+struct RecordSettings {
+  struct Setting {
+    std::string key{};  ///< time, rate, skip, range, rows, decimal, resample; of columns, the name in the diagram
+    PlacedText value{};
+  };
+  std::vector<Setting> settings{};
+  std::vector<Setting> columns{};  ///< below [record.columns]: U = "MAIN.u"
+};
+
 /// A comment of the user, which is kept when the file is written anew.
 struct Comment {
   enum class Where : std::uint8_t {
@@ -112,6 +122,7 @@ struct ParameterFile {
   std::vector<FitSetting> fits{};         ///< in the order of the file
   TuneSettings tune{};
   DiagnoseSettings diagnose{};
+  RecordSettings record{};
   std::vector<Comment> comments{};  ///< in the order of the file
 
   /// The value of a path, without regard to case; null where the file has none.

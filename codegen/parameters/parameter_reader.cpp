@@ -23,31 +23,14 @@ namespace {
 /// Instances inside instances. Further down is no diagram but an attack on the stack.
 constexpr int most_levels = 64;
 
-constexpr std::array<std::string_view, 5> top_keys{"parameters", "initial", "fit", "tune", "diagnose"};
+constexpr std::array<std::string_view, 6> top_keys{"parameters", "initial", "fit", "tune", "diagnose", "record"};
 constexpr std::array<std::string_view, 4> fit_keys{"min", "max", "start", "scale"};
 constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", "test", "initial_states"};
 constexpr std::array<std::string_view, 1> diagnose_keys{"ignore"};
+constexpr std::array<std::string_view, 8> record_keys{"time", "rate",    "skip",     "range",
+                                                      "rows", "decimal", "resample", "columns"};
 /// Below [fit], in small letters: an instance of that name is written in capitals.
 constexpr std::string_view by_record = "record";
-
-std::string_view kind_of(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "a list";
-    case toml::node_type::string:
-      return "a text";
-    case toml::node_type::integer:
-      return "a whole number";
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "true or false";
-    default:
-      return "a date or time";
-  }
-}
 
 constexpr TomlKind parameter_file{error::parameter_file_syntax, error::duplicate_key,
                                   "a table as [parameters.INV] and a value as C1 = 0.05"};
@@ -77,8 +60,10 @@ class Reader {
           read_fits(*table, "", 0, false);
         } else if (key.str() == "tune") {
           read_tune(*table);
-        } else {
+        } else if (key.str() == "diagnose") {
           read_diagnose(*table);
+        } else {
+          read_record(*table);
         }
       }
     }
@@ -372,6 +357,36 @@ class Reader {
     }
   }
 
+  void read_record(const toml::table& table) {
+    for (const auto& [key, node] : table) {
+      if (!known_key(key, node, record_keys, "[record]")) {
+        continue;
+      }
+      if (key.str() != "columns") {
+        take_setting(key, node, result_.record.settings);
+      } else if (const auto* const columns = as_table(key, node)) {
+        for (const auto& [name, column] : *columns) {
+          take_setting(name, column, result_.record.columns);
+        }
+      }
+    }
+  }
+
+  void take_setting(const toml::key& key, const toml::node& node, std::vector<RecordSettings::Setting>& settings) {
+    const auto text = node.value<std::string>();
+    const auto whole = node.value<std::int64_t>();
+    const bool plain = text && std::ranges::none_of(*text, [](char c) { return c >= 0 && c < ' '; });
+    if (!plain && !(whole && !text)) {
+      wrong_type(key, node, "a text", fmt::format("{} = \"...\"", key.str()));
+    } else if (is_path(key.str())) {
+      settings.push_back(
+          {.key = std::string(key.str()), .value = {.text = text ? *text : std::to_string(*whole), .place = at(node)}});
+    } else {
+      diagnostics_.error(error::unknown_key, at(key), fmt::format("\"{}\" is no name of a signal.", key.str()),
+                         "use letters, digits and _, as in the diagram.");
+    }
+  }
+
   std::vector<PlacedText> names_of(const toml::key& key, const toml::node& node, std::string_view example,
                                    bool (*is_name)(std::string_view)) {
     std::vector<PlacedText> names;
@@ -460,22 +475,6 @@ class Reader {
 };
 
 }  // namespace
-
-const ParameterValue* ParameterFile::find(std::string_view path) const {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const ParameterValue& value) { return equal_ignoring_case(value.path, path); });
-  return found == values.end() ? nullptr : &*found;
-}
-
-void ParameterFile::set_initial(const std::string& path, double value) {
-  const auto found =
-      std::ranges::find_if(initial, [&](const ParameterValue& given) { return equal_ignoring_case(given.path, path); });
-  if (found == initial.end()) {
-    initial.push_back({.path = path, .value = value});
-  } else {
-    found->value = value;
-  }
-}
 
 ParameterFile parse_parameter_file(const std::string& file, std::string_view text) {
   return Reader(file, text).read();

@@ -149,6 +149,18 @@ std::string settings_of(const FitSetting& fit) {
   return "{" + text + "}";
 }
 
+/// A basic string of TOML. Control characters stand in no setting: the reader has refused them.
+std::string toml_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result += '\\';
+    }
+    result += c;
+  }
+  return result + "\"";
+}
+
 std::string list_of(const std::vector<PlacedText>& names) {
   std::string text;
   for (const PlacedText& name : names) {
@@ -170,6 +182,22 @@ void append_diagnose(const DiagnoseSettings& diagnose, std::vector<Entry>& entri
     entries.push_back({.key = "DIAGNOSE", .text = "[diagnose]", .remark = {}, .head = true});
     entries.push_back({.key = "DIAGNOSE.IGNORE", .text = "ignore = " + list_of(diagnose.ignore), .remark = {}});
   }
+}
+
+void append_record(const RecordSettings& record, std::vector<Entry>& entries) {
+  const auto add = [&](const std::string& table, const std::vector<RecordSettings::Setting>& settings) {
+    if (settings.empty()) {
+      return;
+    }
+    entries.push_back({.key = in_capitals(table), .text = "[" + table + "]", .remark = {}, .head = true});
+    for (const RecordSettings::Setting& one : settings) {
+      entries.push_back({.key = in_capitals(table + "." + one.key),
+                         .text = one.key + " = " + toml_string(one.value.text),
+                         .remark = {}});
+    }
+  };
+  add("record", record.settings);
+  add("record.columns", record.columns);
 }
 
 void append_tune(const TuneSettings& tune, std::vector<Entry>& entries) {
@@ -305,6 +333,7 @@ std::string parameter_text(const ParameterFile& file, const Remarks& remarks, st
   each_record.append_to(entries);
   append_tune(file.tune, entries);
   append_diagnose(file.diagnose, entries);
+  append_record(file.record, entries);
   text += entries_text(entries, file.comments);
   text.erase(0, text.find_first_not_of('\n'));  // where there is no heading
   return text;

@@ -13,6 +13,7 @@
 #include "codegen/parameters/apply.hpp"
 #include "examples/example.hpp"
 #include "records/csv.hpp"
+#include "records/read.hpp"
 #include "records/data_folder.hpp"
 #include "support/atomic_file.hpp"
 #include "support/names.hpp"
@@ -39,7 +40,7 @@ void set(Graph& graph, std::string_view path, double value) {
 
 std::optional<records::Record> stack_record(std::string_view file) {
   const auto path = records::find_record(fmt::format("piezo-picma-dbo/{}", file), path_of("..").lexically_normal());
-  return path ? std::optional(records::read_csv(path->string())) : std::nullopt;
+  return path ? std::optional(records::read_record(path->string())) : std::nullopt;
 }
 
 double TunedDiagram::train_share() const {
@@ -113,7 +114,7 @@ std::vector<double> run_generated(const Program& program, const records::Record&
   if (std::system(command.c_str()) != 0) {
     throw std::runtime_error("the generated code could not be compiled and run: " + command);
   }
-  const records::Record out = records::read_csv((folder / "out.csv").string());
+  const records::Record out = records::read_record((folder / "out.csv").string());
   return out.column(program.graph.outputs.front().name).values;
 }
 

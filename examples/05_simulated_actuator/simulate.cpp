@@ -9,6 +9,7 @@
 #include "codegen/language/syntax.hpp"
 #include "examples/05_simulated_actuator/simulator.hpp"
 #include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/render.hpp"
 
 namespace {
@@ -50,7 +51,7 @@ void reference(const std::string& out) {
 int play(const std::string& in, const std::string& out) {
   simulated::Settings settings;
   settings.seed = 2;  // not the noise of the identification
-  const Record played = hysteron::records::read_csv(in);
+  const Record played = hysteron::records::read_record(in);
   if (std::abs(played.sample_time() - settings.sample_time) > 1e-6 * settings.sample_time) {
     fmt::print(stderr, "{}: the sample time is {} s, but the simulated machine has {} s\n", in, played.sample_time(),
                settings.sample_time);

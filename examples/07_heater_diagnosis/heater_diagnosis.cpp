@@ -5,7 +5,7 @@
 #include <span>
 
 #include "examples/example.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "records/data_folder.hpp"
 
 namespace hysteron::examples {
@@ -24,7 +24,7 @@ std::optional<records::Record> heater_record() {
   if (!path) {
     return std::nullopt;
   }
-  const records::Record measured = records::read_csv(path->string());
+  const records::Record measured = records::read_record(path->string());
   const std::size_t first = measured.rows_between(400.0, 1e9).first;
   const std::size_t rows = (measured.size() - first + stride - 1) / stride;
   records::Record thin =

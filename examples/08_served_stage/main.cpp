@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 
@@ -124,7 +125,7 @@ void example(const std::filesystem::path& given) {
   const auto folder = std::filesystem::absolute(given);
   fmt::print("In real time, a second: {}", drive(folder / "real_time", false, period));
   fmt::print("On the virtual clock:   {}", drive(folder, true, 20 * period));
-  const records::Record record = records::read_csv((folder / "record.csv").string());
+  const records::Record record = records::read_record((folder / "record.csv").string());
   const auto error = column(record, "ERR");
   fmt::print("Tracking error {:.3f} um RMS, {:.2f} % of the range\n", rms(error),
              100.0 * rms(error) / range(column(record, "REF")));

@@ -12,7 +12,7 @@
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "records/data_folder.hpp"
 #include "tests/support/measured_records.hpp"
 #include "tuning/output_error.hpp"
@@ -33,7 +33,7 @@ class RealRecords : public test::OnMeasuredRecords<> {
   static records::Record record(const std::string& file, std::size_t first, std::size_t rows) {
     const auto path = records::find_record(file, HYSTERON_SOURCE_DIR);
     EXPECT_TRUE(path) << "the data folder lacks " << file;
-    return records::read_csv(path.value().string()).slice({.first = first, .last = first + rows});
+    return records::read_record(path.value().string()).slice({.first = first, .last = first + rows});
   }
 
   /// Tunes what the settings mark, then diagnoses.

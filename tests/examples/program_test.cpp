@@ -8,6 +8,7 @@
 
 #include "codegen/compile.hpp"
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "support/text_file.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"
@@ -113,7 +114,7 @@ TEST_F(Simulate, IdentifiesAlikeEveryTime) {
   ASSERT_EQ(simulate("identify " + folder / "two.csv"), 0);
   EXPECT_EQ(contents_of(folder / "one.csv"), contents_of(folder / "two.csv"));
   EXPECT_THAT(contents_of(folder / "one.csv"), StartsWith("t,u,y\n0,1.8,"));
-  const records::Record record = records::read_csv(folder / "one.csv");
+  const records::Record record = records::read_record(folder / "one.csv");
   EXPECT_EQ(record.size(), 8001U);
   EXPECT_DOUBLE_EQ(record.sample_time(), 0.005);
 }
@@ -121,7 +122,7 @@ TEST_F(Simulate, IdentifiesAlikeEveryTime) {
 TEST_F(Simulate, PlaysAnyVoltageAndKeepsTheOtherColumns) {
   ASSERT_EQ(simulate("reference " + folder / "reference.csv"), 0);
   ASSERT_EQ(simulate("play " + folder / "reference.csv" + " " + folder / "played.csv"), 0);
-  const records::Record played = records::read_csv(folder / "played.csv");
+  const records::Record played = records::read_record(folder / "played.csv");
   EXPECT_THAT(played.names(), testing::ElementsAre("ref", "u", "y"));
   EXPECT_EQ(played.size(), 7200U);
   EXPECT_GT(range(column(played, "y")), 30.0);

@@ -8,6 +8,7 @@
 
 #include "examples/08_served_stage/stage.hpp"
 #include "examples/example.hpp"
+#include "records/read.hpp"
 #include "tests/examples/printed.hpp"
 #include "tests/examples/programs.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -30,7 +31,7 @@ TEST(ServedStage, IsDrivenReplayedAndDiagnosed) {
   // What the feedforward does not know of the stage: the relays make no symmetric loop, and the stage creeps.
   EXPECT_THAT(text, HasSubstr(" names even_nonlinearity, creep:\n"));
   expect_readme_shows("08_served_stage", text.substr(0, std::min(text.find("No picture"), text.find("Records and"))));
-  const records::Record record = records::read_csv((folder / "out/record.csv"));
+  const records::Record record = records::read_record((folder / "out/record.csv"));
   ASSERT_EQ(record.size(), 20'000U);
   const auto y = column(record, "Y");
   const auto ref = column(record, "REF");

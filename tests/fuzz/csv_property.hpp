@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/diagnostic.hpp"
 #include "support/render.hpp"
 
@@ -47,13 +48,13 @@ inline std::string flaw_of_record(const records::Record& record) {
     }
   }
   const auto written = csv_text(record);
-  return csv_text(records::parse_csv("again", written)) == written ? ""
+  return csv_text(records::parse_record("again", written)) == written ? ""
                                                                    : "what was written reads back as something else";
 }
 
 inline ReadingOutcome read_as_record(std::string_view text) {
   try {
-    return {.accepted = true, .flaw = flaw_of_record(records::parse_csv("text", std::string(text)))};
+    return {.accepted = true, .flaw = flaw_of_record(records::parse_record("text", std::string(text)))};
   } catch (const InputError& refused) {
     return {.accepted = false, .flaw = flaw_of_refusal(refused, text, "text", 5)};
   }

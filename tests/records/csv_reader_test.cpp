@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tests/records/refusal.hpp"
 
@@ -24,7 +24,7 @@ void expect_plain(const Record& record) {
 }
 
 TEST(CsvReader, ThePlainForm) {
-  expect_plain(parse_csv("log.csv", "t,u,y\n0,1.5,10\n0.5,-2.25,20\n1.0,3,30\n"));
+  expect_plain(parse_record("log.csv", "t,u,y\n0,1.5,10\n0.5,-2.25,20\n1.0,3,30\n"));
 }
 
 TEST(CsvReader, TheSameInEveryFormThatIsTolerated) {
@@ -39,7 +39,7 @@ TEST(CsvReader, TheSameInEveryFormThatIsTolerated) {
            "U,T,Y\n1.5,0,10\n-2.25,0.5,20\n3,1,30\n",  // t anywhere, capitals
        }) {
     SCOPED_TRACE(text);
-    const Record record = parse_csv("log.csv", std::string(text));
+    const Record record = parse_record("log.csv", std::string(text));
     EXPECT_EQ(record.size(), 3U);
     EXPECT_THAT(record.time(), ElementsAre(0.0, 0.5, 1.0));
     EXPECT_THAT(record.column("u").values, ElementsAre(1.5, -2.25, 3.0));
@@ -49,7 +49,7 @@ TEST(CsvReader, TheSameInEveryFormThatIsTolerated) {
 }
 
 TEST(CsvReader, KeepsUnits) {
-  const auto record = parse_csv("log.csv", "t [s],u [V],y[µm],\"p [bar, gauge]\",n\n0,1,2,3,4\n1,1,2,3,4\n");
+  const auto record = parse_record("log.csv", "t [s],u [V],y[µm],\"p [bar, gauge]\",n\n0,1,2,3,4\n1,1,2,3,4\n");
   EXPECT_THAT(record.names(), ElementsAre("u", "y", "p", "n"));
   EXPECT_EQ(record.column("u").unit, "V");
   EXPECT_EQ(record.column("y").unit, "µm");
@@ -62,12 +62,12 @@ TEST(CsvReader, SaysWhatIsWrongWhereAndHowToMendIt) {
             "HY506 error: log.csv:3:3: Column u holds nan, which is no finite number.\n"
             "    3 | 1,nan\n"
             "      |   ^^^\n"
-            "mend: cut the record before this row, or record the signal again.\n");
+            "mend: read the rows behind it: --rows 3.., or record the signal again.\n");
   EXPECT_EQ(refusal_of("\xEF\xBB\xBFt;µ\r\n0;1\r\n1;on\r\n"),
             "HY505 error: log.csv:3:3: \"on\" in column µ is no number.\n"
             "    3 | 1;on\n"
             "      |   ^^\n"
-            "mend: write a number, such as 1.25e-3, or remove the column.\n");
+            "mend: write a number, such as 1.25e-3, or record the signal again.\n");
 }
 
 struct Refused {
@@ -78,44 +78,46 @@ struct Refused {
 
 TEST(CsvReader, RefusesWhatIsNoRecord) {
   const Refused cases[] = {
-      {"", "HY501 error: log.csv: The file holds no header", "header row"},
-      {"\n\n# only\n", "HY501 error: log.csv: The file holds no header", "header row"},
-      {"t,u\n", "HY501 error: log.csv:1:1: The record has no rows", "two rows"},
-      {"t,u", "HY501 error: log.csv:1:1: The record has no rows", "two rows"},
+      {"", "HY501 error: log.csv: The file holds no row of numbers", "row of names"},
+      {"\n\n# only\n", "HY501 error: log.csv: The file holds no row of numbers", "row of names"},
+      {"t,u\n", "HY501 error: log.csv: The file holds no row of numbers", "row of names"},
       {"t,u\n0,1\n", "HY501 error: log.csv:1:1: The record has one row", "two rows"},
-      {"u,y\n0,1\n1,2\n", "HY502 error: log.csv:1:1: There is no column t", "add the time"},
-      {"t u y\n0 1 2\n1 1 2\n", "HY502 error: log.csv:1:1: There is no column t", "commas, semicolons or tabs"},
-      {"Time,u\n0,1\n1,2\n", "HY502 error: log.csv:1:1: There is no column t", "column Time the name t"},
-      {"t,u,U\n0,1,2\n1,1,2\n", "HY503 error: log.csv:1:5: There are two columns U", "name of its own"},
-      {"t,u,T\n0,1,2\n1,1,2\n", "HY503 error: log.csv:1:5: There are two columns T", "name of its own"},
-      {"t,u\n0,1\n1,2,3\n", "HY504 error: log.csv:3:1: The row has 3 cells where the header names 2 columns",
+      {"u,y\n0,1\n1,2\n", "HY502 error: log.csv:1:1: There is no column of time", "--time u[s]"},
+      {"u,y\n0,1\n0,2\n", "HY502 error: log.csv:1:1: There is no column of time", "--time y[s]"},
+      {"u,y\n1,1\n0,0\n", "HY502 error: log.csv:1:1: There is no column of time", "--rate 1kHz"},
+      {"t,u,U\n0,1,2\n1,1,2\n", "HY503 error: log.csv:1:3: There are two columns u", "--column u=2 or --column u=3"},
+      {"t,u\n0,1\n1,2,3\n", "HY504 error: log.csv:3:1: The row has 3 cells where the line above has 2", "--skip 2"},
+      {"t,u\n0,1\n1,2\n2,3\n3,4,5\n", "HY504 error: log.csv:5:1: The row has 3 cells where the header names 2 columns",
        "one number"},
       {"t,u\n0,1\n1\n", "HY504 error: log.csv:3:1: The row has 1 cell ", "one number"},
-      {"t,u\n0,1,\n1,2,\n", "HY504 error: log.csv:2:1: ", "no separator at the end"},
       {"t,u\n0,000,1,25\n0,005,1,50\n", "HY504 error: log.csv:2:1: ", "decimal points"},
       {"t,u\n0,1\n\n1,2\n", "HY504 error: log.csv:3:1: There is a blank row", "no sample is missing"},
-      {"t,u\n0,1\n1,\n", "HY505 error: log.csv:3:3: Column u has no number in this row", "measured"},
+      {"t,u\n0,1\nEOF\n1,2\n2,3\n", "HY504 error: log.csv:3:1: \"EOF\" stands between rows", "--rows 1..1"},
+      {"t,u\n0,1\n1,\n", "HY505 error: log.csv:3:3: Column u has no number in this row", "--rows 3.."},
       {"t,u\n0,1\n1,0x10\n", "HY505 error: log.csv:3:3: \"0x10\"", "such as"},
       {"t,u\n0,1\n1,1 2\n", "HY505 error: log.csv:3:3: \"1 2\"", "such as"},
       {"t,u\n0,1\n1,\"2\n", R"(HY505 error: log.csv:3:3: ""2")", "such as"},
       {"t;u\n0;1\n1;a,b\n", "HY505 error: log.csv:3:3: \"a,b\"", "such as"},
-      {"t,u\n0,1\n1,-Inf\n", "HY506 error: log.csv:3:3: Column u holds -Inf", "cut the record"},
+      {"t,u\n0,1 V\n1,1 mV\n", "HY505 error: log.csv:3:3: 1 mV is in mV, but column u is in V", "one unit"},
+      {"t,u\n0,1\n1,-Inf\n", "HY506 error: log.csv:3:3: Column u holds -Inf", "--rows"},
       {"t,u\n0,1\n1,1e999\n", "HY506 error: log.csv:3:3: 1e999 in column u is beyond the range", "scale"},
-      {"t,u\nnan,1\n1,2\n", "HY506 error: log.csv:2:1: Column t holds nan", "cut the record"},
-      {"0,1\n1,2\n", "HY509 error: log.csv:1:1: The first row names the columns, but 0 is a number", "header row"},
-      {"0,5;1\n1;2\n", "HY509 error: log.csv:1:1: The first row names the columns, but 0,5 is a number", "header row"},
-      {"# t,u\n0,1\n1,2\n", "HY509 error: log.csv:2:1: ", "begins with #"},
-      {"t,,u\n0,1,2\n1,1,2\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
-      {"t,[V]\n0,1\n1,1\n", "HY509 error: log.csv:1:3: Column 2 has no name", "every column a name"},
-      {"t,u\n0,1\n1,\xB5\n", "HY510 error: log.csv:3:3: The byte 16#B5", "UTF-8"},
+      {"t,u\nnan,1\n1,2\n", "HY506 error: log.csv:2:1: Column t holds nan", "--rows"},
+      {"0,1\n1,2\n", "HY509 error: log.csv:1:1: There is no row of names", "--time 1[s]"},
+      {"0,5;1\n1;2\n", "HY509 error: log.csv:1:1: There is no row of names", "--column U=2"},
       {"t,\"u\"x\"\n0,1\n1,1\n", "HY509 error: log.csv:1:4: The name of the column holds a quote", "letters"},
-      {std::string("t,u\n0,1\n1,\0\n", 11), "HY510 error: log.csv:3:3: The byte 16#00", "UTF-8"},
-      {"\xFF\xFEt\x01,\x01", "HY510 error: log.csv: The file is UTF-16", "CSV UTF-8"},
+      {std::string("t,u\n0,1\n1,\0\n", 11), "HY510 error: log.csv:3:3: The byte 16#00", "CSV"},
       {"t;u\n0,1;1.5\n1;2\n",
        "HY511 error: log.csv:2:5: 1.5 has a decimal point, an earlier number has a decimal comma", "same decimal mark"},
       {"t;u\n0;1.234,5\n1;2\n", "HY511 error: log.csv:2:3: 1.234,5 has more than one decimal mark", "thousands"},
       {"t;u\n0;1,234,567\n1;2\n", "HY511 error: log.csv:2:3: 1,234,567 has more than one decimal mark", "thousands"},
-      {"t [ms],u\n0,1\n1,2\n", "HY512 error: log.csv:1:1: The time is given in ms", "convert"},
+      {"t;u;y\n1;888;2.664\n2;451;4.353\n3;586;758\n",
+       "HY511 error: log.csv:2:7: 2.664 in column y could be read in two ways", "--decimal point"},
+      {"t [V],u\n0,1\n1,2\n", "HY512 error: log.csv:1:1: The time is given in V", "--time t[ms]"},
+      {"{\"t\": [0, 1]}", "HY513 error: log.csv: The file is JSON", "to_csv"},
+      {"time,clock,u\n0,0,1\n1,2,1\n", "HY514 error: log.csv:1:6: Each of the columns time and clock could be the time",
+       "--time time"},
+      {"t_u,u,t_y,y\n0,1,0.5,2\n1,1,1.5,2\n", "HY514 error: log.csv:1:7: Columns t_u and t_y have different times",
+       "--resample linear"},
   };
   for (const auto& [text, beginning, mend] : cases) {
     SCOPED_TRACE(text);
@@ -166,24 +168,24 @@ TEST(CsvReader, AClockThatDriftsIsToldByHowFarItStrays) {
   const std::string said = refusal_of(text);
   EXPECT_THAT(said, HasSubstr("No single step stands out, but the times stray from an even grid by 0."));
   EXPECT_THAT(said, HasSubstr("jitters or drifts"));
-  EXPECT_THAT(said.substr(said.find("mend: ")), HasSubstr("nearest sample of encoders and commands"));
+  EXPECT_THAT(said.substr(said.find("mend: ")), HasSubstr("--resample hold, for encoders and commands"));
 }
 
 TEST(CsvReader, CollectsErrorsButNotWithoutEnd) {
-  std::string text = "t,u,y\n";
-  for (int row = 0; row < 3; ++row) {
-    text += fmt::format("{},x,1\n", row);
+  std::string text = "t,u,y\n0,1,1\n1,1,1\n2,1,1\n3,1,1\n";
+  for (int row = 4; row < 7; ++row) {
+    text += fmt::format("{},1\n", row);
   }
   EXPECT_EQ(refusals_of(text).all().size(), 3U);
-  for (int row = 3; row < 10000; ++row) {
-    text += fmt::format("{},x,nan\n", row);
+  for (int row = 7; row < 10000; ++row) {
+    text += fmt::format("{},1\n", row);
   }
   EXPECT_LE(refusals_of(text).all().size(), 12U);
 }
 
 TEST(CsvReader, AMissingFileIsHY100) {
   try {
-    (void)read_csv("/no/such/log.csv");
+    (void)read_record("/no/such/log.csv");
     FAIL();
   } catch (const InputError& refused) {
     EXPECT_EQ(refused.diagnostics().all().front().number, error::unreadable_file);

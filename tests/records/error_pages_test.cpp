@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tests/records/refusal.hpp"
 #include "tests/support/error_page.hpp"
@@ -34,10 +34,10 @@ TEST(ErrorPages, OfRecords) {
     EXPECT_EQ(page.number, name);
     EXPECT_EQ(page.title, title);
     EXPECT_EQ(refusals_of(bytes_of(page.fails)).all().front().number, number);
-    EXPECT_NO_THROW((void)parse_csv("log.csv", bytes_of(page.mended)));
+    EXPECT_NO_THROW((void)parse_record("log.csv", bytes_of(page.mended)));
     ++pages;
   }
-  EXPECT_EQ(pages, 12);
+  EXPECT_EQ(pages, 14);
 }
 
 }  // namespace

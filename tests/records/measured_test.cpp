@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "records/csv.hpp"
 #include "records/data_folder.hpp"
+#include "records/read.hpp"
 #include "support/diagnostic.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -26,7 +26,7 @@ TEST(MeasuredRecords, AllLoad) {
     const bool other = *within.begin() == "log-shapes" || within.filename().string().starts_with("raw_");
     if (entry.path().extension() == ".csv" && !other) {
       SCOPED_TRACE(entry.path());
-      EXPECT_GT(read_csv(entry.path().string()).size(), *within.begin() == "machines" ? 100U : 1000U);
+      EXPECT_GT(read_record(entry.path().string()).size(), *within.begin() == "machines" ? 100U : 1000U);
       ++read;
     }
   }
@@ -51,11 +51,11 @@ TEST(MeasuredRecords, HaveTheStatedRowsAndSampleTimes) {
                                                 {"cascaded-tanks/tanks_val.csv", 1024, 4.0}}) {
     const auto path = find_record(name, HYSTERON_SOURCE_DIR);
     ASSERT_TRUE(path) << "the folder of measured records lacks " << name;
-    const Record record = read_csv(path->string());
+    const Record record = read_record(path->string());
     EXPECT_EQ(record.size(), rows) << name;
     EXPECT_EQ(record.sample_time(), sample_time) << name;
   }
-  const Record first = read_csv(find_record("piezo-picma-dbo/identify_1hz.csv", HYSTERON_SOURCE_DIR)->string());
+  const Record first = read_record(find_record("piezo-picma-dbo/identify_1hz.csv", HYSTERON_SOURCE_DIR)->string());
   EXPECT_EQ(first.column("Y").values.front(), -123.059139);
   EXPECT_EQ(first.column("U").values.back(), 3.112144);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -39,7 +40,7 @@ TEST(Record, ColumnsByName) {
 }
 
 TEST(Record, AMissingColumnNamesThoseThereAre) {
-  const auto record = parse_csv("log.csv", "# x\nt,ref,position\n0,1,2\n1,1,2\n");
+  const auto record = parse_record("log.csv", "# x\nt,ref,position\n0,1,2\n1,1,2\n");
   try {
     (void)record.column("postion");
     FAIL();
@@ -49,7 +50,7 @@ TEST(Record, AMissingColumnNamesThoseThereAre) {
     EXPECT_EQ(said.place.file, "log.csv");
     EXPECT_EQ(said.place.line, 2U);
     EXPECT_EQ(said.cause, "There is no column postion; the columns are t, ref, position.");
-    EXPECT_EQ(said.mend, "if position is meant, give it the name postion.");
+    EXPECT_EQ(said.mend, "if position is meant, say so: --column postion=position.");
   }
 }
 
@@ -59,7 +60,7 @@ TEST(Record, KnowsWhereItsNumbersStand) {
     return std::vector<std::uint32_t>{place.line, place.column, place.length};
   };
   const auto record =
-      parse_csv("log.csv", "\xEF\xBB\xBF# log\r\nt;u [V];\"y\"\r\n0; 1,5;20\r\n# µ\r\n1;25 ;\"30\"\r\n2;5;6");
+      parse_record("log.csv", "\xEF\xBB\xBF# log\r\nt;u [V];\"y\"\r\n0; 1,5;20\r\n# µ\r\n1;25 ;\"30\"\r\n2;5;6");
   EXPECT_EQ(record.place("u", 0).file, "log.csv");
   EXPECT_THAT(at(record, "U", 0), ElementsAre(3, 4, 3));
   EXPECT_THAT(at(record, "u", 1), ElementsAre(5, 3, 2));
@@ -135,7 +136,7 @@ TEST(CsvWriter, ReadsBackToTheSameBits) {
   }
   const test::ScratchFolder folder;
   write_csv(folder / "out.csv", record);
-  const Record read = read_csv(folder / "out.csv");
+  const Record read = read_record(folder / "out.csv");
   ASSERT_EQ(read.size(), record.size());
   EXPECT_EQ(read.names(), record.names());
   EXPECT_DOUBLE_EQ(read.sample_time(), record.sample_time());

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/diagnostic.hpp"
 #include "support/render.hpp"
 
@@ -13,7 +13,10 @@ namespace hysteron::records {
 
 inline Diagnostics refusals_of(std::string_view csv) {
   try {
-    (void)parse_csv("log.csv", std::string(csv));
+    const Record record = parse_record("log.csv", std::string(csv));
+    for (const Record::Unreadable& one : record.unreadable()) {
+      (void)record.column(one.name);  // a fault of a column is told to those who ask for it
+    }
   } catch (const InputError& refused) {
     return refused.diagnostics();
   }

@@ -1,4 +1,4 @@
-#include "records/time_grid.hpp"
+#include "records/time/time_grid.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "records/csv.hpp"
+#include "records/read.hpp"
 #include "tests/diagnosis/simulated_machine.hpp"
 #include "tests/tool/workbench.hpp"
 
@@ -78,7 +79,7 @@ TEST_F(Diagnose, TheImprovedDiagramChecksRunsAndGenerates) {
   const auto run =
       bench.shell("hysteron run found/improved.st --in log.csv --out out.csv --params found/improved.toml");
   ASSERT_EQ(run.code, 0) << run.err;
-  const auto model = records::parse_csv("out.csv", bench.read("out.csv")).column("V").values;
+  const auto model = records::parse_record("out.csv", bench.read("out.csv")).column("V").values;
   const auto measured = record().column("V").values;
   ASSERT_EQ(model.size(), measured.size());
   double squares = 0.0;
@@ -103,7 +104,7 @@ TEST_F(Diagnose, TheImprovedDiagramHasNoGapLeft) {
 
 TEST_F(Diagnose, TracesAreThoseOfTheRecord) {
   ASSERT_EQ(bench.shell(command).code, 0);
-  const auto traces = records::parse_csv("traces.csv", bench.read("found/traces.csv"));
+  const auto traces = records::parse_record("traces.csv", bench.read("found/traces.csv"));
   EXPECT_THAT(traces.names(), testing::ElementsAre("V_measured", "V_nominal", "V_calibrated", "V_improved"));
   EXPECT_EQ(traces.column("V_measured").values, record().column("V").values);
   const auto nominal = simulate(test::program_of(test::axis()), record())[0];
@@ -243,7 +244,7 @@ TEST_F(Diagnose, WhatClosesALoopIsTakenByEveryCommandAndItsExperimentIsReadyToBe
     const auto again = bench.shell(line);
     EXPECT_LT(again.code, 2) << line << "\n" << again.err;  // 1: tuned, and not to the last digit
   }
-  const auto next = records::parse_csv("next.csv", bench.read("found/next_experiment.csv"));
+  const auto next = records::parse_record("next.csv", bench.read("found/next_experiment.csv"));
   EXPECT_EQ(next.column("WIND").values, std::vector<double>(next.size(), 0.25)) << "where it stood";
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "codegen/compile.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "tests/tool/workbench.hpp"
 #include "tool/compiled.hpp"
 
@@ -83,8 +83,8 @@ TEST(Generate, CompiledItHasTheBitsOfRun) {
         "c++ -std=c++20 -O2 -ffp-contract=off -frounding-math g/main.cpp -o program && "
         "./program < log.csv > generated.csv");
     ASSERT_EQ(built.code, 0) << built.err;
-    const auto run = records::read_csv((bench.path() / "run.csv").string());
-    const auto generated = records::read_csv((bench.path() / "generated.csv").string());
+    const auto run = records::read_record((bench.path() / "run.csv").string());
+    const auto generated = records::read_record((bench.path() / "generated.csv").string());
     for (const char* const name : {"U", "TURN", "N"}) {
       for (std::size_t k = 0; k < run.size(); ++k) {
         const auto bits = [&](const records::Record& record) {

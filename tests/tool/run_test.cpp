@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "tests/tool/workbench.hpp"
 
 namespace hysteron {
@@ -333,7 +333,7 @@ TEST_F(Run, AnyOrderTurnsHiddenDelaysIntoWarnings) {
 
 TEST_F(Run, OutputIsARecord) {
   ASSERT_EQ(bench.shell(std::string(go)).code, 0);
-  const auto record = records::read_csv((bench.path() / "out.csv").string());
+  const auto record = records::read_record((bench.path() / "out.csv").string());
   EXPECT_EQ(record.names(), (std::vector<std::string>{"Y", "BUSY"}));
   EXPECT_EQ(record.column("Y").values, (std::vector<double>{0.002, 0.004, 0.0, -0.001}));
 }

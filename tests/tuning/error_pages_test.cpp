@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> table(const std::string& text) {
 
 /// A record t, u, y through Procedure 1's preparation.
 void fit_record(const std::string& text, double rate_threshold) {
-  const auto record = records::parse_csv("log.csv", text);
+  const auto record = records::parse_record("log.csv", text);
   const auto points =
       hysteresis_points(record.column("u").values, record.column("y").values, record.sample_time(),
                         {.formula = RateFormula::TwoPoint, .rate_threshold = rate_threshold}, "log.csv");

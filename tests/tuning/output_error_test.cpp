@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "codegen/parameters/apply.hpp"
-#include "records/csv.hpp"
+#include "records/read.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/tuning/measured_machines.hpp"
@@ -442,7 +442,7 @@ TEST(OutputError, PagesKeepTheirWord) {
       return first_number([&] {
         const bool is_record = block.kind == "csv";
         fit_output_error(problem_of(gain, is_record ? "[fit.AMP]\nK = {}\n" : block.text,
-                                    {records::parse_csv("log.csv", std::string(is_record ? block.text : log))}));
+                                    {records::parse_record("log.csv", std::string(is_record ? block.text : log))}));
       });
     };
     EXPECT_EQ(run(page.fails), number);

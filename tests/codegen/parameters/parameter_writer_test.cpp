@@ -190,5 +190,21 @@ TEST(ParameterWriter, RefusesWhatNoFileSays) {
   EXPECT_THROW((void)parameter_text(file), std::invalid_argument);
 }
 
+TEST(ParameterWriter, HowRecordsAreReadStaysInTheFile) {
+  const std::string text =
+      "[parameters]\nK = 1.0\n\n[record]\nrate = \"1 kHz\"\nskip = 3\ntime = \"a \\\"b\\\\c[ms]\"\n\n[record.columns]\n"
+      "U = \"MAIN.u\"\nY = 2\n";
+  const ParameterFile file = parse_parameter_file("p.toml", text);
+  const std::string written = parameter_text(file);
+  const ParameterFile again = parse_parameter_file("p.toml", written);
+  ASSERT_EQ(again.record.settings.size(), 3U);
+  EXPECT_EQ(again.record.settings[0].key, "rate");
+  EXPECT_EQ(again.record.settings[1].value.text, "3");
+  EXPECT_EQ(again.record.settings[2].value.text, "a \"b\\c[ms]");
+  ASSERT_EQ(again.record.columns.size(), 2U);
+  EXPECT_EQ(again.record.columns[1].value.text, "2");
+  EXPECT_EQ(parameter_text(again), written);
+}
+
 }  // namespace
 }  // namespace hysteron::parameters

@@ -1,4 +1,4 @@
-#include "records/source_text.hpp"
+#include "records/text/source_text.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -35,18 +35,13 @@ Place SourceText::place_of(const Line& line, const Cell& cell) const {
 }
 
 Place SourceText::place(std::string_view column, std::size_t row) const {
-  std::vector<Cell> names;
-  cut_line(line_at(header).text, separator, names);
-  const auto named = std::find_if(names.begin(), names.end(), [&](const Cell& cell) {
-    return equal_ignoring_case(split_header(cell.text).name, column);
-  });
   const Line line = line_at(rows[row]);
-  if (named == names.end()) {
-    return place_of(line);
-  }
+  const auto named =
+      std::ranges::find_if(names, [&](const std::string& name) { return equal_ignoring_case(name, column); });
   std::vector<Cell> cells;
   cut_line(line.text, separator, cells);
-  return place_of(line, cells[static_cast<std::size_t>(named - names.begin())]);
+  const auto at = static_cast<std::size_t>(named - names.begin());
+  return at < cells.size() ? place_of(line, cells[at]) : place_of(line);
 }
 
 }  // namespace hysteron::records

@@ -1,4 +1,4 @@
-// A line of a CSV file cut into cells.
+// A line of a table of text cut into cells.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,9 @@ struct Cell {
   std::size_t offset = 0;   ///< in bytes from the begin of the line
 };
 
-/// Cuts a line at a separator that stands outside quotes. Reuses the cells' memory.
+/// Cuts a line at a separator that stands outside quotes; the blank separates however often it stands. Reuses the
+/// cells' memory.
 void cut_line(std::string_view line, char separator, std::vector<Cell>& cells);
-
-/// The separator of a header line: the semicolon or the tab where one stands outside quotes and brackets, else the
-/// comma.
-[[nodiscard]] char separator_of(std::string_view header);
 
 /// Whether a line holds nothing: blanks, separators and empty quotes only. Spreadsheets leave such rows at the end.
 [[nodiscard]] bool is_blank(std::string_view line, char separator);
@@ -28,7 +25,7 @@ struct HeaderName {
   std::string unit{};
 };
 
-/// `u [V]` as name `u` and unit `V`.
+/// `u [V]`, `u (V)` and `u / V` as name `u` and unit `V`.
 [[nodiscard]] HeaderName split_header(std::string_view cell);
 
 }  // namespace hysteron::records

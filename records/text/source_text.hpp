@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "records/csv_line.hpp"
+#include "records/text/csv_line.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::records {
@@ -24,14 +24,14 @@ struct SourceText {
   std::string file{};
   std::string text{};
   char separator = ',';
-  std::size_t header = 0;           ///< the offset of the row of names
-  std::vector<std::size_t> rows{};  ///< the offsets of the rows of numbers
+  std::vector<std::string> names{};  ///< of the columns, as the record has them
+  std::vector<std::size_t> rows{};   ///< the offsets of the rows of numbers
 
   [[nodiscard]] Line line_at(std::size_t offset) const;
   [[nodiscard]] Place place_of(const Line& line) const;
   [[nodiscard]] Place place_of(const Line& line, const Cell& cell) const;
 
-  /// The place of a column's number in a row; the row as a whole where the header does not name the column.
+  /// The place of a column's number in a row; the row as a whole where no column has the name.
   [[nodiscard]] Place place(std::string_view column, std::size_t row) const;
 };
 

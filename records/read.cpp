@@ -1,0 +1,323 @@
+#include "records/read.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "records/formats.hpp"
+#include "records/resample.hpp"
+#include "records/table.hpp"
+#include "records/time/time_column.hpp"
+#include "support/errors.hpp"
+#include "support/median.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "support/text_file.hpp"
+
+namespace hysteron::records {
+namespace {
+
+Table table_of(const std::string& file, std::string bytes, const ReadOptions& options) {
+  const Format& format = format_of(file, bytes);
+  if (format.read == nullptr) {
+    throw InputError(error::unread_format, {.file = file},
+                     fmt::format("The file is {}, which is not read.", format.name), std::string(format.mend));
+  }
+  return format.read(file, std::move(bytes), options);
+}
+
+// ---- names ----------------------------------------------------------------------------------------------------------
+
+/// The column that a file calls so; else the one of that number.
+std::size_t column_called(const Table& table, const ColumnName& wanted) {
+  std::vector<std::size_t> found;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    names.push_back(table.columns[i].name);
+    if (equal_ignoring_case(table.columns[i].name, wanted.in_file)) {
+      found.push_back(i);
+    }
+  }
+  const std::string& text = wanted.in_file;
+  std::size_t number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (found.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size() && number >= 1 &&
+      number <= table.columns.size()) {
+    found.push_back(number - 1);
+  }
+  if (found.size() == 1) {
+    return found.front();
+  }
+  if (found.size() > 1) {
+    throw InputError(
+        error::two_readings, table.columns[found[1]].place,
+        fmt::format("{} columns are called {}.", found.size(), wanted.in_file),
+        fmt::format("name it by its number from 1 on, as --column {}={}.", wanted.name, found.front() + 1));
+  }
+  const auto near = nearest_name(wanted.in_file, names);
+  throw InputError(
+      error::missing_column, table.place,
+      fmt::format("There is no column {}; the columns are {}.", wanted.in_file, fmt::join(names, ", ")),
+      near.empty() ? std::string("name one of these with --column.") : fmt::format("did you mean {}?", near));
+}
+
+/// Gives the columns the names that are stated. A column that had the name before is passed over.
+void rename(Table& table, const ReadOptions& options) {
+  std::vector<std::size_t> found;
+  for (const ColumnName& one : options.columns) {
+    found.push_back(column_called(table, one));
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (i != found[k] && equal_ignoring_case(table.columns[i].name, options.columns[k].name)) {
+        table.columns[i].name += fmt::format(" ({})", i + 1);
+      }
+    }
+    TableColumn& column = table.columns[found[k]];
+    column.in_file = column.name;
+    column.name = options.columns[k].name;
+    column.unit = options.columns[k].unit.empty() ? column.unit : options.columns[k].unit;
+    column.is_named = true;
+  }
+}
+
+// ---- time -----------------------------------------------------------------------------------------------------------
+
+[[noreturn]] void refuse_time(const Table& table, const Times& times, std::size_t rows_before) {
+  const TimeFault& fault = *times.grid.fault;
+  constexpr int digits = 6;
+  const auto place = [&](std::size_t row) {
+    return table.source == nullptr ? table.place : table.source->place(times.column, row);
+  };
+  const std::vector<Note> before{{.place = place(fault.row - 1), .text = "the row before"}};
+  Diagnostics list;
+  if (fault.reversed) {
+    const double last = times.seconds[fault.row - 1];
+    const double now = times.seconds[fault.row];
+    const auto [earlier, here] = distinct_texts(last, now, digits);
+    list.error(
+        error::reversed_time, place(fault.row),
+        last == now ? fmt::format("The time {} s stands in two rows.", here)
+                    : fmt::format("The time runs back, from {} s to {} s.", earlier, here),
+        last == now
+            ? "print the time with more digits, or remove the row that was written twice."
+            : fmt::format("read one part alone: --rows 1..{} or --rows {}..; a file of several records is several "
+                          "files.",
+                          rows_before + fault.row, rows_before + fault.row + 1),
+        before);
+    throw InputError(list);
+  }
+  const bool missing = fault.step > 1.5 * fault.usual;
+  std::string mend = fmt::format(
+      "{}read it with --resample linear, where signals are analog and slow, or --resample hold, for encoders and "
+      "commands, which step.",
+      missing ? fmt::format("rows are missing: read one part alone, --rows 1..{}, or bridge the gap: ",
+                            rows_before + fault.row)
+              : std::string());
+  if (fault.coarse) {
+    mend += " The times are printed coarsely: more digits may mend it.";
+  }
+  const auto [here, elsewhere] = distinct_texts(fault.step, fault.usual, digits);
+  list.error(error::uneven_time, place(fault.row),
+             fault.off > 0.0 ? fmt::format("No single step stands out, but the times stray from an even grid by "
+                                           "{:.3g} s, {:.3g} sample times: the clock jitters or drifts.",
+                                           fault.off, fault.off / fault.usual)
+                             : fmt::format("The time goes on by {} s here, elsewhere by {} s.", here, elsewhere),
+             mend, before);
+  throw InputError(list);
+}
+
+// ---- columns --------------------------------------------------------------------------------------------------------
+
+/// What makes a column no signal; nothing where it is one.
+std::optional<Diagnostic> fault_of(const Table& table, std::size_t index) {
+  const TableColumn& column = table.columns[index];
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i != index && equal_ignoring_case(table.columns[i].name, column.name)) {
+      return Diagnostic{.number = error::duplicate_column,
+                        .place = column.place,
+                        .cause = fmt::format("There are two columns {}.", column.name),
+                        .mend = fmt::format("say which by its number: --column {0}={1} or --column {0}={2}.",
+                                            column.name, std::min(i, index) + 1, std::max(i, index) + 1)};
+    }
+  }
+  if (column.fault) {
+    return column.fault;
+  }
+  if (column.kind != CellKind::Number && column.kind != CellKind::Truth) {
+    return Diagnostic{.number = error::text_for_number,
+                      .place = column.place,
+                      .cause = fmt::format("Column {} holds no numbers.", column.name),
+                      .mend = "name another column with --column."};
+  }
+  return std::nullopt;
+}
+
+struct Grid {
+  std::vector<double> seconds{};
+  double sample_time = 0.0;
+};
+
+/// Where a record is resampled to.
+Grid grid_of(const Times& times, const ReadOptions& options) {
+  double first = times.seconds.front();
+  double last = times.seconds.back();
+  for (const Times::Own& own : times.own) {
+    first = std::max(first, own.seconds.front());
+    last = std::min(last, own.seconds.back());
+  }
+  std::vector<double> rising{times.seconds.front()};
+  const double sample_time = options.sample_time.value_or(times.grid.sample_time > 0.0 ? times.grid.sample_time
+                                                          : times.grid.fault           ? times.grid.fault->usual
+                                                                                       : 0.0);
+  return {.seconds = even_times(first, last, sample_time), .sample_time = sample_time};
+}
+
+/// Rows that are further apart than ten of the new ones would be nine tenths invention; most often the unit of the time
+/// is another.
+void refuse_inventing(const Table& table, const Times& times, double sample_time) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.seconds.size(); ++k) {
+    steps.push_back(times.seconds[k] - times.seconds[k - 1]);
+  }
+  const double usual = median(steps);
+  constexpr double most = 10.0;
+  if (usual <= most * sample_time) {
+    return;
+  }
+  const double ratio = usual / sample_time;
+  const std::string unit = std::abs(ratio / 1e3 - 1.0) < 0.05   ? "ms"
+                           : std::abs(ratio / 1e6 - 1.0) < 0.05 ? "us"
+                           : std::abs(ratio / 1e9 - 1.0) < 0.05 ? "ns"
+                                                                : "";
+  throw InputError(
+      error::two_readings, table.place,
+      fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", number_text(usual),
+                  number_text(sample_time)),
+      unit.empty() ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {} Hz.",
+                                 number_text(1.0 / sample_time))
+                   : fmt::format("if its times are in {}, say so: --time {}[{}].", unit, times.column, unit));
+}
+
+Record record_of(Table table, const ReadOptions& options) {
+  rename(table, options);
+  if (table.source != nullptr) {
+    for (const TableColumn& column : table.columns) {
+      table.source->names.push_back(column.name);
+    }
+  }
+  Times times = times_of(table, options);
+  const bool resample = options.resampling != Resampling::None;
+  if (times.grid.fault && (!resample || times.grid.fault->reversed)) {
+    refuse_time(table, times, options.first_row - 1);
+  }
+  std::vector<Column> columns;
+  std::vector<Record::Unreadable> unreadable;
+  ResamplingCost cost;
+  const Grid grid = resample ? grid_of(times, options) : Grid{};
+  if (resample) {
+    refuse_inventing(table, times, grid.sample_time);
+  }
+  if (resample && grid.seconds.size() < 2) {
+    throw InputError(error::record_too_short, table.place, "Resampled, the record has less than two rows.",
+                     "resample to a shorter sample time.");
+  }
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    TableColumn& column = table.columns[i];
+    if (std::ranges::find(times.used, i) != times.used.end()) {
+      continue;
+    }
+    if (auto fault = fault_of(table, i)) {
+      unreadable.push_back({.name = column.name, .fault = std::move(*fault)});
+      continue;
+    }
+    if (equal_ignoring_case(column.name, "t")) {
+      column.name += fmt::format(" ({})", i + 1);  // t is the time; this is a temperature or a torque
+    }
+    std::vector<double> values = std::move(column.values);
+    if (resample) {
+      const auto own = std::ranges::find(times.own, i, &Times::Own::column);
+      const std::span<const double> at = own != times.own.end() ? own->seconds : times.seconds;
+      // A switch is on or off: nothing lies between.
+      const Resampling way = column.kind == CellKind::Truth ? Resampling::Hold : options.resampling;
+      values = resampled(at, values, grid.seconds, way, cost);
+    }
+    columns.push_back(
+        {.name = column.name, .unit = column.unit, .values = std::move(values), .in_file = column.in_file});
+  }
+  if (table.source != nullptr) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      table.source->names[i] = table.columns[i].name;
+    }
+    if (!times.column.empty()) {
+      *std::ranges::find(table.source->names, times.column) = "t";
+    }
+  }
+  // Of a record that was resampled no row stands in the file.
+  Record record(resample ? grid.seconds : std::move(times.seconds),
+                resample ? grid.sample_time : times.grid.sample_time, std::move(columns), table.place,
+                resample ? nullptr : table.source);
+  record.set_time_name(times.column);
+  for (Record::Unreadable& one : unreadable) {
+    record.add_unreadable(std::move(one.name), std::move(one.fault));
+  }
+  for (const auto* const notes : {&table.notes, &times.notes}) {
+    for (const std::string& note : *notes) {
+      record.note(note);
+    }
+  }
+  if (resample) {
+    record.note(fmt::format(
+        "resampled ({}) to {} s: {} rows, {} of them in gaps; a row lies up to {:.3g} s from its sample{}",
+        name_of(options.resampling), number_text(grid.sample_time), cost.rows, cost.made_up, cost.farthest,
+        cost.delay > 0.0 ? fmt::format(", and signals are late by {:.3g} s in the mean", cost.delay) : std::string()));
+  }
+  return record;
+}
+
+}  // namespace
+
+Record parse_record(const std::string& file, std::string bytes, const ReadOptions& options) {
+  if (!options.begin && !options.end) {
+    return record_of(table_of(file, std::move(bytes), options), options);
+  }
+  // Rows outside of the range are not read at all, so that a fault there is none.
+  Table whole = table_of(file, bytes, options);
+  rename(whole, options);
+  const Times times = times_of(whole, options);
+  const double equal = 0.01 * times.grid.sample_time;
+  std::size_t first = 0;
+  while (first < times.seconds.size() && options.begin && times.seconds[first] < *options.begin - equal) {
+    ++first;
+  }
+  std::size_t last = first;
+  while (last < times.seconds.size() && (!options.end || times.seconds[last] < *options.end - equal)) {
+    ++last;
+  }
+  if (last < first + 2) {
+    throw InputError(error::record_too_short, {.file = file},
+                     fmt::format("The range holds {} of the rows, which go from {} s to {} s.", last - first,
+                                 number_text(times.seconds.front()), number_text(times.seconds.back())),
+                     "give a range within the times of the record.");
+  }
+  ReadOptions narrowed = options;
+  narrowed.begin.reset();
+  narrowed.end.reset();
+  narrowed.first_row = options.first_row + first;
+  narrowed.last_row = options.first_row + last - 1;
+  return record_of(table_of(file, std::move(bytes), narrowed), narrowed);
+}
+
+Record read_record(const std::string& path, const ReadOptions& options) {
+  return parse_record(path, read_text_file(path), options);
+}
+
+}  // namespace hysteron::records

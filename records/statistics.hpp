@@ -1,0 +1,25 @@
+// What the numbers of a record say of the sensors behind it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "records/record.hpp"
+
+namespace hysteron::records {
+
+struct ColumnStatistics {
+  double low = 0.0;
+  double high = 0.0;
+  double resolution = 0.0;       ///< the smallest step between two values that occur; 0 of a constant
+  double repeats = 0.0;          ///< the share of rows with exactly the value of the row before
+  std::size_t longest_rest = 0;  ///< rows in the longest run of one value
+};
+
+/// Of at least one value.
+[[nodiscard]] ColumnStatistics statistics_of(std::span<const double> values);
+
+/// s: how far the times of a record lie from its even grid, at most.
+[[nodiscard]] double jitter_of(const Record& record);
+
+}  // namespace hysteron::records

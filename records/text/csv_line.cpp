@@ -1,0 +1,98 @@
+#include "records/text/csv_line.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "support/trimmed.hpp"
+
+namespace hysteron::records {
+namespace {
+
+constexpr bool is_space(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/// A quote opens only at the begin of a cell; `""` inside stays as it is, no number and no sensible name has one.
+std::size_t end_of_cell(std::string_view line, std::size_t begin, char separator) {
+  std::size_t at = begin;
+  while (at < line.size() && line[at] != separator && is_space(line[at])) {
+    ++at;
+  }
+  if (at < line.size() && line[at] == '"') {
+    const auto closing = line.find('"', at + 1);
+    at = closing == std::string_view::npos ? begin : closing;
+  }
+  const auto end = line.find(separator, at);
+  return end == std::string_view::npos ? line.size() : end;
+}
+
+void cut_at_blanks(std::string_view line, std::vector<Cell>& cells) {
+  for (std::size_t at = 0; at < line.size();) {
+    if (is_space(line[at])) {
+      ++at;
+      continue;
+    }
+    const bool quoted = line[at] == '"' && line.find('"', at + 1) != std::string_view::npos;
+    const std::size_t begin = quoted ? at + 1 : at;
+    const std::size_t end = quoted ? line.find('"', begin) : std::min(line.find_first_of(" \t", begin), line.size());
+    cells.push_back({.text = line.substr(begin, end - begin), .offset = begin});
+    at = quoted ? end + 1 : end;
+  }
+}
+
+/// A unit in round brackets is told from a remark by its first character: "y (1)" has none.
+bool may_begin_unit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
+}
+
+}  // namespace
+
+void cut_line(std::string_view line, char separator, std::vector<Cell>& cells) {
+  cells.clear();
+  if (separator == ' ') {
+    cut_at_blanks(line, cells);
+    return;
+  }
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = end_of_cell(line, begin, separator);
+    auto text = trimmed(line.substr(begin, end - begin));
+    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+      text = trimmed(text.substr(1, text.size() - 2));
+    }
+    const std::size_t offset = text.empty() ? begin : static_cast<std::size_t>(text.data() - line.data());
+    cells.push_back({.text = text, .offset = offset});
+    if (end == line.size()) {
+      return;
+    }
+    begin = end + 1;
+  }
+}
+
+bool is_blank(std::string_view line, char separator) {
+  return std::all_of(line.begin(), line.end(), [&](char c) { return is_space(c) || c == separator || c == '"'; });
+}
+
+HeaderName split_header(std::string_view cell) {
+  const auto with = [&](std::size_t end, std::size_t begin, std::size_t length) {
+    return HeaderName{.name = std::string(trimmed(cell.substr(0, end))),
+                      .unit = std::string(trimmed(cell.substr(begin, length)))};
+  };
+  if (cell.ends_with(']')) {
+    if (const auto open = cell.find('['); open != std::string_view::npos) {
+      return with(open, open + 1, cell.size() - open - 2);
+    }
+  }
+  if (cell.ends_with(')')) {
+    if (const auto open = cell.rfind('(');
+        open != std::string_view::npos && open > 0 && may_begin_unit(cell[open + 1])) {
+      return with(open, open + 1, cell.size() - open - 2);
+    }
+  }
+  if (const auto slash = cell.find(" / "); slash != std::string_view::npos && slash > 0) {
+    return with(slash, slash + 3, std::string_view::npos);
+  }
+  return {.name = std::string(cell)};
+}
+
+}  // namespace hysteron::records

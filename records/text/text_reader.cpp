@@ -1,0 +1,384 @@
+#include "records/text/text_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "records/text/encoding.hpp"
+#include "records/text/layout.hpp"
+#include "records/time/time_unit.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::records {
+namespace {
+
+/// More errors than these are not shown: a file of the wrong kind has one in every row.
+constexpr std::size_t most_errors = 10;
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, std::string bytes, const ReadOptions& options) : options_(options) {
+    DecodedText text = decoded(file, std::move(bytes));
+    if (!text.encoding.empty()) {
+      table_.notes.push_back("the text is " + text.encoding);
+    }
+    source_ = std::make_shared<SourceText>(SourceText{.file = file, .text = std::move(text.text)});
+    layout_ = layout_of(*source_, options.skip);
+    source_->separator = layout_.separator;
+    table_.notes.insert(table_.notes.end(), layout_.notes.begin(), layout_.notes.end());
+  }
+
+  Table read() {
+    name_columns();
+    read_rows();
+    stop_on_errors();
+    doubt_points();
+    count_time();
+    table_.rows = source_->rows.size();
+    if (table_.rows < 2) {
+      throw InputError(
+          error::record_too_short, table_.place,
+          fmt::format("The record has {}; the sample time needs two.", table_.rows == 0 ? "no rows" : "one row"),
+          "record at least two rows.");
+    }
+    table_.source = std::move(source_);
+    return std::move(table_);
+  }
+
+ private:
+  void stop_on_errors() const {
+    if (diagnostics_.has_errors()) {
+      throw InputError(diagnostics_);
+    }
+  }
+
+  // ---- names ------------------------------------------------------------------------------------------------------
+
+  void name_columns() {
+    const Line line = source_->line_at(layout_.names.value_or(layout_.first_row));
+    table_.place = source_->place_of(line);
+    std::vector<Cell> cells;
+    cut_line(line.text, layout_.separator, cells);
+    for (std::size_t c = 0; c < layout_.cells; ++c) {
+      TableColumn column;
+      if (c < layout_.columns.size()) {
+        column.name = layout_.columns[c].name;
+        column.unit = layout_.columns[c].unit;
+        const std::size_t cell = layout_.columns[c].cell;
+        column.place = cell < cells.size() ? source_->place_of(line, cells[cell]) : table_.place;
+      }
+      if (column.name.empty()) {
+        column.name = std::to_string(c + 1);
+        column.is_named = false;
+      }
+      if (std::ranges::any_of(column.name + column.unit,
+                              [](char one) { return one == '"' || (one >= 0 && one < ' ') || one == '\x7F'; })) {
+        diagnostics_.error(error::missing_header, column.place,
+                           "The name of the column holds a quote or a control character.",
+                           "use letters, digits and _ in the names of columns, as a diagram does.");
+      }
+      const std::optional<TimeName> time = time_name(column.name);
+      const bool names_next = c + 1 < layout_.columns.size() && is_time_of(column.name, layout_.columns[c + 1].name);
+      const bool may_be_time = layout_.columns.empty() || time || names_next || time_unit(column.unit) ||
+                               (!options_.time.empty() && (equal_ignoring_case(column.name, options_.time) ||
+                                                           options_.time == std::to_string(c + 1)));
+      keeps_stamps_.push_back(may_be_time);
+      table_.columns.push_back(std::move(column));
+    }
+    stop_on_errors();
+    seen_.resize(layout_.cells);
+  }
+
+  // ---- rows -------------------------------------------------------------------------------------------------------
+
+  void read_rows() {
+    const auto rest = std::string_view(source_->text).substr(layout_.first_row);
+    const auto rows = static_cast<std::size_t>(std::ranges::count(rest, '\n')) + 1;
+    for (TableColumn& column : table_.columns) {
+      column.values.reserve(rows);
+    }
+    source_->rows.reserve(rows);
+    for (std::size_t at = layout_.first_row; at < source_->text.size() && diagnostics_.all().size() < most_errors;) {
+      const Line line = source_->line_at(at);
+      at = line.next;
+      if (is_blank(line.text, layout_.separator)) {
+        blank_ = blank_ ? blank_ : line;
+      } else if (!is_comment(line.text, layout_.separator)) {
+        read_row(line);
+      }
+    }
+    if (stray_) {
+      table_.notes.push_back(
+          fmt::format("the end of the file, from \"{}\" on, is no part of the record", stray_->text.substr(0, 40)));
+    }
+  }
+
+  void read_row(const Line& line) {
+    cut_line(line.text, layout_.separator, cells_);
+    const bool ends_with_separator = cells_.size() == layout_.cells + 1 && cells_.back().text.empty();
+    const bool lacks_last_empty = cells_.size() + 1 == layout_.cells && !seen_.back();
+    if (ends_with_separator) {
+      cells_.pop_back();
+    } else if (lacks_last_empty) {
+      cells_.push_back({.offset = line.text.size()});
+    }
+    const bool any_value =
+        std::ranges::any_of(cells_, [&](const Cell& cell) { return is_value(cell_value(cell.text).kind); });
+    if (!any_value || (cells_.size() < layout_.cells && cells_.size() == 1 && !begins_with_number())) {
+      stray_ = stray_ ? stray_ : line;
+      return;
+    }
+    if (stray_) {
+      refuse_stray(line);
+    }
+    if (blank_) {
+      diagnostics_.error(error::ragged_row, source_->place_of(*blank_), "There is a blank row between rows of numbers.",
+                         "remove the row, if no sample is missing there.");
+      blank_.reset();
+    }
+    if (cells_.size() != layout_.cells) {
+      refuse_ragged(line);
+      return;
+    }
+    ++row_;
+    if (row_ < options_.first_row || (options_.last_row && row_ > *options_.last_row)) {
+      return;
+    }
+    source_->rows.push_back(line.offset);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      take_cell(line, cells_[i], i);
+    }
+  }
+
+  [[nodiscard]] bool begins_with_number() const {
+    return !cells_.empty() && is_value(cell_value(cells_.front().text).kind);
+  }
+
+  void refuse_stray(const Line& line) {
+    diagnostics_.error(error::ragged_row, source_->place_of(*stray_),
+                       fmt::format("\"{}\" stands between rows of numbers.", stray_->text.substr(0, 40)),
+                       fmt::format("read one part alone: --rows 1..{} ends before it.", row_),
+                       {{.place = source_->place_of(line), .text = "the numbers go on here"}});
+    stray_.reset();
+  }
+
+  void refuse_ragged(const Line& line) {
+    const std::size_t named = layout_.columns.empty() ? layout_.cells : layout_.columns.size();
+    const bool decimal_commas = layout_.separator == ',' && cells_.size() == 2 * named;
+    diagnostics_.error(error::ragged_row, source_->place_of(line),
+                       fmt::format("The row has {} where {} {}.", counted(cells_.size(), "cell"),
+                                   layout_.names ? "the header names" : "the first row has",
+                                   counted(named, layout_.names ? "column" : "cell")),
+                       decimal_commas ? "write decimal points, or separate the columns by semicolons."
+                                      : "write one number for each column of the header, and no separator at the end.");
+  }
+
+  // ---- cells ------------------------------------------------------------------------------------------------------
+
+  void take_cell(const Line& line, const Cell& cell, std::size_t index) {
+    TableColumn& column = table_.columns[index];
+    const CellValue value = cell_value(cell.text);
+    if (!seen_[index] && value.kind != CellKind::Empty) {
+      seen_[index] = true;
+      const bool holds_numbers =
+          value.kind == CellKind::NotFinite || value.kind == CellKind::OutOfRange || value.kind == CellKind::TwoMarks;
+      column.kind = holds_numbers ? CellKind::Number : value.kind;
+      if (column.unit.empty()) {
+        column.unit = value.unit;
+      }
+    }
+    const bool is_time =
+        column.kind == CellKind::DateTime || column.kind == CellKind::Date || column.kind == CellKind::Clock;
+    const bool same = value.kind == column.kind;
+    if (!is_time) {
+      column.values.push_back(same ? value.number : 0.0);
+    }
+    if (is_time || keeps_stamps_[index]) {
+      column.stamps.push_back(value.stamp);
+      if (same && !value.digits.empty()) {
+        take_digits(column.resolution, value, is_time);
+      }
+      if (same && value.is_ambiguous && !column.ambiguity) {
+        column.ambiguity = std::string(cell.text);
+      }
+    }
+    if (!same) {
+      fault(column, line, cell, value);
+      return;
+    }
+    if (value.kind == CellKind::Number) {
+      check_mark(column, line, cell, value, index);
+      if (!value.unit.empty() && value.unit != column.unit && !column.fault) {
+        column.fault = Diagnostic{.number = error::text_for_number,
+                                  .place = source_->place_of(line, cell),
+                                  .cause = fmt::format("{} is in {}, but column {} is in {}.", cell.text, value.unit,
+                                                       column.name, column.unit),
+                                  .mend = "record one unit in each column."};
+      }
+    }
+  }
+
+  static void take_digits(PrintedResolution& resolution, const CellValue& value, bool is_time) {
+    std::string text(value.digits);
+    std::ranges::replace(text, ',', '.');
+    resolution.take(is_time ? value.digits == "0" ? "1" : "0." + text : text);
+  }
+
+  /// One column has one decimal mark, and so has the file: where both are found, one of them separates thousands.
+  void check_mark(TableColumn& column, const Line& line, const Cell& cell, const CellValue& value, std::size_t index) {
+    if (options_.decimal &&
+        ((value.has_comma && *options_.decimal == '.') || (value.has_point && *options_.decimal == ','))) {
+      fault(column, line, cell, {.kind = CellKind::TwoMarks});
+      return;
+    }
+    if (value.has_point) {
+      pointed_.resize(layout_.cells);
+      Pointed& points = pointed_[index];
+      ++points.count;
+      points.first = points.first ? points.first : std::optional(std::pair(line, cell));
+      points.thousands = points.thousands && looks_grouped(cell.text);
+    } else if (!value.has_comma) {
+      pointed_.resize(layout_.cells);
+      ++pointed_[index].whole;
+    }
+    if (!value.has_comma && !value.has_point) {
+      return;
+    }
+    auto& seen = value.has_comma ? comma_seen_ : point_seen_;
+    const auto& other = value.has_comma ? point_seen_ : comma_seen_;
+    if (seen) {
+      return;
+    }
+    seen = std::pair(line, cell);
+    if (other) {
+      diagnostics_.error(error::ambiguous_decimal_mark, source_->place_of(line, cell),
+                         fmt::format("{} has a decimal {}, an earlier number has a decimal {}.", cell.text,
+                                     value.has_comma ? "comma" : "point", value.has_comma ? "point" : "comma"),
+                         "write all numbers with the same decimal mark, and without separators between thousands.",
+                         {{.place = source_->place_of(other->first, other->second), .text = "the earlier number"}});
+    }
+  }
+
+  /// 2.664, 12.345: three digits behind the point, and no zero alone before it.
+  static bool looks_grouped(std::string_view text) {
+    text = text.substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
+    const auto point = text.find('.');
+    return point >= 1 && point <= 3 && text.size() == point + 4 && text.front() != '0';
+  }
+
+  /// `888;2.664`: where a column has whole numbers below a thousand beside some with three digits behind a point, and
+  /// the separator is none that goes with a decimal point, the point may separate thousands.
+  void doubt_points() {
+    if (options_.decimal || (layout_.separator != ';' && layout_.separator != '\t')) {
+      return;
+    }
+    for (std::size_t i = 0; i < pointed_.size(); ++i) {
+      const Pointed& points = pointed_[i];
+      if (points.count == 0 || points.whole == 0 || !points.thousands || table_.columns[i].fault) {
+        continue;
+      }
+      const auto& [line, cell] = *points.first;
+      std::string without(cell.text);
+      std::erase(without, '.');
+      table_.columns[i].fault = Diagnostic{
+          .number = error::ambiguous_decimal_mark,
+          .place = source_->place_of(line, cell),
+          .cause = fmt::format("{} in column {} could be read in two ways: the point may separate thousands, as in {}.",
+                               cell.text, table_.columns[i].name, without),
+          .mend = "say which: --decimal point; else write the numbers without separators between thousands."};
+    }
+  }
+
+  /// Of a column of counts, the times.
+  void count_time() {
+    if (!layout_.counted) {
+      return;
+    }
+    TableColumn& column = table_.columns.front();
+    for (std::size_t k = 0; k < column.values.size(); ++k) {
+      column.values[k] = layout_.counted->start + layout_.counted->increment * column.values[k];
+      column.stamps[k] = {.fraction = column.values[k]};
+    }
+    column.resolution = {};
+    column.resolution.take(number_text(layout_.counted->increment));
+    table_.notes.push_back(fmt::format("the time is counted from {} s in steps of {} s",
+                                       number_text(layout_.counted->start), number_text(layout_.counted->increment)));
+  }
+
+  void fault(TableColumn& column, const Line& line, const Cell& cell, const CellValue& value) {
+    if (column.fault) {
+      return;
+    }
+    const std::string cut = row_ > 2 ? fmt::format("read the rows before it: --rows 1..{}", row_ - 1)
+                                     : fmt::format("read the rows behind it: --rows {}..", row_ + 1);
+    Diagnostic found{.place = source_->place_of(line, cell)};
+    switch (value.kind) {
+      case CellKind::NotFinite:
+        found.number = error::number_not_finite;
+        found.cause = fmt::format("Column {} holds {}, which is no finite number.", column.name, cell.text);
+        found.mend = cut + ", or record the signal again.";
+        break;
+      case CellKind::OutOfRange:
+        found.number = error::number_not_finite;
+        found.cause = fmt::format("{} in column {} is beyond the range of LREAL.", cell.text, column.name);
+        found.mend = "scale the signal to a unit in which its numbers are of moderate size.";
+        break;
+      case CellKind::TwoMarks:
+        found.number = error::ambiguous_decimal_mark;
+        found.cause = options_.decimal ? fmt::format("{} in column {} has another decimal mark than --decimal states.",
+                                                     cell.text, column.name)
+                                       : fmt::format("{} has more than one decimal mark.", cell.text);
+        found.mend = "write numbers without separators between thousands.";
+        break;
+      case CellKind::Empty:
+        found.number = error::text_for_number;
+        found.cause = fmt::format("Column {} has no number in this row.", column.name);
+        found.mend = cut + ", or record the signal again.";
+        break;
+      default:
+        found.number = error::text_for_number;
+        found.cause = fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
+        found.mend = "write a number, such as 1.25e-3, or record the signal again.";
+    }
+    column.fault = std::move(found);
+  }
+
+  const ReadOptions& options_;
+  Table table_;
+  std::shared_ptr<SourceText> source_;
+  TextLayout layout_;
+  Diagnostics diagnostics_;
+  std::vector<Cell> cells_;
+  std::vector<bool> keeps_stamps_;
+  std::vector<bool> seen_;  ///< by column: whether a cell has told what it holds
+  std::size_t row_ = 0;     ///< of numbers, from 1 on, those that are left out among them
+  std::optional<Line> blank_;
+  std::optional<Line> stray_;  ///< text behind the rows: the end of the file, unless rows follow
+  struct Pointed {
+    std::size_t count = 0;  ///< numbers with a point
+    std::size_t whole = 0;  ///< numbers without a decimal mark
+    bool thousands = true;  ///< all points could separate thousands
+    std::optional<std::pair<Line, Cell>> first{};
+  };
+  std::vector<Pointed> pointed_;
+  std::optional<std::pair<Line, Cell>> comma_seen_;
+  std::optional<std::pair<Line, Cell>> point_seen_;
+};
+
+}  // namespace
+
+Table read_text(const std::string& file, std::string bytes, const ReadOptions& options) {
+  return Reader(file, std::move(bytes), options).read();
+}
+
+}  // namespace hysteron::records

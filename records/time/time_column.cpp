@@ -1,0 +1,368 @@
+#include "records/time/time_column.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "records/time/time_unit.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron::records {
+namespace {
+
+constexpr std::int64_t seconds_a_day = 86400;
+/// Beyond it a number of seconds, or of any unit, is no time since the record began but a date.
+constexpr double longest_record = 1e8;
+
+bool is_clock_kind(CellKind kind) {
+  return kind == CellKind::DateTime || kind == CellKind::Date || kind == CellKind::Clock;
+}
+
+double raw_value(const Stamp& stamp) {
+  return static_cast<double>(stamp.whole) + stamp.fraction;
+}
+
+/// Whether the times of a column go up from row to row; of days, whether they never go back.
+bool rises(const TableColumn& column) {
+  if (column.stamps.size() < 2 || column.fault) {
+    return false;
+  }
+  const bool may_rest = column.kind == CellKind::Date || column.kind == CellKind::Clock;
+  for (std::size_t k = 1; k < column.stamps.size(); ++k) {
+    const Stamp& before = column.stamps[k - 1];
+    const Stamp& now = column.stamps[k];
+    const double step = static_cast<double>(now.whole - before.whole) + (now.fraction - before.fraction);
+    if (!(may_rest ? step >= 0.0 || step < -43200.0 : step > 0.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool same_times(const TableColumn& a, const TableColumn& b) {
+  return a.kind == b.kind && a.unit == b.unit &&
+         std::ranges::equal(a.stamps, b.stamps, [](const Stamp& x, const Stamp& y) {
+           return x.whole == y.whole && x.fraction == y.fraction;
+         });
+}
+
+/// t_u beside u, u_time beside u: the times of one signal.
+bool is_time_of_signal(const Table& table, std::size_t index) {
+  return index + 1 < table.columns.size() && is_time_of(table.columns[index].name, table.columns[index + 1].name);
+}
+
+std::optional<std::size_t> column_called(const Table& table, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(table.columns, [&](const TableColumn& one) { return equal_ignoring_case(one.name, name); });
+  if (found != table.columns.end()) {
+    return static_cast<std::size_t>(found - table.columns.begin());
+  }
+  std::size_t number = 0;
+  const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (read.ec == std::errc() && read.ptr == name.data() + name.size() && number >= 1 &&
+      number <= table.columns.size()) {
+    return number - 1;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> names_of(const Table& table, const std::vector<std::size_t>& columns) {
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const std::size_t i : columns) {
+    names.push_back(table.columns[i].name);
+  }
+  return names;
+}
+
+std::vector<std::size_t> candidates(const Table& table) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    if (is_clock_kind(column.kind) || (column.is_named && time_name(column.name)) || is_time_of_signal(table, i) ||
+        (i == 0 && column.is_named && time_unit(column.unit))) {
+      result.push_back(i);
+    }
+  }
+  return result;
+}
+
+[[noreturn]] void refuse_without_time(const Table& table) {
+  std::vector<std::size_t> rising;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const std::vector<double>& values = table.columns[i].values;
+    const bool rising_values = std::ranges::adjacent_find(values, std::greater_equal{}) == values.end();
+    if (table.columns[i].kind == CellKind::Number && !table.columns[i].fault && rising_values) {
+      rising.push_back(i);
+    }
+  }
+  const bool named = std::ranges::any_of(table.columns, [](const TableColumn& one) { return one.is_named; });
+  std::string mend =
+      "state how many rows a second it has, such as --rate 1kHz, or name its column, as --time NAME[ms].";
+  if (!rising.empty()) {
+    mend = fmt::format(
+        "column {0} rises from row to row: if that is the time, read it with --time {0}[s]; without a "
+        "time, state the rate, such as --rate 1kHz.",
+        table.columns[rising.front()].name);
+  }
+  if (!named) {
+    mend += " The columns have no names: give them, as --column U=2.";
+    throw InputError(error::missing_header, table.place, "There is no row of names above the numbers.", mend);
+  }
+  throw InputError(error::missing_column, table.place, "There is no column of time.", mend);
+}
+
+/// The date and the time of day that make one time.
+std::optional<std::pair<std::size_t, std::size_t>> date_and_clock(const Table& table,
+                                                                  const std::vector<std::size_t>& found) {
+  std::optional<std::size_t> date;
+  std::optional<std::size_t> clock;
+  for (const std::size_t i : found) {
+    if (table.columns[i].kind == CellKind::Date && !date) {
+      date = i;
+    } else if (table.columns[i].kind == CellKind::Clock && !clock) {
+      clock = i;
+    }
+  }
+  return date && clock ? std::optional(std::pair(*date, *clock)) : std::nullopt;
+}
+
+/// The unit of a column of numbers: what is stated, what the header says, what the size of the numbers says, seconds.
+struct FoundUnit {
+  TimeUnit unit{"s", 1, 1};
+  bool is_epoch = false;
+};
+FoundUnit unit_of(const TableColumn& column, const ReadOptions& options) {
+  FoundUnit result;
+  if (is_clock_kind(column.kind)) {
+    return result;
+  }
+  const std::optional<TimeName> name = time_name(column.name);
+  const std::string stated = !options.time_unit.empty() ? options.time_unit : column.unit;
+  const std::optional<TimeUnit> epoch = column.stamps.empty() ? std::nullopt : epoch_unit(column.stamps.front().whole);
+  if (!stated.empty()) {
+    const auto unit = time_unit(stated);
+    if (!unit) {
+      throw InputError(
+          error::time_unit, column.place, fmt::format("The time is given in {}, which is no unit of time.", stated),
+          fmt::format("state it, such as --time {}[ms]; s, ms, us, ns, min, h and d are known.", column.name));
+    }
+    result.unit = *unit;
+  } else if (name && name->unit) {
+    result.unit = *name->unit;
+  } else if (epoch) {
+    result.unit = *epoch;
+  }
+  result.is_epoch = epoch.has_value();
+  return result;
+}
+
+std::string date_text(std::int64_t seconds) {
+  const std::chrono::sys_seconds at{std::chrono::seconds(seconds)};
+  const auto day = std::chrono::floor<std::chrono::days>(at);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(at - day);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), time.hours().count(),
+                     time.minutes().count(), time.seconds().count());
+}
+
+/// The times of a column in its own unit, from its first where they are dates.
+struct Raw {
+  std::vector<double> values{};
+  std::optional<std::string> began{};
+};
+Raw raw_times(const std::vector<Stamp>& stamps, bool is_clock, bool is_date, bool is_epoch) {
+  Raw result;
+  result.values.reserve(stamps.size());
+  const Stamp first = stamps.front();
+  const bool relative = is_clock || is_epoch || std::abs(raw_value(first)) > longest_record;
+  std::int64_t days = 0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    // Midnight: a time of day without a date begins anew.
+    if (is_clock && !is_date && k > 0 && stamps[k].whole < stamps[k - 1].whole - seconds_a_day / 2) {
+      ++days;
+    }
+    result.values.push_back(relative ? static_cast<double>(stamps[k].whole + seconds_a_day * days - first.whole) +
+                                           (stamps[k].fraction - first.fraction)
+                                     : raw_value(stamps[k]));
+  }
+  return result;
+}
+
+/// The times of one column, or of a date and a time of day.
+struct Found {
+  std::vector<double> seconds{};
+  TimeGrid grid{};
+  std::string note{};
+};
+Found times_of_column(const Table& table, std::size_t index, std::optional<std::size_t> date,
+                      const ReadOptions& options) {
+  const TableColumn& column = table.columns[index];
+  for (const std::size_t i : {index, date.value_or(index)}) {
+    if (table.columns[i].fault) {
+      Diagnostics list;
+      list.add(*table.columns[i].fault);
+      throw InputError(list);
+    }
+    const bool one_day = table.columns[i].kind == CellKind::Date &&
+                         std::ranges::all_of(table.columns[i].stamps, [&](const Stamp& stamp) {
+                           return stamp.whole == table.columns[i].stamps.front().whole;
+                         });
+    if (table.columns[i].ambiguity && !one_day &&
+        table.columns[i].stamps.front().whole / seconds_a_day != table.columns[i].stamps.back().whole / seconds_a_day) {
+      throw InputError(error::two_readings, table.columns[i].place,
+                       fmt::format("{} could be a day of two months, and the record goes over midnight.",
+                                   *table.columns[i].ambiguity),
+                       "write dates as 2024-06-03, or cut the record at midnight with --rows.");
+    }
+  }
+  if (!is_clock_kind(column.kind) && column.kind != CellKind::Number) {
+    throw InputError(error::text_for_number, column.place, fmt::format("Column {} holds no times.", column.name),
+                     "name another column with --time, or state the rate with --rate.");
+  }
+  const FoundUnit unit = unit_of(column, options);
+  std::vector<Stamp> stamps = column.stamps;
+  if (date) {
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      stamps[k].whole += table.columns[*date].stamps[k].whole;
+    }
+  }
+  const Raw raw =
+      raw_times(stamps, is_clock_kind(column.kind), date || column.kind == CellKind::DateTime, unit.is_epoch);
+  Found result;
+  result.grid = find_time_grid(raw.values, column.resolution);
+  result.grid.sample_time = unit.unit.seconds(result.grid.sample_time);
+  if (result.grid.fault) {
+    result.grid.fault->step = unit.unit.seconds(result.grid.fault->step);
+    result.grid.fault->usual = unit.unit.seconds(result.grid.fault->usual);
+    result.grid.fault->off = unit.unit.seconds(result.grid.fault->off);
+  }
+  result.seconds = raw.values;
+  for (double& value : result.seconds) {
+    value = unit.unit.seconds(value);
+  }
+  if (unit.is_epoch || date || column.kind == CellKind::DateTime) {
+    const double since = unit.is_epoch ? unit.unit.seconds(raw_value(stamps.front())) : raw_value(stamps.front());
+    constexpr double from_1601_to_1970 = 11'644'473'600.0;
+    const double begin = unit.unit.name == "100 ns" ? since - from_1601_to_1970 : since;
+    result.note = fmt::format(", from {} on", date_text(static_cast<std::int64_t>(std::floor(begin))));
+  }
+  if (unit.unit.name != "s") {
+    result.note = fmt::format(", in {}{}", unit.unit.name, result.note);
+  }
+  return result;
+}
+
+}  // namespace
+
+Times times_of(const Table& table, const ReadOptions& options) {
+  Times result;
+  if (options.rate && options.time.empty()) {
+    const double sample_time = 1.0 / *options.rate;
+    result.grid.sample_time = sample_time;
+    for (std::size_t k = 0; k < table.rows; ++k) {
+      result.seconds.push_back(static_cast<double>(k) / *options.rate);
+    }
+    if (const auto left = candidates(table); !left.empty()) {
+      result.notes.push_back(
+          fmt::format("the time is counted by --rate; not used: {}", fmt::join(names_of(table, left), ", ")));
+      result.used = left;
+    }
+    return result;
+  }
+  std::vector<std::size_t> found;
+  std::optional<std::size_t> date;
+  if (!options.time.empty()) {
+    const auto stated = column_called(table, options.time);
+    if (!stated) {
+      std::vector<std::string> names;
+      for (const TableColumn& column : table.columns) {
+        names.push_back(column.name);
+      }
+      throw InputError(error::missing_column, table.place,
+                       fmt::format("There is no column {}; the columns are {}.", options.time, fmt::join(names, ", ")),
+                       "name one of these with --time, or give its number from 1 on.");
+    }
+    found = {*stated};
+  } else {
+    found = candidates(table);
+    if (const auto pair = date_and_clock(table, found)) {
+      date = pair->first;
+      std::erase(found, *date);
+      result.used.push_back(*date);
+      std::erase_if(found, [&](std::size_t i) { return i != pair->second; });
+    }
+    if (found.size() > 1 && std::ranges::any_of(found, [&](std::size_t i) { return rises(table.columns[i]); })) {
+      std::erase_if(found, [&](std::size_t i) { return !rises(table.columns[i]); });
+    }
+  }
+  if (found.empty()) {
+    refuse_without_time(table);
+  }
+  // Of several: what repeats the first is the same time; a t in seconds is the time of this house; else each may be
+  // the time of the signal behind it.
+  if (found.size() > 1) {
+    std::vector<std::size_t> others;
+    for (const std::size_t i : found) {
+      if (i == found.front() || same_times(table.columns[i], table.columns[found.front()])) {
+        result.used.push_back(i);
+      } else {
+        others.push_back(i);
+      }
+    }
+    const auto exact = std::ranges::find_if(found, [&](std::size_t i) { return table.columns[i].name == "t"; });
+    const auto before_signal = [&](std::size_t i) {
+      return i + 1 < table.columns.size() && std::ranges::find(found, i + 1) == found.end();
+    };
+    const bool one_each = table.columns.size() == 2 * found.size() && std::ranges::all_of(found, before_signal);
+    if (!others.empty() && one_each) {
+      if (options.resampling == Resampling::None) {
+        throw InputError(
+            error::two_readings, table.columns[others.front()].place,
+            fmt::format("Columns {} have different times: each signal has its own.",
+                        fmt::join(names_of(table, found), " and ")),
+            fmt::format(
+                "bring all to one with --resample linear (hold for encoders and commands); or, if they count as "
+                "recorded at once, --time {}.",
+                table.columns[found.front()].name));
+      }
+      for (const std::size_t i : found) {
+        result.own.push_back({.column = i + 1, .seconds = times_of_column(table, i, std::nullopt, options).seconds});
+      }
+      result.used = found;
+    } else if (!others.empty() && exact != found.end()) {
+      result.used = {*exact};
+      found = {*exact};
+    } else if (!others.empty()) {
+      throw InputError(
+          error::two_readings, table.columns[others.front()].place,
+          fmt::format("Each of the columns {} could be the time.", fmt::join(names_of(table, found), " and ")),
+          fmt::format("say which: --time {}.", table.columns[found.front()].name));
+    }
+  }
+  const std::size_t index = found.front();
+  if (std::ranges::find(result.used, index) == result.used.end()) {
+    result.used.push_back(index);
+  }
+  Found times = times_of_column(table, index, date, options);
+  result.seconds = std::move(times.seconds);
+  result.grid = times.grid;
+  result.column = table.columns[index].name;
+  if (result.column != "t" || !times.note.empty()) {
+    result.notes.push_back(fmt::format("the time is column {}{}", result.column, times.note));
+  }
+  return result;
+}
+
+}  // namespace hysteron::records

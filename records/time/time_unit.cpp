@@ -1,0 +1,197 @@
+#include "records/time/time_unit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "support/names.hpp"
+#include "support/trimmed.hpp"
+
+namespace hysteron::records {
+namespace {
+
+struct Spelling {
+  std::string_view text{};
+  TimeUnit unit{};
+};
+
+constexpr TimeUnit second{"s", 1, 1};
+constexpr TimeUnit milli{"ms", 1, 1000};
+constexpr TimeUnit micro{"us", 1, 1'000'000};
+constexpr TimeUnit nano{"ns", 1, 1'000'000'000};
+constexpr TimeUnit filetime{"100 ns", 1, 10'000'000};
+constexpr TimeUnit minute{"min", 60, 1};
+constexpr TimeUnit hour{"h", 3600, 1};
+constexpr TimeUnit day{"d", 86400, 1};
+
+constexpr auto spellings = std::to_array<Spelling>({
+    {"s", second},
+    {"sec", second},
+    {"secs", second},
+    {"second", second},
+    {"seconds", second},
+    {"sekunde", second},
+    {"sekunden", second},
+    {"ms", milli},
+    {"msec", milli},
+    {"msecs", milli},
+    {"millis", milli},
+    {"millisecond", milli},
+    {"milliseconds", milli},
+    {"millisekunden", milli},
+    {"us", micro},
+    {"\xC2\xB5s", micro},  // µ, the micro sign
+    {"\xCE\xBCs", micro},  // μ, the Greek letter
+    {"usec", micro},
+    {"usecs", micro},
+    {"micros", micro},
+    {"microsecond", micro},
+    {"microseconds", micro},
+    {"ns", nano},
+    {"nsec", nano},
+    {"nsecs", nano},
+    {"nanos", nano},
+    {"nanosecond", nano},
+    {"nanoseconds", nano},
+    {"100ns", filetime},
+    {"100 ns", filetime},
+    {"ticks", filetime},
+    {"filetime", filetime},
+    {"min", minute},
+    {"mins", minute},
+    {"minute", minute},
+    {"minutes", minute},
+    {"h", hour},
+    {"hr", hour},
+    {"hour", hour},
+    {"hours", hour},
+    {"d", day},
+    {"day", day},
+    {"days", day},
+});
+
+constexpr auto names = std::to_array<std::string_view>({
+    "t",
+    "time",
+    "zeit",
+    "timestamp",
+    "time stamp",
+    "time_stamp",
+    "zeitstempel",
+    "datetime",
+    "date time",
+    "date_time",
+    "date",
+    "datum",
+    "clock",
+    "x_value",
+    "x-axis",
+    "x axis",
+    "elapsed",
+    "elapsed time",
+    "elapsed_time",
+    "relative time",
+    "relative_time",
+    "rel_time",
+    "rel. time",
+    "time_rel",
+    "temps",
+    "tiempo",
+    "tempo",
+    "epoch",
+    "_time",
+    "__time",
+    "sim_time",
+    "simtime",
+    "simulation time",
+    "logtime",
+    "log_time",
+    "header.stamp",
+    "stamp",
+    "second",
+    "seconds",
+    "uhrzeit",
+    "time of day",
+    "local time",
+    "unix time",
+    "unix_time",
+    "sample time",
+    "recv_time",
+    "time axis",
+    "filetime",
+    "timecode",
+});
+
+bool is_name_of_time(std::string_view name) {
+  return std::ranges::any_of(names, [&](std::string_view known) { return equal_ignoring_case(known, name); });
+}
+
+}  // namespace
+
+std::optional<TimeUnit> time_unit(std::string_view text) {
+  text = trimmed(text);
+  // Of one letter the case counts: S is siemens, H henry, D no unit.
+  const auto found = std::ranges::find_if(spellings, [&](const Spelling& one) {
+    return one.text.size() == 1 ? one.text == text : equal_ignoring_case(one.text, text);
+  });
+  return found == spellings.end() ? std::nullopt : std::optional(found->unit);
+}
+
+std::optional<TimeUnit> epoch_unit(std::int64_t number) {
+  constexpr std::int64_t first = 1'000'000'000;  // September 2001, in seconds
+  constexpr std::int64_t last = 9'999'999'999;
+  // Of FILETIME those are the years 1985 to 2300; it lies between microseconds and nanoseconds.
+  constexpr std::int64_t first_filetime = 121'000'000'000'000'000;
+  constexpr std::int64_t last_filetime = 222'000'000'000'000'000;
+  for (const TimeUnit& unit : {second, milli, micro, nano}) {
+    if (number / unit.under >= first && number / unit.under <= last) {
+      return unit;
+    }
+  }
+  return number >= first_filetime && number <= last_filetime ? std::optional(filetime) : std::nullopt;
+}
+
+std::optional<TimeName> time_name(std::string_view name) {
+  name = trimmed(name);
+  if (is_name_of_time(name)) {
+    return TimeName{.unit = equal_ignoring_case(name, "second") || equal_ignoring_case(name, "seconds")
+                                ? std::optional(second)
+                            : equal_ignoring_case(name, "filetime") ? std::optional(filetime)
+                                                                    : std::nullopt};
+  }
+  // A unit behind the name: Time (s), t_ms, Zeit/ms, time in us, Time, s, timeMs.
+  const auto with = [&](std::string_view base, std::string_view unit) -> std::optional<TimeName> {
+    base = trimmed(base);
+    const auto found = time_unit(unit);
+    return found && is_name_of_time(base) ? std::optional(TimeName{.unit = found}) : std::nullopt;
+  };
+  if (name.ends_with(')') || name.ends_with(']')) {
+    const auto open = name.find_last_of("([");
+    if (open != std::string_view::npos && open > 0) {
+      return with(name.substr(0, open), name.substr(open + 1, name.size() - open - 2));
+    }
+  }
+  for (const std::string_view joint : {"_in_", " in ", "_", "/", ",", " ", "."}) {
+    if (const auto at = name.rfind(joint); at != std::string_view::npos && at > 0) {
+      if (const auto found = with(name.substr(0, at), name.substr(at + joint.size()))) {
+        return found;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_time_of(std::string_view name, std::string_view signal) {
+  if (signal.empty() || name.size() < signal.size() + 2) {
+    return false;
+  }
+  const auto is_joint = [](char c) { return c == '_' || c == ' ' || c == '.'; };
+  const std::size_t rest = name.size() - signal.size() - 1;
+  return (equal_ignoring_case(name.substr(rest + 1), signal) && is_joint(name[rest]) &&
+          time_name(name.substr(0, rest))) ||
+         (equal_ignoring_case(name.substr(0, signal.size()), signal) && is_joint(name[signal.size()]) &&
+          time_name(name.substr(signal.size() + 1)));
+}
+
+}  // namespace hysteron::records

@@ -1,0 +1,121 @@
+// What `hysteron record` says of a file, and what run and tune say of what they take from one.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::string_view plant =
+    "FUNCTION_BLOCK P  (* @ts 1ms *)\n  VAR_INPUT U : LREAL := 0.5; (* @unit V *) END_VAR\n"
+    "  VAR_OUTPUT Y : LREAL; (* @unit um *) END_VAR\n  VAR A : HY_GAIN := (K := 2.0); END_VAR\n"
+    "  A(XIN := U);\n  Y := A.XOUT;\nEND_FUNCTION_BLOCK\n";
+constexpr std::string_view parameters = "[parameters.A]\nK = 1.0\n[fit.A]\nK = {}\n";
+
+TEST(RecordCommand, SaysWhatWasUnderstood) {
+  const test::Workbench bench;
+  bench.write("log.csv", "time [ms];u [mV];state\n0;0;a\n1;250;b\n2;250;c\n3;750;d\n");
+  const auto text = bench.shell("hysteron record log.csv");
+  EXPECT_EQ(text.code, 1) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("4 rows every 0.001 s (1000 a second), from 0 s to 0.003 s"));
+  EXPECT_THAT(text.out, HasSubstr("the time is column time, in ms"));
+  EXPECT_THAT(text.out, HasSubstr("HY505: Column state holds no numbers."));
+  const auto json = bench.shell("hysteron record log.csv --json");
+  const auto found = nlohmann::json::parse(json.out);
+  EXPECT_EQ(found.at("rows"), 4);
+  EXPECT_EQ(found.at("columns").at(0).at("unit"), "mV");
+  EXPECT_EQ(found.at("columns").at(0).at("resolution"), 250.0);
+  EXPECT_NEAR(found.at("columns").at(0).at("repeats").get<double>(), 1.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(found.at("columns").at(0).at("rest"), 0.001);
+}
+
+TEST(RecordCommand, DrawsItsColumns) {
+  const test::Workbench bench;
+  bench.write("log.csv", "t,u,y\n0,0,1\n1,1,2\n2,0,3\n");
+  EXPECT_EQ(bench.shell("hysteron record log.csv --picture log.svg").code, 0);
+  EXPECT_EQ(bench.shell("rsvg-convert log.svg -o log.png").code, 0);
+  EXPECT_EQ(bench.shell("hysteron record log.csv --picture log.csv").code, 2);
+  EXPECT_THAT(bench.read("log.csv"), HasSubstr("t,u,y"));
+}
+
+TEST(RecordCommand, UnitsOfARecordAreConverted) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("p.toml", parameters);
+  bench.write("log.csv", "t,u [mV],y [nm]\n0.000,0,0\n0.001,1000,3000\n0.002,500,1500\n0.003,-200,-600\n");
+  const auto outcome = bench.shell("hysteron tune p.st --log log.csv --params p.toml --out tuned.toml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("note: log.csv: column u is in mV, and was converted to V: times 0.001\n"));
+  EXPECT_THAT(bench.read("tuned.toml"), testing::ContainsRegex("K = (3\\.0|2\\.99999|3\\.00000)"));
+  bench.write("odd.csv", "t,u [furlong],y\n0.000,0,0\n0.001,1,3\n0.002,0.5,1.5\n");
+  EXPECT_THAT(bench.shell("hysteron run p.st --in odd.csv --out out.csv").err,
+              HasSubstr("HY729 warning: odd.csv:2:7: The unit furlong of column u is not known"));
+}
+
+/// A misspelt input keeps its default, and nobody would see it.
+TEST(RecordCommand, InputsWithoutAColumnAndColumnsWithoutAPortAreTold) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("p.toml", parameters);
+  bench.write("log.csv", "t,Uu,y\n0.000,0,1\n0.001,1,1\n0.002,0.5,1\n");
+  for (const std::string command : {"hysteron run p.st --in log.csv --out out.csv",
+                                    "hysteron tune p.st --log log.csv --params p.toml --out tuned.toml"}) {
+    const auto said = bench.shell(command).err;
+    EXPECT_THAT(said, HasSubstr("note: log.csv: input U has no column, and keeps its default 0.5\n")) << command;
+    EXPECT_THAT(said, HasSubstr("note: log.csv: columns not used: Uu\n")) << command;
+  }
+}
+
+TEST(RecordCommand, WhatHoldsForAllRecordsStandsInTheParameterFile) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("p.toml",
+              std::string(parameters) + "[record]\ntime = \"x[ms]\"\n[record.columns]\nU = \"MAIN.u\"\nY = 3\n");
+  bench.write("log.csv", "x,MAIN.u,MAIN.y,z\n0,0,0,1\n1,1,3,1\n2,0.5,1.5,1\n3,-0.2,-0.6,1\n");
+  EXPECT_EQ(bench.shell("hysteron tune p.st --log log.csv --params p.toml --out tuned.toml").code, 0);
+  EXPECT_THAT(bench.read("tuned.toml"), HasSubstr("U = \"MAIN.u\""));
+  const auto run = bench.shell("hysteron run p.st --in log.csv --params tuned.toml --out out.csv --summary");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("RMSE against"));
+  const auto shown = bench.shell("hysteron record log.csv --params p.toml --column U=z");
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("\nU "));
+  bench.write("bad.toml", "[record]\ntmie = \"x\"\n[record.columns]\n\"a b\" = \"x\"\nU = true\n");
+  const auto refused = bench.shell("hysteron record log.csv --params bad.toml").err;
+  EXPECT_THAT(refused, HasSubstr("did you mean time?"));
+  EXPECT_THAT(refused, HasSubstr("no name of a signal"));
+  EXPECT_THAT(refused, HasSubstr("U must be a text"));
+}
+
+TEST(RecordCommand, OptionsThatSayNothingAreRefused) {
+  const test::Workbench bench;
+  bench.write("log.csv", "t,u\n0,0\n1,1\n2,0\n");
+  for (const std::string option :
+       {"--rate 0", "--rate fast", "--rate -1kHz", "--range 2", "--range 8s..2s", "--rows 0..5", "--rows 5..2",
+        "--rows ..", "--column U", "--column =u", "--decimal dot", "--resample spline", "--range 1kg.."}) {
+    const auto outcome = bench.shell("hysteron record log.csv '" + option.substr(0, option.find(' ')) + "' '" +
+                                     option.substr(option.find(' ') + 1) + "'");
+    EXPECT_EQ(outcome.code, 2) << option;
+    EXPECT_THAT(outcome.err, HasSubstr("HY730")) << option;
+  }
+}
+
+/// Whoever resamples from seconds that are milliseconds would make a thousand rows up for each.
+TEST(RecordCommand, ResamplingDoesNotHideAWrongUnitOfTime) {
+  const test::Workbench bench;
+  bench.write("p.st", plant);
+  bench.write("log.csv", "t,u\n0,0\n1,1\n2,0\n3,1\n");
+  const auto outcome = bench.shell("hysteron run p.st --in log.csv --out out.csv --resample linear");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("if its times are in ms, say so: --time t[ms]"));
+  EXPECT_EQ(bench.shell("hysteron run p.st --in log.csv --out out.csv --time 't[ms]'").code, 0);
+}
+
+}  // namespace
+}  // namespace hysteron

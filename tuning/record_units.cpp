@@ -1,0 +1,66 @@
+#include "tuning/record_units.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codegen/graph/unit.hpp"
+#include "support/errors.hpp"
+#include "support/numbers.hpp"
+
+namespace hysteron {
+namespace {
+
+void convert(records::Record& record, const Graph& graph, const Port& port, Diagnostics& diagnostics) {
+  const records::Column* const column = record.find(port.name);
+  if (column == nullptr || column->unit.empty() || port.unit.empty() || column->unit == port.unit) {
+    return;
+  }
+  std::string reason;
+  const std::optional<units::Unit> wanted = units::parse_unit(port.unit, reason);
+  const std::optional<units::Unit> found = units::parse_unit(column->unit, reason);
+  const Note of_port{.place = graph.place(port.span), .text = fmt::format("{} is in {}", port.name, port.unit)};
+  if (!wanted || !found) {
+    diagnostics.warning(
+        error::unit_of_column, record.place(port.name, 0),
+        fmt::format("The unit {} of column {} is not known; its numbers are taken to be in {}.", column->unit,
+                    column->name, port.unit),
+        fmt::format("say the unit, as --column {}={}[{}].", port.name, column->name_in_file(), port.unit), {of_port});
+    return;
+  }
+  const std::optional<double> factor = units::conversion(*found, *wanted);
+  if (!factor) {
+    diagnostics.error(error::unit_of_column, record.place(port.name, 0),
+                      fmt::format("Column {} is in {}, and {} of the diagram in {}.", column->name, column->unit,
+                                  port.name, port.unit),
+                      fmt::format("name another column, or say that its numbers are in {} all the same: --column "
+                                  "{}={}[{}].",
+                                  port.unit, port.name, column->name_in_file(), port.unit),
+                      {of_port});
+    return;
+  }
+  if (units::same_size(*factor, 1.0)) {
+    return;
+  }
+  std::vector<double> values = column->values;
+  for (double& value : values) {
+    value *= *factor;
+  }
+  record.note(fmt::format("column {} is in {}, and was converted to {}: times {}", column->name, column->unit,
+                          port.unit, number_text(*factor)));
+  record.replace(port.name, std::move(values), port.unit);
+}
+
+}  // namespace
+
+void convert_units(records::Record& record, const Program& program, Diagnostics& diagnostics) {
+  for (const auto* const ports : {&program.graph.inputs, &program.graph.outputs}) {
+    for (const Port& port : *ports) {
+      convert(record, program.graph, port, diagnostics);
+    }
+  }
+}
+
+}  // namespace hysteron

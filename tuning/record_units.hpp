@@ -1,0 +1,15 @@
+// The units of a record's columns as those of the diagram's ports.
+#pragma once
+
+#include "codegen/compile.hpp"
+#include "records/record.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron {
+
+/// Converts each column that a port of the diagram is named after to the port's unit, where both state one, and notes
+/// it in the record. Adds HY729, as an error where the units are of different dimensions, as a warning where the
+/// column's is not known: its numbers are taken as they are.
+void convert_units(records::Record& record, const Program& program, Diagnostics& diagnostics);
+
+}  // namespace hysteron

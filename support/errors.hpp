@@ -124,6 +124,7 @@ inline constexpr int graphviz_failed = 741;
 inline constexpr int no_network = 742;
 inline constexpr int not_plcopen = 743;
 inline constexpr int untranslatable_element = 744;
+inline constexpr int fmu_without_binary = 748;
 inline constexpr int run_file_syntax = 801;
 inline constexpr int run_key_twice = 802;
 inline constexpr int unknown_run_key = 803;

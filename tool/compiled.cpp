@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "codegen/backends/c_family/names.hpp"
@@ -19,6 +18,7 @@
 #include "support/sha256.hpp"
 #include "support/text_file.hpp"
 #include "tool/build_cache.hpp"
+#include "tool/compiler.hpp"
 #include "tool/process.hpp"
 
 namespace hysteron::tool {
@@ -28,9 +28,6 @@ namespace fs = std::filesystem;
 
 /// Optimised a little: it is compiled in half the time, and bits do not depend on it.
 constexpr std::array flags{"-std=c++20", "-O1"};
-
-/// More lines than these of what a compiler says do not help.
-constexpr std::size_t most_lines = 12;
 
 /// A program that reads rows of inputs as doubles and writes rows of outputs as doubles: no digit is lost.
 constexpr std::string_view host_head = R"(#include <array>
@@ -50,15 +47,6 @@ int main(int count, char** arguments) {
   switch (program) {
 )";
 
-std::vector<std::string> words_of(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) {
-    words.push_back(word);
-  }
-  return words;
-}
-
 void write_text(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -68,16 +56,6 @@ void write_text(const fs::path& path, const std::string& text) {
                      fmt::format("The file {} cannot be written.", path.string()),
                      "make room on the disk, or set TMPDIR to another folder.");
   }
-}
-
-std::string first_lines(const fs::path& path) {
-  std::istringstream lines(read_text_file(path.string()));
-  std::string text;
-  std::string line;
-  for (std::size_t i = 0; i < most_lines && std::getline(lines, line); ++i) {
-    text += "\n    " + line;
-  }
-  return text.empty() ? "\n    (it says nothing)" : text;
 }
 
 std::string as_member(Type type, std::string_view member, std::size_t column) {
@@ -162,18 +140,12 @@ void compile_sources(const Sources& sources, std::vector<std::string> command, c
 }  // namespace
 
 std::vector<std::string> compiler_command() {
+  if (auto command = find_compiler("CXX", {"c++", "g++", "clang++"})) {
+    return *command;
+  }
   if (const char* const set = std::getenv("CXX"); set != nullptr && *set != '\0') {
-    auto command = words_of(set);
-    if (!command.empty() && find_program(command.front())) {
-      return command;
-    }
     throw InputError(error::no_compiler, {}, fmt::format("CXX is \"{}\", which cannot be run.", set),
                      "set CXX to a C++ compiler, or unset it.");
-  }
-  for (const char* const name : {"c++", "g++", "clang++"}) {
-    if (find_program(name)) {
-      return {name};
-    }
   }
   throw InputError(error::no_compiler, {}, "There is no C++ compiler (c++, g++ or clang++) on the path.",
                    "install one (Debian: apt install g++), set CXX, or leave generated code out with --no-generated.");

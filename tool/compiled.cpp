@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <set>
 #include <utility>
 
@@ -20,6 +18,7 @@
 #include "tool/build_cache.hpp"
 #include "tool/compiler.hpp"
 #include "tool/process.hpp"
+#include "tool/row_program.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -46,17 +45,6 @@ int main(int count, char** arguments) {
   const std::size_t steps = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 0;
   switch (program) {
 )";
-
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) {
-    throw InputError(error::unwritable_file, {.file = path.string()},
-                     fmt::format("The file {} cannot be written.", path.string()),
-                     "make room on the disk, or set TMPDIR to another folder.");
-  }
-}
 
 std::string as_member(Type type, std::string_view member, std::size_t column) {
   return type == Type::Bool ? fmt::format("    in.{} = row[{}] != 0.0;\n", member, column)
@@ -120,9 +108,9 @@ std::string version_of(const std::vector<std::string>& compiler, const fs::path&
 void compile_sources(const Sources& sources, std::vector<std::string> command, const fs::path& executable) {
   const auto folder = executable.parent_path();
   for (const GeneratedFile& header : sources.headers) {
-    write_text(folder / header.name, header.text);
+    write_scratch(folder / header.name, header.text);
   }
-  write_text(folder / "main.cpp", sources.host);
+  write_scratch(folder / "main.cpp", sources.host);
   command.insert(command.end(), flags.begin(), flags.end());
   for (const std::string& flag : words_of(cpp_numeric_flags)) {
     command.push_back(flag);
@@ -182,40 +170,11 @@ CompiledPrograms::CompiledPrograms(const std::vector<GeneratedProgram>& programs
 
 std::vector<Signal> CompiledPrograms::run(std::size_t program, const Drive& drive) const {
   const Shape& shape = shapes_[program];
-  std::vector<double> rows;
-  rows.reserve(drive.steps * shape.inputs);
-  for (std::size_t k = 0; k < drive.steps; ++k) {
-    for (const Signal& input : drive.inputs) {
-      rows.push_back(at_step(input, k));
-    }
-  }
-  std::string bytes(rows.size() * sizeof(double), '\0');
-  if (!rows.empty()) {
-    std::memcpy(bytes.data(), rows.data(), bytes.size());
-  }
-  const TemporaryFolder folder(scratch_);
-  const Streams streams{
-      .input = folder.path() / "in", .output = folder.path() / "out", .errors = folder.path() / "err"};
-  write_text(streams.input, bytes);
-  const int code = run_program({executable_.string(), std::to_string(program), std::to_string(drive.steps)}, streams);
-  const auto written = code == 0 ? read_text_file(streams.output.string()) : std::string();
-  if (code != 0 || written.size() != drive.steps * shape.outputs * sizeof(double)) {
-    throw InputError(error::generated_code_fails, {},
-                     fmt::format("The program generated from {} does not run to its end (exit code {}):{}", shape.name,
-                                 code, first_lines(streams.errors)),
-                     "see whether programs may be run from the folder for temporary files; TMPDIR sets another.");
-  }
-  std::vector<double> results(drive.steps * shape.outputs);
-  if (!results.empty()) {
-    std::memcpy(results.data(), written.data(), written.size());
-  }
-  std::vector<Signal> columns(shape.outputs, Signal(drive.steps));
-  for (std::size_t k = 0; k < drive.steps; ++k) {
-    for (std::size_t i = 0; i < shape.outputs; ++i) {
-      columns[i][k] = results[k * shape.outputs + i];
-    }
-  }
-  return columns;
+  return run_rows({.command = {executable_.string(), std::to_string(program), std::to_string(drive.steps)},
+                   .name = shape.name,
+                   .outputs = shape.outputs,
+                   .scratch = scratch_},
+                  drive);
 }
 
 std::size_t first_difference(const Signal& a, const Signal& b) {

@@ -8,10 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "codegen/backends/c/c.hpp"
-#include "codegen/backends/cpp/cpp.hpp"
-#include "codegen/backends/plcopen/plcopen.hpp"
-#include "codegen/backends/st/st.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -19,8 +15,9 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/generate_host.hpp"
-#include "tool/graphviz.hpp"
 #include "tool/host_sources.hpp"
+#include "tool/target_proof.hpp"
+#include "tool/targets.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -33,6 +30,8 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target c --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
   hysteron generate feedforward.st --target plcopen --body fbd --out plc
+  hysteron generate plant.st --target fmu --fmi 2 --out models
+  hysteron generate feedforward.st --target all --out everywhere
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
@@ -40,60 +39,22 @@ c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAM
 The dialects of st: portable, codesys, twincat, siemens-scl.
 plcopen: NAME.xml, a project in PLCopen TC6 XML. --body st holds the step as text, --body fbd the diagram as a network,
 with the blocks that it calls. Its dialects: portable, openplc (plc.xml), codesys, twincat.
+fmu: NAME.fmu, for co-simulation in FMI 3.0 or 2.0, with sources and, where there is a C compiler, a binary.
+all: each target in a folder of its own, and a table: 2000 steps of random inputs, run in each beside the interpreter.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
 the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
-Exit codes: 0 done; 2 an error in the diagram, the parameters, the run file or the output folder.
+Exit codes: 0 done; 1 done, but a target of all has other bits or could not be run; 2 an error in the diagram, the parameters, the run file or the output folder.
 )";
 
 struct GenerateOptions {
   DiagramOptions diagram;
-  std::string target;
-  std::string dialect;
-  std::string body;
+  TargetOptions target;
   std::string config;
   std::string folder;
   bool host = false;
   bool force = false;
 };
-
-struct Target {
-  std::string_view name;
-  std::vector<GeneratedFile> (*generate)(const Program& program, const GenerateOptions& options);
-};
-
-constexpr std::array targets{
-    Target{"cpp",
-           [](const Program& program, const GenerateOptions& options) {
-             return generate_cpp(program, {.float32 = options.diagram.float32});
-           }},
-    Target{"c",
-           [](const Program& program, const GenerateOptions& options) {
-             return generate_c(program, {.float32 = options.diagram.float32});
-           }},
-    Target{"st",
-           [](const Program& program, const GenerateOptions& options) {
-             return generate_st(program,
-                                {.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
-                                 .float32 = options.diagram.float32});
-           }},
-    Target{"plcopen",
-           [](const Program& program, const GenerateOptions& options) {
-             return generate_plcopen(
-                 program, {.dialect = options.dialect.empty() ? "portable" : options.dialect,
-                           .body = equal_ignoring_case(options.body, "fbd") ? PlcopenBody::Network : PlcopenBody::Text,
-                           .float32 = options.diagram.float32,
-                           .place = [](const std::string& dot) {
-                             return drawn_by_graphviz(dot, "plain", "--body st");
-                           }});
-           }},
-};
-
-const Target* find_target(std::string_view name) {
-  const auto* const found =
-      std::ranges::find_if(targets, [&](const Target& one) { return equal_ignoring_case(one.name, name); });
-  return found == targets.end() ? nullptr : found;
-}
 
 /// Files of these names may be someone's own: a project has a main.cpp and a CMakeLists.txt of its own.
 void refuse_foreign_file(const fs::path& path, const std::string& text) {
@@ -109,51 +70,46 @@ void refuse_foreign_file(const fs::path& path, const std::string& text) {
   }
 }
 
-std::vector<std::string_view> target_names() {
-  std::vector<std::string_view> names;
-  for (const Target& one : targets) {
-    names.push_back(one.name);
-  }
-  return names;
-}
-
-void check_dialect(const GenerateOptions& options) {
-  const bool text = equal_ignoring_case(options.target, "st");
-  const bool project = equal_ignoring_case(options.target, "plcopen");
-  if (!options.dialect.empty() && !text && !project) {
-    throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text or of PLCopen XML.",
-                     "write --target st or --target plcopen, or leave out --dialect.");
-  }
-  if (!options.dialect.empty() && !(text ? st_dialect(options.dialect).has_value() : is_plcopen_dialect(options.dialect))) {
-    throw InputError(
-        error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
-        fmt::format("the dialects are: {}.", text ? std::string(st_dialect_names()) : plcopen_dialect_names()));
-  }
-  if (!options.body.empty() && !project) {
-    throw InputError(error::bad_usage, {}, "A body is chosen for PLCopen XML.",
-                     "write --target plcopen, or leave out --body.");
-  }
-  if (!options.body.empty() && !equal_ignoring_case(options.body, "st") && !equal_ignoring_case(options.body, "fbd")) {
-    throw InputError(error::bad_usage, {}, fmt::format("There is no body {}.", options.body),
-                     "the bodies are: st, fbd.");
-  }
-}
-
 void check_usage(const GenerateOptions& options) {
-  if (options.target.empty() && !options.host) {
+  const TargetOptions& target = options.target;
+  if (target.target.empty() && !options.host) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
   }
-  if (!options.target.empty() && find_target(options.target) == nullptr) {
-    throw InputError(error::bad_usage, {}, fmt::format("There is no target {}.", options.target),
-                     fmt::format("the targets are: {}.", fmt::join(target_names(), ", ")));
+  if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty()) {
+    check_target_options(target);
   }
-  check_dialect(options);
   if (options.host == options.config.empty()) {
     throw InputError(error::bad_usage, {},
                      options.host ? "A host needs its run file." : "A run file is for a host, and none is asked for.",
                      "write --host and --config RUN.toml together.");
   }
+}
+
+/// What was written, by target.
+struct Written {
+  const Target* target = nullptr;
+  std::vector<GeneratedFile> files{};
+};
+
+/// A line for each target: what it is, its bytes, how it was run, and whether its bits are those of the interpreter.
+int print_proofs(const Program& program, const std::vector<Written>& written, const TargetOptions& options,
+                 Console& console) {
+  bool all_equal = true;
+  console.print(
+      fmt::format("{:<9} {:<16} {:>8}  {:<28} {:>6}  {}\n", "target", "language", "bytes", "run", "steps", "bits"));
+  for (const Written& one : written) {
+    std::size_t bytes = 0;
+    for (const GeneratedFile& file : one.files) {
+      bytes += file.text.size();
+    }
+    const TargetProof proof = prove(program, *one.target, one.files, options);
+    all_equal = all_equal && proof.fault.empty();
+    console.print(fmt::format("{:<9} {:<16} {:>8}  {:<28} {:>6}  {}\n", one.target->name, one.target->language, bytes,
+                              proof.way, proof.was_run ? std::to_string(proof.steps) : "-",
+                              proof.fault.empty() ? std::string("equal") : proof.fault));
+  }
+  return all_equal ? exit_ok : exit_findings;
 }
 
 int generate(const GenerateOptions& options, Console& console) {
@@ -163,18 +119,36 @@ int generate(const GenerateOptions& options, Console& console) {
   const bool float32 = options.diagram.float32;
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
+  const bool all = equal_ignoring_case(options.target.target, all_targets);
+  TargetOptions target = options.target;
+  target.float32 = float32;
+  std::vector<Written> written;
+  if (options.host) {
+    written.push_back(
+        {.files = generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})});
+  } else {
+    for (const Target& one : targets()) {
+      if (all || equal_ignoring_case(one.name, target.target)) {
+        written.push_back({.target = &one, .files = one.generate(program, target, warnings)});
+      }
+    }
+  }
   std::vector<OutputFile> files;
-  for (GeneratedFile& file :
-       options.host ? generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})
-                    : find_target(options.target)->generate(program, options)) {
-    files.push_back({.path = fs::path(options.folder) / file.name, .contents = std::move(file.text)});
-    refuse_to_overwrite({.file = files.back().path.string(), .mend = "give another folder for --out."}, inputs);
-    if (!options.force) {
-      refuse_foreign_file(files.back().path, files.back().contents);
+  for (const Written& one : written) {
+    const fs::path folder = all ? fs::path(options.folder) / one.target->name : fs::path(options.folder);
+    for (const GeneratedFile& file : one.files) {
+      files.push_back({.path = folder / file.name, .contents = file.text});
+      refuse_to_overwrite({.file = files.back().path.string(), .mend = "give another folder for --out."}, inputs);
+      if (!options.force) {
+        refuse_foreign_file(files.back().path, files.back().contents);
+      }
     }
   }
   write_files_atomically(files);
   console.report(warnings);
+  if (all) {
+    return print_proofs(program, written, target, console);
+  }
   for (const OutputFile& file : files) {
     if (!file.path.lexically_relative(options.folder).string().starts_with("hysteron/")) {
       console.print(file.path.string() + "\n");
@@ -192,12 +166,17 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text), plcopen (PLCopen XML).")
-      ->option_text("cpp|c|st|plcopen");
-  app.add_option("--dialect", options->dialect, "Of Structured Text or PLCopen XML; portable where none is given.")
+  app.add_option("--target", options->target.target,
+                 "The language: cpp (C++11), c (C99), st (Structured Text), plcopen (PLCopen XML), fmu (FMI); or all, "
+                 "each run beside the interpreter.")
+      ->option_text("cpp|c|st|plcopen|fmu|all");
+  app.add_option("--dialect", options->target.dialect,
+                 "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");
-  app.add_option("--body", options->body, "Of PLCopen XML: the step as text, or the diagram as a network.")
+  app.add_option("--body", options->target.body, "Of PLCopen XML: the step as text, or the diagram as a network.")
       ->option_text("st|fbd");
+  app.add_option("--fmi", options->target.fmi, "The version of FMI of an FMU; 3 where none is given.")
+      ->option_text("2|3");
   app.add_flag("--host", options->host, "A program that runs the step as a cyclic task with Modbus.");
   app.add_option("--config", options->config, "The run file of the host.")->option_text("RUN.toml");
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")

@@ -1,0 +1,321 @@
+#include "tool/target_proof.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/fmu/fmu.hpp"
+#include "codegen/backends/fmu/variables.hpp"
+#include "codegen/graph/names.hpp"
+#include "codegen/import/plcopen_import.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "support/text_file.hpp"
+#include "tool/compiled.hpp"
+#include "tool/compiler.hpp"
+#include "tool/process.hpp"
+#include "tool/row_program.hpp"
+#include "tuning/simulation.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t steps = 2000;
+
+double random_value(const Port& port, std::mt19937_64& random) {
+  const bool bounded = std::isfinite(port.minimum) && std::isfinite(port.maximum);
+  switch (port.type) {
+    case Type::Bool:
+      return static_cast<double>(random() % 2);
+    case Type::Word:
+      return static_cast<double>(random() % 65536);
+    case Type::Int: {
+      const double low = std::max(port.minimum, -1000.0);
+      const double high = std::min(port.maximum, 1000.0);
+      return std::floor(std::uniform_real_distribution<double>(low, high + 1.0)(random));
+    }
+    default:
+      return bounded ? std::uniform_real_distribution<double>(port.minimum, port.maximum)(random)
+                     : std::clamp(std::normal_distribution<double>()(random), port.minimum, port.maximum);
+  }
+}
+
+/// A value stands for some steps, as commands do: else no branch point and no timer would ever be passed.
+Drive random_drive(const Program& program, bool float32) {
+  std::mt19937_64 random(1);
+  Drive drive{.steps = steps, .sample_time = program.graph.sample_time()};
+  for (const Port& port : program.graph.inputs) {
+    Signal signal;
+    while (signal.size() < steps) {
+      double value = random_value(port, random);
+      if (float32 && port.type == Type::Real) {
+        value = static_cast<double>(static_cast<float>(value));
+      }
+      signal.insert(signal.end(), std::min<std::size_t>(1 + random() % 8, steps - signal.size()), value);
+    }
+    drive.inputs.push_back(std::move(signal));
+  }
+  return drive;
+}
+
+// ---- in C -----------------------------------------------------------------------------------------------------------
+
+std::string c_type(Type type) {
+  switch (type) {
+    case Type::Bool:
+      return "bool";
+    case Type::Int:
+      return "int32_t";
+    case Type::Word:
+      return "uint16_t";
+    default:
+      return "double";
+  }
+}
+
+/// Of a cell of a row, what an input takes.
+std::string from_row(Type type, std::size_t column) {
+  return type == Type::Bool ? fmt::format("row[{}] != 0.0", column) : fmt::format("({})row[{}]", c_type(type), column);
+}
+
+constexpr std::string_view main_in_c = R"(
+int main(void) {
+  static double row[INPUTS + 1];
+  static double results[OUTPUTS + 1];
+  start();
+  for (long k = 0; k < STEPS; ++k) {
+    if (fread(row, sizeof(double), INPUTS, stdin) != INPUTS) {
+      return 3;
+    }
+    step(row, results, k);
+    if (fwrite(results, sizeof(double), OUTPUTS, stdout) != OUTPUTS) {
+      return 4;
+    }
+  }
+  return fflush(stdout) == 0 ? 0 : 4;
+}
+)";
+
+std::string sizes(const Graph& graph) {
+  return fmt::format("#define INPUTS {}u\n#define OUTPUTS {}u\n#define STEPS {}L\n", graph.inputs.size(),
+                     graph.outputs.size(), steps);
+}
+
+std::string main_of_c(const Graph& graph) {
+  const std::string name = namespace_identifier(graph.name);
+  const auto inputs = port_members(graph.inputs);
+  const auto outputs = port_members(graph.outputs);
+  std::string text = fmt::format(
+      "#include <stdio.h>\n#include \"{0}.h\"\n{1}"
+      "static {0}_params params;\nstatic {0}_state state;\nstatic {0}_in in;\nstatic {0}_out out;\n"
+      "static void start(void) {{\n  {0}_defaults(&params, &in);\n  {0}_reset(&state, &params);\n}}\n"
+      "static void step(const double *row, double *results, long k) {{\n  (void)row;\n  (void)results;\n  (void)k;\n",
+      name, sizes(graph));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    text += fmt::format("  in.{} = {};\n", inputs[i], from_row(graph.inputs[i].type, i));
+  }
+  text += fmt::format("  {}_step(&params, &state, &in, &out);\n", name);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    text += fmt::format("  results[{}] = (double)out.{};\n", i, outputs[i]);
+  }
+  return text + "}\n" + std::string(main_in_c);
+}
+
+/// The functions of FMI by type: fmi3SetFloat64, fmi2GetReal.
+std::string fmi_type(Type type, bool two, bool float32) {
+  switch (type) {
+    case Type::Bool:
+      return "Boolean";
+    case Type::Int:
+      return two ? "Integer" : "Int32";
+    case Type::Word:
+      return two ? "Integer" : "UInt16";
+    default:
+      return two ? "Real" : float32 ? "Float32" : "Float64";
+  }
+}
+
+std::string value_type(Type type, bool two, bool float32) {
+  const std::string name = fmi_type(type, two, float32);
+  return name == "Boolean"   ? (two ? "int" : "bool")
+         : name == "Integer" ? "int"
+         : name == "Int32"   ? "int32_t"
+         : name == "UInt16"  ? "uint16_t"
+         : name == "Float32" ? "float"
+                             : "double";
+}
+
+std::string main_of_fmu(const Program& program, const FmuContents& contents, const TargetOptions& options) {
+  const bool two = options.fmi == "2";
+  const std::string prefix = two ? "fmi2" : "fmi3";
+  const auto source = std::ranges::find_if(contents.sources, [&](const std::string& one) {
+    return one.find(two ? "_fmi2.c" : "_fmi3.c") != std::string::npos;
+  });
+  const std::string instantiate =
+      two ? fmt::format("fmi2Instantiate(\"one\", fmi2CoSimulation, FMU_TOKEN, \"\", &callbacks, 0, 0)")
+          : std::string(
+                "fmi3InstantiateCoSimulation(\"one\", FMU_TOKEN, \"\", false, false, false, false, 0, 0, 0, 0, 0)");
+  std::string text = fmt::format(
+      "#include <stdio.h>\n#include \"{}\"\n{}"
+      "static void *one;\n{}"
+      "static void start(void) {{\n  one = {};\n  if (one == 0) exit(5);\n{}}}\n"
+      "static void step(const double *row, double *results, long k) {{\n  (void)row;\n  (void)results;\n",
+      source == contents.sources.end() ? std::string() : *source, sizes(program.graph),
+      two ? "static const fmi2CallbackFunctions callbacks = {0, calloc, free, 0, 0};\n" : "", instantiate,
+      two ? "  fmi2SetupExperiment(one, 0, 0.0, 0.0, 0, 0.0);\n  fmi2EnterInitializationMode(one);\n"
+            "  fmi2ExitInitializationMode(one);\n"
+          : "  fmi3EnterInitializationMode(one, false, 0.0, 0.0, false, 0.0);\n  fmi3ExitInitializationMode(one);\n");
+  const auto variables = fmu_variables(program, options.float32);
+  std::size_t input = 0;
+  std::size_t output = 0;
+  std::string gets;
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    const FmuVariable& variable = variables[v];
+    const std::string type = value_type(variable.type, two, options.float32);
+    const std::string tail = two ? "" : ", 1";
+    if (variable.role == FmuVariable::Role::Input) {
+      text += fmt::format(
+          "  {{\n    const unsigned int reference = {}u;\n    const {} value = ({}){};\n    "
+          "if ({}Set{}(one, &reference, 1, &value{}) != 0) exit(6);\n  }}\n",
+          v + 1, type, type, from_row(variable.type, input++), prefix, fmi_type(variable.type, two, options.float32),
+          tail);
+    } else if (variable.role == FmuVariable::Role::Output) {
+      gets += fmt::format(
+          "  {{\n    const unsigned int reference = {}u;\n    {} value;\n    "
+          "if ({}Get{}(one, &reference, 1, &value{}) != 0) exit(7);\n    results[{}] = (double)value;\n  }}\n",
+          v + 1, type, prefix, fmi_type(variable.type, two, options.float32), tail, output++);
+    }
+  }
+  text += two ? "  if (fmi2DoStep(one, (double)k * FMU_PERIOD, FMU_PERIOD, 1) != 0) exit(8);\n"
+              : "  bool event, terminate, early;\n  double reached;\n"
+                "  if (fmi3DoStep(one, (double)k * FMU_PERIOD, FMU_PERIOD, true, &event, &terminate, &early, &reached) "
+                "!= 0) "
+                "exit(8);\n";
+  return text + gets + "}\n" + std::string(main_in_c);
+}
+
+std::vector<Signal> run_in_c(const Program& program, const std::vector<GeneratedFile>& files,
+                             const std::vector<std::string>& sources, const std::string& main, const Drive& drive,
+                             std::string& way) {
+  const auto compiler = find_compiler("CC", {"cc", "gcc", "clang"});
+  if (!compiler) {
+    throw InputError(error::no_compiler, {}, "There is no C compiler (cc, gcc or clang) on the path.",
+                     "install one (Debian: apt install gcc), or set CC.");
+  }
+  way = fmt::format("compiled by {}", fs::path(compiler->front()).filename().string());
+  const TemporaryFolder folder(fs::temp_directory_path());
+  for (const GeneratedFile& file : files) {
+    fs::create_directories((folder.path() / file.name).parent_path());
+    write_scratch(folder.path() / file.name, file.text);
+  }
+  write_scratch(folder.path() / "main_of_proof.c", main);
+  auto command = *compiler;
+  command.insert(command.end(), {"-std=c99", "-O1", "-I" + folder.path().string()});
+  for (const std::string& flag : words_of(cpp_numeric_flags)) {
+    command.push_back(flag);
+  }
+  for (const std::string& source : sources) {
+    command.push_back((folder.path() / source).string());
+  }
+  const fs::path executable = folder.path() / "proof";
+  const fs::path errors = folder.path() / "errors";
+  command.insert(command.end(), {(folder.path() / "main_of_proof.c").string(), "-o", executable.string(), "-lm"});
+  if (const int code = run_program(command, {.errors = errors}); code != 0) {
+    throw InputError(error::generated_code_fails, {},
+                     fmt::format("The compiler {} refuses the generated code (exit code {}):{}", command.front(), code,
+                                 first_lines(errors)),
+                     "set CC to a compiler for C99.");
+  }
+  return run_rows({.command = {executable.string()},
+                   .name = program.graph.name,
+                   .outputs = program.graph.outputs.size(),
+                   .scratch = folder.path()},
+                  drive);
+}
+
+// ---- read back ------------------------------------------------------------------------------------------------------
+
+/// A text that was generated, as a diagram; inputs that the diagram has not are parameters, and keep their defaults.
+std::vector<Signal> run_read_back(const Program& program, const std::string& text, const Drive& drive, bool float32) {
+  const Program again = compile_text(text);
+  Drive given{.steps = drive.steps, .sample_time = drive.sample_time};
+  for (const Port& input : again.graph.inputs) {
+    const auto same = std::ranges::find_if(program.graph.inputs,
+                                           [&](const Port& one) { return language::same_name(one.name, input.name); });
+    given.inputs.push_back(same == program.graph.inputs.end()
+                               ? Signal{input.preset}
+                               : drive.inputs[static_cast<std::size_t>(same - program.graph.inputs.begin())]);
+  }
+  std::vector<Wire> watched;
+  for (const Port& output : program.graph.outputs) {
+    const Port* const same = find_port(again.graph.outputs, output.name);
+    if (same == nullptr) {
+      throw InputError(error::unknown_signal, {}, fmt::format("The text read back has no output {}.", output.name),
+                       "rename the output: the language of the target keeps its name for itself.");
+    }
+    watched.push_back(same->wire);
+  }
+  return interpret(again, given, watched, float32);
+}
+
+}  // namespace
+
+TargetProof prove(const Program& program, const Target& target, const std::vector<GeneratedFile>& files,
+                  const TargetOptions& options) {
+  const Drive drive = random_drive(program, options.float32);
+  TargetProof proof{.steps = drive.steps, .outputs = program.graph.outputs.size()};
+  std::vector<Signal> found;
+  try {
+    if (target.name == "cpp") {
+      proof.way = fmt::format("compiled by {}", fs::path(compiler_command().front()).filename().string());
+      found = CompiledPrograms({{.program = &program, .float32 = options.float32}}).run(0, drive);
+    } else if (target.name == "c") {
+      found = run_in_c(program, files, {namespace_identifier(program.graph.name) + ".c"}, main_of_c(program.graph),
+                       drive, proof.way);
+    } else if (target.name == "fmu") {
+      const FmuOptions fmu{.version = options.fmi == "2" ? FmiVersion::Two : FmiVersion::Three,
+                           .float32 = options.float32};
+      const FmuContents contents = generate_fmu(program, fmu);
+      std::vector<std::string> sources = contents.sources;
+      std::erase_if(sources, [](const std::string& one) { return one.find("_fmi") != std::string::npos; });
+      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, options), drive, proof.way);
+      proof.way += ", through FMI";
+    } else {
+      std::string text = files.front().text;
+      proof.way = "read back";
+      if (target.name == "plcopen") {
+        proof.way = "imported and read back";
+        Diagnostics told;
+        text = import_plcopen(files.front().name, text, {}, told);
+      }
+      found = run_read_back(program, text, drive, options.float32);
+    }
+    proof.was_run = true;
+  } catch (const InputError& refused) {
+    const Diagnostic& first = refused.diagnostics().all().front();
+    proof.fault = fmt::format("HY{}: {}", first.number, first.cause);
+    return proof;
+  }
+  const std::vector<Signal> wanted = interpret(program, drive, output_wires(program.graph), options.float32);
+  for (std::size_t i = 0; i < wanted.size() && proof.fault.empty(); ++i) {
+    if (const std::size_t k = first_difference(wanted[i], found[i]); k != same_bits) {
+      proof.fault = fmt::format("{} differs in step {}: {} for {}", program.graph.outputs[i].name, k,
+                                number_text(found[i][k]), number_text(wanted[i][k]));
+    }
+  }
+  return proof;
+}
+
+}  // namespace hysteron::tool

@@ -100,7 +100,7 @@ toml::table parse_toml(const std::string& file, std::string_view text, const Tom
   }
 }
 
-std::string_view kind_of(const toml::node& node) {
+std::string_view toml_kind(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
       return "a table";

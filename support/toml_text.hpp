@@ -22,7 +22,7 @@ struct TomlKind {
 [[nodiscard]] toml::table parse_toml(const std::string& file, std::string_view text, const TomlKind& kind);
 
 /// What a value is, for messages: "a table", "a whole number".
-[[nodiscard]] std::string_view kind_of(const toml::node& node);
+[[nodiscard]] std::string_view toml_kind(const toml::node& node);
 
 [[nodiscard]] Place place_of(const std::string& file, const toml::source_region& region);
 

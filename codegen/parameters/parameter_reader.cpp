@@ -88,7 +88,7 @@ class Reader {
 
   void wrong_type(const toml::key& key, const toml::node& node, std::string_view wanted, std::string_view example) {
     diagnostics_.error(error::wrong_value_type, at(node),
-                       fmt::format("{} must be {}, but is {}.", key.str(), wanted, kind_of(node)),
+                       fmt::format("{} must be {}, but is {}.", key.str(), wanted, toml_kind(node)),
                        fmt::format("write it as in {}.", example));
   }
 
@@ -246,7 +246,7 @@ class Reader {
       }
       if (inner == nullptr) {
         diagnostics_.error(error::wrong_value_type, at(node),
-                           fmt::format("{} must be a table of settings, but is {}.", *below, kind_of(node)),
+                           fmt::format("{} must be a table of settings, but is {}.", *below, toml_kind(node)),
                            fmt::format("write {} = {{}}, or {} = {{min = 0.0, max = 1.0}}.", key.str(), key.str()));
         continue;
       }

@@ -326,11 +326,13 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
     const BodyType& array = *one.place->type;
     double known = 0.0;
     if (computer_.constant(index, known)) {
-      if (known < static_cast<double>(array.low) || known > static_cast<double>(array.high)) {
+      const bool outside = known < static_cast<double>(array.low) || known > static_cast<double>(array.high);
+      if (outside && index.loose) {  // a literal: nobody means the nearest element
         refuse(error::refused_access, span, fmt::format("the index {} lies outside of {}..{}", known, array.low, array.high),
                "Index an element that there is.");
         return false;
       }
+      known = std::clamp(known, static_cast<double>(array.low), static_cast<double>(array.high));
       Choice chosen = one;
       chosen.place = one.place->parts[static_cast<std::size_t>(known - static_cast<double>(array.low))].get();
       next.push_back(chosen);

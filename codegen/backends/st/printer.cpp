@@ -94,6 +94,9 @@ std::string StPrinter::text(ValueId id, int outer) const {
 /// An argument of a function: a compiler finds the type of an integer by its literal, which is then too narrow.
 std::string StPrinter::argument(ValueId id) const {
   const Value& value = tape()[id];
+  if (value.op == Op::IntLiteral && !is_named(id) && value.literal == std::numeric_limits<std::int32_t>::min()) {
+    return "(DINT#-2147483647 - DINT#1)";
+  }
   return value.op == Op::IntLiteral && !is_named(id) ? "DINT#" + text(id) : text(id);
 }
 

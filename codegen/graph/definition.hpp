@@ -30,12 +30,12 @@ struct Definition {
   std::vector<Declared> variables{};
   std::unordered_map<std::string, std::uint32_t> by_name{};  ///< upper-case name → variable
   std::int64_t sample_time_ns = 0;
-  language::Span sample_time_span{};  ///< where @ts states it; the name where nothing does
-  std::string effect{};               ///< (* @effect creep *): joins the candidates of a diagnosis
-  std::string family{};               ///< (* @family slow_memory *), of that effect
+  language::Span sample_time_span{};      ///< where @ts states it; the name where nothing does
+  std::string effect{};                   ///< (* @effect creep *): joins the candidates of a diagnosis
+  std::string family{};                   ///< (* @family slow_memory *), of that effect
   std::vector<std::uint32_t> in_place{};  ///< of a sequential body: the definitions that it executes in place
-  std::vector<bool> late{};           ///< by variable: an output that depends on an input within the same step
-  bool usable = true;                 ///< FALSE where an error makes instances pointless
+  std::vector<bool> late{};               ///< by variable: an output that depends on an input within the same step
+  bool usable = true;                     ///< FALSE where an error makes instances pointless
 };
 
 struct Definitions {
@@ -43,7 +43,7 @@ struct Definitions {
   std::vector<Definition> list{};              ///< in the order of the text
   std::vector<std::uint32_t> callees_first{};  ///< every definition after those that it instantiates
   std::unordered_map<std::string, std::uint32_t> by_name{};
-  std::deque<std::string> names{};             ///< that the text does not have: of what a VAR_IN_OUT becomes
+  std::deque<std::string> names{};  ///< that the text does not have: of what a VAR_IN_OUT becomes
 };
 
 /// Collects and checks the declarations of a file: names, types, annotations, recursion.

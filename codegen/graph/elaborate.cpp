@@ -152,7 +152,11 @@ void Elaborator::elaborate_body(const Instance& instance) {
   }
   const auto& library = *source_.bodies;
   bodies::Body body(library, library.units[definition.block->body],
-                    {.builder = builder_, .report = report, .add_parameter = add_parameter, .path = instance.path, .rate = instance.rate});
+                    {.builder = builder_,
+                     .report = report,
+                     .add_parameter = add_parameter,
+                     .path = instance.path,
+                     .rate = instance.rate});
   auto results = body.run(inputs);
   levels_.resize(graph_.nodes.size(), instance.level);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {

@@ -64,7 +64,7 @@ std::vector<Annotation> annotations_of(std::string_view text, Span comment) {
 }
 
 bool has_no_key_of_ours(std::string_view text, Span comment) {
-  static constexpr std::array<std::string_view, 13> keys{"body", "doc",   "effect", "every", "family", "max", "min",
+  static constexpr std::array<std::string_view, 13> keys{"body",    "doc",   "effect", "every", "family", "max", "min",
                                                          "neutral", "param", "phase",  "role",  "ts",     "unit"};
   const auto found = annotations_of(text, comment);
   return std::none_of(found.begin(), found.end(), [](const Annotation& one) {

@@ -124,7 +124,7 @@ struct Initial {
 struct Declaration;
 
 struct TypeSpec {
-  Name name{};                                                     ///< INT, MOTOR, of an array that of its elements
+  Name name{};                                                      ///< INT, MOTOR, of an array that of its elements
   std::vector<std::pair<ExpressionId, ExpressionId>> dimensions{};  ///< 0..9, 1..3
   std::vector<Declaration> fields{};                                ///< STRUCT
   std::vector<std::pair<Name, ExpressionId>> values{};              ///< (OFF, ON := 4)

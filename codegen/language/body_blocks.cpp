@@ -11,8 +11,8 @@
 namespace hysteron::language {
 namespace {
 
-constexpr std::array<std::string_view, 10> types_of_bodies{"SINT",  "INT",  "USINT", "UINT", "UDINT",
-                                                           "BYTE", "DWORD", "REAL", "TIME", "ARRAY"};
+constexpr std::array<std::string_view, 10> types_of_bodies{"SINT", "INT",   "USINT", "UINT", "UDINT",
+                                                           "BYTE", "DWORD", "REAL",  "TIME", "ARRAY"};
 
 class Scan {
  public:
@@ -68,12 +68,13 @@ class Scan {
     bool called = false;
     while (token_.symbol != Symbol::End && token_.keyword != Keyword::EndFunctionBlock &&
            token_.keyword != Keyword::FunctionBlock) {
-      declares = token_.keyword == Keyword::EndVar ? false : declares || token_.keyword == Keyword::Var ||
-                                                                  token_.keyword == Keyword::VarInput ||
-                                                                  token_.keyword == Keyword::VarOutput;
-      part.sequential = part.sequential || token_.keyword == Keyword::ControlBegin || is("RETURN") ||
-                        is("VAR_TEMP") || is("VAR_IN_OUT") || token_.keyword == Keyword::Qualifier || (declares && typed && is_type()) || is_time() ||
-                        (!declares && called && token_.symbol == Symbol::LeftParenthesis);
+      declares = token_.keyword == Keyword::EndVar
+                     ? false
+                     : declares || token_.keyword == Keyword::Var || token_.keyword == Keyword::VarInput ||
+                           token_.keyword == Keyword::VarOutput;
+      part.sequential = part.sequential || token_.keyword == Keyword::ControlBegin || is("RETURN") || is("VAR_TEMP") ||
+                        is("VAR_IN_OUT") || token_.keyword == Keyword::Qualifier || (declares && typed && is_type()) ||
+                        is_time() || (!declares && called && token_.symbol == Symbol::LeftParenthesis);
       called = token_.symbol == Symbol::Identifier && functions_.contains(upper(word()));
       typed = token_.symbol == Symbol::Colon;
       advance();
@@ -109,7 +110,8 @@ class Scan {
     for (auto at = comments.find('@'); at != std::string_view::npos; at = comments.find('@', at + 1)) {
       const auto word = comments.substr(at + 1, 4);
       const auto after = comments.substr(std::min(comments.size(), at + 5), 1);
-      if (same_name(word, "body") && (after.empty() || after == " " || after == "*" || after == "\n" || after == "\r")) {
+      if (same_name(word, "body") &&
+          (after.empty() || after == " " || after == "*" || after == "\n" || after == "\r")) {
         return true;
       }
     }

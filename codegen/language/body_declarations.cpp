@@ -212,8 +212,7 @@ bool BodyParser::initial(body::Initial& value) {
     } while (right && accept(Symbol::Comma));
     --depth_;
     right = right && expect(Symbol::RightBracket, "`,` or `]`");
-  } else if (is(Symbol::LeftParenthesis) && ahead().symbol == Symbol::Identifier &&
-             ahead(2).symbol == Symbol::Assign) {
+  } else if (is(Symbol::LeftParenthesis) && ahead().symbol == Symbol::Identifier && ahead(2).symbol == Symbol::Assign) {
     advance();
     ++depth_;
     do {

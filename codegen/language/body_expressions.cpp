@@ -34,7 +34,8 @@ bool value_of_number(std::string_view written, body::Literal& literal) {
     literal.value = static_cast<double>(whole);
     return (base == "2" || base == "8" || base == "16") && problem == std::errc{} && stop == end;
   }
-  literal.kind = text.find_first_of(".eE") == std::string::npos ? body::Literal::Kind::Whole : body::Literal::Kind::Real;
+  literal.kind =
+      text.find_first_of(".eE") == std::string::npos ? body::Literal::Kind::Whole : body::Literal::Kind::Real;
   const auto [stop, problem] = std::from_chars(text.data(), end, literal.value);
   return problem == std::errc{} && stop == end;
 }
@@ -124,8 +125,8 @@ ExpressionId BodyParser::primary() {
     return inner;
   }
   // AND(A, B), NOT(A), MOD(A, B): an operator that is called like a function.
-  const bool called = now().symbol == Symbol::Keyword && ahead().symbol == Symbol::LeftParenthesis &&
-                      binary_sign(now()).strength >= 0;
+  const bool called =
+      now().symbol == Symbol::Keyword && ahead().symbol == Symbol::LeftParenthesis && binary_sign(now()).strength >= 0;
   if (is(Symbol::Identifier) || called) {
     if (ahead().symbol == Symbol::LeftParenthesis) {
       body::Call call{.function = {word(now()), span_of(now())}};
@@ -141,7 +142,8 @@ ExpressionId BodyParser::primary() {
       return no_expression;
     }
     if (is(Symbol::LeftParenthesis)) {
-      refuse(read.span, fmt::format("{} is a method, or a call inside of an expression.", text_.substr(begin, read.span.length)),
+      refuse(read.span,
+             fmt::format("{} is a method, or a call inside of an expression.", text_.substr(begin, read.span.length)),
              "Call the instance as a statement before, and read its output here.");
       return no_expression;
     }

@@ -10,7 +10,6 @@
 
 namespace hysteron::language {
 
-
 using body::Statements;
 
 BodyParser::BodyParser(const SourceFile& file, body::Library& library, Reporter& reporter, std::uint32_t begin,
@@ -54,9 +53,13 @@ bool BodyParser::accept(std::string_view keyword) {
   return false;
 }
 
-bool BodyParser::expect(Symbol symbol, std::string_view wanted) { return accept(symbol) || unexpected(wanted); }
+bool BodyParser::expect(Symbol symbol, std::string_view wanted) {
+  return accept(symbol) || unexpected(wanted);
+}
 
-bool BodyParser::expect(std::string_view keyword) { return accept(keyword) || unexpected(keyword); }
+bool BodyParser::expect(std::string_view keyword) {
+  return accept(keyword) || unexpected(keyword);
+}
 
 bool BodyParser::name(Name& name, std::string_view wanted) {
   if (!is(Symbol::Identifier)) {
@@ -70,8 +73,8 @@ bool BodyParser::name(Name& name, std::string_view wanted) {
 bool BodyParser::unexpected(std::string_view wanted) {
   const auto found = is(Symbol::End) ? std::string("the end of the block") : fmt::format("`{}`", word(now()));
   if (!reporter_.has_error_within(last_end_, now().end())) {
-    reporter_.error(error::unexpected_symbol, span_of(now()), fmt::format("{} stands where {} is expected.", found, wanted),
-                    fmt::format("Put {} here.", wanted));
+    reporter_.error(error::unexpected_symbol, span_of(now()),
+                    fmt::format("{} stands where {} is expected.", found, wanted), fmt::format("Put {} here.", wanted));
   }
   return false;
 }
@@ -156,8 +159,7 @@ bool BodyParser::ends_list() const {
   return is(Symbol::End) || now().keyword == Keyword::ControlEnd || now().keyword == Keyword::EndFunctionBlock ||
          now().keyword == Keyword::UnitEnd || now().keyword == Keyword::Unit ||
          (is(Symbol::Identifier) && same_name(word(now()), "PROPERTY") && ahead().symbol == Symbol::Identifier) ||
-         is("ELSE") || is("ELSIF") ||
-         is("UNTIL");
+         is("ELSE") || is("ELSIF") || is("UNTIL");
 }
 
 void BodyParser::statements(Statements& list) {

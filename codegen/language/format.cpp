@@ -325,7 +325,7 @@ std::string with_line_ends_of(std::string_view source, std::string text) {
 }  // namespace
 
 std::string format(const SourceFile& file, const StatementOrders& orders) {
-  if (!file.valid) {
+  if (!file.valid || file.bodies) {  // a body has a layout of its own
     return file.text ? *file.text : std::string();
   }
   return with_line_ends_of(*file.text, Formatter(*file.text, orders).format());

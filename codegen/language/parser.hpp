@@ -99,7 +99,7 @@ class Parser {
   std::uint32_t depth_ = 0;
   std::vector<std::uint16_t> heights_;  ///< of the tree below each expression
   std::vector<Declaration> declarations_;
-  std::vector<Name> names_;  ///< of the declaration at hand
+  std::vector<Name> names_;      ///< of the declaration at hand
   std::vector<TextPart> parts_;  ///< of a file with sequential bodies
   std::vector<Comment> bodies_comments_;
 };

@@ -13,10 +13,13 @@ struct TimeUnit {
 };
 /// The largest first. Longer names stand behind shorter ones that begin alike only where the order of sizes allows:
 /// a name ends at the next digit.
-constexpr std::array units_of_time{TimeUnit{"d", 86400e9}, TimeUnit{"h", 3600e9}, TimeUnit{"m", 60e9}, TimeUnit{"s", 1e9},
-                           TimeUnit{"ms", 1e6},    TimeUnit{"us", 1e3},   TimeUnit{"ns", 1.0}};
+constexpr std::array units_of_time{TimeUnit{"d", 86400e9}, TimeUnit{"h", 3600e9}, TimeUnit{"m", 60e9},
+                                   TimeUnit{"s", 1e9},     TimeUnit{"ms", 1e6},   TimeUnit{"us", 1e3},
+                                   TimeUnit{"ns", 1.0}};
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 }  // namespace
 

@@ -10,8 +10,12 @@
 namespace hysteron {
 
 /// DINT arithmetic: wraps at the ends; a division or remainder by zero gives 0.
-inline std::int32_t wrap(std::int64_t x) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(x)); }
-inline std::uint32_t bits(std::int32_t x) { return static_cast<std::uint32_t>(x); }
+inline std::int32_t wrap(std::int64_t x) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(x));
+}
+inline std::uint32_t bits(std::int32_t x) {
+  return static_cast<std::uint32_t>(x);
+}
 inline std::int32_t int_operation(Op op, std::int32_t a, std::int32_t b) {
   const auto x = static_cast<std::int64_t>(a);
   const auto y = static_cast<std::int64_t>(b);
@@ -51,7 +55,9 @@ S single(S x) {
   return static_cast<S>(static_cast<float>(x));
 }
 /// The lower 16 bits.
-inline std::uint16_t int_to_word(std::int32_t x) { return static_cast<std::uint16_t>(bits(x) & 0xFFFFU); }
+inline std::uint16_t int_to_word(std::int32_t x) {
+  return static_cast<std::uint16_t>(bits(x) & 0xFFFFU);
+}
 
 template <class S>
 S real_operation(Op op, const S& a, const S& b) {

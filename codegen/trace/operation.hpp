@@ -80,7 +80,7 @@ enum class Op : std::uint8_t {
   ToSingle,   ///< the nearest number that an IEC REAL (32 bits) holds
   WordToInt,  ///< 0 to 65535
   IntToWord,  ///< the lower 16 bits
-  At  ///< element of an array: array, index
+  At          ///< element of an array: array, index
 };
 
 struct OperationInfo {

@@ -74,7 +74,8 @@ TEST(Bodies, RandomOnesComputeWhatTheirStatementsSay) {
       for (std::size_t pin = 0; pin < outputs.size(); ++pin) {
         ASSERT_TRUE(same_bits(machine.output(pin), reading.get(outputs[pin])))
             << "body " << i << ", step " << k << ", " << outputs[pin] << ": " << machine.output(pin) << " for "
-            << reading.get(outputs[pin]) << "\n" << body.text();
+            << reading.get(outputs[pin]) << "\n"
+            << body.text();
       }
     }
   }
@@ -102,8 +103,8 @@ TEST(Bodies, ATimerTakesTimesOfTheText) {
 }
 
 TEST(Bodies, AVarInOutAtTheBorderIsAnInputAndAnOutput) {
-  const Program program = compile_text(
-      "FUNCTION_BLOCK F VAR_IN_OUT X : LREAL; END_VAR X := X * 2.0; END_FUNCTION_BLOCK");
+  const Program program =
+      compile_text("FUNCTION_BLOCK F VAR_IN_OUT X : LREAL; END_VAR X := X * 2.0; END_FUNCTION_BLOCK");
   ASSERT_NE(find_port(program.graph.inputs, "X"), nullptr);
   EXPECT_NE(find_port(program.graph.outputs, "X_OUT"), nullptr);
 }
@@ -127,7 +128,8 @@ TEST(Bodies, ADiagramWiresABodyLikeAnyBlock) {
 }
 
 TEST(Bodies, AnUnmarkedTextThatADiagramCanSayStaysOne) {
-  const std::string twice = "VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := X; Y := Y + 1.0; END_FUNCTION_BLOCK";
+  const std::string twice =
+      "VAR_INPUT X : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR Y := X; Y := Y + 1.0; END_FUNCTION_BLOCK";
   EXPECT_EQ(faults_of("FUNCTION_BLOCK F " + twice), (Faults{fmt::format("{}:1", error::double_drive)}));
   EXPECT_EQ(faults_of("FUNCTION_BLOCK F (* @body *) " + twice), Faults{});
   EXPECT_EQ(run_body("FUNCTION_BLOCK F (* @body *) " + twice, {{1}, {2}}), (std::vector<double>{2, 3}));
@@ -144,21 +146,24 @@ TEST(Bodies, EveryLineThatStandsInTheWayIsToldOnce) {
 
 TEST(Bodies, LoopsAndCallsHaveBounds) {
   const auto loop = [](const std::string& to) {
-    return "FUNCTION_BLOCK F VAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; END_VAR VAR I : INT; END_VAR\nFOR I := 1 TO " +
+    return "FUNCTION_BLOCK F VAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; END_VAR VAR I : INT; END_VAR\nFOR I := 1 "
+           "TO " +
            to + " DO Y := Y + I; END_FOR; END_FUNCTION_BLOCK";
   };
   EXPECT_EQ(faults_of(loop("10")), Faults{});
   EXPECT_EQ(faults_of(loop("X")), Faults{"129:2"});
   EXPECT_EQ(faults_of(loop("30000")), Faults{"129:2"});
   EXPECT_FALSE(faults_of("FUNCTION A : INT VAR_INPUT X : INT; END_VAR A := A(X); END_FUNCTION\n"
-                         "FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR Y := A(1); END_FUNCTION_BLOCK").empty());
+                         "FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR Y := A(1); END_FUNCTION_BLOCK")
+                   .empty());
   EXPECT_FALSE(faults_of("FUNCTION_BLOCK F VAR X : F; N : INT; END_VAR X(); END_FUNCTION_BLOCK").empty());
 }
 
 TEST(Bodies, ABlockOfTheLibraryIsCalledOnceAndUnderNoCondition) {
   const auto with = [](const std::string& statements) {
     return "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : LREAL; B : BOOL; END_VAR VAR_OUTPUT Y : REAL; END_VAR\n"
-           "VAR L : HY_GAIN; END_VAR\n" + statements + " END_FUNCTION_BLOCK";
+           "VAR L : HY_GAIN; END_VAR\n" +
+           statements + " END_FUNCTION_BLOCK";
   };
   EXPECT_EQ(faults_of(with("L(XIN := X, K := 2.0);")), Faults{});
   EXPECT_EQ(faults_of(with("IF B THEN L(XIN := X); END_IF;")), Faults{"218:3"});
@@ -168,7 +173,8 @@ TEST(Bodies, ABlockOfTheLibraryIsCalledOnceAndUnderNoCondition) {
 
 TEST(Bodies, DurationsAreWholeMilliseconds) {
   double time = 0.0;
-  for (const auto& [text, expected] : {std::pair{"1m30s", 90000.0}, {"5.5ms", 5.5}, {"-2h", -7200000.0}, {"50us", 0.05}, {"1d_2h", 93600000.0}}) {
+  for (const auto& [text, expected] :
+       {std::pair{"1m30s", 90000.0}, {"5.5ms", 5.5}, {"-2h", -7200000.0}, {"50us", 0.05}, {"1d_2h", 93600000.0}}) {
     ASSERT_TRUE(language::milliseconds_of_time(text, time)) << text;
     EXPECT_EQ(time, expected) << text;
   }

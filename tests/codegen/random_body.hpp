@@ -57,7 +57,8 @@ VAR_TEMP H : INT; END_VAR
     }
     switch (pick(6)) {
       case 0:
-        return fmt::format("({} {} {})", integer(depth + 1), one_of({"<", "<=", ">", ">=", "=", "<>"}), integer(depth + 1));
+        return fmt::format("({} {} {})", integer(depth + 1), one_of({"<", "<=", ">", ">=", "=", "<>"}),
+                           integer(depth + 1));
       case 1:
         return fmt::format("({} {} {})", real(depth + 1), one_of({"<", "<=", ">", ">="}), real(depth + 1));
       case 2:
@@ -107,9 +108,9 @@ VAR_TEMP H : INT; END_VAR
       return one_of({"E1", "DWORD#16#FF00", "DINT_TO_DWORD(D1)"});
     }
     return one_of({fmt::format("({} {} {})", bits(depth + 1), one_of({"AND", "OR", "XOR"}), bits(depth + 1)),
-                   fmt::format("SHL({}, {})", bits(depth + 1), pick(34)), fmt::format("SHR({}, {})", bits(depth + 1), pick(34)),
-                   fmt::format("SHL({}, A[2])", bits(depth + 1)), fmt::format("ROL({}, {})", bits(depth + 1), pick(32)),
-                   fmt::format("(NOT {})", bits(depth + 1))});
+                   fmt::format("SHL({}, {})", bits(depth + 1), pick(34)),
+                   fmt::format("SHR({}, {})", bits(depth + 1), pick(34)), fmt::format("SHL({}, A[2])", bits(depth + 1)),
+                   fmt::format("ROL({}, {})", bits(depth + 1), pick(32)), fmt::format("(NOT {})", bits(depth + 1))});
   }
 
   std::string real(int depth) {
@@ -136,17 +137,20 @@ VAR_TEMP H : INT; END_VAR
     }
     return one_of({fmt::format("({} {} {})", single(depth + 1), one_of({"+", "-", "*"}), single(depth + 1)),
                    fmt::format("({} * 0.3)", single(depth + 1)), fmt::format("ABS({})", single(depth + 1)),
-                   "INT_TO_REAL(I1)", fmt::format("SEL({}, {}, {})", truth(depth + 1), single(depth + 1), single(depth + 1))});
+                   "INT_TO_REAL(I1)",
+                   fmt::format("SEL({}, {}, {})", truth(depth + 1), single(depth + 1), single(depth + 1))});
   }
 
   std::string assignment() {
     switch (pick(14)) {
       case 0:
-        return fmt::format("{} := LIMIT(-1000.0, {}, 1000.0);", one_of({"Y0", "Y1", "Y2", "Y3", "L1", "L2", "S.B", "F[2]", "F[J]"}), real(0));
+        return fmt::format("{} := LIMIT(-1000.0, {}, 1000.0);",
+                           one_of({"Y0", "Y1", "Y2", "Y3", "L1", "L2", "S.B", "F[2]", "F[J]"}), real(0));
       case 1:
         return fmt::format("{} := {};", one_of({"R1", "R2"}), single(0));
       case 2:
-        return fmt::format("{} := DINT_TO_INT({});", one_of({"I1", "I2", "S.A", "H", fmt::format("A[{}]", index())}), integer(0));
+        return fmt::format("{} := DINT_TO_INT({});", one_of({"I1", "I2", "S.A", "H", fmt::format("A[{}]", index())}),
+                           integer(0));
       case 3:
         return fmt::format("I1 := {} {} {};", small(), one_of({"+", "-", "*"}), small());
       case 4:
@@ -184,8 +188,8 @@ VAR_TEMP H : INT; END_VAR
     if (depth < 3 && pick(3) == 0) {
       switch (pick(4)) {
         case 0:
-          return fmt::format("{0}IF {1} THEN\n{2}{0}ELSIF {3} THEN\n{4}{0}ELSE\n{5}{0}END_IF;\n", indent, truth(0), some(),
-                             truth(1), some(), some());
+          return fmt::format("{0}IF {1} THEN\n{2}{0}ELSIF {3} THEN\n{4}{0}ELSE\n{5}{0}END_IF;\n", indent, truth(0),
+                             some(), truth(1), some(), some());
         case 1:
           return fmt::format("{0}IF {1} THEN\n{2}{0}END_IF;\n", indent, truth(0), some());
         case 2:
@@ -195,8 +199,10 @@ VAR_TEMP H : INT; END_VAR
           if (loops_++ > 3 || depth > 1) {
             return indent + assignment() + "\n";
           }
-          return fmt::format("{0}FOR J := {1} TO {2} BY {3} DO\n{4}{5}{0}END_FOR;\n", indent, 3, -1, -2, some(),
-                             pick(2) == 0 ? fmt::format("{}IF {} THEN {}; END_IF;\n", deeper, truth(0), one_of({"EXIT", "CONTINUE"})) : "");
+          return fmt::format(
+              "{0}FOR J := {1} TO {2} BY {3} DO\n{4}{5}{0}END_FOR;\n", indent, 3, -1, -2, some(),
+              pick(2) == 0 ? fmt::format("{}IF {} THEN {}; END_IF;\n", deeper, truth(0), one_of({"EXIT", "CONTINUE"}))
+                           : "");
       }
     }
     if (depth > 0 && pick(25) == 0) {

@@ -51,10 +51,10 @@ class SequentialBody {
     throw std::runtime_error("no unit " + name);
   }
   static bool type_of(std::string_view type, Number& number) {
-    static const std::map<std::string, Number> types{
-        {"BOOL", {'b', 1}},  {"SINT", {'i', 8}},   {"INT", {'i', 16}},  {"DINT", {'i', 32}}, {"USINT", {'u', 8}},
-        {"UINT", {'u', 16}}, {"UDINT", {'u', 32}}, {"BYTE", {'u', 8}},  {"WORD", {'u', 16}}, {"DWORD", {'u', 32}},
-        {"REAL", {'f', 32}}, {"LREAL", {'d', 64}}};
+    static const std::map<std::string, Number> types{{"BOOL", {'b', 1}},   {"SINT", {'i', 8}},  {"INT", {'i', 16}},
+                                                     {"DINT", {'i', 32}},  {"USINT", {'u', 8}}, {"UINT", {'u', 16}},
+                                                     {"UDINT", {'u', 32}}, {"BYTE", {'u', 8}},  {"WORD", {'u', 16}},
+                                                     {"DWORD", {'u', 32}}, {"REAL", {'f', 32}}, {"LREAL", {'d', 64}}};
     const auto found = types.find(language::upper(type));
     if (found != types.end()) {
       number = found->second;
@@ -82,13 +82,15 @@ class SequentialBody {
       frame.memory[name + ".HIGH"] = {'i', 32, static_cast<double>(high)};
       for (int i = low; i <= high; ++i) {
         const auto at = static_cast<std::size_t>(i - low);
-        declare(element, name + "[" + std::to_string(i) + "]", at < initial.elements.size() ? initial.elements[at] : tree::Initial{}, frame);
+        declare(element, name + "[" + std::to_string(i) + "]",
+                at < initial.elements.size() ? initial.elements[at] : tree::Initial{}, frame);
       }
       return;
     }
     Number number;
     if (type_of(type.name.text, number)) {
-      frame.memory[name] = initial.value != language::no_expression ? kept(value(initial.value, frame), number) : number;
+      frame.memory[name] =
+          initial.value != language::no_expression ? kept(value(initial.value, frame), number) : number;
       return;
     }
     for (const auto& one : library_.types) {
@@ -102,7 +104,8 @@ class SequentialBody {
     declare(find(std::string(type.name.text), false), name + ".", frame.memory);
   }
 
-  void run_unit(const tree::Unit& unit, const std::string& prefix, Memory& memory, std::map<std::string, std::string> aliases = {}) {
+  void run_unit(const tree::Unit& unit, const std::string& prefix, Memory& memory,
+                std::map<std::string, std::string> aliases = {}) {
     Frame frame{unit, prefix, memory, std::move(aliases)};
     for (const auto& one : unit.declarations) {
       if (one.role == tree::Role::Temporary) {
@@ -264,7 +267,8 @@ class SequentialBody {
       if (!literal->type.empty() && type_of(literal->type, type)) {
         return kept({'d', 64, literal->value}, type);
       }
-      return literal->kind == tree::Literal::Kind::Real ? Number{'d', 64, literal->value} : Number{'l', 32, literal->value};
+      return literal->kind == tree::Literal::Kind::Real ? Number{'d', 64, literal->value}
+                                                        : Number{'l', 32, literal->value};
     }
     if (const auto* access = std::get_if<tree::Access>(&node)) {
       int bit = -1;
@@ -272,7 +276,8 @@ class SequentialBody {
       if (bit < 0) {
         return found;
       }
-      return {'b', 1, static_cast<double>((static_cast<std::uint64_t>(found.value) >> static_cast<unsigned>(bit)) & 1U)};
+      return {'b', 1,
+              static_cast<double>((static_cast<std::uint64_t>(found.value) >> static_cast<unsigned>(bit)) & 1U)};
     }
     if (const auto* unary = std::get_if<tree::Unary>(&node)) {
       Number x = value(unary->operand, frame);
@@ -356,7 +361,8 @@ class SequentialBody {
         result = y == 0 ? 0 : x % y;
     }
     const auto low = static_cast<std::uint32_t>(static_cast<std::uint64_t>(result));
-    return {type.kind, 32, without_sign ? static_cast<double>(low) : static_cast<double>(static_cast<std::int32_t>(low))};
+    return {type.kind, 32,
+            without_sign ? static_cast<double>(low) : static_cast<double>(static_cast<std::int32_t>(low))};
   }
 
   Number function(const tree::Call& call, Frame& frame) {
@@ -368,7 +374,9 @@ class SequentialBody {
     if (name == "SEL") {
       Number chosen = args[0].value != 0.0 ? args[2] : args[1];
       const Number& other = args[0].value != 0.0 ? args[1] : args[2];
-      return chosen.kind == 'l' || (is_whole(chosen) && is_whole(other) && chosen.bits < other.bits) ? kept(chosen, other.kind == 'l' ? Number{'i', 32} : other) : chosen;
+      return chosen.kind == 'l' || (is_whole(chosen) && is_whole(other) && chosen.bits < other.bits)
+                 ? kept(chosen, other.kind == 'l' ? Number{'i', 32} : other)
+                 : chosen;
     }
     if (name == "MIN" || name == "MAX") {
       Number a = kept(args[0], args[0].kind == 'l' ? Number{'i', 32} : args[0]);

@@ -94,6 +94,9 @@ std::string StPrinter::text(ValueId id, int outer) const {
 /// An argument of a function: a compiler finds the type of an integer by its literal, which is then too narrow.
 std::string StPrinter::argument(ValueId id) const {
   const Value& value = tape()[id];
+  if (value.op == Op::IntLiteral && !is_named(id) && value.literal == std::numeric_limits<std::int32_t>::min()) {
+    return "(DINT#-2147483647 - DINT#1)";
+  }
   return value.op == Op::IntLiteral && !is_named(id) ? "DINT#" + text(id) : text(id);
 }
 
@@ -234,8 +237,7 @@ void StPrinter::print_special(const Value& value, int outer, std::string& out) c
     case Op::IntToWord:  // from its lower bits, since some compilers saturate
       return append(out, "DWORD_TO_WORD(DINT_TO_DWORD(", argument(first), ") AND DWORD#16#0000FFFF)");
     case Op::ToSingle:
-      return float32_ ? print(first, outer, out)
-                      : append(out, "REAL_TO_LREAL(LREAL_TO_REAL(", text(first), "))");
+      return float32_ ? print(first, outer, out) : append(out, "REAL_TO_LREAL(LREAL_TO_REAL(", text(first), "))");
     case Op::ToReal:
       return append(out, float32_ ? "DINT_TO_REAL(" : "DINT_TO_LREAL(", argument(first), ")");
     case Op::Min:

@@ -55,13 +55,15 @@ std::vector<BorderPort> Body::ports() {
   const auto& declarations = source_.unit->declarations;
   for (std::size_t i = 0; i < declarations.size(); ++i) {
     const syntax::Declaration& one = declarations[i];
-    const bool border = one.role == syntax::Role::Input || one.role == syntax::Role::Output || one.role == syntax::Role::InOut;
+    const bool border =
+        one.role == syntax::Role::Input || one.role == syntax::Role::Output || one.role == syntax::Role::InOut;
     const auto member = types_.members({one});
     if (!border || member.empty()) {
       continue;
     }
     if (member.front().type->kind != BodyType::Kind::Plain) {
-      refuse(error::refused_in_body, one.name.span, fmt::format("'{}' at the border of the block is an array, a structure or an instance", one.name.text),
+      refuse(error::refused_in_body, one.name.span,
+             fmt::format("'{}' at the border of the block is an array, a structure or an instance", one.name.text),
              "Give it inputs and outputs of plain types, or call it from another block of this file.");
       continue;
     }

@@ -27,7 +27,7 @@ struct Surroundings {
   std::function<Wire(Parameter)> add_parameter;  ///< one that may be set from outside
   std::string path{};                            ///< of the instance: "" or ending in a dot
   Rate rate{};
-  double sample_time = 0.0;                      ///< 0: not stated
+  double sample_time = 0.0;  ///< 0: not stated
 };
 
 /// A plain variable at the border of a block.
@@ -56,7 +56,7 @@ class Body {
     double initial = 0.0;
     std::string path{};
     language::Span span{};
-    bool memory = true;      ///< keeps its value between steps
+    bool memory = true;  ///< keeps its value between steps
     std::optional<Value> cell{};
     std::uint32_t node = 0;  ///< of the cell
   };

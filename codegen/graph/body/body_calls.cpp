@@ -82,8 +82,8 @@ void Body::hand_back(Place& place, const std::vector<syntax::Argument>& argument
     const Place* const pin = place.find(upper(one.formal.text));
     const auto* target = std::get_if<syntax::Access>(&expression(one.value).node);
     if (pin == nullptr || pin->leaf == Place::no_leaf || target == nullptr) {
-      refuse(error::unknown_pin, one.formal.span, fmt::format("there is no output '{}' for this variable", one.formal.text),
-             "Write OUTPUT => variable.");
+      refuse(error::unknown_pin, one.formal.span,
+             fmt::format("there is no output '{}' for this variable", one.formal.text), "Write OUTPUT => variable.");
       continue;
     }
     assign(*target, read(pin->leaf), one.formal.span);
@@ -97,10 +97,10 @@ void Body::invoke_unit(Place& place, const syntax::Invoke& node) {
     if (place.members[i].role != syntax::Role::InOut) {
       continue;
     }
-    const auto argument = std::ranges::find_if(node.arguments, [&](const syntax::Argument& one) {
-      return upper(one.formal.text) == place.members[i].name;
-    });
-    const auto* access = argument == node.arguments.end() ? nullptr : std::get_if<syntax::Access>(&expression(argument->value).node);
+    const auto argument = std::ranges::find_if(
+        node.arguments, [&](const syntax::Argument& one) { return upper(one.formal.text) == place.members[i].name; });
+    const auto* access =
+        argument == node.arguments.end() ? nullptr : std::get_if<syntax::Access>(&expression(argument->value).node);
     if (access == nullptr) {
       refuse(error::unconnected_input, node.instance.span,
              fmt::format("the VAR_IN_OUT {} needs a variable", place.members[i].written.text),
@@ -113,7 +113,8 @@ void Body::invoke_unit(Place& place, const syntax::Invoke& node) {
     }
     if (found->leaf != Place::no_leaf && place.parts[i]->leaf != Place::no_leaf &&
         leaves_[found->leaf].type != leaves_[place.parts[i]->leaf].type) {
-      refuse(error::type_mismatch, access->span, fmt::format("the VAR_IN_OUT {} is of another type than its variable", place.members[i].written.text),
+      refuse(error::type_mismatch, access->span,
+             fmt::format("the VAR_IN_OUT {} is of another type than its variable", place.members[i].written.text),
              "Hand over a variable of the same type.");
       return;
     }
@@ -162,7 +163,8 @@ void Body::invoke_library(Place& place, language::Span span) {
   const BlockType& type = *place.type->block;
   if (conditions_ > 0) {
     refuse(error::conditional_call, span, fmt::format("'{}' is called under a condition", place.path),
-           fmt::format("{} moves its memory on in every step: call it in front of the IF, CASE or RETURN, with the condition in its inputs.",
+           fmt::format("{} moves its memory on in every step: call it in front of the IF, CASE or RETURN, with the "
+                       "condition in its inputs.",
                        type.about.name));
     return;
   }
@@ -205,7 +207,8 @@ void Body::invoke_library(Place& place, language::Span span) {
     computer_.at(path_for(leaves_[leaf].path), place_of(span));
     const Wire wire{Wire::From::Node, type.outputs[i].type, static_cast<std::uint16_t>(i), node};
     const Plain plain = leaves_[leaf].type;
-    write(leaf, is_integer(plain) || plain == Plain::Time ? computer_.taken(wire, plain) : Value{.wire = wire, .type = plain});
+    write(leaf, is_integer(plain) || plain == Plain::Time ? computer_.taken(wire, plain)
+                                                          : Value{.wire = wire, .type = plain});
   }
 }
 
@@ -227,17 +230,21 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const syntax::Argument& one = call.arguments[i];
     if (one.formal.text.empty()) {
-      while (next < members.size() && members[next].role != syntax::Role::Input && members[next].role != syntax::Role::InOut) {
+      while (next < members.size() && members[next].role != syntax::Role::Input &&
+             members[next].role != syntax::Role::InOut) {
         ++next;
       }
       targets[i] = next++;
     } else {
-      targets[i] = static_cast<std::size_t>(std::ranges::find(members, upper(one.formal.text), &Member::name) - members.begin());
+      targets[i] =
+          static_cast<std::size_t>(std::ranges::find(members, upper(one.formal.text), &Member::name) - members.begin());
     }
     if (targets[i] >= members.size() || level_ >= most_calls_in_calls) {
       return refuse(targets[i] >= members.size() ? error::unknown_function : error::recursive_block, span,
-                    targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name) : fmt::format("'{}' calls itself", name),
-                    targets[i] >= members.size() ? "Give its inputs in their order, or by name." : "A function cannot be a part of itself.");
+                    targets[i] >= members.size() ? fmt::format("{} does not take these arguments", name)
+                                                 : fmt::format("'{}' calls itself", name),
+                    targets[i] >= members.size() ? "Give its inputs in their order, or by name."
+                                                 : "A function cannot be a part of itself.");
     }
     const bool plain = members[targets[i]].type->kind == BodyType::Kind::Plain;
     if (!one.output && plain && members[targets[i]].role != syntax::Role::InOut) {
@@ -266,13 +273,15 @@ Value Body::call_unit(const Source& source, const syntax::Call& call, language::
       copy(target, *handed[i], span);
     } else if (given[i].valid()) {
       computer_.at(place_of(span));
-      write(target.leaf, computer_.assignable(given[i], leaves_[target.leaf].type, std::string(members[targets[i]].written.text)));
+      write(target.leaf,
+            computer_.assignable(given[i], leaves_[target.leaf].type, std::string(members[targets[i]].written.text)));
     }
   }
   enter(frame, source);
-  const Value result = frame.parts.back()->leaf != Place::no_leaf ? read(frame.parts.back()->leaf)
-                                                                  : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
-                                                                           "Use a VAR_IN_OUT for an array or a structure.");
+  const Value result = frame.parts.back()->leaf != Place::no_leaf
+                           ? read(frame.parts.back()->leaf)
+                           : refuse(error::refused_in_body, span, fmt::format("{} gives no single value", name),
+                                    "Use a VAR_IN_OUT for an array or a structure.");
   hand_back(frame, call.arguments);
   leaves_.resize(leaves);
   state_.values.resize(leaves);

@@ -31,13 +31,13 @@ struct OperatorFunction {
 };
 /// The operators under their names as functions.
 constexpr std::array operator_functions{
-    OperatorFunction{"ADD", Operator::Add},          OperatorFunction{"SUB", Operator::Subtract},
-    OperatorFunction{"MUL", Operator::Multiply},     OperatorFunction{"DIV", Operator::Divide},
-    OperatorFunction{"MOD", Operator::Modulo},       OperatorFunction{"GT", Operator::Greater},
-    OperatorFunction{"GE", Operator::GreaterEqual},  OperatorFunction{"EQ", Operator::Equal},
-    OperatorFunction{"LE", Operator::LessEqual},     OperatorFunction{"LT", Operator::Less},
-    OperatorFunction{"NE", Operator::NotEqual},      OperatorFunction{"AND", Operator::And},
-    OperatorFunction{"OR", Operator::Or},            OperatorFunction{"XOR", Operator::Xor}};
+    OperatorFunction{"ADD", Operator::Add},         OperatorFunction{"SUB", Operator::Subtract},
+    OperatorFunction{"MUL", Operator::Multiply},    OperatorFunction{"DIV", Operator::Divide},
+    OperatorFunction{"MOD", Operator::Modulo},      OperatorFunction{"GT", Operator::Greater},
+    OperatorFunction{"GE", Operator::GreaterEqual}, OperatorFunction{"EQ", Operator::Equal},
+    OperatorFunction{"LE", Operator::LessEqual},    OperatorFunction{"LT", Operator::Less},
+    OperatorFunction{"NE", Operator::NotEqual},     OperatorFunction{"AND", Operator::And},
+    OperatorFunction{"OR", Operator::Or},           OperatorFunction{"XOR", Operator::Xor}};
 
 /// Arguments in the order of the standard, where they are named.
 std::vector<std::string> formal_names(const std::string& function) {
@@ -59,7 +59,8 @@ Value Body::call(const syntax::Call& call, language::Span span) {
     return call_unit(source, call, span);
   }
   if (scope_ != nullptr && scope_->find(name) != nullptr) {
-    return refuse(error::refused_in_body, call.function.span, fmt::format("'{}' is called inside of an expression", call.function.text),
+    return refuse(error::refused_in_body, call.function.span,
+                  fmt::format("'{}' is called inside of an expression", call.function.text),
                   "Call the instance as a statement before, and read its output here.");
   }
   std::vector<Value> values(call.arguments.size());
@@ -81,12 +82,14 @@ Value Body::call(const syntax::Call& call, language::Span span) {
     }
   }
   computer_.at(place_of(span));
-  for (const auto& found : {conversion(name, values), of_number(name, values), chosen(name, values), function(name, values)}) {
+  for (const auto& found :
+       {conversion(name, values), of_number(name, values), chosen(name, values), function(name, values)}) {
     if (found) {
       return *found;
     }
   }
-  return refuse(error::unknown_function, call.function.span, fmt::format("there is no function '{}'", call.function.text),
+  return refuse(error::unknown_function, call.function.span,
+                fmt::format("there is no function '{}'", call.function.text),
                 "Put its FUNCTION into this file, or use one of the standard.");
 }
 
@@ -176,7 +179,8 @@ std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& v
     }
     Value best = values[0];
     for (std::size_t i = 1; i < values.size(); ++i) {
-      best = computer_.select(compare(name == "MIN" ? Operator::Less : Operator::Greater, values[i], best), values[i], best);
+      best = computer_.select(compare(name == "MIN" ? Operator::Less : Operator::Greater, values[i], best), values[i],
+                              best);
     }
     return best;
   }
@@ -197,7 +201,8 @@ std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& v
     }
     Value result = values.back();
     for (std::size_t i = values.size() - 1; i-- > 1;) {
-      const Value here = compare(Operator::LessEqual, values[0], computer_.literal(Plain::Dint, static_cast<double>(i - 1), true));
+      const Value here =
+          compare(Operator::LessEqual, values[0], computer_.literal(Plain::Dint, static_cast<double>(i - 1), true));
       result = computer_.select(here, values[i], result);
     }
     return result;

@@ -87,7 +87,9 @@ std::unique_ptr<Place> Body::make(const TypeRef& type, const std::string& path, 
       break;
     case BodyType::Kind::Array:
       for (std::int64_t i = type->low; i <= type->high && leaves_.size() <= most_leaves; ++i) {
-        place->parts.push_back(make(type->element, fmt::format("{}_{}", path, i < 0 ? fmt::format("M{}", -i) : fmt::format("{}", i)), span, memory));
+        place->parts.push_back(make(type->element,
+                                    fmt::format("{}_{}", path, i < 0 ? fmt::format("M{}", -i) : fmt::format("{}", i)),
+                                    span, memory));
       }
       break;
     case BodyType::Kind::Library:
@@ -113,8 +115,7 @@ void Body::make_members(Place& place, const std::vector<Member>& members, bool m
   for (const Member& member : members) {
     const bool fixed = member.role == syntax::Role::Constant || member.role == syntax::Role::Temporary ||
                        (unit && member.role == syntax::Role::Local && member.type->kind != BodyType::Kind::Block &&
-                        member.type->kind != BodyType::Kind::Library &&
-                        !assigned(source_).contains(member.name));
+                        member.type->kind != BodyType::Kind::Library && !assigned(source_).contains(member.name));
     const std::string path = place.path.empty() ? member.name : place.path + (unit ? "." : "_") + member.name;
     auto part = make(member.type, path, place_of(member.written.span), memory && !fixed);
     if (member.initial != nullptr && member.initial->given()) {
@@ -130,7 +131,8 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
   if (place.leaf != Place::no_leaf) {
     Leaf& leaf = leaves_[place.leaf];
     if (initial.value == language::no_expression) {
-      refuse(error::type_mismatch, initial.span, fmt::format("'{}' takes one value", place.path), "Write it without brackets.");
+      refuse(error::type_mismatch, initial.span, fmt::format("'{}' takes one value", place.path),
+             "Write it without brackets.");
       return;
     }
     computer_.at(place_of(expression(initial.value).span));
@@ -163,7 +165,8 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
     if (Place* const part = place.find(upper(name.text))) {
       set_initial(*part, inner);
     } else {
-      refuse(error::unknown_pin, name.span, fmt::format("there is no member '{}'", name.text), "Name one that is declared.");
+      refuse(error::unknown_pin, name.span, fmt::format("there is no member '{}'", name.text),
+             "Name one that is declared.");
     }
   }
 }
@@ -217,7 +220,8 @@ void Body::close_cells() {
   }
   for (const auto& [leaf, span] : open_pins_) {
     if (state_.values[leaf]) {
-      refuse(error::refused_in_body, span, fmt::format("'{}' is assigned behind the call of its block", leaves_[leaf].path),
+      refuse(error::refused_in_body, span,
+             fmt::format("'{}' is assigned behind the call of its block", leaves_[leaf].path),
              "Assign it before the call.");
     }
   }
@@ -297,7 +301,8 @@ bool Body::step_into(std::vector<Choice>& list, const syntax::Step& step, const 
     for (Choice& one : list) {
       Place* const part = one.place->find(name);
       if (part == nullptr) {
-        refuse(error::unknown_pin, step.member.span, fmt::format("'{}' has no member '{}'", access.name.text, step.member.text),
+        refuse(error::unknown_pin, step.member.span,
+               fmt::format("'{}' has no member '{}'", access.name.text, step.member.text),
                "Name an input or output of the instance, or a member of the structure.");
         return false;
       }
@@ -326,11 +331,14 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
     const BodyType& array = *one.place->type;
     double known = 0.0;
     if (computer_.constant(index, known)) {
-      if (known < static_cast<double>(array.low) || known > static_cast<double>(array.high)) {
-        refuse(error::refused_access, span, fmt::format("the index {} lies outside of {}..{}", known, array.low, array.high),
+      const bool outside = known < static_cast<double>(array.low) || known > static_cast<double>(array.high);
+      if (outside && index.loose) {  // a literal: nobody means the nearest element
+        refuse(error::refused_access, span,
+               fmt::format("the index {} lies outside of {}..{}", known, array.low, array.high),
                "Index an element that there is.");
         return false;
       }
+      known = std::clamp(known, static_cast<double>(array.low), static_cast<double>(array.high));
       Choice chosen = one;
       chosen.place = one.place->parts[static_cast<std::size_t>(known - static_cast<double>(array.low))].get();
       next.push_back(chosen);
@@ -339,15 +347,19 @@ bool Body::index_into(std::vector<Choice>& list, const Value& index, language::S
     for (std::int64_t i = array.low; i <= array.high; ++i) {
       Choice chosen = one;
       chosen.place = one.place->parts[static_cast<std::size_t>(i - array.low)].get();
-      const Operator op = i == array.low ? Operator::LessEqual : (i == array.high ? Operator::GreaterEqual : Operator::Equal);
-      const Value here = array.low == array.high ? computer_.truth(true)
-                                                 : computer_.binary(op, index, computer_.literal(Plain::Dint, static_cast<double>(i), true));
+      const Operator op =
+          i == array.low ? Operator::LessEqual : (i == array.high ? Operator::GreaterEqual : Operator::Equal);
+      const Value here =
+          array.low == array.high
+              ? computer_.truth(true)
+              : computer_.binary(op, index, computer_.literal(Plain::Dint, static_cast<double>(i), true));
       chosen.condition = one.condition ? computer_.binary(Operator::And, *one.condition, here) : here;
       next.push_back(std::move(chosen));
     }
   }
   if (next.size() > most_choices) {
-    refuse(error::refused_in_body, span, fmt::format("this access means one of more than {} elements", most_choices), "Use a smaller array.");
+    refuse(error::refused_in_body, span, fmt::format("this access means one of more than {} elements", most_choices),
+           "Use a smaller array.");
     return false;
   }
   list = std::move(next);
@@ -368,7 +380,8 @@ Value Body::read(const syntax::Access& access) {
     return *known;
   }
   if (!access.type.empty()) {
-    return refuse(error::unknown_name, access.span, fmt::format("there is no value {}#{}", access.type, access.name.text),
+    return refuse(error::unknown_name, access.span,
+                  fmt::format("there is no value {}#{}", access.type, access.name.text),
                   "Name a value of an enumeration in this file.");
   }
   const auto list = choices(access);

@@ -28,7 +28,8 @@ void Body::execute(const syntax::Statements& list, std::size_t from) {
   for (std::size_t i = from; i < list.size(); ++i) {
     if (++executed_ > most_statements) {
       if (executed_ == most_statements + 1) {
-        refuse(error::refused_in_body, list[i].span, fmt::format("this body has more than {} statements when its loops are unrolled", most_statements),
+        refuse(error::refused_in_body, list[i].span,
+               fmt::format("this body has more than {} statements when its loops are unrolled", most_statements),
                "Use fewer rounds, or fewer elements.");
       }
       return;
@@ -102,8 +103,7 @@ void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, con
   }
   computer_.at(path_for("CONDITION"), place_of(expression(list[at].condition).span));
   choose(
-      condition(list[at].condition), [&] { execute(list[at].statements); },
-      [&] { branches(list, at + 1, otherwise); });
+      condition(list[at].condition), [&] { execute(list[at].statements); }, [&] { branches(list, at + 1, otherwise); });
 }
 
 Value Body::selected(const syntax::Arm& arm, const Value& selector) {
@@ -180,8 +180,10 @@ void Body::loop(const syntax::For& node, language::Span span) {
     }
   }
   if (by == 0.0 || (to - from) / by > most_rounds) {
-    refuse(error::refused_in_body, span, by == 0.0 ? std::string("this FOR never ends") : fmt::format("this FOR has more than {} rounds", most_rounds),
-           "A loop is unrolled: give it fewer rounds.");
+    refuse(
+        error::refused_in_body, span,
+        by == 0.0 ? std::string("this FOR never ends") : fmt::format("this FOR has more than {} rounds", most_rounds),
+        "A loop is unrolled: give it fewer rounds.");
     return;
   }
   const Value outer_exit = std::exchange(state_.exited, computer_.truth(false));
@@ -221,8 +223,9 @@ void Body::execute(const syntax::Statement& statement) {
     loop(*for_node, statement.span);
   } else {
     const auto jump = std::get<syntax::Jump>(statement.node);
-    (jump == syntax::Jump::Return ? state_.returned : jump == syntax::Jump::Exit ? state_.exited : state_.continued) =
-        computer_.truth(true);
+    (jump == syntax::Jump::Return ? state_.returned
+     : jump == syntax::Jump::Exit ? state_.exited
+                                  : state_.continued) = computer_.truth(true);
   }
 }
 

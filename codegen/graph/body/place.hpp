@@ -14,12 +14,12 @@ namespace hysteron::bodies {
 struct Place {
   static constexpr std::uint32_t no_leaf = std::numeric_limits<std::uint32_t>::max();
   TypeRef type{};
-  std::string path{};                            ///< MOTOR.SPEED; empty for the body itself
-  std::uint32_t leaf = no_leaf;                  ///< of a plain type
-  std::vector<std::unique_ptr<Place>> parts{};   ///< elements, members, or the pins and outputs of a library block
-  std::vector<Member> members{};                 ///< beside parts; of an array empty
-  std::vector<Place*> aliases{};                 ///< beside parts: what a VAR_IN_OUT stands for in this call
-  bool called = false;                           ///< a library block, in this step
+  std::string path{};                           ///< MOTOR.SPEED; empty for the body itself
+  std::uint32_t leaf = no_leaf;                 ///< of a plain type
+  std::vector<std::unique_ptr<Place>> parts{};  ///< elements, members, or the pins and outputs of a library block
+  std::vector<Member> members{};                ///< beside parts; of an array empty
+  std::vector<Place*> aliases{};                ///< beside parts: what a VAR_IN_OUT stands for in this call
+  bool called = false;                          ///< a library block, in this step
   language::Span call{};
 
   /// The part of a name in upper case; null where there is none.

@@ -34,7 +34,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> timers{
 
 }  // namespace
 
-const PlainInfo& info(Plain type) { return infos[static_cast<std::size_t>(type)]; }
+const PlainInfo& info(Plain type) {
+  return infos[static_cast<std::size_t>(type)];
+}
 
 bool plain_of(std::string_view name, Plain& type) {
   const auto found = std::ranges::find_if(infos, [&](const PlainInfo& one) { return same_name(one.name, name); });
@@ -44,7 +46,9 @@ bool plain_of(std::string_view name, Plain& type) {
   return found != infos.end();
 }
 
-std::int64_t lowest(Plain type) { return info(type).below_zero ? -(std::int64_t{1} << (info(type).width - 1)) : 0; }
+std::int64_t lowest(Plain type) {
+  return info(type).below_zero ? -(std::int64_t{1} << (info(type).width - 1)) : 0;
+}
 
 std::int64_t highest(Plain type) {
   return (std::int64_t{1} << (info(type).width - (info(type).below_zero ? 1 : 0))) - 1;

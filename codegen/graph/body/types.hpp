@@ -34,10 +34,16 @@ const PlainInfo& info(Plain type);
 /// The plain type of a name, without regard to case; false where there is none.
 bool plain_of(std::string_view name, Plain& type);
 
-inline bool is_integer(Plain type) { return info(type).family == Family::Whole || info(type).family == Family::Bits; }
-inline bool is_number(Plain type) { return info(type).family == Family::Number; }
+inline bool is_integer(Plain type) {
+  return info(type).family == Family::Whole || info(type).family == Family::Bits;
+}
+inline bool is_number(Plain type) {
+  return info(type).family == Family::Number;
+}
 /// 32 bits without a sign: carried by the bits of a DINT, compared and divided in a way of their own.
-inline bool is_unsigned_32(Plain type) { return is_integer(type) && info(type).width == 32 && !info(type).below_zero; }
+inline bool is_unsigned_32(Plain type) {
+  return is_integer(type) && info(type).width == 32 && !info(type).below_zero;
+}
 std::int64_t lowest(Plain type);
 std::int64_t highest(Plain type);
 
@@ -65,11 +71,11 @@ struct BodyType {
   std::int64_t low = 0;  ///< of an array's one dimension; further ones are arrays of arrays
   std::int64_t high = 0;
   TypeRef element{};
-  std::vector<Member> members{};         ///< of a structure or a block of one's own
-  Source source{};                       ///< of a block of one's own
-  const hysteron::BlockType* block = nullptr;  ///< of the library
-  bool timer = false;                    ///< named as in the standard: its numbers are TIMEs
-  double start = 0.0;                    ///< of an enumeration: its first value
+  std::vector<Member> members{};                     ///< of a structure or a block of one's own
+  Source source{};                                   ///< of a block of one's own
+  const hysteron::BlockType* block = nullptr;        ///< of the library
+  bool timer = false;                                ///< named as in the standard: its numbers are TIMEs
+  double start = 0.0;                                ///< of an enumeration: its first value
   const language::body::Initial* initial = nullptr;  ///< of a TYPE with a value of its own
 };
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "codegen/backends/cpp/cpp.hpp"
-#include "tests/codegen/random_body.hpp"
-#include "tests/codegen/random_program.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
 #include "tests/codegen/backends/st_as_cpp.hpp"
+#include "tests/codegen/random_body.hpp"
+#include "tests/codegen/random_program.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::testing {

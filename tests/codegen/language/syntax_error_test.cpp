@@ -78,7 +78,7 @@ TEST(SyntaxError, Literals) {
               ElementsAre("108 1:23+10", "108 1:41+10", "108 1:60+10", "108 1:78+10", "108 1:95+7"));
   EXPECT_THAT(in_statements("A := 1.0e400; B := 1.0e-400; C := 99999999999999999999;"),
               ElementsAre("108 1:23+7", "108 1:37+8", "108 1:52+20"));
-  EXPECT_THAT(in_statements("A := T#50us; B := time#1h_2.5m; C := DT#2024-01-31-12:00:00; D := LTIME#1ns;"),
+  EXPECT_THAT(in_statements("A := LTIME#50us; B := ltime#1h_2.5m; C := DT#2024-01-31-12:00:00; D := LTIME#1ns;"),
               ElementsAre("109 1:23+6", "109 1:36+12", "109 1:55+22", "109 1:84+9"));
   EXPECT_THAT(in_statements("A := 'it$'s'; B := \"x\"; C := 'open\n;"),
               ElementsAre("110 1:23+7", "110 1:37+3", "110 1:47+5"));
@@ -90,7 +90,7 @@ TEST(SyntaxError, LiteralsAreMended) {
   EXPECT_THAT(first_mend("A := 1.;"), HasSubstr("1.0"));
   EXPECT_THAT(first_mend("A := .5;"), HasSubstr("0.5"));
   EXPECT_THAT(first_mend("A := 1e-6;"), HasSubstr("1.0e-6"));
-  EXPECT_THAT(first_mend("A := T#50us;"), HasSubstr("5.0e-5"));
+  EXPECT_THAT(first_mend("A := LTIME#50us;"), HasSubstr("5.0e-5"));
   EXPECT_THAT(first_mend("A = B;"), HasSubstr(":="));
   EXPECT_THAT(first_mend("I.P := B;"), HasSubstr("I(P := …)"));
   EXPECT_THAT(first_mend("I(P => B);"), HasSubstr("I"));
@@ -118,9 +118,10 @@ TEST(SyntaxError, Statements) {
 
 TEST(SyntaxError, WhatADiagramDoesNotHave) {
   EXPECT_THAT(in_statements("IF A THEN IF B THEN C := ); END_IF; END_IF; D := );"),
-              ElementsAre("111 1:18+2", "102 1:67+1"));
+              ElementsAre("102 1:43+1", "102 1:67+1"));
   EXPECT_THAT(in_statements("FOR I := 1 TO 3 DO A := B; END_FOR\nEXIT; REPEAT A := B;"),
-              ElementsAre("111 1:18+3", "111 2:1+4", "111 2:7+6"));
+              ElementsAre("129 2:7+6"));  // a body, whose REPEAT is refused
+  EXPECT_THAT(in_statements("A := B; END_IF;\nEXIT;"), ElementsAre("111 1:26+6", "111 2:1+4"));
   EXPECT_THAT(in_statements("A(B);"), ElementsAre("118 1:20+1"));
   EXPECT_THAT(in_statements("A(1.0);"), ElementsAre("118 1:20+3"));
   EXPECT_THAT(in_statements("A(X = 1.0);"), ElementsAre("118 1:22+1"));
@@ -137,19 +138,19 @@ TEST(SyntaxError, WhatADiagramDoesNotHave) {
 }
 
 TEST(SyntaxError, Declarations) {
-  EXPECT_THAT(in_section("X : REAL; Y : array[0..1] OF LREAL; Z : TIME;"),
-              ElementsAre("113 3:5+4", "113 3:15+5", "113 3:41+4"));
+  EXPECT_THAT(in_section("X : LINT; Y : POINTER; Z : DATE;"),
+              ElementsAre("113 3:5+4", "113 3:15+7", "113 3:28+4"));
   EXPECT_THAT(in_section("A__B, C_ : LREAL;"), ElementsAre("114 3:1+4", "114 3:7+2"));
   EXPECT_THAT(in_section("X AT %QX0.0 : BOOL;"), ElementsAre("127 3:3+2", "127 3:6+6"));
-  EXPECT_THAT(in_section("IF : BOOL; Y : LREAL := ; Z LREAL;"), ElementsAre("124 3:1+2", "102 3:25+1", "102 3:29+5"));
+  EXPECT_THAT(in_section("IF : BOOL; Y : LREAL := ; Z LREAL;"), ElementsAre("102 3:1+2", "102 3:25+1", "102 3:29+5"));
   EXPECT_THAT(in_section("TYPE, Class : LREAL; Y : BOOL := TYPE;"), ElementsAre("124 3:1+4", "124 3:34+4"));
   EXPECT_THAT(in_section("X : LREAL\nY : BOOL;"), ElementsAre("103 3:10+1"));
   EXPECT_THAT(in_section("T : HY_TABLE := (X := [0.0, [1.0]]);"), ElementsAre("126 3:29+1"));
   EXPECT_THAT(in_section("T : HY_TABLE := (X := []);"), ElementsAre("102 3:24+1"));
   EXPECT_THAT(in_section("T : HY_GAIN := (K := 1.0, 2.0);"), ElementsAre("118 3:27+3"));
-  EXPECT_THAT(errors("FUNCTION_BLOCK F VAR_IN_OUT X : LREAL; END_VAR VAR RETAIN Y : BOOL; END_VAR "
+  EXPECT_THAT(errors("FUNCTION_BLOCK F VAR_GLOBAL X : LREAL; END_VAR VAR Y : BOOL; END_VAR "
                      "VAR_INPUT CONSTANT Z : BOOL; END_VAR END_FUNCTION_BLOCK"),
-              ElementsAre("112 1:18+10", "112 1:52+6", "112 1:87+8"));
+              ElementsAre("112 1:18+10", "112 1:80+8"));
 }
 
 TEST(SyntaxError, PartsThatDoNotEnd) {

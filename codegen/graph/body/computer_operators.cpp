@@ -1,0 +1,348 @@
+// Operators, choices and shifts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "codegen/graph/body/computer.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::bodies {
+
+using language::Operator;
+
+namespace {
+
+constexpr std::int64_t lowest_whole = std::numeric_limits<std::int32_t>::min();
+constexpr std::int64_t highest_whole = std::numeric_limits<std::int32_t>::max();
+
+bool is_comparison(Operator op) {
+  return op >= Operator::Less && op <= Operator::NotEqual;
+}
+
+std::string_view text_of(Operator op) {
+  constexpr std::array texts{"-",  "NOT", "+",  "-", "*",  "/",   "MOD", "**", "<",
+                             "<=", ">",   ">=", "=", "<>", "AND", "OR",  "XOR"};
+  return texts[static_cast<std::size_t>(op)];
+}
+
+}  // namespace
+
+Value Computer::negative(const Value& value) {
+  if (!value.valid()) {
+    return value;
+  }
+  if (value.loose && is_integer(value.type)) {
+    return literal(value.type, -static_cast<double>(value.low), true);
+  }
+  if (is_integer(value.type)) {
+    Value result = ranged(apply(Op::IntNegate, {value.wire}), value.type, -value.high, -value.low);
+    return result;
+  }
+  if (info(value.type).family == Family::Truth) {
+    return refused(error::type_mismatch, "unary − does not take BOOL", "Write NOT.");
+  }
+  Value result = value;
+  result.wire = apply(Op::Negate, {value.wire});
+  return result;
+}
+
+Value Computer::inverse(const Value& value) {
+  if (!value.valid()) {
+    return value;
+  }
+  if (info(value.type).family == Family::Truth) {
+    return {.wire = apply(Op::Not, {value.wire}), .type = Plain::Bool};
+  }
+  if (!is_integer(value.type)) {
+    return refused(error::type_mismatch, fmt::format("NOT does not take {}", info(value.type).name),
+                   "A comparison turns a number into a BOOL.");
+  }
+  return {.wire = apply(Op::IntXor, {value.wire, whole(-1)}),
+          .type = value.type,
+          .low = lowest_whole,
+          .high = highest_whole};
+}
+
+bool Computer::meet(Value& left, Value& right, std::string_view what) {
+  if (!left.valid() || !right.valid()) {
+    return false;
+  }
+  if (left.type == right.type) {
+    return true;
+  }
+  const auto to_number = [&](Value& value, Plain type) {
+    value = is_integer(value.type) ? Value{.wire = real_of(value), .type = type, .loose = value.loose} : value;
+  };
+  if (is_number(left.type) && is_number(right.type)) {  // a literal and a REAL, or an LREAL: wide
+    const bool single = (left.type == Plain::Real || left.loose) && (right.type == Plain::Real || right.loose);
+    left.wide = right.wide = true;
+    left.type = right.type = single ? Plain::Real : Plain::Lreal;
+    return true;
+  }
+  if (is_number(left.type) && is_integer(right.type)) {
+    to_number(right, left.type);
+    right.type = left.type;
+    return true;
+  }
+  if (is_integer(left.type) && is_number(right.type)) {
+    to_number(left, right.type);
+    left.type = right.type;
+    return true;
+  }
+  if (is_integer(left.type) && is_integer(right.type)) {
+    if (left.loose || right.loose) {
+      Value& literal_side = left.loose ? left : right;
+      const Plain type = left.loose ? right.type : left.type;
+      literal_side = literal(type, static_cast<double>(literal_side.low));
+      return true;
+    }
+    const auto holds = [](Plain wide, Plain narrow) {
+      return lowest(narrow) >= lowest(wide) && highest(narrow) <= highest(wide);
+    };
+    if (holds(left.type, right.type) || holds(right.type, left.type)) {
+      (holds(left.type, right.type) ? right.type : left.type) = holds(left.type, right.type) ? left.type : right.type;
+      return true;
+    }
+    if (info(left.type).width < 32 && info(right.type).width < 32) {
+      left.type = right.type = Plain::Dint;
+      return true;
+    }
+  }
+  // A literal number beside a BOOL: 0 and 1 are its values.
+  for (auto* one : {&left, &right}) {
+    Value& other = one == &left ? right : left;
+    if (one->loose && other.type == Plain::Bool && is_integer(one->type) && (one->low == 0 || one->low == 1)) {
+      *one = truth(one->low == 1);
+      return true;
+    }
+  }
+  refused(error::type_mismatch,
+          fmt::format("{} does not take {} and {}", what, info(left.type).name, info(right.type).name),
+          fmt::format("Convert one of them: {}_TO_{}( … ).", info(right.type).name, info(left.type).name));
+  return false;
+}
+
+Value Computer::integer(Op op, const Value& left, const Value& right, Plain type) {
+  std::int64_t low = lowest_whole;
+  std::int64_t high = highest_whole;
+  if (op == Op::IntAdd) {
+    low = left.low + right.low;
+    high = left.high + right.high;
+  } else if (op == Op::IntSubtract) {
+    low = left.low - right.high;
+    high = left.high - right.low;
+  } else if (op == Op::IntMultiply) {
+    const auto product = [](std::int64_t a, std::int64_t b) { return a * b; };
+    const auto corners = {product(left.low, right.low), product(left.low, right.high), product(left.high, right.low),
+                          product(left.high, right.high)};
+    low = std::min(corners);
+    high = std::max(corners);
+  }
+  return ranged(apply(op, {left.wire, right.wire}), type, low, high);
+}
+
+Value Computer::divided(bool remainder, const Value& left, const Value& right, Plain type) {
+  if (!is_unsigned_32(type) || (left.low >= 0 && right.low >= 0)) {
+    const Value result = integer(remainder ? Op::IntModulo : Op::IntDivide, left, right, type);
+    const bool positive = left.low >= 0 && right.low >= 0;
+    return positive ? ranged(result.wire, type, 0, remainder ? std::max<std::int64_t>(0, right.high) : left.high)
+                    : result;
+  }
+  // 32 bits without a sign: an LREAL holds both exactly, and the whole part of their quotient.
+  const Wire divisor = real_of(right);
+  const Wire zero = builder_.literal(Type::Real, 0.0);
+  const Wire none = apply(Op::Equal, {divisor, zero});
+  const Wire safe = apply(Op::Select, {none, builder_.literal(Type::Real, 1.0), divisor});
+  const Wire quotient = apply(Op::Select, {none, zero, apply(Op::Divide, {real_of(left), safe})});
+  Value result = whole_of(quotient, type, false);
+  if (remainder) {
+    const Wire rest = apply(Op::IntSubtract, {left.wire, apply(Op::IntMultiply, {result.wire, right.wire})});
+    result.wire = apply(Op::SelectInt, {none, whole(0), rest});
+  }
+  return result;
+}
+
+Value Computer::compared(Operator op, const Value& left, const Value& right) {
+  const bool swapped = op == Operator::Greater || op == Operator::GreaterEqual;
+  Wire a = swapped ? right.wire : left.wire;
+  Wire b = swapped ? left.wire : right.wire;
+  const bool equality = op == Operator::Equal || op == Operator::NotEqual;
+  if (info(left.type).family == Family::Truth) {
+    const Wire differs = apply(Op::Xor, {a, b});
+    if (!equality) {  // FALSE < TRUE
+      const Wire below = apply(Op::And, {apply(Op::Not, {a}), b});
+      return {.wire = op == Operator::Less || op == Operator::Greater
+                          ? below
+                          : apply(Op::Or, {below, apply(Op::Not, {differs})}),
+              .type = Plain::Bool};
+    }
+    return {.wire = op == Operator::Equal ? apply(Op::Not, {differs}) : differs, .type = Plain::Bool};
+  }
+  const bool integers = is_integer(left.type);
+  if (integers && is_unsigned_32(left.type) && !equality && (left.low < 0 || right.low < 0)) {
+    a = apply(Op::IntXor, {a, whole(lowest_whole)});  // in the order of numbers without a sign
+    b = apply(Op::IntXor, {b, whole(lowest_whole)});
+  }
+  Op chosen = integers ? Op::IntNotEqual : Op::NotEqual;
+  if (op == Operator::Equal) {
+    chosen = integers ? Op::IntEqual : Op::Equal;
+  } else if (op == Operator::Less || op == Operator::Greater) {
+    chosen = integers ? Op::IntLess : Op::Less;
+  } else if (op != Operator::NotEqual) {
+    chosen = integers ? Op::IntLessEqual : Op::LessEqual;
+  }
+  return {.wire = apply(chosen, {a, b}), .type = Plain::Bool};
+}
+
+Value Computer::bits(Operator op, const Value& left, const Value& right, Plain type) {
+  if (info(type).family == Family::Truth) {
+    if (op != Operator::Xor) {  // what is known decides
+      const bool neutral = op == Operator::And;
+      for (const auto& [one, other] : {std::pair{left, right}, {right, left}}) {
+        if (is_true(one) || is_false(one)) {
+          return is_true(one) == neutral ? other : one;
+        }
+      }
+    }
+    const Op chosen = op == Operator::And ? Op::And : (op == Operator::Or ? Op::Or : Op::Xor);
+    return {.wire = apply(chosen, {left.wire, right.wire}), .type = type};
+  }
+  const Op chosen = op == Operator::And ? Op::IntAnd : (op == Operator::Or ? Op::IntOr : Op::IntXor);
+  std::int64_t low = lowest_whole;
+  std::int64_t high = highest_whole;
+  if (left.low >= 0 && right.low >= 0) {
+    std::int64_t above = 1;
+    while (above <= std::max(left.high, right.high)) {
+      above *= 2;
+    }
+    low = 0;
+    high = above - 1;
+  }
+  if (op == Operator::And && (left.low >= 0 || right.low >= 0)) {
+    low = 0;
+    high = left.low < 0 ? right.high : (right.low < 0 ? left.high : std::min(left.high, right.high));
+  }
+  return ranged(apply(chosen, {left.wire, right.wire}), type, low, high);
+}
+
+Value Computer::binary(Operator op, Value left, Value right) {
+  if (op == Operator::Power) {
+    if (!left.valid() || !right.valid()) {
+      return {};
+    }
+    const bool single = left.type == Plain::Real;
+    left = is_number(left.type) ? left : Value{.wire = real_of(left), .type = Plain::Lreal};
+    right = is_number(right.type) ? right : Value{.wire = real_of(right), .type = Plain::Lreal};
+    return {
+        .wire = apply(Op::Power, {left.wire, right.wire}), .type = single ? Plain::Real : Plain::Lreal, .wide = true};
+  }
+  const bool scaled = info(left.type).family == Family::Duration || info(right.type).family == Family::Duration;
+  if (scaled && (op == Operator::Multiply || op == Operator::Divide) && left.type != right.type) {
+    for (auto* one : {&left, &right}) {  // T * 2, T / 3
+      *one = is_integer(one->type) ? Value{.wire = real_of(*one), .type = Plain::Time} : *one;
+      one->type = Plain::Time;
+    }
+  }
+  const bool loose = left.loose && right.loose;
+  if (!meet(left, right, text_of(op))) {
+    return {};
+  }
+  const Plain type = left.type;
+  const Family family = info(type).family;
+  if (is_comparison(op)) {
+    return compared(op, left, right);
+  }
+  if (op >= Operator::And) {
+    return family == Family::Truth || is_integer(type)
+               ? bits(op, left, right, type)
+               : refused(error::type_mismatch, fmt::format("{} does not take {}", text_of(op), info(type).name),
+                         "A comparison turns a number into a BOOL.");
+  }
+  if (family == Family::Truth || (op == Operator::Modulo && !is_integer(type))) {
+    return refused(error::type_mismatch, fmt::format("{} does not take {}", text_of(op), info(type).name),
+                   "It takes numbers.");
+  }
+  if (is_integer(type)) {
+    Value result = op == Operator::Add        ? integer(Op::IntAdd, left, right, type)
+                   : op == Operator::Subtract ? integer(Op::IntSubtract, left, right, type)
+                   : op == Operator::Multiply ? integer(Op::IntMultiply, left, right, type)
+                                              : divided(op == Operator::Modulo, left, right, type);
+    result.loose = loose && result.low == result.high;
+    return result;
+  }
+  const Op chosen = op == Operator::Add        ? Op::Add
+                    : op == Operator::Subtract ? Op::Subtract
+                    : op == Operator::Multiply ? Op::Multiply
+                                               : Op::Divide;
+  Value result{.wire = apply(chosen, {left.wire, right.wire}), .type = type, .loose = loose, .wide = true};
+  const bool wide = left.wide || right.wide || left.loose || right.loose;
+  return type == Plain::Real && !wide ? fit(result, type) : result;
+}
+
+Value Computer::select(const Value& condition, const Value& yes, const Value& no) {
+  if (is_true(condition) || is_false(condition)) {
+    return is_true(condition) ? yes : no;
+  }
+  const bool same =
+      yes.wire == no.wire || (GraphBuilder::is_literal(yes.wire) && GraphBuilder::is_literal(no.wire) &&
+                              yes.wire.type == no.wire.type && builder_.value(yes.wire) == builder_.value(no.wire) &&
+                              std::signbit(builder_.value(yes.wire)) == std::signbit(builder_.value(no.wire)));
+  if (same) {
+    return yes;
+  }
+  Value result = yes;
+  result.loose = false;
+  result.wide = yes.wide || no.wide;
+  result.low = std::min(yes.low, no.low);
+  result.high = std::max(yes.high, no.high);
+  const Op op =
+      yes.wire.type == Type::Bool ? Op::SelectBool : (yes.wire.type == Type::Int ? Op::SelectInt : Op::Select);
+  result.wire = apply(op, {condition.wire, yes.wire, no.wire});
+  return result;
+}
+
+/// By a variable number of places, in five steps, each of which shifts or does not; beyond 31 nothing is left.
+Value Computer::shifted(const Value& value, const Value& places, bool left) {
+  const Op op = left ? Op::IntShiftLeft : Op::IntShiftRight;
+  Value result = fit(value, value.type);
+  double known = 0.0;
+  if (constant(places, known)) {
+    const auto n = static_cast<std::int64_t>(known);
+    result.wire = n == 0 ? result.wire : (n < 0 || n > 31 ? whole(0) : apply(op, {result.wire, whole(n)}));
+  } else {
+    for (std::int64_t bit = 16; bit > 0; bit /= 2) {
+      const Wire step = apply(Op::IntNotEqual, {apply(Op::IntAnd, {places.wire, whole(bit)}), whole(0)});
+      result.wire = apply(Op::SelectInt, {step, apply(op, {result.wire, whole(bit)}), result.wire});
+    }
+    const Wire beyond = apply(Op::IntNotEqual, {apply(Op::IntAnd, {places.wire, whole(-32)}), whole(0)});
+    result.wire = apply(Op::SelectInt, {beyond, whole(0), result.wire});
+  }
+  result.low = lowest_whole;
+  result.high = highest_whole;
+  if (!left && value.low >= 0) {
+    result.low = 0;
+    result.high = result.high < value.high ? result.high : value.high;
+  }
+  return fit(result, value.type);
+}
+
+Value Computer::rotated(const Value& value, const Value& places, bool left) {
+  const int width = info(value.type).width;
+  double known = 0.0;
+  if (!constant(places, known)) {
+    return refused(error::refused_in_body, "ROL and ROR take a constant number of places here",
+                   "Write the number, or SHL and SHR, which take a variable one.");
+  }
+  const int n = ((static_cast<int>(known) % width) + width) % width;
+  const int up = left ? n : width - n;
+  if (n == 0) {
+    return value;
+  }
+  const Value high = shifted(value, literal(Plain::Dint, up), true);
+  const Value low = shifted(value, literal(Plain::Dint, width - up), false);
+  return fit(bits(Operator::Or, high, low, value.type), value.type);
+}
+
+}  // namespace hysteron::bodies

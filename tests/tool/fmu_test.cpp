@@ -29,7 +29,7 @@ constexpr std::string_view axis = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
     TEMP   : LREAL;  (* @unit degC *)
     GAIN   : LREAL := 2.0;  (* @param @min 0 @max 10 @doc proportional gain *)
     N      : DINT;
-    ON     : BOOL;
+    ACTIVE : BOOL;
     STATUS : WORD;
   END_VAR
   VAR_OUTPUT
@@ -45,7 +45,7 @@ constexpr std::string_view axis = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
   LAG(XIN := X);
   Y := GAIN * LAG.XOUT + TEMP * 0.0;
   K := N + 1;
-  Q := NOT ON;
+  Q := NOT ACTIVE;
   W := STATUS;
 END_FUNCTION_BLOCK
 )";
@@ -115,7 +115,7 @@ TEST(Fmu, VariablesAreAllThereAndNoReferenceIsTwice) {
       EXPECT_EQ(node.attribute("valueReference").as_uint(), fmu.three() ? place : place + 1);
       ++place;
     }
-    std::set<std::string> expected{"X", "TEMP", "GAIN", "N", "ON", "STATUS", "Y", "K", "Q", "W", "LAG.T1"};
+    std::set<std::string> expected{"X", "TEMP", "GAIN", "N", "ACTIVE", "STATUS", "Y", "K", "Q", "W", "LAG.T1"};
     for (const std::string& name : expected) {
       EXPECT_TRUE(names.contains(name)) << name;
     }
@@ -174,11 +174,11 @@ TEST(Fmu, OfEachTypeAValueArrives) {
     const LoadedFmu fmu(packed(axis, version));
     FmuInstance one(fmu);
     ASSERT_EQ(one.begin(), 0);
-    EXPECT_EQ(one.set("N", -2147483648.0) + one.set("ON", 0.0) + one.set("STATUS", 65535.0), 0);
+    EXPECT_EQ(one.set("N", -2147483648.0) + one.set("ACTIVE", 0.0) + one.set("STATUS", 65535.0), 0);
     EXPECT_EQ(one.get("K"), -2147483647.0);  // outputs are known while inputs are still set
     EXPECT_EQ(one.get("Q"), 1.0);
     EXPECT_EQ(one.get("W"), 65535.0);
-    EXPECT_EQ(one.set("ON", 1.0), 0);
+    EXPECT_EQ(one.set("ACTIVE", 1.0), 0);
     EXPECT_EQ(one.get("Q"), 0.0);
   }
 }

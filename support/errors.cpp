@@ -111,6 +111,7 @@ constexpr std::array titles{
     ErrorTitle{error::name_too_long, "Name too long for the target"},
     ErrorTitle{error::no_graphviz, "Graphviz is not installed"},
     ErrorTitle{error::graphviz_failed, "Graphviz cannot draw"},
+    ErrorTitle{error::fmu_without_binary, "FMU without a binary"},
     ErrorTitle{error::run_file_syntax, "Run file is not TOML"},
     ErrorTitle{error::run_key_twice, "Key given twice in a run file"},
     ErrorTitle{error::unknown_run_key, "Unknown key in a run file"},

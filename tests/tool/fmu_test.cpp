@@ -43,7 +43,7 @@ constexpr std::string_view axis = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
   END_VAR
 
   LAG(XIN := X);
-  Y := GAIN * LAG.XOUT + TEMP * 0.0;
+  Y := GAIN * LAG.XOUT;
   K := N + 1;
   Q := NOT ACTIVE;
   W := STATUS;

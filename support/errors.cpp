@@ -116,6 +116,7 @@ constexpr std::array titles{
     ErrorTitle{error::no_network, "Diagram that no network of function blocks can hold"},
     ErrorTitle{error::not_plcopen, "File that is not PLCopen XML"},
     ErrorTitle{error::untranslatable_element, "Element of a drawing that a diagram cannot express"},
+    ErrorTitle{error::fmu_without_binary, "FMU without a binary"},
     ErrorTitle{error::run_file_syntax, "Run file is not TOML"},
     ErrorTitle{error::run_key_twice, "Key given twice in a run file"},
     ErrorTitle{error::unknown_run_key, "Unknown key in a run file"},

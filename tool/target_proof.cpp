@@ -15,10 +15,8 @@
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/fmu/fmu.hpp"
 #include "codegen/backends/fmu/variables.hpp"
-#include "codegen/graph/names.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "support/errors.hpp"
-#include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/text_file.hpp"
 #include "tool/compiled.hpp"
@@ -247,27 +245,20 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
 
 // ---- read back ------------------------------------------------------------------------------------------------------
 
-/// A text that was generated, as a diagram; inputs that the diagram has not are parameters, and keep their defaults.
+/// A text that was generated, as a diagram. Its inputs begin with those of the diagram, in the same order, under names
+/// that the language leaves free; behind them stand RESET and the parameters, which keep their defaults.
 std::vector<Signal> run_read_back(const Program& program, const std::string& text, const Drive& drive, bool float32) {
   const Program again = compile_text(text);
+  const Graph& graph = again.graph;
+  if (graph.inputs.size() < program.graph.inputs.size() || graph.outputs.size() != program.graph.outputs.size()) {
+    throw InputError(error::unknown_signal, {}, "The text read back has other inputs or outputs.",
+                     "this is a fault of Hysteron: please report it with the diagram.");
+  }
   Drive given{.steps = drive.steps, .sample_time = drive.sample_time};
-  for (const Port& input : again.graph.inputs) {
-    const auto same = std::ranges::find_if(program.graph.inputs,
-                                           [&](const Port& one) { return language::same_name(one.name, input.name); });
-    given.inputs.push_back(same == program.graph.inputs.end()
-                               ? Signal{input.preset}
-                               : drive.inputs[static_cast<std::size_t>(same - program.graph.inputs.begin())]);
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    given.inputs.push_back(i < drive.inputs.size() ? drive.inputs[i] : Signal{graph.inputs[i].preset});
   }
-  std::vector<Wire> watched;
-  for (const Port& output : program.graph.outputs) {
-    const Port* const same = find_port(again.graph.outputs, output.name);
-    if (same == nullptr) {
-      throw InputError(error::unknown_signal, {}, fmt::format("The text read back has no output {}.", output.name),
-                       "rename the output: the language of the target keeps its name for itself.");
-    }
-    watched.push_back(same->wire);
-  }
-  return interpret(again, given, watched, float32);
+  return interpret(again, given, output_wires(graph), float32);
 }
 
 }  // namespace

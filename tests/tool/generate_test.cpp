@@ -279,5 +279,24 @@ TEST(Compiled, FirstDifferenceCountsBits) {
   EXPECT_EQ(tool::first_difference({1.0, 2.0}, {1.0}), 1U);
 }
 
+/// One diagram in every target, each run beside the interpreter: the bits are the same.
+TEST(GenerateCommand, AllTargetsHaveTheBitsOfTheInterpreter) {
+  const test::Workbench bench;
+  const std::string root = HYSTERON_SOURCE_DIR;
+  for (const std::string diagram :
+       {"/examples/04_piezo_stack/feedforward.st", "/examples/09_axis/axis.st", "/examples/03_feedforward/servo.st"}) {
+    SCOPED_TRACE(diagram);
+    const auto outcome = bench.shell("hysteron generate '" + root + diagram + "' --target all --out all --force");
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    std::size_t equal = 0;
+    for (auto at = outcome.out.find("2000  equal\n"); at != std::string::npos;
+         at = outcome.out.find("2000  equal\n", at + 1)) {
+      ++equal;
+    }
+    EXPECT_EQ(equal, 5U) << outcome.out;
+  }
+  EXPECT_TRUE(bench.has("all/fmu"));
+}
+
 }  // namespace
 }  // namespace hysteron

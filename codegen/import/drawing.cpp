@@ -49,6 +49,28 @@ void for_each(xml_node parent, std::string_view name, const Visit& visit) {
   }
 }
 
+/// LREAL, ARRAY [0..9] OF LREAL, or the name of a type of the project. Empty where the element is none of these.
+std::string type_text(xml_node type) {
+  if (is(type, tc6::derived)) {
+    return type.attribute(tc6::name).value();
+  }
+  if (!is(type, tc6::array)) {
+    return std::string(local_name(type.name()));
+  }
+  std::string bounds;
+  std::string base;
+  for_each(type, tc6::dimension, [&](xml_node one) {
+    bounds += fmt::format("{}{}..{}", bounds.empty() ? "" : ", ", one.attribute("lower").value(),
+                          one.attribute("upper").value());
+  });
+  for (const xml_node inner : child(type, tc6::base_type).children()) {
+    if (inner.type() == pugi::node_element && !is(inner, tc6::array)) {
+      base = type_text(inner);
+    }
+  }
+  return bounds.empty() || base.empty() ? std::string() : fmt::format("ARRAY [{}] OF {}", bounds, base);
+}
+
 /// All text below a node. Without recursion, since a hostile file nests as deep as it likes.
 std::string text_below(xml_node top) {
   std::string text;
@@ -187,10 +209,18 @@ class ProjectReader {
     return pou;
   }
 
+  /// 1.5, or [1.5, 2.5] of an array; a question mark for what is neither.
   static std::string initial_of(xml_node value) {
-    const xml_node simple = child(value, tc6::simple_value);
-    if (simple) {
-      return trimmed(simple.attribute(tc6::value).value());
+    if (const xml_node simple = child(value, tc6::simple_value)) {
+      return simple.attribute(tc6::value).value();
+    }
+    if (const xml_node array = child(value, tc6::array_value)) {
+      std::string elements;
+      for_each(array, tc6::value, [&](xml_node one) {
+        elements += fmt::format("{}{}", elements.empty() ? "" : ", ",
+                                child(one, tc6::simple_value).attribute(tc6::value).value());
+      });
+      return "[" + elements + "]";
     }
     return value.first_child() ? "?" : "";
   }
@@ -210,7 +240,7 @@ class ProjectReader {
       }
       for (const xml_node type : child(node, tc6::type).children()) {
         if (type.type() == pugi::node_element && variable.type.empty()) {
-          variable.type = is(type, tc6::derived) ? type.attribute(tc6::name).value() : std::string(local_name(type.name()));
+          variable.type = type_text(type);
         }
       }
       pou.variables.push_back(std::move(variable));
@@ -252,8 +282,8 @@ class ProjectReader {
       read_pins(child(node, tc6::in_out_variables), both);
       if (!both.empty()) {
         throw refusal(element.line,
-                      fmt::format("block {} {} (localId {}) has VAR_IN_OUT {}", element.text, element.instance, element.id,
-                                  both.front().name),
+                      fmt::format("block {} {} (localId {}) has VAR_IN_OUT {}", element.text, element.instance,
+                                  element.id, both.front().name),
                       "Hand the value in by an input and out by an output.", error::untranslatable_element);
       }
       return element;

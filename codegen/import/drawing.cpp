@@ -212,7 +212,7 @@ class ProjectReader {
   /// 1.5, or [1.5, 2.5] of an array; a question mark for what is neither.
   static std::string initial_of(xml_node value) {
     if (const xml_node simple = child(value, tc6::simple_value)) {
-      return simple.attribute(tc6::value).value();
+      return trimmed(simple.attribute(tc6::value).value());
     }
     if (const xml_node array = child(value, tc6::array_value)) {
       std::string elements;

@@ -98,7 +98,10 @@ TEST(LeftOutOfFits, AThirdEffectHasToCloseANotablePart) {
   const std::vector<double> noise{1.0};
   const std::vector<std::string> all;
   const auto effects_with = [&](std::vector<EffectFinding> others, double energy) {
-    Diagnosis result{.verdict = Verdict::Named, .effects = std::move(others), .gaps = {{.signal = "Y"}}};
+    Diagnosis result;
+    result.verdict = Verdict::Named;
+    result.effects = std::move(others);
+    result.gaps = {{.signal = "Y"}};
     const std::vector<LeftOut> glitches{
         {.effect = "glitches", .rms = std::sqrt(2.0 * energy / 200.0), .remark = "few"}};
     add_left_out(findings, {.left_out = glitches, .floors = floors, .noise = noise, .tried = all}, {}, result);

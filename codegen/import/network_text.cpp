@@ -473,7 +473,7 @@ class Reader {
     } else if (const BlockType* const block = known_block(declared->second->type)) {
       for (std::size_t i = 0; i < block->outputs.size(); ++i) {
         if (equal_ignoring_case(block->outputs[i].name, pin)) {
-          return block_output(reader, *block, i, {text, block->outputs[i].type}, called);
+          return block_output(reader, {block, i, in_capitals(instance)}, {text, block->outputs[i].type}, called);
         }
       }
     }
@@ -482,18 +482,57 @@ class Reader {
   }
 
   /// What hands out memory alone is read before its call: behind it, the block has moved on.
-  Value block_output(const DrawnElement& reader, const BlockType& block, std::size_t output, Value value, bool called) {
-    const PinSet& pins = block.trace.feedthrough[output];
-    bool direct = false;
-    for (std::size_t i = 0; i < block.inputs.size(); ++i) {
-      direct = direct || pins.contains(i);
+  struct BlockOutput {
+    const BlockType* block = nullptr;
+    std::size_t output = 0;
+    std::string instance{};  ///< in capitals
+  };
+
+  Value block_output(const DrawnElement& reader, const BlockOutput& from, Value value, bool called) {
+    const PinSet& pins = from.block->trace.feedthrough[from.output];
+    bool direct = from.block->states.empty();
+    for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
+      direct = direct || (pins.contains(i) && is_driven(from.instance, from.block->pin(i).name));
     }
-    const bool remembers = !direct && !block.states.empty();
+    const bool remembers = !direct;
     if (called && remembers) {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");
     }
     return called || remembers ? value : delayed(value.text, *value.type, "");
+  }
+
+  /// Whether a pin of an instance gets what may change from step to step.
+  [[nodiscard]] bool is_driven(const std::string& instance, std::string_view name) const {
+    for (const DrawnElement& element : pou_.elements) {
+      if (in_capitals(element.instance) != instance) {
+        continue;
+      }
+      for (const DrawnPin& pin : element.inputs) {
+        if (!equal_ignoring_case(pin.name, name)) {
+          continue;
+        }
+        if (!pin.expression.empty() && !type_of_literal(with_known_literals(pin.expression))) {
+          return true;
+        }
+        return std::ranges::any_of(pin.links, [&](const Link& link) {
+          const auto source = by_id_.find(link.element);
+          return source == by_id_.end() || !is_constant(pou_.elements[source->second]);
+        });
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_constant(const DrawnElement& element) const {
+    if (element.kind != tc6::in_variable) {
+      return false;
+    }
+    const auto variable = variables_.find(in_capitals(element.text));
+    return variable == variables_.end()
+               ? type_of_literal(with_known_literals(element.text)).has_value()
+               : variable->second->section == DrawnVariable::Section::Constant ||
+                     variable->second->remark.find("@param") != std::string::npos;
   }
 
   Value delayed(const std::string& text, Type type, const std::string& start) {

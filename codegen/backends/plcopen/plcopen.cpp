@@ -79,8 +79,10 @@ void add_networks(const Program& program, const PlcopenOptions& options, const S
   plcopen::Networks made = plcopen::make_networks(
       program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);
-  for (const BlockType* const block : made.library) {
-    project.pous.push_back(with_text(plcopen::library_pou(*block, program.graph.sample_time_ns, text)));
+  for (const auto& used : made.library) {
+    StOptions own = text;
+    own.outputs_ahead = used.ahead;
+    project.pous.push_back(with_text(plcopen::library_pou(*used.block, program.graph.sample_time_ns, own)));
   }
   const Pou caller = caller_of(made.list.back());
   for (plcopen::Network& network : made.list) {

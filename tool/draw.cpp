@@ -66,7 +66,8 @@ int draw(const DrawOptions& options, Console& console) {
         fmt::format("The diagram has {} boxes; {} are the most that are drawn.", diagram.boxes, most_boxes),
         "draw a block of it by --top NAME, or take the text by --out NAME.dot.");
   }
-  write_file_atomically(options.out, format == "dot" ? diagram.text : drawn_by_graphviz(diagram.text, format, "--out NAME.dot"));
+  write_file_atomically(options.out,
+                        format == "dot" ? diagram.text : drawn_by_graphviz(diagram.text, format, "--out NAME.dot"));
   console.print(fmt::format("{}: {} boxes\n", options.out, diagram.boxes));
   return exit_ok;
 }

@@ -80,12 +80,11 @@ constexpr std::array targets{
     Target{"plcopen",
            [](const Program& program, const GenerateOptions& options) {
              return generate_plcopen(
-                 program, {.dialect = options.dialect.empty() ? "portable" : options.dialect,
-                           .body = equal_ignoring_case(options.body, "fbd") ? PlcopenBody::Network : PlcopenBody::Text,
-                           .float32 = options.diagram.float32,
-                           .place = [](const std::string& dot) {
-                             return drawn_by_graphviz(dot, "plain", "--body st");
-                           }});
+                 program,
+                 {.dialect = options.dialect.empty() ? "portable" : options.dialect,
+                  .body = equal_ignoring_case(options.body, "fbd") ? PlcopenBody::Network : PlcopenBody::Text,
+                  .float32 = options.diagram.float32,
+                  .place = [](const std::string& dot) { return drawn_by_graphviz(dot, "plain", "--body st"); }});
            }},
 };
 
@@ -124,7 +123,8 @@ void check_dialect(const GenerateOptions& options) {
     throw InputError(error::bad_usage, {}, "A dialect is one of Structured Text or of PLCopen XML.",
                      "write --target st or --target plcopen, or leave out --dialect.");
   }
-  if (!options.dialect.empty() && !(text ? st_dialect(options.dialect).has_value() : is_plcopen_dialect(options.dialect))) {
+  if (!options.dialect.empty() &&
+      !(text ? st_dialect(options.dialect).has_value() : is_plcopen_dialect(options.dialect))) {
     throw InputError(
         error::bad_usage, {}, fmt::format("There is no dialect {}.", options.dialect),
         fmt::format("the dialects are: {}.", text ? std::string(st_dialect_names()) : plcopen_dialect_names()));
@@ -192,7 +192,8 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target, "The language: cpp (C++20), c (C99), st (Structured Text), plcopen (PLCopen XML).")
+  app.add_option("--target", options->target,
+                 "The language: cpp (C++20), c (C99), st (Structured Text), plcopen (PLCopen XML).")
       ->option_text("cpp|c|st|plcopen");
   app.add_option("--dialect", options->dialect, "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");

@@ -43,9 +43,9 @@ std::string drawn_by_graphviz(const std::string& text, const std::string& format
   if (code != 0 || fs::file_size(picture, unknown) == 0 || unknown) {
     std::string said = fs::exists(complaints) ? read_text_file(complaints.string()) : "";
     said = said.substr(0, said.find('\n'));
-    throw InputError(error::graphviz_failed, {},
-                     fmt::format("{} ended with {}{}{}.", program, code, said.empty() ? "" : ": ", said),
-                     "see whether this dot draws anything: echo 'digraph {a}' | dot -Tsvg; " + without + " needs none.");
+    throw InputError(
+        error::graphviz_failed, {}, fmt::format("{} ended with {}{}{}.", program, code, said.empty() ? "" : ": ", said),
+        "see whether this dot draws anything: echo 'digraph {a}' | dot -Tsvg; " + without + " needs none.");
   }
   return read_text_file(picture.string());
 }

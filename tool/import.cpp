@@ -33,8 +33,7 @@ struct ImportCommand {
 int import_project(const ImportCommand& command, Console& console) {
   Diagnostics warnings;
   refuse_to_overwrite({.file = command.out, .mend = "give another name for --out."}, {{.file = command.file}});
-  const std::string text =
-      import_plcopen(command.file, read_text_file(command.file), command.options, warnings);
+  const std::string text = import_plcopen(command.file, read_text_file(command.file), command.options, warnings);
   write_file_atomically(command.out, text);
   console.report(warnings);
   console.print(command.out + "\n");

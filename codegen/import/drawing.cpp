@@ -210,7 +210,8 @@ class ProjectReader {
       }
       for (const xml_node type : child(node, tc6::type).children()) {
         if (type.type() == pugi::node_element && variable.type.empty()) {
-          variable.type = is(type, tc6::derived) ? type.attribute(tc6::name).value() : std::string(local_name(type.name()));
+          variable.type =
+              is(type, tc6::derived) ? type.attribute(tc6::name).value() : std::string(local_name(type.name()));
         }
       }
       pou.variables.push_back(std::move(variable));
@@ -252,8 +253,8 @@ class ProjectReader {
       read_pins(child(node, tc6::in_out_variables), both);
       if (!both.empty()) {
         throw refusal(element.line,
-                      fmt::format("block {} {} (localId {}) has VAR_IN_OUT {}", element.text, element.instance, element.id,
-                                  both.front().name),
+                      fmt::format("block {} {} (localId {}) has VAR_IN_OUT {}", element.text, element.instance,
+                                  element.id, both.front().name),
                       "Hand the value in by an input and out by an output.", error::untranslatable_element);
       }
       return element;

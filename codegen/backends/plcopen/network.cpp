@@ -25,7 +25,8 @@ using language::upper;
 
 constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
 
-/// A value on its way to its reader. Up to statement `until` it may be taken from the wire; then the block has moved on.
+/// A value on its way to its reader. Up to statement `until` it may be taken from the wire; then the block has moved
+/// on.
 struct Signal {
   Source source{};
   Type type = Type::Real;
@@ -94,10 +95,11 @@ class NetworkBuilder {
       const auto [known, added] =
           library.try_emplace(declared.block->about.name, Networks::Used{declared.block, ahead});
       if (!added && known->second.ahead != ahead) {
-        refuse(declared.variable->name.span,
-               fmt::format("{} is wired so that it hands out memory alone, and another {} is not, or the other way round",
-                           declared.field.name, declared.block->about.name),
-               "Wire the same pins of both, or generate with --body st.");
+        refuse(
+            declared.variable->name.span,
+            fmt::format("{} is wired so that it hands out memory alone, and another {} is not, or the other way round",
+                        declared.field.name, declared.block->about.name),
+            "Wire the same pins of both, or generate with --body st.");
       }
     }
   }
@@ -167,7 +169,8 @@ class NetworkBuilder {
     section("VAR_INPUT", [](Kind kind) { return kind == Kind::Input || kind == Kind::Parameter; });
     section("VAR_OUTPUT", [](Kind kind) { return kind == Kind::Output; });
     section("VAR CONSTANT", [](Kind kind) { return kind == Kind::Constant; });
-    section("VAR", [](Kind kind) { return kind == Kind::Local || kind == Kind::LibraryBlock || kind == Kind::UserBlock; });
+    section("VAR",
+            [](Kind kind) { return kind == Kind::Local || kind == Kind::LibraryBlock || kind == Kind::UserBlock; });
     if (!added_.empty()) {
       network_.sections.push_back({.keyword = "VAR", .variables = std::move(added_)});
     }
@@ -258,8 +261,9 @@ class NetworkBuilder {
                   .until = called.statement};
     const KnownValues::Answer start = values_.start(index_, graph_.nodes[node].path, output);
     if (!start.value) {
-      refuse(span, fmt::format("instances of {} begin with different values of {}.{}", network_.name,
-                               declared.field.name, field.name),
+      refuse(span,
+             fmt::format("instances of {} begin with different values of {}.{}", network_.name, declared.field.name,
+                         field.name),
              "Generate with --body st.");
       return signal;
     }
@@ -269,8 +273,8 @@ class NetworkBuilder {
     if (started_.empty()) {
       started_ = new_variable({"STARTED"}, Type::Bool);
     }
-    return function("SEL",
-                    {{.source = read(started_)}, {.source = literal(field.type, *start.value)}, signal}, field.type);
+    return function("SEL", {{.source = read(started_)}, {.source = literal(field.type, *start.value)}, signal},
+                    field.type);
   }
 
   // --- statements ---

@@ -76,8 +76,8 @@ Pou caller_of(const plcopen::Network& network) {
 
 void add_networks(const Program& program, const PlcopenOptions& options, const StOptions& text,
                   plcopen::Project& project) {
-  plcopen::Networks made = plcopen::make_networks(
-      program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
+  plcopen::Networks made =
+      plcopen::make_networks(program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);
   for (const auto& used : made.library) {
     StOptions own = text;
@@ -128,8 +128,8 @@ std::vector<GeneratedFile> generate_plcopen(const Program& program, const Plcope
   } else {
     project.pous.pop_back();
   }
-  const std::string file =
-      flavour.file.empty() ? identifier_text({program.graph.name}, LetterCase::Lower) + ".xml" : std::string(flavour.file);
+  const std::string file = flavour.file.empty() ? identifier_text({program.graph.name}, LetterCase::Lower) + ".xml"
+                                                : std::string(flavour.file);
   return {{file, plcopen::project_xml(project, flavour)}};
 }
 

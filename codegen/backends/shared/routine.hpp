@@ -65,8 +65,9 @@ struct Routine {
 };
 
 struct RoutineOptions {
-  /// By output of the diagram: it is that of the memory as it has been moved on, the value of the next step, for whoever
-  /// reads it before the next call. Only for an output of a block that depends on memory alone; missing ones are FALSE.
+  /// By output of the diagram: it is that of the memory as it has been moved on, the value of the next step, for
+  /// whoever reads it before the next call. Only for an output of a block that depends on memory alone; missing ones
+  /// are FALSE.
   std::vector<bool> outputs_ahead{};
 };
 

@@ -13,7 +13,7 @@ namespace hysteron {
 
 struct StOptions {
   StDialect dialect{};
-  bool float32 = false;                 ///< REAL in place of LREAL
+  bool float32 = false;               ///< REAL in place of LREAL
   std::vector<bool> outputs_ahead{};  ///< see RoutineOptions
 };
 

@@ -77,7 +77,7 @@ class Reader {
   struct State {
     bool begun = false;
     bool done = false;
-    Value value{};         ///< of a function, once done
+    Value value{};           ///< of a function, once done
     std::string variable{};  ///< that holds it
   };
   struct Delay {
@@ -91,7 +91,8 @@ class Reader {
     if (!told_.insert(&element).second) {
       return;
     }
-    const std::string name = element.instance.empty() ? element.text : fmt::format("{} {}", element.text, element.instance);
+    const std::string name =
+        element.instance.empty() ? element.text : fmt::format("{} {}", element.text, element.instance);
     refused_.error(error::untranslatable_element, {.file = file_, .line = element.line, .column = 1},
                    fmt::format("{}{}{} (localId {}) of {}: {}", element.kind, name.empty() ? "" : " ", name, element.id,
                                pou_.name, why),
@@ -99,9 +100,9 @@ class Reader {
   }
 
   void refuse_what_is_no_network() {
-    static const std::set<std::string_view> known{tc6::in_variable, tc6::out_variable, tc6::block,     tc6::connector,
-                                                  tc6::continuation, tc6::contact,     tc6::coil,      tc6::left_rail,
-                                                  tc6::right_rail,   tc6::comment,     "vendorElement"};
+    static const std::set<std::string_view> known{tc6::in_variable,  tc6::out_variable, tc6::block,     tc6::connector,
+                                                  tc6::continuation, tc6::contact,      tc6::coil,      tc6::left_rail,
+                                                  tc6::right_rail,   tc6::comment,      "vendorElement"};
     std::map<std::string, int> targets;
     std::set<std::string> instances;
     for (const DrawnElement& element : pou_.elements) {
@@ -170,7 +171,8 @@ class Reader {
   void run_assignment(const DrawnElement& element) {
     const auto target = variables_.find(in_capitals(element.text));
     if (target == variables_.end()) {
-      return refuse(element, "it assigns what the POU does not declare", "Declare it as an output or a local variable.");
+      return refuse(element, "it assigns what the POU does not declare",
+                    "Declare it as an output or a local variable.");
     }
     Value value = element.inputs.empty() ? Value{} : input_value(element, element.inputs.front());
     if (value.text.empty()) {
@@ -210,7 +212,8 @@ class Reader {
     state.value = name == "MOVE" ? arguments.front() : applied(own, name, arguments);
     const bool shared = readers_[element.id] > 1 || state.value.text.size() > longest_expression;
     if ((shared || !state.variable.empty()) && state.value.type) {
-      const std::string variable = state.variable.empty() ? new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
+      const std::string variable =
+          state.variable.empty() ? new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
       made_.locals += fmt::format("    {} : {};\n", variable, type_name(*state.value.type));
       made_.statements += fmt::format("  {} := {};\n", variable, state.value.text);
       state.value.text = variable;
@@ -281,7 +284,8 @@ class Reader {
       }
       if (!has_input(own == own_.end() ? nullptr : own->second, block, pin.name)) {
         if (!pin.links.empty() || !pin.expression.empty()) {
-          refuse(element, fmt::format("{} has no input {}", block != nullptr ? block->about.name : element.text, pin.name),
+          refuse(element,
+                 fmt::format("{} has no input {}", block != nullptr ? block->about.name : element.text, pin.name),
                  "See the inputs by: hysteron blocks NAME.");
         }
         continue;
@@ -295,7 +299,8 @@ class Reader {
     for (std::size_t i = 0; block != nullptr && i < block->inputs.size(); ++i) {
       const Field& field = block->inputs[i];
       if (field.required && !wired.contains(in_capitals(field.name))) {  // as in every IEC compiler
-        arguments += fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", field.name, literal_text(field.type, 0.0));
+        arguments +=
+            fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", field.name, literal_text(field.type, 0.0));
       }
     }
     called_.insert(in_capitals(element.instance));
@@ -391,7 +396,8 @@ class Reader {
   Value contact_value(const DrawnElement& element) {
     Value own = expression_value(element, element.text);
     own.text = element.negated ? negated(own.text) : own.text;
-    const Value before = element.inputs.empty() ? Value{"TRUE", Type::Bool} : input_value(element, element.inputs.front());
+    const Value before =
+        element.inputs.empty() ? Value{"TRUE", Type::Bool} : input_value(element, element.inputs.front());
     return before.text == "TRUE" ? own : Value{fmt::format("({} AND {})", before.text, own.text), Type::Bool};
   }
 
@@ -421,7 +427,8 @@ class Reader {
     for (const DrawnPin& pin : element.inputs) {
       for (const Link& link : pin.links) {
         const auto found = by_id_.find(link.element);
-        if (found != by_id_.end() && pou_.elements[found->second].kind == tc6::in_variable && !equal_ignoring_case(pin.name, "G")) {
+        if (found != by_id_.end() && pou_.elements[found->second].kind == tc6::in_variable &&
+            !equal_ignoring_case(pin.name, "G")) {
           if (const auto type = type_of_text(pou_.elements[found->second].text)) {
             return type;
           }
@@ -441,11 +448,9 @@ class Reader {
   }
 
   Value output_value(const DrawnElement& element, const std::string& pin) {
-    const auto negation = std::ranges::find_if(
-        element.outputs, [&](const DrawnPin& one) { return equal_ignoring_case(one.name, pin); });
-    const std::string& name = !pin.empty()                ? pin
-                              : !element.outputs.empty() ? element.outputs.front().name
-                                                         : pin;
+    const auto negation =
+        std::ranges::find_if(element.outputs, [&](const DrawnPin& one) { return equal_ignoring_case(one.name, pin); });
+    const std::string& name = !pin.empty() ? pin : !element.outputs.empty() ? element.outputs.front().name : pin;
     Value value = pin_value(element, element.instance, name);
     if (negation != element.outputs.end() && negation->negated) {
       value.text = negated(value.text);
@@ -473,7 +478,7 @@ class Reader {
     } else if (const BlockType* const block = known_block(declared->second->type)) {
       for (std::size_t i = 0; i < block->outputs.size(); ++i) {
         if (equal_ignoring_case(block->outputs[i].name, pin)) {
-          return block_output(reader, *block, i, {text, block->outputs[i].type}, called);
+          return block_output(reader, {block, i, in_capitals(instance)}, {text, block->outputs[i].type}, called);
         }
       }
     }
@@ -482,18 +487,56 @@ class Reader {
   }
 
   /// What hands out memory alone is read before its call: behind it, the block has moved on.
-  Value block_output(const DrawnElement& reader, const BlockType& block, std::size_t output, Value value, bool called) {
-    const PinSet& pins = block.trace.feedthrough[output];
-    bool direct = false;
-    for (std::size_t i = 0; i < block.inputs.size(); ++i) {
-      direct = direct || pins.contains(i);
+  struct BlockOutput {
+    const BlockType* block = nullptr;
+    std::size_t output = 0;
+    std::string instance{};  ///< in capitals
+  };
+
+  Value block_output(const DrawnElement& reader, const BlockOutput& from, Value value, bool called) {
+    const PinSet& pins = from.block->trace.feedthrough[from.output];
+    bool direct = from.block->states.empty();
+    for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
+      direct = direct || (pins.contains(i) && is_driven(from.instance, from.block->pin(i).name));
     }
-    const bool remembers = !direct && !block.states.empty();
+    const bool remembers = !direct;
     if (called && remembers) {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");
     }
     return called || remembers ? value : delayed(value.text, *value.type, "");
+  }
+
+  /// Whether a pin of an instance gets what may change from step to step.
+  [[nodiscard]] bool is_driven(const std::string& instance, std::string_view name) const {
+    for (const DrawnElement& element : pou_.elements) {
+      if (in_capitals(element.instance) != instance) {
+        continue;
+      }
+      for (const DrawnPin& pin : element.inputs) {
+        if (!equal_ignoring_case(pin.name, name)) {
+          continue;
+        }
+        if (!pin.expression.empty() && !type_of_literal(with_known_literals(pin.expression))) {
+          return true;
+        }
+        return std::ranges::any_of(pin.links, [&](const Link& link) {
+          const auto source = by_id_.find(link.element);
+          return source == by_id_.end() || !is_constant(pou_.elements[source->second]);
+        });
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_constant(const DrawnElement& element) const {
+    if (element.kind != tc6::in_variable) {
+      return false;
+    }
+    const auto variable = variables_.find(in_capitals(element.text));
+    return variable == variables_.end() ? type_of_literal(with_known_literals(element.text)).has_value()
+                                        : variable->second->section == DrawnVariable::Section::Constant ||
+                                              variable->second->remark.find("@param") != std::string::npos;
   }
 
   Value delayed(const std::string& text, Type type, const std::string& start) {
@@ -551,7 +594,8 @@ class Reader {
 
   std::string new_name(std::string base) {
     base = is_reserved(base) || !taken_.insert(in_capitals(base)).second ? base + "_1" : base;
-    for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1)); ++number) {
+    for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1));
+         ++number) {
       base = base.substr(0, base.rfind('_')) + fmt::format("_{}", number);
     }
     taken_.insert(in_capitals(base));

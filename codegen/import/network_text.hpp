@@ -18,7 +18,7 @@ namespace hysteron::import {
 using OwnBlocks = std::map<std::string, const DrawnPou*>;
 
 struct NetworkText {
-  std::string locals{};      ///< declarations of what the network has beside the POU's own variables
+  std::string locals{};  ///< declarations of what the network has beside the POU's own variables
   std::string statements{};
   std::vector<std::string> called{};    ///< instances, in capitals
   std::vector<std::string> assigned{};  ///< variables, in capitals

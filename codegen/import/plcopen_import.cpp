@@ -177,9 +177,10 @@ class Importer {
   std::string declarations(const DrawnPou& pou, const import::NetworkText* network) {
     using Section = DrawnVariable::Section;
     std::string text;
-    for (const auto& [section, keyword] :
-         {std::pair{Section::Input, "VAR_INPUT"}, {Section::Output, "VAR_OUTPUT"}, {Section::Constant, "VAR CONSTANT"},
-          {Section::Local, "VAR"}}) {
+    for (const auto& [section, keyword] : {std::pair{Section::Input, "VAR_INPUT"},
+                                           {Section::Output, "VAR_OUTPUT"},
+                                           {Section::Constant, "VAR CONSTANT"},
+                                           {Section::Local, "VAR"}}) {
       std::string lines;
       for (const DrawnVariable& variable : pou.variables) {
         if (variable.section == section && is_good_name(variable.name, variable.line)) {
@@ -217,7 +218,8 @@ class Importer {
     if (!known) {
       const bool is_block = own_.contains(in_capitals(variable.type)) || import::known_block(variable.type) != nullptr;
       if (!is_block) {
-        refuse(variable.line, fmt::format("{} of {} is of type {}, which no diagram has", variable.name, pou.name, variable.type),
+        refuse(variable.line,
+               fmt::format("{} of {} is of type {}, which no diagram has", variable.name, pou.name, variable.type),
                "Use LREAL, REAL, DINT, INT, BOOL, WORD, TIME or a function block.");
         return "";
       }

@@ -20,30 +20,41 @@ struct TypeRow {
 };
 constexpr std::string_view wider = "it has 64 bits here, and other last places";
 constexpr std::string_view longer = "it is a DINT here, and wraps elsewhere";
-constexpr std::array types{
-    TypeRow{"LREAL", {Type::Real}},       TypeRow{"REAL", {Type::Real, wider}}, TypeRow{"BOOL", {Type::Bool}},
-    TypeRow{"DINT", {Type::Int}},         TypeRow{"INT", {Type::Int, longer}},  TypeRow{"SINT", {Type::Int, longer}},
-    TypeRow{"USINT", {Type::Int, longer}}, TypeRow{"UINT", {Type::Int, longer}}, TypeRow{"WORD", {Type::Word}},
-    TypeRow{"TIME", {Type::Real, "it is an LREAL in seconds here"}},
-    TypeRow{"LTIME", {Type::Real, "it is an LREAL in seconds here"}}};
+constexpr std::array types{TypeRow{"LREAL", {Type::Real}},
+                           TypeRow{"REAL", {Type::Real, wider}},
+                           TypeRow{"BOOL", {Type::Bool}},
+                           TypeRow{"DINT", {Type::Int}},
+                           TypeRow{"INT", {Type::Int, longer}},
+                           TypeRow{"SINT", {Type::Int, longer}},
+                           TypeRow{"USINT", {Type::Int, longer}},
+                           TypeRow{"UINT", {Type::Int, longer}},
+                           TypeRow{"WORD", {Type::Word}},
+                           TypeRow{"TIME", {Type::Real, "it is an LREAL in seconds here"}},
+                           TypeRow{"LTIME", {Type::Real, "it is an LREAL in seconds here"}}};
 
 struct Renamed {
   std::string_view name;
   std::string_view here;
 };
-constexpr std::array conversions{
-    Renamed{"REAL_TO_LREAL", "MOVE"},          Renamed{"LREAL_TO_REAL", "MOVE"},
-    Renamed{"INT_TO_DINT", "MOVE"},            Renamed{"INT_TO_REAL", "DINT_TO_LREAL"},
-    Renamed{"INT_TO_LREAL", "DINT_TO_LREAL"},  Renamed{"DINT_TO_REAL", "DINT_TO_LREAL"},
-    Renamed{"REAL_TO_DINT", "LREAL_TO_DINT"},  Renamed{"REAL_TO_INT", "LREAL_TO_DINT"},
-    Renamed{"LREAL_TO_INT", "LREAL_TO_DINT"},  Renamed{"BOOL_TO_INT", "BOOL_TO_DINT"},
-    Renamed{"TIME_TO_LREAL", ""}};  // seconds in some compilers, milliseconds in others
+constexpr std::array conversions{Renamed{"REAL_TO_LREAL", "MOVE"},
+                                 Renamed{"LREAL_TO_REAL", "MOVE"},
+                                 Renamed{"INT_TO_DINT", "MOVE"},
+                                 Renamed{"INT_TO_REAL", "DINT_TO_LREAL"},
+                                 Renamed{"INT_TO_LREAL", "DINT_TO_LREAL"},
+                                 Renamed{"DINT_TO_REAL", "DINT_TO_LREAL"},
+                                 Renamed{"REAL_TO_DINT", "LREAL_TO_DINT"},
+                                 Renamed{"REAL_TO_INT", "LREAL_TO_DINT"},
+                                 Renamed{"LREAL_TO_INT", "LREAL_TO_DINT"},
+                                 Renamed{"BOOL_TO_INT", "BOOL_TO_DINT"},
+                                 Renamed{"TIME_TO_LREAL", ""}};  // seconds in some compilers, milliseconds in others
 
 constexpr std::array<std::string_view, 22> functions{
     "MOVE", "ABS",   "SQRT", "LN",  "LOG", "EXP",   "SIN", "COS", "TAN",           "ASIN",          "ACOS",
     "ATAN", "TRUNC", "EXPT", "MIN", "MAX", "LIMIT", "SEL", "MUX", "DINT_TO_LREAL", "LREAL_TO_DINT", "BOOL_TO_DINT"};
 
-bool is_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_letter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
 
 }  // namespace
 
@@ -64,7 +75,8 @@ std::string known_function(std::string_view name) {
       return std::string(one.here);
     }
   }
-  const bool known = std::ranges::any_of(functions, [&](std::string_view one) { return equal_ignoring_case(one, name); });
+  const bool known =
+      std::ranges::any_of(functions, [&](std::string_view one) { return equal_ignoring_case(one, name); });
   return known ? in_capitals(name) : "";
 }
 
@@ -86,7 +98,8 @@ std::optional<double> seconds_of(std::string_view literal) {
   bool any = false;
   while (!rest.empty()) {
     double number = 0.0;
-    const auto [stop, problem] = std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
+    const auto [stop, problem] =
+        std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
     if (problem != std::errc{}) {
       return std::nullopt;
     }
@@ -100,7 +113,8 @@ std::optional<double> seconds_of(std::string_view literal) {
     // A division by a whole number is rounded once: 0.1 of T#100ms is that of the text.
     constexpr std::array<std::pair<std::string_view, double>, 4> parts{
         {{"S", 1.0}, {"MS", 1e3}, {"US", 1e6}, {"NS", 1e9}}};
-    constexpr std::array<std::pair<std::string_view, double>, 3> multiples{{{"D", 86400.0}, {"H", 3600.0}, {"M", 60.0}}};
+    constexpr std::array<std::pair<std::string_view, double>, 3> multiples{
+        {{"D", 86400.0}, {"H", 3600.0}, {"M", 60.0}}};
     bool known = false;
     for (const auto& [name, divisor] : parts) {
       if (unit == name) {
@@ -136,7 +150,8 @@ std::string with_known_literals(std::string_view text) {
     std::string word(text.substr(i, end - i));
     if (end < text.size() && text[end] == '#') {
       std::size_t stop = end + 1;
-      while (stop < text.size() && (is_letter(text[stop]) || text[stop] == '.' || (stop == end + 1 && text[stop] == '-'))) {
+      while (stop < text.size() &&
+             (is_letter(text[stop]) || text[stop] == '.' || (stop == end + 1 && text[stop] == '-'))) {
         ++stop;
       }
       if (const auto seconds = seconds_of(text.substr(i, stop - i))) {
@@ -145,9 +160,7 @@ std::string with_known_literals(std::string_view text) {
         continue;
       }
       const auto known = known_type(word);
-      word = known && known->type == Type::Real  ? "LREAL"
-             : known && known->type == Type::Int ? "DINT"
-                                                 : word;
+      word = known && known->type == Type::Real ? "LREAL" : known && known->type == Type::Int ? "DINT" : word;
     }
     result += word;
     i = end;

@@ -12,9 +12,9 @@ namespace hysteron::plcopen {
 
 struct OperatorFunction {
   language::Operator op{};
-  std::string_view name;      ///< ADD
-  std::string_view symbol;    ///< +
-  bool takes_more = false;    ///< ADD(A, B, C)
+  std::string_view name;       ///< ADD
+  std::string_view symbol;     ///< +
+  bool takes_more = false;     ///< ADD(A, B, C)
   bool is_comparison = false;  ///< the result is a BOOL
 };
 

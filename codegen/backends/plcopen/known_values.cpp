@@ -9,7 +9,8 @@ namespace {
 
 /// Takes one more value; without one, or with other bits, there is none any more.
 void agree(KnownValues::Answer& answer, std::optional<double> value) {
-  const bool same = value && answer.value && std::bit_cast<std::uint64_t>(*value) == std::bit_cast<std::uint64_t>(*answer.value);
+  const bool same =
+      value && answer.value && std::bit_cast<std::uint64_t>(*value) == std::bit_cast<std::uint64_t>(*answer.value);
   answer.value = !answer.known || same ? value : std::nullopt;
   answer.known = true;
 }

@@ -59,9 +59,7 @@ StPou library_pou(const BlockType& block, std::int64_t sample_time_ns, const StO
   for (Parameter& parameter : program.graph.parameters) {
     parameter.path.erase(0, core.size() + 1);
   }
-  StOptions own = options;
-  own.outputs_ahead = true;
-  return make_st_pou(program, own).block;
+  return make_st_pou(program, options).block;
 }
 
 }  // namespace hysteron::plcopen

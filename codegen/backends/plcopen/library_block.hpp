@@ -9,7 +9,8 @@
 
 namespace hysteron::plcopen {
 
-/// `sample_time_ns` is that of the task. Parameters are inputs, with the block's own names.
+/// `sample_time_ns` is that of the task. Parameters are inputs, with the block's own names. `options.outputs_ahead`
+/// says which outputs depend on memory alone, as the block is wired.
 [[nodiscard]] StPou library_pou(const BlockType& block, std::int64_t sample_time_ns, const StOptions& options);
 
 }  // namespace hysteron::plcopen

@@ -25,12 +25,23 @@ using language::upper;
 
 constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
 
-/// A value on its way to its reader. Up to statement `until` it may be taken from the wire; then the block has moved on.
+/// A value on its way to its reader. Up to statement `until` it may be taken from the wire; then the block has moved
+/// on.
 struct Signal {
   Source source{};
   Type type = Type::Real;
   std::size_t until = never;
 };
+
+/// What the variables of a block are called in its POU, by their names in upper case: some compiler may keep a name for
+/// itself.
+std::map<std::string, std::string> names_in(const Definition& definition, Identifiers& identifiers) {
+  std::map<std::string, std::string> names;
+  for (const Declared& declared : definition.variables) {
+    names[upper(declared.field.name)] = identifiers.make({declared.variable->name.text});
+  }
+  return names;
+}
 
 class NetworkBuilder {
  public:
@@ -46,7 +57,7 @@ class NetworkBuilder {
 
   Network run() {
     network_.name = definition_.block->name.text;
-    name_variables();
+    names_ = names_in(definition_, identifiers_);
     const auto& statements = definition_.block->statements;
     const std::vector<std::uint32_t> order = statement_order(definitions_, index_, graph_);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -69,6 +80,30 @@ class NetworkBuilder {
     return std::move(network_);
   }
 
+  /// Notes which outputs of the blocks of the library hand out memory alone here. A block is one POU for all instances,
+  /// so they must be alike.
+  void note_library(std::map<std::string_view, Networks::Used>& library) {
+    for (const Declared& declared : definition_.variables) {
+      const auto node = declared.kind == Declared::Kind::LibraryBlock ? node_of(declared) : std::nullopt;
+      if (!node) {
+        continue;
+      }
+      std::vector<bool> ahead;
+      for (std::size_t output = 0; output < declared.block->outputs.size(); ++output) {
+        ahead.push_back(is_remembered(graph_, graph_.nodes[*node], output));
+      }
+      const auto [known, added] =
+          library.try_emplace(declared.block->about.name, Networks::Used{declared.block, ahead});
+      if (!added && known->second.ahead != ahead) {
+        refuse(
+            declared.variable->name.span,
+            fmt::format("{} is wired so that it hands out memory alone, and another {} is not, or the other way round",
+                        declared.field.name, declared.block->about.name),
+            "Wire the same pins of both, or generate with --body st.");
+      }
+    }
+  }
+
  private:
   struct Called {
     std::size_t statement = 0;
@@ -80,12 +115,6 @@ class NetworkBuilder {
   }
 
   // --- names and declarations ---
-
-  void name_variables() {
-    for (const Declared& declared : definition_.variables) {
-      names_[upper(declared.field.name)] = identifiers_.make({declared.variable->name.text});
-    }
-  }
 
   [[nodiscard]] std::string name_of(std::string_view variable) const { return names_.at(upper(variable)); }
 
@@ -140,7 +169,8 @@ class NetworkBuilder {
     section("VAR_INPUT", [](Kind kind) { return kind == Kind::Input || kind == Kind::Parameter; });
     section("VAR_OUTPUT", [](Kind kind) { return kind == Kind::Output; });
     section("VAR CONSTANT", [](Kind kind) { return kind == Kind::Constant; });
-    section("VAR", [](Kind kind) { return kind == Kind::Local || kind == Kind::LibraryBlock || kind == Kind::UserBlock; });
+    section("VAR",
+            [](Kind kind) { return kind == Kind::Local || kind == Kind::LibraryBlock || kind == Kind::UserBlock; });
     if (!added_.empty()) {
       network_.sections.push_back({.keyword = "VAR", .variables = std::move(added_)});
     }
@@ -231,8 +261,9 @@ class NetworkBuilder {
                   .until = called.statement};
     const KnownValues::Answer start = values_.start(index_, graph_.nodes[node].path, output);
     if (!start.value) {
-      refuse(span, fmt::format("instances of {} begin with different values of {}.{}", network_.name,
-                               declared.field.name, field.name),
+      refuse(span,
+             fmt::format("instances of {} begin with different values of {}.{}", network_.name, declared.field.name,
+                         field.name),
              "Generate with --body st.");
       return signal;
     }
@@ -242,8 +273,8 @@ class NetworkBuilder {
     if (started_.empty()) {
       started_ = new_variable({"STARTED"}, Type::Bool);
     }
-    return function("SEL",
-                    {{.source = read(started_)}, {.source = literal(field.type, *start.value)}, signal}, field.type);
+    return function("SEL", {{.source = read(started_)}, {.source = literal(field.type, *start.value)}, signal},
+                    field.type);
   }
 
   // --- statements ---
@@ -266,12 +297,17 @@ class NetworkBuilder {
       write_library_call(declared, call, element);
     } else {
       const Definition& inner = definitions_.list[declared.definition];
+      const auto names = names_inside(declared);
       element.text = inner.block->name.text;
       for (const Declared& pin : inner.variables) {
+        const std::size_t before = element.inputs.size();
         if (pin.kind == Declared::Kind::Input || pin.kind == Declared::Kind::Parameter) {
           write_pin(declared, call, pin.field, pin.kind == Declared::Kind::Parameter, element);
         } else if (pin.kind == Declared::Kind::Output) {
-          element.outputs.emplace_back(pin.field.name);
+          element.outputs.push_back(names.at(upper(pin.field.name)));
+        }
+        if (element.inputs.size() > before) {
+          element.inputs.back().pin = names.at(upper(pin.field.name));
         }
       }
     }
@@ -404,7 +440,8 @@ class NetworkBuilder {
                            declared.field.name, output.field.name, declared.field.name),
                "Put the delay that closes the loop outside of the block, or generate with --body st.");
       }
-      return {.source = {.element = called.element, .pin = std::string(output.field.name)}, .type = output.field.type};
+      return {.source = {.element = called.element, .pin = names_inside(declared).at(upper(output.field.name))},
+              .type = output.field.type};
     }
     const auto value = assigned_.find(upper(declared.field.name));
     if (value != assigned_.end() && now_ <= value->second.until) {
@@ -430,6 +467,11 @@ class NetworkBuilder {
 
   [[nodiscard]] const Declared& find(std::string_view name) const {
     return definition_.variables[definition_.by_name.at(upper(name))];
+  }
+
+  [[nodiscard]] std::map<std::string, std::string> names_inside(const Declared& declared) const {
+    Identifiers identifiers(is_st_word, LetterCase::Upper);
+    return names_in(definitions_.list[declared.definition], identifiers);
   }
 
   [[nodiscard]] std::optional<std::uint32_t> node_of(const Declared& declared) const {
@@ -494,23 +536,20 @@ Networks make_networks(const Program& program, const NetworkOptions& options) {
   const KnownValues values(program, definitions);
   Networks made;
   Diagnostics diagnostics;
-  std::map<std::string_view, const BlockType*> library;
+  std::map<std::string_view, Networks::Used> library;
   for (const std::uint32_t index : definitions.callees_first) {
     if (!values.is_used(index)) {
       continue;
     }
-    for (const Declared& declared : definitions.list[index].variables) {
-      if (declared.kind == Declared::Kind::LibraryBlock) {
-        library.emplace(declared.block->about.name, declared.block);
-      }
-    }
-    made.list.push_back(NetworkBuilder(definitions, index, values, options, diagnostics).run());
+    NetworkBuilder builder(definitions, index, values, options, diagnostics);
+    builder.note_library(library);
+    made.list.push_back(builder.run());
   }
   if (diagnostics.has_errors()) {
     throw InputError(std::move(diagnostics));
   }
-  for (const auto& [name, block] : library) {
-    made.library.push_back(block);
+  for (auto& [name, used] : library) {
+    made.library.push_back(std::move(used));
   }
   return made;
 }

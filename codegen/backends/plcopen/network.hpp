@@ -52,7 +52,11 @@ struct NetworkOptions {
 /// library that they call.
 struct Networks {
   std::vector<Network> list{};
-  std::vector<const BlockType*> library{};  ///< by name
+  struct Used {
+    const BlockType* block = nullptr;
+    std::vector<bool> ahead{};  ///< by output: all instances hand out memory alone
+  };
+  std::vector<Used> library{};  ///< by name
 };
 
 /// Throws InputError HY742 with all that no network can hold: several rates, arrays, values that differ between

@@ -55,9 +55,10 @@ int pin_height(const Element& element, std::size_t place) {
 std::string placing_dot(const std::vector<Network>& networks) {
   std::string text;
   for (const Network& network : networks) {
-    text += fmt::format("digraph \"{}\" {{\n  graph [rankdir=LR, nodesep=0.3, ranksep=0.8];\n  node [shape=box, "
-                        "fixedsize=true, label=\"\"];\n",
-                        network.name);
+    text += fmt::format(
+        "digraph \"{}\" {{\n  graph [rankdir=LR, nodesep=0.3, ranksep=0.8];\n  node [shape=box, "
+        "fixedsize=true, label=\"\"];\n",
+        network.name);
     for (std::size_t i = 0; i < network.elements.size(); ++i) {
       const Size size = size_of(network.elements[i]);
       text += fmt::format("  n{} [width={:.4f}, height={:.4f}];\n", i, size.width / pixels_an_inch,

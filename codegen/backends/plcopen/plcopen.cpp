@@ -76,11 +76,13 @@ Pou caller_of(const plcopen::Network& network) {
 
 void add_networks(const Program& program, const PlcopenOptions& options, const StOptions& text,
                   plcopen::Project& project) {
-  plcopen::Networks made = plcopen::make_networks(
-      program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
+  plcopen::Networks made =
+      plcopen::make_networks(program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);
-  for (const BlockType* const block : made.library) {
-    project.pous.push_back(with_text(plcopen::library_pou(*block, program.graph.sample_time_ns, text)));
+  for (const auto& used : made.library) {
+    StOptions own = text;
+    own.outputs_ahead = used.ahead;
+    project.pous.push_back(with_text(plcopen::library_pou(*used.block, program.graph.sample_time_ns, own)));
   }
   const Pou caller = caller_of(made.list.back());
   for (plcopen::Network& network : made.list) {
@@ -126,8 +128,8 @@ std::vector<GeneratedFile> generate_plcopen(const Program& program, const Plcope
   } else {
     project.pous.pop_back();
   }
-  const std::string file =
-      flavour.file.empty() ? identifier_text({program.graph.name}, LetterCase::Lower) + ".xml" : std::string(flavour.file);
+  const std::string file = flavour.file.empty() ? identifier_text({program.graph.name}, LetterCase::Lower) + ".xml"
+                                                : std::string(flavour.file);
   return {{file, plcopen::project_xml(project, flavour)}};
 }
 

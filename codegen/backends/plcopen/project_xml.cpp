@@ -179,8 +179,8 @@ class Writer {
   }
 
   static std::size_t output_place(const Element& element, const std::string& pin) {
-    const auto found = std::ranges::find_if(
-        element.outputs, [&](const std::string& one) { return equal_ignoring_case(one, pin); });
+    const auto found =
+        std::ranges::find_if(element.outputs, [&](const std::string& one) { return equal_ignoring_case(one, pin); });
     return found == element.outputs.end() ? 0 : static_cast<std::size_t>(found - element.outputs.begin());
   }
 
@@ -213,7 +213,8 @@ class Writer {
     write_point(tc6::position, from_x, from_y, connection);
   }
 
-  void write_input(const std::vector<Element>& elements, const Element& reader, std::size_t place, xml_node parent) const {
+  void write_input(const std::vector<Element>& elements, const Element& reader, std::size_t place,
+                   xml_node parent) const {
     auto point = parent.append_child(tc6::point_in);
     write_point(tc6::relative_position, 0, pin_height(reader, place), point);
     const Source& from = reader.inputs[place].from;

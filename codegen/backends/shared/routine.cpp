@@ -39,7 +39,7 @@ class RoutineBuilder {
       const Wire& wire = graph_.outputs[i].wire;
       routine_.step.push_back({.kind = Statement::Kind::SetOutput,
                                .target = i,
-                               .value = is_ahead(wire) ? value_ahead(wire) : value_of_wire(wire)});
+                               .value = is_ahead(i) ? value_ahead(wire) : value_of_wire(wire)});
     }
     count_uses();
     drop_unused();
@@ -164,9 +164,8 @@ class RoutineBuilder {
     return laid[id] = result;
   }
 
-  [[nodiscard]] bool is_ahead(const Wire& wire) const {
-    return options_.outputs_ahead && wire.from == Wire::From::Node && graph_.nodes[wire.index].block != nullptr &&
-           !has_feedthrough(graph_, graph_.nodes[wire.index], wire.port);
+  [[nodiscard]] bool is_ahead(std::uint32_t output) const {
+    return output < options_.outputs_ahead.size() && options_.outputs_ahead[output];
   }
 
   /// An output worked out once more, behind the assignments to all cells.

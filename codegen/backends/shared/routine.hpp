@@ -65,9 +65,10 @@ struct Routine {
 };
 
 struct RoutineOptions {
-  /// An output of the diagram that depends on memory alone is that of the memory as it has been moved on: the value of
-  /// the next step, for whoever reads it before the next call.
-  bool outputs_ahead = false;
+  /// By output of the diagram: it is that of the memory as it has been moved on, the value of the next step, for
+  /// whoever reads it before the next call. Only for an output of a block that depends on memory alone; missing ones
+  /// are FALSE.
+  std::vector<bool> outputs_ahead{};
 };
 
 Routine make_routine(const Program& program, const RoutineOptions& options = {});

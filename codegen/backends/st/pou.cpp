@@ -172,8 +172,7 @@ class StBlock {
       list.push_back({.name = std::string(local.name), .type = type(local.type)});
     }
     if (writer_.uses_place) {
-      list.push_back(
-          {.name = std::string(names_.own().place), .type = "DINT", .remark = "place in an array"});
+      list.push_back({.name = std::string(names_.own().place), .type = "DINT", .remark = "place in an array"});
     }
     return list;
   }
@@ -253,8 +252,8 @@ void append_names(std::string& text, const std::vector<StVariable>& variables) {
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const StVariable& one = variables[i];
     append(line, line.empty() ? "" : ", ", one.name);
-    const bool last = i + 1 == variables.size() || variables[i + 1].type != one.type ||
-                      !one.remark.empty() || !variables[i + 1].remark.empty();
+    const bool last = i + 1 == variables.size() || variables[i + 1].type != one.type || !one.remark.empty() ||
+                      !variables[i + 1].remark.empty();
     if (last || line.size() + variables[i + 1].name.size() > widest_line) {
       append_declaration(text, line, one);
       line.clear();

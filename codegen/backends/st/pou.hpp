@@ -13,8 +13,8 @@ namespace hysteron {
 
 struct StOptions {
   StDialect dialect{};
-  bool float32 = false;        ///< REAL in place of LREAL
-  bool outputs_ahead = false;  ///< see RoutineOptions
+  bool float32 = false;               ///< REAL in place of LREAL
+  std::vector<bool> outputs_ahead{};  ///< see RoutineOptions
 };
 
 /// One declared name.

@@ -54,9 +54,9 @@ std::vector<GeneratedFile> generate_st(const Program& program, const StOptions& 
   const std::string stem = identifier_text({program.graph.name}, LetterCase::Lower);
   std::vector<GeneratedFile> files{{stem + std::string(dialect.extension), in_shape(made.block, dialect.shape)}};
   if (dialect.shape == StDialect::Shape::OneFile) {
-    files.push_back({stem + "_program.st", fmt::format("{}PROGRAM {}\n{}\n{}END_PROGRAM\n", made.caller.head,
-                                                       made.caller.name, st_declarations(made.caller.sections),
-                                                       made.caller.body)});
+    files.push_back(
+        {stem + "_program.st", fmt::format("{}PROGRAM {}\n{}\n{}END_PROGRAM\n", made.caller.head, made.caller.name,
+                                           st_declarations(made.caller.sections), made.caller.body)});
   }
   return files;
 }

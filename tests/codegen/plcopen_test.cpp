@@ -1,0 +1,197 @@
+// PLCopen XML, out and in: a diagram that was drawn and read back has the same bits; hostile files are refused.
+#include "codegen/backends/plcopen/plcopen.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "codegen/import/plcopen_import.hpp"
+#include "codegen/interpreter/machine.hpp"
+#include "support/errors.hpp"
+#include "tests/support/mutation.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Every box at one place: what Graphviz would answer.
+std::string placed(const std::string& dot) {
+  std::istringstream lines(dot);
+  std::string plain;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("digraph")) {
+      plain += "graph 1 10 10\n";
+    } else if (line.starts_with("}")) {
+      plain += "stop\n";
+    } else if (line.starts_with("  n") && line.find(" [width") != std::string::npos) {
+      plain += "node " + line.substr(2, line.find(' ', 2) - 2) + " 1 1 1 1\n";
+    }
+  }
+  return plain;
+}
+
+std::string drawn(const Program& program, std::string_view dialect = "portable") {
+  return generate_plcopen(program, {.dialect = dialect, .body = PlcopenBody::Network, .place = placed}).front().text;
+}
+
+std::string read_back(const std::string& xml) {
+  Diagnostics warnings;
+  return import_plcopen("drawing.xml", xml, {}, warnings);
+}
+
+/// Runs both with the same random inputs, by place.
+void expect_same_bits(const Program& one, const Program& other) {
+  Machine<double> a(one);
+  Machine<double> b(other);
+  ASSERT_EQ(one.graph.inputs.size(), other.graph.inputs.size());
+  ASSERT_EQ(one.graph.outputs.size(), other.graph.outputs.size());
+  std::mt19937_64 random(7);
+  for (int k = 0; k < 200; ++k) {
+    for (std::size_t i = 0; i < one.graph.inputs.size(); ++i) {
+      const double value = one.graph.inputs[i].type == Type::Real ? static_cast<double>(random() % 2000) / 100.0 - 10.0
+                                                                  : static_cast<double>(random() % 2);
+      a.set_input(i, value);
+      b.set_input(i, value);
+    }
+    a.step();
+    b.step();
+    for (std::size_t i = 0; i < one.graph.outputs.size(); ++i) {
+      const double x = a.output(i);
+      const double y = b.output(i);
+      ASSERT_TRUE(std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) ||
+                  (std::isnan(x) && std::isnan(y)))
+          << one.graph.outputs[i].name << " in step " << k << ": " << x << " and " << y;
+    }
+  }
+}
+
+constexpr const char* loop = R"(FUNCTION_BLOCK INNER
+  VAR_INPUT X : LREAL; K : LREAL := 3.0; (* @param *) END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  Y := K * X - SQRT(ABS(X));
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK LOOP (* @ts 1ms @doc a loop *)
+  VAR_INPUT X : LREAL; (* @unit um @min -10.0 *) ON_1 : BOOL; END_VAR
+  VAR_OUTPUT Y : LREAL; N : DINT; END_VAR
+  VAR CONSTANT TOP : LREAL := 5.0; END_VAR
+  VAR OLD : HY_DELAY := (X0 := 2.5); CUT : HY_LIMIT := (MN := -4.0, MX := 8.0); E : LREAL; I : INNER; C : HY_CTU; END_VAR
+  E := X - OLD.XOUT;
+  I(X := E, K := 2.0);
+  CUT(XIN := MIN(I.Y, TOP) + SEL(ON_1, -E, E ** 2));
+  C(CU := ON_1 AND NOT (E > 1.0), PV := 1000);
+  OLD(XIN := CUT.XOUT);
+  Y := CUT.XOUT;
+  N := C.CV + 1;
+END_FUNCTION_BLOCK
+)";
+
+TEST(Plcopen, ADrawnDiagramReadBackHasTheSameBits) {
+  const Program program = compile_text(loop, {.top = "LOOP"});
+  for (const char* const dialect : {"portable", "openplc", "codesys", "twincat"}) {
+    const std::string text = read_back(drawn(program, dialect));
+    expect_same_bits(program, compile_text(text, {.top = "LOOP", .any_order = true}));
+    EXPECT_NE(text.find("@unit um @min -10.0"), std::string::npos) << text;
+    EXPECT_NE(text.find("@ts 1ms"), std::string::npos) << text;
+  }
+}
+
+TEST(Plcopen, TheSameDiagramGivesTheSameBytes) {
+  EXPECT_EQ(drawn(compile_text(loop, {.top = "LOOP"})), drawn(compile_text(loop, {.top = "LOOP"})));
+}
+
+TEST(Plcopen, WhatNoNetworkHoldsIsRefused) {
+  const Program program = compile_text(R"(FUNCTION_BLOCK SLOW (* @ts 1ms *)
+  VAR_INPUT X : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR S : HY_SAMPLE; (* @every 4 *) H : HY_HOLD; END_VAR
+  S(XIN := X);
+  H(XIN := S.XOUT);
+  Y := H.XOUT;
+END_FUNCTION_BLOCK
+)");
+  try {
+    drawn(program);
+    FAIL() << "a network has no rates";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().all().front().number, error::no_network);
+  }
+}
+
+std::string project(const std::string& variables, const std::string& elements) {
+  return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>
+<pou name="P" pouType="functionBlock"><interface>)" +
+         variables + "</interface><body><FBD>" + elements + "</FBD></body></pou></pous></types></project>";
+}
+
+TEST(Plcopen, AVariableThatIsReadBeforeItIsAssignedIsADelay) {
+  const std::string xml = project(
+      R"(<inputVars><variable name="X"><type><LREAL/></type></variable></inputVars>
+         <outputVars><variable name="Y"><type><LREAL/></type><initialValue><simpleValue value="4.0"/></initialValue></variable></outputVars>)",
+      R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <inVariable localId="2"><connectionPointOut/><expression>Y</expression></inVariable>
+         <block localId="3" typeName="ADD"><inputVariables>
+           <variable formalParameter="IN1"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
+           <variable formalParameter="IN2"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></variable>
+         </inputVariables><inOutVariables/><outputVariables><variable formalParameter="OUT"><connectionPointOut/></variable></outputVariables></block>
+         <outVariable localId="4"><connectionPointIn><connection refLocalId="3"/></connectionPointIn><expression>Y</expression></outVariable>)");
+  const Program program = compile_text(read_back(xml), {.any_order = true});
+  Machine<double> machine(program, 1e-3);
+  machine.set_input(0, 1.0);
+  machine.step();
+  EXPECT_EQ(machine.output(0), 5.0);
+  machine.step();
+  EXPECT_EQ(machine.output(0), 6.0);
+}
+
+TEST(Plcopen, WhatADiagramCannotExpressIsNamed) {
+  const std::string xml = project("<localVars/>", R"(<jump localId="17" label="END"><connectionPointIn/></jump>)");
+  try {
+    read_back(xml);
+    FAIL() << "a jump is no wire";
+  } catch (const InputError& error) {
+    const Diagnostic& told = error.diagnostics().all().front();
+    EXPECT_EQ(told.number, error::untranslatable_element);
+    EXPECT_NE(told.cause.find("jump (localId 17)"), std::string::npos) << told.cause;
+    EXPECT_EQ(told.place.line, 2U);
+  }
+}
+
+TEST(Plcopen, DamagedFilesAreReadOrRefused) {
+  const std::string xml = drawn(compile_text(loop, {.top = "LOOP"}));
+  const std::vector<std::string> pieces{"<block localId=\"1\">",
+                                        "</pou>",
+                                        "refLocalId=\"99\"",
+                                        "<jump/>",
+                                        "&x;",
+                                        "<!DOCTYPE a [<!ENTITY x SYSTEM \"/etc/passwd\">]>",
+                                        "localId=\"3\"",
+                                        "(*",
+                                        "]]>"};
+  std::mt19937 random(11);
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    try {
+      const std::string text = read_back(test::mutated(xml, pieces, random));
+      EXPECT_EQ(text.find("root:"), std::string::npos);
+    } catch (const InputError& error) {
+      const int number = error.diagnostics().all().front().number;
+      EXPECT_TRUE(number == error::not_plcopen || number == error::untranslatable_element) << number;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+TEST(Plcopen, DepthDoesNoHarm) {
+  std::string deep = "<project><types><pous><pou name=\"A\" pouType=\"functionBlock\"><documentation>";
+  for (int i = 0; i < 200'000; ++i) {
+    deep += "<p>";
+  }
+  EXPECT_THROW(read_back(deep), InputError);
+}
+
+}  // namespace
+}  // namespace hysteron

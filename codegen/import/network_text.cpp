@@ -11,6 +11,8 @@
 #include "codegen/graph/other_names.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "codegen/import/expression.hpp"
+#include "codegen/import/function_text.hpp"
+#include "codegen/import/network_check.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/functions.hpp"
 #include "codegen/plcopen/tc6.hpp"
@@ -27,11 +29,6 @@ constexpr std::size_t deepest_chain = 1000;
 constexpr std::size_t longest_expression = 300;
 
 using plcopen::OperatorFunction;
-
-struct Value {
-  std::string text{};
-  std::optional<Type> type{};
-};
 
 class Reader {
  public:
@@ -57,7 +54,7 @@ class Reader {
 
   NetworkText run() {
     refuse_what_is_no_network();
-    for (const std::size_t i : order_of_execution()) {
+    for (const std::size_t i : order_of_execution(pou_)) {
       run_element(i);
     }
     for (const auto& [key, delay] : delays_) {
@@ -100,53 +97,10 @@ class Reader {
   }
 
   void refuse_what_is_no_network() {
-    static const std::set<std::string_view> known{tc6::in_variable,  tc6::out_variable, tc6::block,     tc6::connector,
-                                                  tc6::continuation, tc6::contact,      tc6::coil,      tc6::left_rail,
-                                                  tc6::right_rail,   tc6::comment,      "vendorElement"};
-    std::map<std::string, int> targets;
-    std::set<std::string> instances;
-    for (const DrawnElement& element : pou_.elements) {
-      if (!known.contains(element.kind)) {
-        refuse(element, "no diagram has such an element", "Draw it with blocks and variables, or write it as text.");
-      }
-      if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
-        if (++targets[in_capitals(element.text)] == 2) {
-          refuse(element, "it is assigned twice", "Assign it once: choose between the values by SEL or OR.");
-        }
-        assigned_somewhere_.insert(in_capitals(element.text));
-      }
-      if (element.kind == tc6::block && !element.instance.empty() &&
-          !instances.insert(in_capitals(element.instance)).second) {
-        refuse(element, "the instance is called twice", "Call it once, or declare another instance.");
-      }
-      if (!element.edge.empty() && element.edge != "none") {
-        refuse(element, "it takes an edge", "Put an R_TRIG or F_TRIG there.");
-      }
-      if (!element.storage.empty() && element.storage != "none") {
-        refuse(element, "it sets or resets", "Put an SR or RS there.");
-      }
+    for (const Objection& one : objections_to(pou_)) {
+      refuse(*one.element, one.why, one.mend);
     }
-  }
-
-  /// Those with an order come first, then what assigns, then the blocks, each from the top, as editors do it.
-  [[nodiscard]] std::vector<std::size_t> order_of_execution() const {
-    std::vector<std::size_t> list;
-    for (std::size_t i = 0; i < pou_.elements.size(); ++i) {
-      const std::string& kind = pou_.elements[i].kind;
-      if (kind == tc6::block || kind == tc6::out_variable || kind == tc6::coil) {
-        list.push_back(i);
-      }
-    }
-    std::ranges::stable_sort(list, [&](std::size_t left, std::size_t right) {
-      const DrawnElement& a = pou_.elements[left];
-      const DrawnElement& b = pou_.elements[right];
-      const auto rank = [](const DrawnElement& one) { return one.order != 0 ? 0 : one.kind == tc6::block ? 2 : 1; };
-      if (rank(a) != rank(b)) {
-        return rank(a) < rank(b);
-      }
-      return a.order != b.order ? a.order < b.order : a.y != b.y ? a.y < b.y : a.x < b.x;
-    });
-    return list;
+    assigned_somewhere_ = targets_of(pou_);
   }
 
   // --- elements ---
@@ -183,8 +137,6 @@ class Reader {
         fmt::format("  {} := {};\n", target->second->name, element.negated ? negated(value.text) : value.text);
   }
 
-  static std::string negated(const std::string& text) { return fmt::format("(NOT {})", text); }
-
   void run_function(const DrawnElement& element, State& state) {
     const OperatorFunction* const own = plcopen::operator_of(element.text);
     const std::string name = own != nullptr ? std::string(own->name) : known_function(element.text);
@@ -218,33 +170,6 @@ class Reader {
       made_.statements += fmt::format("  {} := {};\n", variable, state.value.text);
       state.value.text = variable;
     }
-  }
-
-  static Value applied(const OperatorFunction* own, const std::string& name, const std::vector<Value>& arguments) {
-    Value result{.type = arguments.back().type};
-    if (own == nullptr) {
-      for (const Value& one : arguments) {
-        result.text += (result.text.empty() ? "" : ", ") + one.text;
-      }
-      result.text = fmt::format("{}({})", name, result.text);
-      result.type = name == "TRUNC" || name.ends_with("_TO_DINT") ? Type::Int
-                    : name.ends_with("_TO_LREAL")                 ? Type::Real
-                                                                  : result.type;
-      return result;
-    }
-    for (const Value& one : arguments) {
-      result.type = result.type ? result.type : one.type;
-    }
-    if (own->op == language::Operator::Not) {
-      result.text = negated(arguments.front().text);
-      return result;
-    }
-    result.type = own->is_comparison ? Type::Bool : result.type;
-    result.text = arguments.front().text;
-    for (std::size_t i = 1; i < arguments.size(); ++i) {
-      result.text = fmt::format("({} {} {})", result.text, own->symbol, arguments[i].text);
-    }
-    return result;
   }
 
   void refuse_unknown(const DrawnElement& element) {
@@ -305,20 +230,6 @@ class Reader {
     }
     called_.insert(in_capitals(element.instance));
     made_.statements += fmt::format("  {}({});\n", declared->second->name, arguments);
-  }
-
-  static bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin) {
-    if (own != nullptr) {
-      return std::ranges::any_of(own->variables, [&](const DrawnVariable& one) {
-        return one.section == DrawnVariable::Section::Input && equal_ignoring_case(one.name, pin);
-      });
-    }
-    for (std::size_t i = 0; i < block->pin_count(); ++i) {
-      if (equal_ignoring_case(block->pin(i).name, pin)) {
-        return true;
-      }
-    }
-    return false;
   }
 
   // --- values ---
@@ -497,7 +408,7 @@ class Reader {
     const PinSet& pins = from.block->trace.feedthrough[from.output];
     bool direct = from.block->states.empty();
     for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
-      direct = direct || (pins.contains(i) && is_driven(from.instance, from.block->pin(i).name));
+      direct = direct || (pins.contains(i) && is_driven(pou_, from.instance, from.block->pin(i).name));
     }
     const bool remembers = !direct;
     if (called && remembers) {
@@ -505,38 +416,6 @@ class Reader {
              "Let it run before the block: give it the lower executionOrderId.");
     }
     return called || remembers ? value : delayed(value.text, *value.type, "");
-  }
-
-  /// Whether a pin of an instance gets what may change from step to step.
-  [[nodiscard]] bool is_driven(const std::string& instance, std::string_view name) const {
-    for (const DrawnElement& element : pou_.elements) {
-      if (in_capitals(element.instance) != instance) {
-        continue;
-      }
-      for (const DrawnPin& pin : element.inputs) {
-        if (!equal_ignoring_case(pin.name, name)) {
-          continue;
-        }
-        if (!pin.expression.empty() && !type_of_literal(with_known_literals(pin.expression))) {
-          return true;
-        }
-        return std::ranges::any_of(pin.links, [&](const Link& link) {
-          const auto source = by_id_.find(link.element);
-          return source == by_id_.end() || !is_constant(pou_.elements[source->second]);
-        });
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool is_constant(const DrawnElement& element) const {
-    if (element.kind != tc6::in_variable) {
-      return false;
-    }
-    const auto variable = variables_.find(in_capitals(element.text));
-    return variable == variables_.end() ? type_of_literal(with_known_literals(element.text)).has_value()
-                                        : variable->second->section == DrawnVariable::Section::Constant ||
-                                              variable->second->remark.find("@param") != std::string::npos;
   }
 
   Value delayed(const std::string& text, Type type, const std::string& start) {
@@ -562,21 +441,9 @@ class Reader {
     const auto dot = text.find('.');
     std::optional<Type> type = type_of_text(text);
     if (!type && dot != std::string::npos && variables_.contains(in_capitals(text.substr(0, dot)))) {
-      type = output_type(text.substr(0, dot), text.substr(dot + 1));
+      type = output_type(variables_.at(in_capitals(text.substr(0, dot)))->type, text.substr(dot + 1));
     }
     return {*rewritten, type};
-  }
-
-  [[nodiscard]] std::optional<Type> output_type(const std::string& instance, const std::string& pin) const {
-    const DrawnVariable& declared = *variables_.at(in_capitals(instance));
-    if (const BlockType* const block = known_block(declared.type)) {
-      for (const Field& field : block->outputs) {
-        if (equal_ignoring_case(field.name, pin)) {
-          return field.type;
-        }
-      }
-    }
-    return std::nullopt;
   }
 
   std::string variable_text(const DrawnElement& element, const std::string& name) {

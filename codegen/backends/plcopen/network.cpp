@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "codegen/backends/plcopen/interface.hpp"
 #include "codegen/backends/plcopen/known_values.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/st/printer.hpp"
@@ -32,16 +33,6 @@ struct Signal {
   Type type = Type::Real;
   std::size_t until = never;
 };
-
-/// What the variables of a block are called in its POU, by their names in upper case: some compiler may keep a name for
-/// itself.
-std::map<std::string, std::string> names_in(const Definition& definition, Identifiers& identifiers) {
-  std::map<std::string, std::string> names;
-  for (const Declared& declared : definition.variables) {
-    names[upper(declared.field.name)] = identifiers.make({declared.variable->name.text});
-  }
-  return names;
-}
 
 class NetworkBuilder {
  public:
@@ -76,7 +67,10 @@ class NetworkBuilder {
     if (!started_.empty()) {
       assign(started_, {.source = literal(Type::Bool, 1.0)});
     }
-    declare();
+    network_.sections = interface_of(definitions_, index_, values_, names_, options_);
+    if (!added_.empty()) {
+      network_.sections.push_back({.keyword = "VAR", .variables = std::move(added_)});
+    }
     return std::move(network_);
   }
 
@@ -122,58 +116,6 @@ class NetworkBuilder {
     std::string name(identifiers_.make(parts));
     added_.push_back({.name = name, .type = std::string(st_type(type, options_.float32))});
     return name;
-  }
-
-  /// The annotations of a variable, as the text has them: they are read by people, and by an import.
-  [[nodiscard]] static std::string remark_of(const std::vector<language::Annotation>& annotations) {
-    std::string text;
-    for (const auto& one : annotations) {
-      text += fmt::format("{}@{}{}{}", text.empty() ? "" : " ", one.key, one.value.empty() ? "" : " ", one.value);
-    }
-    return text;
-  }
-
-  [[nodiscard]] StVariable variable_of(const Declared& declared) const {
-    StVariable variable{.name = name_of(declared.field.name), .remark = remark_of(declared.variable->annotations)};
-    if (declared.kind == Declared::Kind::LibraryBlock) {
-      variable.type = declared.block->about.name;
-    } else if (declared.kind == Declared::Kind::UserBlock) {
-      variable.type = definitions_.list[declared.definition].block->name.text;
-    } else {
-      variable.type = st_type(declared.field.type, options_.float32);
-      if (declared.has_preset) {
-        variable.values.push_back(plain(declared.field.type, declared.field.preset));
-      }
-    }
-    if (declared.kind == Declared::Kind::Parameter) {
-      if (const auto tuned = values_.parameter(index_, declared.field.name); tuned.value) {
-        variable.values = {plain(declared.field.type, *tuned.value)};
-      }
-    }
-    return variable;
-  }
-
-  void declare() {
-    const auto section = [&](std::string keyword, auto belongs) {
-      StSection made{.keyword = std::move(keyword)};
-      for (const Declared& declared : definition_.variables) {
-        if (belongs(declared.kind)) {
-          made.variables.push_back(variable_of(declared));
-        }
-      }
-      if (!made.variables.empty()) {
-        network_.sections.push_back(std::move(made));
-      }
-    };
-    using Kind = Declared::Kind;
-    section("VAR_INPUT", [](Kind kind) { return kind == Kind::Input || kind == Kind::Parameter; });
-    section("VAR_OUTPUT", [](Kind kind) { return kind == Kind::Output; });
-    section("VAR CONSTANT", [](Kind kind) { return kind == Kind::Constant; });
-    section("VAR",
-            [](Kind kind) { return kind == Kind::Local || kind == Kind::LibraryBlock || kind == Kind::UserBlock; });
-    if (!added_.empty()) {
-      network_.sections.push_back({.keyword = "VAR", .variables = std::move(added_)});
-    }
   }
 
   // --- elements ---

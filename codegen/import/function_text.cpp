@@ -1,0 +1,89 @@
+#include "codegen/import/function_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "codegen/import/types.hpp"
+#include "codegen/plcopen/tc6.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::import {
+
+std::vector<std::size_t> order_of_execution(const DrawnPou& pou) {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < pou.elements.size(); ++i) {
+    const std::string& kind = pou.elements[i].kind;
+    if (kind == tc6::block || kind == tc6::out_variable || kind == tc6::coil) {
+      list.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(list, [&](std::size_t left, std::size_t right) {
+    const DrawnElement& a = pou.elements[left];
+    const DrawnElement& b = pou.elements[right];
+    const auto rank = [](const DrawnElement& one) { return one.order != 0 ? 0 : one.kind == tc6::block ? 2 : 1; };
+    if (rank(a) != rank(b)) {
+      return rank(a) < rank(b);
+    }
+    return a.order != b.order ? a.order < b.order : a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
+  return list;
+}
+
+Value applied(const plcopen::OperatorFunction* own, const std::string& name, const std::vector<Value>& arguments) {
+  Value result{.type = arguments.back().type};
+  if (own == nullptr) {
+    for (const Value& one : arguments) {
+      result.text += (result.text.empty() ? "" : ", ") + one.text;
+    }
+    result.text = fmt::format("{}({})", name, result.text);
+    result.type = name == "TRUNC" || name.ends_with("_TO_DINT") ? Type::Int
+                  : name.ends_with("_TO_LREAL")                 ? Type::Real
+                                                                : result.type;
+    return result;
+  }
+  for (const Value& one : arguments) {
+    result.type = result.type ? result.type : one.type;
+  }
+  if (own->op == language::Operator::Not) {
+    result.text = negated(arguments.front().text);
+    return result;
+  }
+  result.type = own->is_comparison ? Type::Bool : result.type;
+  result.text = arguments.front().text;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    result.text = fmt::format("({} {} {})", result.text, own->symbol, arguments[i].text);
+  }
+  return result;
+}
+
+std::string negated(const std::string& text) {
+  return fmt::format("(NOT {})", text);
+}
+
+bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin) {
+  if (own != nullptr) {
+    return std::ranges::any_of(own->variables, [&](const DrawnVariable& one) {
+      return one.section == DrawnVariable::Section::Input && equal_ignoring_case(one.name, pin);
+    });
+  }
+  for (std::size_t i = 0; i < block->pin_count(); ++i) {
+    if (equal_ignoring_case(block->pin(i).name, pin)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Type> output_type(std::string_view block, std::string_view pin) {
+  if (const BlockType* const known = known_block(block)) {
+    for (const Field& field : known->outputs) {
+      if (equal_ignoring_case(field.name, pin)) {
+        return field.type;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace hysteron::import

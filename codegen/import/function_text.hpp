@@ -1,0 +1,37 @@
+// What elements of a network are as text: their order, and the call of a function.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codegen/import/drawing.hpp"
+#include "codegen/plcopen/functions.hpp"
+#include "codegen/trace/block_type.hpp"
+
+namespace hysteron::import {
+
+struct Value {
+  std::string text{};
+  std::optional<Type> type{};
+};
+
+/// The elements that do something, by their place in the POU. Those with an order come first, then what assigns, then
+/// the blocks, each from the top, as editors do it.
+[[nodiscard]] std::vector<std::size_t> order_of_execution(const DrawnPou& pou);
+
+/// A function, or its operator where it has one, on its arguments.
+[[nodiscard]] Value applied(const plcopen::OperatorFunction* own, const std::string& name,
+                            const std::vector<Value>& arguments);
+
+[[nodiscard]] std::string negated(const std::string& text);
+
+/// The type of an output of a block of the library, by the names of type and pin; nothing where it is none.
+[[nodiscard]] std::optional<Type> output_type(std::string_view block, std::string_view pin);
+
+/// Whether a POU of the project, or else a block of the library, has an input.
+[[nodiscard]] bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin);
+
+}  // namespace hysteron::import

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "codegen/parameters/parameter_file.hpp"
-#include "records/read.hpp"
 #include "records/data_folder.hpp"
+#include "records/read.hpp"
 #include "tuning/output_error.hpp"
 
 namespace hysteron::bench {

@@ -13,8 +13,8 @@
 #include "codegen/parameters/apply.hpp"
 #include "examples/example.hpp"
 #include "records/csv.hpp"
-#include "records/read.hpp"
 #include "records/data_folder.hpp"
+#include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/names.hpp"
 

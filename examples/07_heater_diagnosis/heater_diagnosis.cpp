@@ -5,8 +5,8 @@
 #include <span>
 
 #include "examples/example.hpp"
-#include "records/read.hpp"
 #include "records/data_folder.hpp"
+#include "records/read.hpp"
 
 namespace hysteron::examples {
 namespace {

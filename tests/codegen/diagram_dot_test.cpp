@@ -17,7 +17,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string nested =
-    "FUNCTION_BLOCK STAGE\n  VAR_INPUT\n    U : LREAL;  (* @unit um *)\n    K : LREAL := 2.0;  (* @param *)\n  END_VAR\n"
+    "FUNCTION_BLOCK STAGE\n  VAR_INPUT\n    U : LREAL;  (* @unit um *)\n    K : LREAL := 2.0;  (* @param *)\n  "
+    "END_VAR\n"
     "  VAR_OUTPUT\n    Y : LREAL;  (* @unit um *)\n  END_VAR\n  VAR\n    L : HY_LAG := (T1 := 0.25);\n  END_VAR\n\n"
     "  L(XIN := U);\n  Y := L.XOUT;\nEND_FUNCTION_BLOCK\n"
     "FUNCTION_BLOCK AXIS  (* @ts 1ms @doc a loop & its \"plant\" *)\n  VAR_INPUT\n    REF : LREAL;  (* @unit um *)\n"

@@ -113,7 +113,8 @@ class RandomDiagram {
     if (field.type == Type::Int) {
       return fmt::format("{}", static_cast<int>(low + std::floor(unit() * (std::min(high, low + 5.0) - low + 1.0))));
     }
-    return field.type == Type::Bool || field.type == Type::Word ? literal(field.type) : fmt::format("{:.6f}", low + unit() * (high - low));
+    return field.type == Type::Bool || field.type == Type::Word ? literal(field.type)
+                                                                : fmt::format("{:.6f}", low + unit() * (high - low));
   }
 
   void write(int instances) {

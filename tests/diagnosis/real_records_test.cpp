@@ -12,8 +12,8 @@
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "records/read.hpp"
 #include "records/data_folder.hpp"
+#include "records/read.hpp"
 #include "tests/support/measured_records.hpp"
 #include "tuning/output_error.hpp"
 

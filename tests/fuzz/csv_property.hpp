@@ -49,7 +49,7 @@ inline std::string flaw_of_record(const records::Record& record) {
   }
   const auto written = csv_text(record);
   return csv_text(records::parse_record("again", written)) == written ? ""
-                                                                   : "what was written reads back as something else";
+                                                                      : "what was written reads back as something else";
 }
 
 inline ReadingOutcome read_as_record(std::string_view text) {

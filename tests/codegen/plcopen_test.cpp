@@ -74,7 +74,7 @@ constexpr const char* loop = R"(FUNCTION_BLOCK INNER
   Y := K * X - SQRT(ABS(X));
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK LOOP (* @ts 1ms @doc a loop *)
-  VAR_INPUT X : LREAL; (* @unit um @min -10.0 *) ON_1 : BOOL; END_VAR
+  VAR_INPUT X : LREAL; (* @min -10.0 @max 20.0 *) ON_1 : BOOL; END_VAR
   VAR_OUTPUT Y : LREAL; N : DINT; END_VAR
   VAR CONSTANT TOP : LREAL := 5.0; END_VAR
   VAR OLD : HY_DELAY := (X0 := 2.5); CUT : HY_LIMIT := (MN := -4.0, MX := 8.0); E : LREAL; I : INNER; C : HY_CTU; END_VAR
@@ -93,7 +93,7 @@ TEST(Plcopen, ADrawnDiagramReadBackHasTheSameBits) {
   for (const char* const dialect : {"portable", "openplc", "codesys", "twincat"}) {
     const std::string text = read_back(drawn(program, dialect));
     expect_same_bits(program, compile_text(text, {.top = "LOOP", .any_order = true}));
-    EXPECT_NE(text.find("@unit um @min -10.0"), std::string::npos) << text;
+    EXPECT_NE(text.find("@min -10.0 @max 20.0"), std::string::npos) << text;
     EXPECT_NE(text.find("@ts 1ms"), std::string::npos) << text;
   }
 }

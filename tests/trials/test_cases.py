@@ -42,7 +42,7 @@ class Agreement(unittest.TestCase):
                         cwd=folder, capture_output=True, text=True, check=False,
                     )  # fmt: skip
                     said = [line for line in done.stderr.splitlines() if not line.startswith("note: ")]
-                self.assertEqual((done.returncode, said), (0, []))
+                    self.assertEqual((done.returncode, said), (0, []))
                     with (folder / "out.csv").open() as file:
                         rows = list(csv.reader(file))
                     for output, rms in zip(case.plant.outputs, case.label["noise_rms"]):

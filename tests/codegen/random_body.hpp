@@ -195,14 +195,19 @@ VAR_TEMP H : INT; END_VAR
         case 2:
           return fmt::format("{0}CASE {1} OF\n{0}0, 1:\n{2}{0}-3..-1, 5:\n{3}{0}ELSE\n{4}{0}END_CASE;\n", indent,
                              one_of({"I1", "D1 MOD 7", "N1"}), some(), some(), some());
-        default:
-          if (loops_++ > 3 || depth > 1) {
+        default: {
+          // What counts a loop may not count another inside of it.
+          if (loops_++ > 3 || depth > 1 || in_loop_) {
             return indent + assignment() + "\n";
           }
+          in_loop_ = true;
+          const std::string inside = some();
+          in_loop_ = false;
           return fmt::format(
-              "{0}FOR J := {1} TO {2} BY {3} DO\n{4}{5}{0}END_FOR;\n", indent, 3, -1, -2, some(),
+              "{0}FOR J := {1} TO {2} BY {3} DO\n{4}{5}{0}END_FOR;\n", indent, 3, -1, -2, inside,
               pick(2) == 0 ? fmt::format("{}IF {} THEN {}; END_IF;\n", deeper, truth(0), one_of({"EXIT", "CONTINUE"}))
                            : "");
+        }
       }
     }
     if (depth > 0 && pick(25) == 0) {
@@ -212,6 +217,7 @@ VAR_TEMP H : INT; END_VAR
   }
 
   std::mt19937_64 engine_;
+  bool in_loop_ = false;
   std::string name_{};
   std::string text_{};
   int loops_ = 0;

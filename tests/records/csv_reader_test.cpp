@@ -112,7 +112,7 @@ TEST(CsvReader, RefusesWhatIsNoRecord) {
       {"t;u\n0;1,234,567\n1;2\n", "HY511 error: log.csv:2:3: 1,234,567 has more than one decimal mark", "thousands"},
       {"t;u;y\n1;888;2.664\n2;451;4.353\n3;586;758\n",
        "HY511 error: log.csv:2:7: 2.664 in column y could be read in two ways", "--decimal point"},
-      {"t [V],u\n0,1\n1,2\n", "HY512 error: log.csv:1:1: The time is given in V", "--time t[ms]"},
+      {"t [V],u\n0,1\n1,2\n", "HY512 error: log.csv:1:1: The time is given in V", "--time t[UNIT]"},
       {"{\"t\": [0, 1]}", "HY513 error: log.csv: The file is JSON", "to_csv"},
       {"time,clock,u\n0,0,1\n1,2,1\n", "HY514 error: log.csv:1:6: Each of the columns time and clock could be the time",
        "--time time"},

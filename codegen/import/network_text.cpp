@@ -406,7 +406,7 @@ class Reader {
 
   Value block_output(const DrawnElement& reader, const BlockOutput& from, Value value, bool called) {
     const PinSet& pins = from.block->trace.feedthrough[from.output];
-    bool direct = from.block->states.empty();
+    bool direct = !has_memory(from.block->trace, from.output);
     for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
       direct = direct || (pins.contains(i) && is_driven(pou_, from.instance, from.block->pin(i).name));
     }

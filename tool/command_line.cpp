@@ -148,6 +148,10 @@ class CommandLine {
         std::swap(arguments[0], arguments[1]);
       }
     }
+    // The library would take `man tune` for two commands.
+    if (arguments.front() == "man" && arguments.size() > 1 && !arguments[1].starts_with('-')) {
+      arguments[1] = "--command=" + arguments[1];
+    }
     if (!arguments.front().starts_with('-')) {
       check_command(arguments.front());
       refuse_empty_arguments(*app_.get_subcommand(arguments.front()), arguments);

@@ -68,7 +68,9 @@ int man(const CLI::App& program, const ManOptions& options, Console& console) {
 
 Action add_man(CLI::App& app) {
   const auto options = std::make_shared<ManOptions>();
-  app.add_option("COMMAND", options->command, "The command; the tool itself where none is named.");
+  app.add_option("--command", options->command,
+                 "The command, also without --command; the tool itself where none is named.")
+      ->option_text("COMMAND");
   app.add_option("--out", options->folder, "Writes the pages of all commands into this folder.")->option_text("DIR");
   app.footer(std::string(man_examples));
   return [options, &app](Console& console) { return man(*app.get_parent(), *options, console); };

@@ -208,8 +208,7 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
   return result;
 }
 
-void fit_to_diagram(records::Record& record, const Program& program, bool tell_unused, Diagnostics& diagnostics) {
-  convert_units(record, program, diagnostics);
+void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused) {
   for (const std::string& note : record.notes()) {
     Console::note(record.file(), note);
   }
@@ -252,10 +251,13 @@ std::vector<records::Record> read_measured_records(const std::vector<std::string
   records.reserve(logs.size());
   for (const std::string& log : logs) {
     records.push_back(records::read_record(log, reading));
-    fit_to_diagram(records.back(), program, tell_unused, diagnostics);
+    convert_units(records.back(), program, diagnostics);
   }
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
+  }
+  for (const records::Record& record : records) {
+    say_what_was_read(record, program, tell_unused);
   }
   return records;
 }

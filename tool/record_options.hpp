@@ -39,13 +39,13 @@ void add_record_options(CLI::App& app, RecordOptions& options);
 /// sample time.
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);
 
-/// Brings a record to the units of the diagram, and says what was understood of it: notes of the reader, inputs that
-/// have no column and keep their defaults, columns that nobody uses where `all_columns` says that nobody else does.
-void fit_to_diagram(records::Record& record, const Program& program, bool tell_unused, Diagnostics& diagnostics);
+/// Says what was understood of a record: notes of the reader, inputs that have no column and keep their defaults, and,
+/// with `tell_unused`, the columns that the diagram has no port for.
+void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused);
 
-/// Reads measured records for a diagram. Throws InputError HY730 where two are the same file, under whatever names: a
-/// repeated record would count as a second measurement, and shrink the standard errors of what is fitted; else as
-/// records::read_record does.
+/// Reads measured records for a diagram, in its units, and says what was read. Throws InputError HY730 where two are
+/// the same file, under whatever names: a repeated record would count as a second measurement, and shrink the standard
+/// errors of what is fitted; else as records::read_record does.
 [[nodiscard]] std::vector<records::Record> read_measured_records(const std::vector<std::string>& logs,
                                                                  const RecordOptions& options, const Program& program,
                                                                  bool tell_unused, Diagnostics& diagnostics);

@@ -19,6 +19,7 @@
 #include "tool/output_record.hpp"
 #include "tool/record_options.hpp"
 #include "tool/writable.hpp"
+#include "tuning/record_units.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron::tool {
@@ -152,7 +153,7 @@ int run(const RunOptions& options, Console& console) {
           ? options.record
           : with_settings(options.record, parameters::read_parameter_file(options.diagram.parameters).record);
   records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
-  fit_to_diagram(record, program, !options.summary, diagnostics);
+  convert_units(record, program, diagnostics);
   settle_sample_time(record, program, diagnostics);
   const Drive drive = drive_from(record, program, {}, diagnostics);
 
@@ -185,6 +186,7 @@ int run(const RunOptions& options, Console& console) {
     write_file_atomically(options.output, text);
   }
   console.report(diagnostics);
+  say_what_was_read(record, program, !options.summary);
   if (options.summary) {
     console.print(summary(program, drive, record, values));
   }

@@ -295,8 +295,8 @@ class Reader {
       return input_value(pou_.elements[from->second], pou_.elements[from->second].inputs.front());
     }
     if (element.kind == tc6::block) {
-      if (reader.order == 0) {
-        run_element(index);  // what feeds an element without an order of its own runs before it
+      if (reader.order == 0 || reader.kind != tc6::block) {
+        run_element(index);  // what feeds a variable, or a block without an order of its own, runs before it
       }
       return element.instance.empty() ? function_value(index) : output_value(element, link.pin);
     }

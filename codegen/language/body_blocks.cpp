@@ -75,7 +75,7 @@ class Scan {
       part.sequential = part.sequential || token_.keyword == Keyword::ControlBegin || is("RETURN") || is("VAR_TEMP") ||
                         is("VAR_IN_OUT") || token_.keyword == Keyword::Qualifier || (declares && typed && is_type()) ||
                         is_time() || (!declares && called && token_.symbol == Symbol::LeftParenthesis);
-      called = token_.symbol == Symbol::Identifier && functions_.contains(upper(word()));
+      called = token_.symbol == Symbol::Identifier && !functions_.empty() && functions_.contains(upper(word()));
       typed = token_.symbol == Symbol::Colon;
       advance();
     }

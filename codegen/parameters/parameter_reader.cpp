@@ -373,8 +373,8 @@ class Reader {
   }
 
   void take_setting(const toml::key& key, const toml::node& node, std::vector<RecordSettings::Setting>& settings) {
-    const auto text = node.value<std::string>();
-    const auto whole = node.value<std::int64_t>();
+    const auto text = node.is_string() ? node.value<std::string>() : std::nullopt;
+    const auto whole = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
     const bool plain = text && std::ranges::none_of(*text, [](char c) { return c >= 0 && c < ' '; });
     if (!plain && !(whole && !text)) {
       wrong_type(key, node, "a text", fmt::format("{} = \"...\"", key.str()));

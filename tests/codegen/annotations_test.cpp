@@ -46,7 +46,7 @@ TEST(Annotations, ThatDoNotFitAreToldThoseThatDo) {
   EXPECT_THAT(refusal(with("", "(* @every 4 *)")),
               HasSubstr("Known here: @unit, @min, @max, @param, @neutral, @role, @doc."));
   EXPECT_THAT(refusal(with("", "", "", "(* @unit V *)")), HasSubstr("Known here: @every, @phase, @doc."));
-  EXPECT_THAT(refusal(with("(* @unit V *)", "")), HasSubstr("Known here: @ts, @effect, @family, @doc."));
+  EXPECT_THAT(refusal(with("(* @unit V *)", "")), HasSubstr("Known here: @ts, @effect, @family, @doc, @body."));
 }
 
 TEST(Annotations, ARoleIsOneOfThoseThatAParameterCanHave) {

@@ -43,6 +43,12 @@ std::string read_back(const std::string& xml) {
   return import_plcopen("drawing.xml", xml, {}, warnings);
 }
 
+std::string project(const std::string& variables, const std::string& elements) {
+  return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>
+<pou name="P" pouType="functionBlock"><interface>)" +
+         variables + "</interface><body><FBD>" + elements + "</FBD></body></pou></pous></types></project>";
+}
+
 /// Runs both with the same random inputs, by place.
 void expect_same_bits(const Program& one, const Program& other) {
   Machine<double> a(one);
@@ -75,7 +81,7 @@ constexpr const char* loop = R"(FUNCTION_BLOCK INNER
   Y := K * X - SQRT(ABS(X));
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK LOOP (* @ts 1ms @doc a loop *)
-  VAR_INPUT X : LREAL; (* @unit 1 @min -10.0 *) ON_1 : BOOL; END_VAR
+  VAR_INPUT X : LREAL; (* @min -10.0 @max 20.0 *) ON_1 : BOOL; END_VAR
   VAR_OUTPUT Y : LREAL; N : DINT; END_VAR
   VAR CONSTANT TOP : LREAL := 5.0; END_VAR
   VAR OLD : HY_DELAY := (X0 := 2.5); CUT : HY_LIMIT := (MN := -4.0, MX := 8.0); E : LREAL; I : INNER; C : HY_CTU; END_VAR
@@ -94,13 +100,40 @@ TEST(Plcopen, ADrawnDiagramReadBackHasTheSameBits) {
   for (const char* const dialect : {"portable", "openplc", "codesys", "twincat"}) {
     const std::string text = read_back(drawn(program, dialect));
     expect_same_bits(program, compile_text(text, {.top = "LOOP", .any_order = true}));
-    EXPECT_NE(text.find("@unit 1 @min -10.0"), std::string::npos) << text;
+    EXPECT_NE(text.find("@min -10.0 @max 20.0"), std::string::npos) << text;
     EXPECT_NE(text.find("@ts 1ms"), std::string::npos) << text;
   }
 }
 
 TEST(Plcopen, TheSameDiagramGivesTheSameBytes) {
   EXPECT_EQ(drawn(compile_text(loop, {.top = "LOOP"})), drawn(compile_text(loop, {.top = "LOOP"})));
+}
+
+/// Beremiz runs what feeds a variable before it assigns it, so that a wire would bring the next cycle's value.
+TEST(Plcopen, AVariableTakesWhatABlockRemembersByItsName) {
+  const std::string xml = drawn(compile_text(R"(FUNCTION_BLOCK LATE (* @ts 1ms *)
+  VAR_INPUT X : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR D : HY_DELAY; END_VAR
+  Y := D.XOUT;
+  D(XIN := X);
+END_FUNCTION_BLOCK
+)"));
+  EXPECT_NE(xml.find("<expression>D.XOUT</expression>"), std::string::npos) << xml;
+}
+
+/// The same the other way: a drawn wire from a block into a variable brings what the block has behind its call.
+TEST(Plcopen, AVariableRunsTheBlockThatFeedsItFirst) {
+  const std::string xml = project(
+      R"(<inputVars><variable name="X"><type><BOOL/></type></variable></inputVars>
+         <outputVars><variable name="Y"><type><BOOL/></type></variable></outputVars>
+         <localVars><variable name="T"><type><derived name="R_TRIG"/></type></variable></localVars>)",
+      R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <block localId="2" typeName="R_TRIG" instanceName="T" executionOrderId="2"><inputVariables>
+           <variable formalParameter="CLK"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
+         </inputVariables><inOutVariables/><outputVariables><variable formalParameter="Q"><connectionPointOut/></variable></outputVariables></block>
+         <outVariable localId="3" executionOrderId="1"><connectionPointIn><connection refLocalId="2" formalParameter="Q"/></connectionPointIn><expression>Y</expression></outVariable>)");
+  EXPECT_EQ(read_back(xml).find("HY_DELAY"), std::string::npos);
 }
 
 TEST(Plcopen, WhatNoNetworkHoldsIsRefused) {
@@ -157,12 +190,6 @@ TEST(Plcopen, RandomDiagramsReadBackHaveTheSameBits) {
     }
   }
   EXPECT_GT(compared, 75);
-}
-
-std::string project(const std::string& variables, const std::string& elements) {
-  return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>
-<pou name="P" pouType="functionBlock"><interface>)" +
-         variables + "</interface><body><FBD>" + elements + "</FBD></body></pou></pous></types></project>";
 }
 
 TEST(Plcopen, AVariableThatIsReadBeforeItIsAssignedIsADelay) {

@@ -146,7 +146,7 @@ TEST_F(Run, AMissingColumnIsNamedWithThoseThereAre) {
             "HY502 error: log.csv:1:1: There is no column X; the columns are t, x_ref, u.\n"
             "    1 | t,x_ref,u\n"
             "      | ^^^^^^^^^\n"
-            "mend: record the signal, or give the column that holds it the name X.\n"
+            "mend: record the signal, or say which column it is, as --column X=NAME.\n"
             "note: plant.st:3:5: the input; X := … would give it a default\n"
             "    3 |     X     : LREAL;          (* @unit V @min -10 @max 10 *)\n"
             "      |     ^\n\n1 error\n");
@@ -162,15 +162,16 @@ TEST_F(Run, DamagedRecordsAreRefused) {
            Case{"t,x\n0,1\n0.001,one\n", "HY505 error: log.csv:3:7: "},
            Case{"t,x\n0,1\n0.001,1\n0.002,1\n0.003,1\n0.0055,1\n", "HY507 error: log.csv:6:1: "},
            Case{"t,x\n0,1\n0.002,1\n0.001,1\n", "HY508 error: log.csv:4:1: "},
-           Case{"t,x\n", "HY501 error: log.csv:1:1: "},
+           Case{"t,x\n0,1\n", "HY501 error: log.csv:1:1: "},
            Case{"", "HY501 error: log.csv: "},
            Case{"0,1\n0.001,1\n", "HY509 error: log.csv:1:1: "},
-           Case{"t,x,x\n0,1,1\n0.001,1,1\n", "HY503 error: log.csv:1:5: "},
+           Case{"t,x,x\n0,1,1\n0.001,1,1\n", "HY503 error: log.csv:1:3: "},
            Case{"t,x\n0,1\n0.002,1\n0.004,1\n",
                 "HY704 error: log.csv:3:1: The record has a sample time of 0.002 s, PLANT one of 0.001 s.\n"
                 "    3 | 0.002,1\n"
                 "      | ^^^^^\n"
-                "mend: state @ts 2ms in the diagram, or resample the record to 0.001 s.\n"
+                "mend: state @ts 2ms in the diagram, or bring the record to 0.001 s: --resample linear, or hold for "
+                "encoders and commands.\n"
                 "note: plant.st:1:26: the sample time of the diagram\n"},
            Case{"t,x,reset\n0,1,0\n0.001,1,2\n",
                 "HY707 error: log.csv:3:9: The column RESET is 2 at t = 0.001 s, but the input takes 0 or 1.\n"
@@ -225,7 +226,8 @@ TEST_F(Run, ValuesOutsideTheRangeAreAWarning) {
             "t = 0.001 s, the farthest -12.5.\n"
             "    3 | 0.001,11\n"
             "      |       ^^\n"
-            "mend: check the unit and the scale of the column, or widen @min and @max in the diagram.\n\n1 warning\n");
+            "mend: check the unit and the scale of the column, or widen @min and @max in the diagram.\n\n1 warning\n"
+            "note: log.csv: input RESET has no column, and keeps its default 0\n");
   EXPECT_TRUE(bench.has("out.csv"));
 }
 
@@ -280,8 +282,9 @@ TEST_F(Run, NoFolderIsMadeForTheOutput) {
 
 TEST_F(Run, MillisecondsInTheColumnOfTheTimeAreNamed) {
   bench.write("log.csv", "t,x\n0,1\n1,1\n2,1\n");
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("HY704"), HasSubstr("if its column t is in milliseconds, divide it by 1000"),
-                               HasSubstr("@ts 1s ")));
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("HY704"), HasSubstr("if its times are in milliseconds, read it with --time t[ms]"),
+                    HasSubstr("@ts 1s ")));
 }
 
 TEST_F(Run, AnOldOutputSurvivesAFailingRun) {

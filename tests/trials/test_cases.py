@@ -41,7 +41,8 @@ class Agreement(unittest.TestCase):
                         [TOOL, "run", "plant.st", "--in", "log.csv", "--out", "out.csv", "--params", "params.toml"],
                         cwd=folder, capture_output=True, text=True, check=False,
                     )  # fmt: skip
-                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+                    said = [line for line in done.stderr.splitlines() if not line.startswith("note: ")]
+                    self.assertEqual((done.returncode, said), (0, []))
                     with (folder / "out.csv").open() as file:
                         rows = list(csv.reader(file))
                     for output, rms in zip(case.plant.outputs, case.label["noise_rms"]):

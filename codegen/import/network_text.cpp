@@ -389,7 +389,9 @@ class Reader {
     } else if (const BlockType* const block = known_block(declared->second->type)) {
       for (std::size_t i = 0; i < block->outputs.size(); ++i) {
         if (equal_ignoring_case(block->outputs[i].name, pin)) {
-          return block_output(reader, {block, i, in_capitals(instance)}, {text, block->outputs[i].type}, called);
+          return block_output(reader,
+                              {block, i, in_capitals(instance), find_block_type(declared->second->type) != nullptr},
+                              {text, block->outputs[i].type}, called);
         }
       }
     }
@@ -401,7 +403,8 @@ class Reader {
   struct BlockOutput {
     const BlockType* block = nullptr;
     std::size_t output = 0;
-    std::string instance{};  ///< in capitals
+    std::string instance{};   ///< in capitals
+    bool of_library = false;  ///< called HY_…
   };
 
   Value block_output(const DrawnElement& reader, const BlockOutput& from, Value value, bool called) {
@@ -410,7 +413,7 @@ class Reader {
     for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
       direct = direct || (pins.contains(i) && is_driven(pou_, from.instance, from.block->pin(i).name));
     }
-    const bool remembers = !direct;
+    const bool remembers = !direct && from.of_library;  // a block of the standard has its value behind its call
     if (called && remembers) {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");

@@ -128,7 +128,8 @@ TEST(Plcopen, AVariableRunsTheBlockThatFeedsItFirst) {
       R"(<inputVars><variable name="X"><type><BOOL/></type></variable></inputVars>
          <outputVars><variable name="Y"><type><BOOL/></type></variable></outputVars>
          <localVars><variable name="T"><type><derived name="R_TRIG"/></type></variable></localVars>)",
-      R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+      // The clock is constant: what Q then is comes from memory alone, and still is the call's.
+      R"(<inVariable localId="1"><connectionPointOut/><expression>TRUE</expression></inVariable>
          <block localId="2" typeName="R_TRIG" instanceName="T" executionOrderId="2"><inputVariables>
            <variable formalParameter="CLK"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
          </inputVariables><inOutVariables/><outputVariables><variable formalParameter="Q"><connectionPointOut/></variable></outputVariables></block>

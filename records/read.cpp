@@ -73,6 +73,13 @@ std::size_t column_called(const Table& table, const ColumnName& wanted) {
 void rename(Table& table, const ReadOptions& options) {
   std::vector<std::size_t> found;
   for (const ColumnName& one : options.columns) {
+    for (const ColumnName& other : options.columns) {
+      if (&other < &one && equal_ignoring_case(other.name, one.name)) {
+        throw InputError(error::two_readings, table.place,
+                         fmt::format("{} is given two columns, {} and {}.", one.name, other.in_file, one.in_file),
+                         "name one of them.");
+      }
+    }
     found.push_back(column_called(table, one));
   }
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -202,7 +209,7 @@ void refuse_inventing(const Table& table, const Times& times, double sample_time
       error::two_readings, table.place,
       fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", number_text(usual),
                   number_text(sample_time)),
-      unit.empty() ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {} Hz.",
+      unit.empty() ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
                                  number_text(1.0 / sample_time))
                    : fmt::format("if its times are in {}, say so: --time {}[{}].", unit, times.column, unit));
 }

@@ -59,16 +59,20 @@ std::vector<double> resampled(std::span<const double> time, std::span<const doub
         result.push_back(values[before]);
         break;
       case Resampling::Average: {
-        while (low < time.size() && time[low] < now - half) {
+        // As wide on both sides, also at the ends, and samples at the edges count by half: a ramp stays a ramp.
+        const double within = std::min({half, now - time.front() + equal, time.back() - now + equal});
+        while (low < time.size() && time[low] < now - half - equal) {
           ++low;
         }
         double sum = 0.0;
-        std::size_t count = 0;
-        for (std::size_t k = low; k < time.size() && time[k] < now + half; ++k) {
-          sum += values[k];
-          ++count;
+        double weights = 0.0;
+        for (std::size_t k = low; k < time.size() && time[k] <= now + within + equal; ++k) {
+          const double off = std::abs(time[k] - now);
+          const double weight = off > within + equal ? 0.0 : off > within - equal && within > 2.0 * equal ? 0.5 : 1.0;
+          sum += weight * values[k];
+          weights += weight;
         }
-        result.push_back(count > 0 ? sum / static_cast<double>(count) : on_line);
+        result.push_back(weights > 0.0 ? sum / weights : on_line);
         break;
       }
       default:

@@ -8,9 +8,9 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
-#include "support/zip_archive.hpp"
 #include "tool/compiler.hpp"
 #include "tool/process.hpp"
+#include "tool/zip_archive.hpp"
 
 namespace hysteron::tool {
 namespace {

@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "codegen/compile.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "support/atomic_file.hpp"
+#include "support/errors.hpp"
 #include "support/overwriting.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
@@ -27,6 +29,7 @@ Exit codes: 0 done; 1 written, and hysteron check finds errors in the text; 2 re
 struct ImportCommand {
   std::string file;
   std::string out;
+  bool force = false;
   ImportOptions options;
 };
 
@@ -34,6 +37,12 @@ int import_project(const ImportCommand& command, Console& console) {
   Diagnostics warnings;
   refuse_to_overwrite({.file = command.out, .mend = "give another name for --out."}, {{.file = command.file}});
   const std::string text = import_plcopen(command.file, read_text_file(command.file), command.options, warnings);
+  std::error_code unknown;
+  if (!command.force && std::filesystem::exists(command.out, unknown) && read_text_file(command.out) != text) {
+    throw InputError(error::foreign_file, {.file = command.out},
+                     fmt::format("{} is there already, with another text.", command.out),
+                     "choose another name for --out, or overwrite the file with --force.");
+  }
   write_file_atomically(command.out, text);
   console.report(warnings);
   console.print(command.out + "\n");
@@ -56,6 +65,7 @@ Action add_import(CLI::App& app) {
   app.add_option("--ts", command->options.cycle, "The sample time; that of the task where none is given.")
       ->option_text("10ms");
   app.add_option("--out", command->out, "The diagrams, a file in Structured Text.")->required()->option_text("Y.st");
+  app.add_flag("--force", command->force, "Overwrites a file that holds another text.");
   app.footer(std::string(import_examples));
   return [command](Console& console) { return import_project(*command, console); };
 }

@@ -203,7 +203,8 @@ std::optional<CellValue> as_time(std::string_view text) {
   value.stamp = clock->stamp;
   value.stamp.whole += (day ? 86400 * day->days : 0) + *zone;
   value.digits = clock->digits;
-  value.is_ambiguous = day && day->is_ambiguous;
+  // 00:58 alone: hours and minutes, or minutes and seconds.
+  value.is_ambiguous = day ? day->is_ambiguous : clock->digits.empty();
   return value;
 }
 

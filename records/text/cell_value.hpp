@@ -34,7 +34,7 @@ struct CellValue {
   std::string_view unit{};    ///< V of "1.5 V"
   bool has_point = false;     ///< a decimal point
   bool has_comma = false;     ///< a decimal comma
-  bool is_ambiguous = false;  ///< a date that is another one where the month comes first: 6/3/2024
+  bool is_ambiguous = false;  ///< 6/3/2024, a day of two months; 00:58, of hours or of minutes
 };
 
 /// Reads a cell. A comma in it is a decimal mark: where it separates cells, it stands in none but in quotes.

@@ -101,6 +101,7 @@ class Reader {
     }
     stop_on_errors();
     seen_.resize(layout_.cells);
+    first_cells_.resize(layout_.cells);
   }
 
   // ---- rows -------------------------------------------------------------------------------------------------------
@@ -112,7 +113,8 @@ class Reader {
       column.values.reserve(rows);
     }
     source_->rows.reserve(rows);
-    for (std::size_t at = layout_.first_row; at < source_->text.size() && diagnostics_.all().size() < most_errors;) {
+    for (std::size_t at = layout_.first_row; at < source_->text.size() && diagnostics_.all().size() < most_errors &&
+                                             !(options_.last_row && row_ >= *options_.last_row);) {
       const Line line = source_->line_at(at);
       at = line.next;
       if (is_blank(line.text, layout_.separator)) {
@@ -142,9 +144,10 @@ class Reader {
       stray_ = stray_ ? stray_ : line;
       return;
     }
-    if (stray_) {
+    if (stray_ && row_ + 1 > options_.first_row) {
       refuse_stray(line);
     }
+    stray_.reset();
     if (blank_) {
       diagnostics_.error(error::ragged_row, source_->place_of(*blank_), "There is a blank row between rows of numbers.",
                          "remove the row, if no sample is missing there.");
@@ -200,6 +203,7 @@ class Reader {
       if (column.unit.empty()) {
         column.unit = value.unit;
       }
+      first_cells_[index] = std::pair(line, cell);
     }
     const bool is_time =
         column.kind == CellKind::DateTime || column.kind == CellKind::Date || column.kind == CellKind::Clock;
@@ -367,6 +371,14 @@ class Reader {
         found.mend =
             cut + "; where the signal has a rate of its own, bring it to the others: --resample hold, or linear.";
         break;
+      case CellKind::Number: {  // the column began with something else
+        const auto& [first_line, first_cell] = *first_cells_[static_cast<std::size_t>(&column - table_.columns.data())];
+        found.number = error::text_for_number;
+        found.place = source_->place_of(first_line, first_cell);
+        found.cause = fmt::format("Column {} begins with \"{}\", which is no number.", column.name, first_cell.text);
+        found.mend = fmt::format("read the rows behind it: --rows {}..; a minus is written as -.", row_);
+        break;
+      }
       default:
         found.number = error::text_for_number;
         found.cause = fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
@@ -384,6 +396,7 @@ class Reader {
   std::vector<bool> keeps_stamps_;
   std::vector<bool> seen_;  ///< by column: whether a cell has told what it holds
   std::size_t row_ = 0;     ///< of numbers, from 1 on, those that are left out among them
+  std::vector<std::optional<std::pair<Line, Cell>>> first_cells_;  ///< by column: the cell that has told it
   std::optional<Line> blank_;
   std::optional<Line> stray_;  ///< text behind the rows: the end of the file, unless rows follow
   struct Pointed {

@@ -158,7 +158,7 @@ FoundUnit unit_of(const TableColumn& column, const ReadOptions& options) {
     if (!unit) {
       throw InputError(
           error::time_unit, column.place, fmt::format("The time is given in {}, which is no unit of time.", stated),
-          fmt::format("state it, such as --time {}[ms]; s, ms, us, ns, min, h and d are known.", column.name));
+          fmt::format("state it, as --time {}[UNIT]; s, ms, us, ns, min, h and d are known.", column.name));
     }
     result.unit = *unit;
   } else if (name && name->unit) {
@@ -203,6 +203,29 @@ std::vector<double> raw_times(const TableColumn& column, const std::vector<Stamp
   return result;
 }
 
+/// Numbers of Excel and MATLAB that count days look like seconds: 46176.4166 and a step of 1.157e-5. They are told by
+/// their size, from 2000 to 2099, and by a step that is a plain number of seconds only where it counts days.
+void refuse_days_without_unit(const TableColumn& column, const ReadOptions& options) {
+  const std::optional<TimeName> name = time_name(column.name);
+  if (column.kind != CellKind::Number || !column.unit.empty() || !options.time_unit.empty() || (name && name->unit)) {
+    return;
+  }
+  const double first = column.values.front();
+  const bool of_excel = first >= 36526.0 && first < 73051.0;
+  const bool of_matlab = first >= 730486.0 && first < 767011.0;
+  const double step = (column.values.back() - first) / static_cast<double>(column.values.size() - 1);
+  const auto is_plain = [](double number) {
+    const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(number)));
+    return std::abs(std::round(number * scale) / (number * scale) - 1.0) < 2e-4;
+  };
+  if ((of_excel || of_matlab) && step > 0.0 && step < 0.5 && is_plain(86400.0 * step) && !is_plain(step)) {
+    throw InputError(error::two_readings, column.place,
+                     fmt::format("The times from {} on could be seconds, or days as {} counts them.",
+                                 number_text(first), of_excel ? "Excel" : "MATLAB"),
+                     fmt::format("say which: --time {0}[d] or --time {0}[s].", column.name));
+  }
+}
+
 /// The times of one column, or of a date and a time of day.
 struct Found {
   std::vector<double> seconds{};
@@ -218,11 +241,17 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
       list.add(*table.columns[i].fault);
       throw InputError(list);
     }
+    if (table.columns[i].ambiguity && table.columns[i].kind == CellKind::Clock && !date) {
+      throw InputError(
+          error::two_readings, table.columns[i].place,
+          fmt::format("{} could be hours and minutes, or minutes and seconds.", *table.columns[i].ambiguity),
+          "write the seconds too, as 00:00:58, or count the rows by --rate.");
+    }
     const bool one_day = table.columns[i].kind == CellKind::Date &&
                          std::ranges::all_of(table.columns[i].stamps, [&](const Stamp& stamp) {
                            return stamp.whole == table.columns[i].stamps.front().whole;
                          });
-    if (table.columns[i].ambiguity && !one_day &&
+    if (table.columns[i].ambiguity && table.columns[i].kind != CellKind::Clock && !one_day &&
         table.columns[i].stamps.front().whole / seconds_a_day != table.columns[i].stamps.back().whole / seconds_a_day) {
       throw InputError(error::two_readings, table.columns[i].place,
                        fmt::format("{} could be a day of two months, and the record goes over midnight.",
@@ -235,6 +264,7 @@ Found times_of_column(const Table& table, std::size_t index, std::optional<std::
                      "name another column with --time, or state the rate with --rate.");
   }
   const FoundUnit unit = unit_of(column, options);
+  refuse_days_without_unit(column, options);
   std::vector<Stamp> stamps = column.stamps;
   if (date) {
     for (std::size_t k = 0; k < stamps.size(); ++k) {

@@ -32,6 +32,7 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"secs", second},
     {"second", second},
     {"seconds", second},
+    {"sek", second},
     {"sekunde", second},
     {"sekunden", second},
     {"ms", milli},
@@ -45,6 +46,8 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"\xC2\xB5s", micro},  // µ, the micro sign
     {"\xCE\xBCs", micro},  // μ, the Greek letter
     {"usec", micro},
+    {"\xC2\xB5sec", micro},
+    {"\xCE\xBCsec", micro},
     {"usecs", micro},
     {"micros", micro},
     {"microsecond", micro},

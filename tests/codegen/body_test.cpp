@@ -102,6 +102,45 @@ TEST(Bodies, ATimerTakesTimesOfTheText) {
   EXPECT_EQ(run_body(text, {{1}, {1}, {1}, {0}, {1}}), (std::vector<double>{0, 0, 1, 0, 0}));
 }
 
+/// [1, 2, 3, 4] of two dimensions: the last one runs fastest, as in IEC 61131-3; rows in brackets say the same.
+TEST(Bodies, InitialValuesOfArraysAreThoseWritten) {
+  const auto first_values = [](const std::string& declaration) {
+    return run_body(
+        "FUNCTION_BLOCK P\nVAR_INPUT N : INT; END_VAR\nVAR_OUTPUT A : INT; B : INT; C : INT; D : INT; END_VAR\nVAR AR "
+        ": " +
+            declaration + "; END_VAR\nA := AR[1,1]; B := AR[1,2]; C := AR[2,1]; D := AR[2,2];\nEND_FUNCTION_BLOCK\n",
+        {{0.0}});
+  };
+  EXPECT_EQ(first_values("ARRAY[1..2, 1..2] OF INT := [1, 2, 3, 4]"), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(first_values("ARRAY[1..2, 1..2] OF INT := [[1, 2], [3, 4]]"), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(first_values("ARRAY[1..2, 1..2] OF INT := [4(7)]"), (std::vector<double>{7, 7, 7, 7}));
+  EXPECT_EQ(
+      faults_of("FUNCTION_BLOCK P\nVAR AR : ARRAY[0..1] OF INT := [1, 2, 3]; END_VAR\nVAR_OUTPUT A : INT; END_VAR\n"
+                "A := AR[0];\nEND_FUNCTION_BLOCK\n")
+          .size(),
+      1U);
+}
+
+TEST(Bodies, WhatCountsALoopIsNotAssignedInIt) {
+  const auto loop = [](const std::string& statements) {
+    return faults_of(
+        "FUNCTION_BLOCK P\nVAR_INPUT N : INT; END_VAR\nVAR_OUTPUT S : INT; END_VAR\nVAR I : INT; END_VAR\n"
+        "FOR I := 0 TO 3 DO " +
+        statements + " S := S + 1; END_FOR;\nEND_FUNCTION_BLOCK\n");
+  };
+  EXPECT_EQ(loop("IF N = I THEN S := 5; END_IF;"), Faults());
+  EXPECT_EQ(loop("IF N = I THEN I := 99; END_IF;"), Faults{fmt::format("{}:5", error::refused_in_body)});
+  EXPECT_EQ(loop("I := I + 1;"), Faults{fmt::format("{}:5", error::refused_in_body)});
+}
+
+TEST(Bodies, ACounterGoesOnAboveItsPreset) {
+  EXPECT_EQ(
+      run_body("FUNCTION_BLOCK P\nVAR_INPUT X : BOOL; END_VAR\nVAR_OUTPUT N : INT; END_VAR\nVAR C : CTU; END_VAR\n"
+               "IF TRUE THEN C(CU := X, PV := 2); END_IF;\nN := C.CV;\nEND_FUNCTION_BLOCK\n",
+               {{1}, {0}, {1}, {0}, {1}}),
+      (std::vector<double>{1, 1, 2, 2, 3}));
+}
+
 TEST(Bodies, AVarInOutAtTheBorderIsAnInputAndAnOutput) {
   const Program program =
       compile_text("FUNCTION_BLOCK F VAR_IN_OUT X : LREAL; END_VAR X := X * 2.0; END_FUNCTION_BLOCK");

@@ -227,7 +227,40 @@ TEST(Dress, UnevenTimesAreBroughtToAnEvenGrid) {
   const Record mean = parse_record("log.csv", "t,u\n0,0\n1,10\n2,20\n3,30\n4,40\n5,50\n",
                                    {.resampling = Resampling::Average, .sample_time = 2.0});
   EXPECT_THAT(mean.time(), ElementsAre(0.0, 2.0, 4.0));
-  EXPECT_THAT(mean.column("u").values, ElementsAre(0.0, 15.0, 35.0));
+  EXPECT_THAT(mean.column("u").values, ElementsAre(0.0, 20.0, 40.0));
+}
+
+/// A mean over samples on both sides is late by nothing: of a ramp it is the ramp.
+TEST(Dress, TheMeanOfARampIsTheRamp) {
+  for (const int times : {2, 3, 5, 10}) {
+    std::string text = "t,u\n";
+    for (int k = 0; k <= 20 * times; ++k) {
+      text += fmt::format("{:.9f},{}\n", 1e-3 * k / times, k);
+    }
+    const Record record = parse_record("log.csv", text, {.resampling = Resampling::Average, .sample_time = 1e-3});
+    ASSERT_EQ(record.size(), 21U);
+    for (int k = 0; k <= 20; ++k) {
+      EXPECT_NEAR(record.column("u").values[static_cast<std::size_t>(k)], k * times, 1e-9) << times;
+    }
+  }
+}
+
+TEST(Dress, TimesThatCouldBeReadInTwoWaysAreRefused) {
+  EXPECT_THAT(refusal_of("clock,u\n00:58,1\n00:59,2\n01:00,3\n"), HasSubstr("HY514"));
+  EXPECT_THAT(refusal_of("Time,u\n46176.4166666667,1\n46176.4166782407,2\n46176.4166898148,3\n"),
+              HasSubstr("--time Time[d]"));
+  EXPECT_NO_THROW((void)parse_record("log.csv", "t,u\n46176.001,1\n46176.002,2\n46176.003,3\n"));
+  EXPECT_DOUBLE_EQ(parse_record("log.csv", "Time,u\n46176.4166666667,1\n46176.4166782407,2\n46176.4166898148,3\n",
+                                {.time_unit = "d"})
+                       .sample_time(),
+                   1.0);
+}
+
+TEST(Dress, APartIsReadWhateverStandsBesideIt) {
+  const std::string text = "t,u\n0,1\n1,2\n2,3\nt,u\n0,4\n1,5\n2,6\n";
+  EXPECT_THAT(parse_record("log.csv", text, {.last_row = 3}).column("u").values, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(parse_record("log.csv", text, {.first_row = 4}).column("u").values, ElementsAre(4.0, 5.0, 6.0));
+  EXPECT_THAT(refusal_of("t,u\n0,--\n1,2\n2,3\n"), HasSubstr("Column u begins with \"--\""));
 }
 
 TEST(Dress, SignalsWithTimesOfTheirOwnAreBroughtTogether) {

@@ -127,6 +127,21 @@ void Body::make_members(Place& place, const std::vector<Member>& members, bool m
   }
 }
 
+namespace {
+
+/// The elements of an array; where it is an array of arrays and `innermost` is asked for, those of the last dimension.
+void elements_of(const Place& place, bool innermost, std::vector<Place*>& parts) {
+  for (const auto& part : place.parts) {
+    if (innermost && part->type != nullptr && part->type->kind == BodyType::Kind::Array) {
+      elements_of(*part, true, parts);
+    } else {
+      parts.push_back(part.get());
+    }
+  }
+}
+
+}  // namespace
+
 void Body::set_initial(Place& place, const syntax::Initial& initial) {
   if (place.leaf != Place::no_leaf) {
     Leaf& leaf = leaves_[place.leaf];
@@ -148,17 +163,28 @@ void Body::set_initial(Place& place, const syntax::Initial& initial) {
     }
     return;
   }
+  // [1, 2, 3, 4] of an array of arrays gives its elements one after the other; [[1, 2], [3, 4]] gives rows.
+  const bool is_flat = std::ranges::none_of(
+      initial.elements, [](const syntax::Initial& one) { return !one.elements.empty() || !one.members.empty(); });
+  std::vector<Place*> parts;
+  elements_of(place, is_flat, parts);
   std::size_t at = 0;
   for (const syntax::Initial& element : initial.elements) {
     double count = 1.0;
     if (element.repeat != language::no_expression) {
       constant(element.repeat, count);
     }
-    for (; count > 0.0 && at < place.parts.size(); count -= 1.0) {
-      Place& part = *place.parts[at++];
-      if (element.given()) {
-        set_initial(part, element);
+    for (; count > 0.0; count -= 1.0) {
+      if (at == parts.size()) {
+        refuse(error::type_mismatch, initial.span,
+               fmt::format("'{}' has {} elements, and is given more", place.path, parts.size()),
+               "Give it as many values as it has elements.");
+        return;
       }
+      if (element.given()) {
+        set_initial(*parts[at], element);
+      }
+      ++at;
     }
   }
   for (const auto& [name, inner] : initial.members) {

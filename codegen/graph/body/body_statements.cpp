@@ -135,6 +135,13 @@ void Body::rounds(const syntax::For& node, std::uint32_t leaf, double at, double
   for (; by > 0.0 ? at <= to : at >= to; at += by) {
     write(leaf, computer_.literal(leaves_[leaf].type, at));
     execute(node.statements);
+    double counted = 0.0;
+    if (!state_.values[leaf] || !computer_.constant(*state_.values[leaf], counted) || counted != at) {
+      refuse(error::refused_in_body, node.variable.span,
+             fmt::format("'{}' counts this FOR, and is assigned inside of it", node.variable.text),
+             "Leave the loop by EXIT, or assign another variable.");
+      return;
+    }
     state_.continued = computer_.truth(false);
     const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
     if (computer_.is_true(over) || executed_ > most_statements) {

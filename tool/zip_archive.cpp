@@ -1,4 +1,4 @@
-#include "support/zip_archive.hpp"
+#include "tool/zip_archive.hpp"
 
 #include <zip.h>
 

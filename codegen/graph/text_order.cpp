@@ -38,26 +38,6 @@ struct Read {
   std::string text{};
 };
 
-/// Whether an output of a block is worked out from what the block remembers.
-bool has_memory(const BlockTrace& trace, std::size_t output) {
-  std::vector<ValueId> open{trace.outputs[output]};
-  std::vector<bool> seen(trace.tape.size(), false);
-  while (!open.empty()) {
-    const ValueId id = open.back();
-    open.pop_back();
-    if (id == no_value || seen[id]) {
-      continue;
-    }
-    seen[id] = true;
-    const Value& value = trace.tape[id];
-    if (value.op == Op::Cell) {
-      return true;
-    }
-    open.insert(open.end(), value.args.begin(), value.args.end());
-  }
-  return false;
-}
-
 class Order {
  public:
   Order(const Definitions& definitions, std::uint32_t index, const Graph& graph)
@@ -334,6 +314,25 @@ class Order {
 };
 
 }  // namespace
+
+bool has_memory(const BlockTrace& trace, std::size_t output) {
+  std::vector<ValueId> open{trace.outputs[output]};
+  std::vector<bool> seen(trace.tape.size(), false);
+  while (!open.empty()) {
+    const ValueId id = open.back();
+    open.pop_back();
+    if (id == no_value || seen[id]) {
+      continue;
+    }
+    seen[id] = true;
+    const Value& value = trace.tape[id];
+    if (value.op == Op::Cell) {
+      return true;
+    }
+    open.insert(open.end(), value.args.begin(), value.args.end());
+  }
+  return false;
+}
 
 bool is_remembered(const Graph& graph, const Node& node, std::size_t output) {
   return node.block != nullptr && !has_feedthrough(graph, node, output) && has_memory(node.block->trace, output);

@@ -22,6 +22,9 @@ namespace hysteron {
 bool check_text_order(const Definitions& definitions, std::uint32_t definition, const Graph& graph,
                       Diagnostics& diagnostics);
 
+/// Whether an output of a block is worked out from what the block remembers.
+bool has_memory(const BlockTrace& trace, std::size_t output);
+
 /// Whether an output of a library block hands out what the block remembers, and nothing of this step: it is to be read
 /// before the call.
 bool is_remembered(const Graph& graph, const Node& node, std::size_t output);

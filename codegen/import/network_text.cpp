@@ -295,8 +295,8 @@ class Reader {
       return input_value(pou_.elements[from->second], pou_.elements[from->second].inputs.front());
     }
     if (element.kind == tc6::block) {
-      if (reader.order == 0) {
-        run_element(index);  // what feeds an element without an order of its own runs before it
+      if (reader.order == 0 || reader.kind != tc6::block) {
+        run_element(index);  // what feeds a variable, or a block without an order of its own, runs before it
       }
       return element.instance.empty() ? function_value(index) : output_value(element, link.pin);
     }
@@ -389,7 +389,9 @@ class Reader {
     } else if (const BlockType* const block = known_block(declared->second->type)) {
       for (std::size_t i = 0; i < block->outputs.size(); ++i) {
         if (equal_ignoring_case(block->outputs[i].name, pin)) {
-          return block_output(reader, {block, i, in_capitals(instance)}, {text, block->outputs[i].type}, called);
+          return block_output(reader,
+                              {block, i, in_capitals(instance), find_block_type(declared->second->type) != nullptr},
+                              {text, block->outputs[i].type}, called);
         }
       }
     }
@@ -401,16 +403,17 @@ class Reader {
   struct BlockOutput {
     const BlockType* block = nullptr;
     std::size_t output = 0;
-    std::string instance{};  ///< in capitals
+    std::string instance{};   ///< in capitals
+    bool of_library = false;  ///< called HY_…
   };
 
   Value block_output(const DrawnElement& reader, const BlockOutput& from, Value value, bool called) {
     const PinSet& pins = from.block->trace.feedthrough[from.output];
-    bool direct = from.block->states.empty();
+    bool direct = !has_memory(from.block->trace, from.output);
     for (std::size_t i = 0; i < from.block->pin_count(); ++i) {
       direct = direct || (pins.contains(i) && is_driven(pou_, from.instance, from.block->pin(i).name));
     }
-    const bool remembers = !direct;
+    const bool remembers = !direct && from.of_library;  // a block of the standard has its value behind its call
     if (called && remembers) {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");

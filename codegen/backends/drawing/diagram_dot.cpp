@@ -14,6 +14,7 @@
 #include "codegen/backends/drawing/dot_text.hpp"
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/units.hpp"
+#include "codegen/language/references.hpp"
 
 namespace hysteron {
 namespace {
@@ -216,7 +217,7 @@ class Drawing {
   }
   [[nodiscard]] bool is_constant(const Scope& scope, ExpressionId id) const {
     bool constant = true;
-    for_each_reference(id, [&](const language::Reference& reference) {
+    language::for_each_reference(*definitions_.source, id, [&](const language::Reference& reference) {
       const Declared* declared = find(*scope.definition, reference.name.text);
       constant = constant && declared != nullptr && declared->kind == Declared::Kind::Constant;
     });
@@ -321,7 +322,7 @@ class Drawing {
   [[nodiscard]] bool is_read(const Scope& scope, const Declared& declared, std::string_view output) const {
     bool read = false;
     const auto look = [&](ExpressionId id) {
-      for_each_reference(id, [&](const language::Reference& reference) {
+      language::for_each_reference(*definitions_.source, id, [&](const language::Reference& reference) {
         read = read || (language::same_name(reference.name.text, declared.field.name) &&
                         language::same_name(reference.pin.text, output));
       });
@@ -373,7 +374,7 @@ class Drawing {
 
   void connect_expression(const Scope& scope, const std::string& name, ExpressionId id, std::size_t reader) {
     std::set<std::pair<std::string, std::string>> known;  // U * U reads U twice
-    for_each_reference(id, [&](const language::Reference& reference) {
+    language::for_each_reference(*definitions_.source, id, [&](const language::Reference& reference) {
       if (auto from = source_of(scope, reference); from && known.emplace(from->box, from->port).second) {
         from->passed.clear();  // the expression names it
         edge(*from, name, "", reader);
@@ -452,23 +453,6 @@ class Drawing {
 
   static const Declared* find(const Definition& definition, std::string_view name) {
     return &definition.variables[definition.by_name.at(upper(name))];
-  }
-
-  template <class Visit>
-  void for_each_reference(ExpressionId id, const Visit& visit) const {
-    const auto& node = expression(id).node;
-    if (const auto* reference = std::get_if<language::Reference>(&node)) {
-      visit(*reference);
-    } else if (const auto* unary = std::get_if<language::Unary>(&node)) {
-      for_each_reference(unary->operand, visit);
-    } else if (const auto* binary = std::get_if<language::Binary>(&node)) {
-      for_each_reference(binary->left, visit);
-      for_each_reference(binary->right, visit);
-    } else if (const auto* call = std::get_if<language::FunctionCall>(&node)) {
-      for (const auto& argument : call->arguments) {
-        for_each_reference(argument.value, visit);
-      }
-    }
   }
 
   Diagnostics diagnostics_;  ///< none: the text has been compiled

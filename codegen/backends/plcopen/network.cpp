@@ -14,6 +14,7 @@
 #include "codegen/backends/st/printer.hpp"
 #include "codegen/backends/st/words.hpp"
 #include "codegen/graph/text_order.hpp"
+#include "codegen/language/references.hpp"
 #include "codegen/plcopen/functions.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -53,7 +54,8 @@ class NetworkBuilder {
     const std::vector<std::uint32_t> order = statement_order(definitions_, index_, graph_);
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (const auto* call = std::get_if<language::Call>(&statements[order[i]])) {
-        call_at_[upper(call->instance.text)] = {.statement = i, .element = add({.kind = Element::Kind::Block})};
+        call_at_[upper(call->instance.text)] = {
+            .statement = i, .element = add({.kind = Element::Kind::Block, .instance = name_of(call->instance.text)})};
       }
     }
     remember_first(order);
@@ -142,9 +144,13 @@ class NetworkBuilder {
 
   Source read(std::string text) { return {.element = add({.kind = Element::Kind::Read, .text = std::move(text)})}; }
 
+  /// A block that has not run yet is read by its name: editors run what a wire comes from before they assign.
   void assign(const std::string& target, const Signal& value) {
     Element element{.kind = Element::Kind::Assign, .text = target, .order = ++order_};
-    element.inputs.push_back({.from = value.source});
+    const Element& from = network_.elements[value.source.element];
+    const bool is_late = from.kind == Element::Kind::Block && from.order == 0;
+    element.inputs.push_back(
+        {.from = is_late ? read(fmt::format("{}.{}", from.instance, value.source.pin)) : value.source});
     add(std::move(element));
   }
 
@@ -167,7 +173,7 @@ class NetworkBuilder {
     for (now_ = 0; now_ < order.size(); ++now_) {
       const auto& statement = definition_.block->statements[order[now_]];
       const auto look = [&](ExpressionId id) {
-        for_each_reference(id, [&](const language::Reference& reference) {
+        for_each_reference(*definitions_.source, id, [&](const language::Reference& reference) {
           const Declared& declared = find(reference.name.text);
           const auto node = declared.kind == Declared::Kind::LibraryBlock ? node_of(declared) : std::nullopt;
           if (!node || now_ <= call_at_.at(upper(declared.field.name)).statement) {
@@ -431,23 +437,6 @@ class NetworkBuilder {
       ++output;
     }
     return output;
-  }
-
-  template <class Visit>
-  void for_each_reference(ExpressionId id, const Visit& visit) const {
-    const auto& node = definitions_.source->expressions[id].node;
-    if (const auto* reference = std::get_if<language::Reference>(&node)) {
-      visit(*reference);
-    } else if (const auto* unary = std::get_if<language::Unary>(&node)) {
-      for_each_reference(unary->operand, visit);
-    } else if (const auto* binary = std::get_if<language::Binary>(&node)) {
-      for_each_reference(binary->left, visit);
-      for_each_reference(binary->right, visit);
-    } else if (const auto* call = std::get_if<language::FunctionCall>(&node)) {
-      for (const auto& argument : call->arguments) {
-        for_each_reference(argument.value, visit);
-      }
-    }
   }
 
   const Definitions& definitions_;

@@ -352,7 +352,7 @@ class NetworkBuilder {
     const std::string name = upper(call.function.text);
     if (name == "ATAN2") {
       refuse(span, "ATAN2 is no function of IEC 61131-3", "Write it with ATAN, or generate with --body st.");
-      return {};
+      return {.source = literal(Type::Real, 0.0)};  // so that the rest is looked through too
     }
     std::vector<Signal> arguments(call.arguments.size());
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {

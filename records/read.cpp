@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -16,8 +14,9 @@
 #include "records/resample.hpp"
 #include "records/table.hpp"
 #include "records/time/time_column.hpp"
+#include "records/time/time_grid.hpp"
+#include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
-#include "support/median.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/text_file.hpp"
@@ -36,23 +35,9 @@ Table table_of(const std::string& file, std::string bytes, const ReadOptions& op
 
 // ---- names ----------------------------------------------------------------------------------------------------------
 
-/// The column that a file calls so; else the one of that number.
-std::size_t column_called(const Table& table, const ColumnName& wanted) {
-  std::vector<std::size_t> found;
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    names.push_back(table.columns[i].name);
-    if (equal_ignoring_case(table.columns[i].name, wanted.in_file)) {
-      found.push_back(i);
-    }
-  }
-  const std::string& text = wanted.in_file;
-  std::size_t number = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (found.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size() && number >= 1 &&
-      number <= table.columns.size()) {
-    found.push_back(number - 1);
-  }
+/// The one column that is meant.
+std::size_t the_column(const Table& table, const ColumnName& wanted) {
+  const std::vector<std::size_t> found = columns_called(table, wanted.in_file);
   if (found.size() == 1) {
     return found.front();
   }
@@ -62,6 +47,7 @@ std::size_t column_called(const Table& table, const ColumnName& wanted) {
         fmt::format("{} columns are called {}.", found.size(), wanted.in_file),
         fmt::format("name it by its number from 1 on, as --column {}={}.", wanted.name, found.front() + 1));
   }
+  const std::vector<std::string> names = names_of(table);
   const auto near = nearest_name(wanted.in_file, names);
   throw InputError(
       error::missing_column, table.place,
@@ -80,7 +66,7 @@ void rename(Table& table, const ReadOptions& options) {
                          "name one of them.");
       }
     }
-    found.push_back(column_called(table, one));
+    found.push_back(the_column(table, one));
   }
   for (std::size_t k = 0; k < found.size(); ++k) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -181,7 +167,6 @@ Grid grid_of(const Times& times, const ReadOptions& options) {
     first = std::max(first, own.seconds.front());
     last = std::min(last, own.seconds.back());
   }
-  std::vector<double> rising{times.seconds.front()};
   const double sample_time = options.sample_time.value_or(times.grid.sample_time > 0.0 ? times.grid.sample_time
                                                           : times.grid.fault           ? times.grid.fault->usual
                                                                                        : 0.0);
@@ -191,27 +176,19 @@ Grid grid_of(const Times& times, const ReadOptions& options) {
 /// Rows that are further apart than ten of the new ones would be nine tenths invention; most often the unit of the time
 /// is another.
 void refuse_inventing(const Table& table, const Times& times, double sample_time) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < times.seconds.size(); ++k) {
-    steps.push_back(times.seconds[k] - times.seconds[k - 1]);
-  }
-  const double usual = median(steps);
+  const double usual = median_step(times.seconds);
   constexpr double most = 10.0;
   if (usual <= most * sample_time) {
     return;
   }
-  const double ratio = usual / sample_time;
-  const std::string unit = std::abs(ratio / 1e3 - 1.0) < 0.05   ? "ms"
-                           : std::abs(ratio / 1e6 - 1.0) < 0.05 ? "us"
-                           : std::abs(ratio / 1e9 - 1.0) < 0.05 ? "ns"
-                                                                : "";
+  const std::optional<MistakenUnit> mistaken = mistaken_unit(usual / sample_time);
   throw InputError(
       error::two_readings, table.place,
       fmt::format("The record has a row every {} s: brought to {} s, most rows would be made up.", number_text(usual),
                   number_text(sample_time)),
-      unit.empty() ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
-                                 number_text(1.0 / sample_time))
-                   : fmt::format("if its times are in {}, say so: --time {}[{}].", unit, times.column, unit));
+      !mistaken ? fmt::format("let the diagram run at the rate of the record, or state its time, as --rate {}Hz.",
+                              number_text(1.0 / sample_time))
+                : fmt::format("if its times are in {0}, say so: --time {1}[{0}].", mistaken->unit, times.column));
 }
 
 /// What stands in these rows, which rise, is taken away.
@@ -231,9 +208,7 @@ void leave_out(const std::vector<std::size_t>& rows, std::vector<double>& values
 Record record_of(Table table, const ReadOptions& options) {
   rename(table, options);
   if (table.source != nullptr) {
-    for (const TableColumn& column : table.columns) {
-      table.source->names.push_back(column.name);
-    }
+    table.source->names = names_of(table);
   }
   Times times = times_of(table, options);
   const bool resample = options.resampling != Resampling::None;

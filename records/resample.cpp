@@ -1,15 +1,24 @@
 #include "records/resample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "support/median.hpp"
+#include "records/time/time_grid.hpp"
+#include "support/names.hpp"
 
 namespace hysteron::records {
 namespace {
 
 /// A time that is meant to be that of a sample may be off by rounding: of the sample time.
 constexpr double rounding = 1e-6;
+
+struct Way {
+  Resampling way{};
+  std::string_view name{};
+};
+constexpr std::array ways{Way{Resampling::None, "none"}, Way{Resampling::Linear, "linear"},
+                          Way{Resampling::Hold, "hold"}, Way{Resampling::Average, "average"}};
 
 }  // namespace
 
@@ -24,11 +33,7 @@ std::vector<double> even_times(double first, double last, double sample_time) {
 
 std::vector<double> resampled(std::span<const double> time, std::span<const double> values, std::span<const double> at,
                               Resampling way, ResamplingCost& cost) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < time.size(); ++k) {
-    steps.push_back(time[k] - time[k - 1]);
-  }
-  const double usual = median(steps);
+  const double usual = median_step(time);
   const double half = at.size() > 1 ? 0.5 * (at[1] - at[0]) : 0.5 * usual;
   const double equal = rounding * 2.0 * half;
   std::vector<double> result;
@@ -86,17 +91,14 @@ std::vector<double> resampled(std::span<const double> time, std::span<const doub
   return result;
 }
 
-std::string name_of(Resampling way) {
-  switch (way) {
-    case Resampling::Linear:
-      return "linear";
-    case Resampling::Hold:
-      return "hold";
-    case Resampling::Average:
-      return "average";
-    default:
-      return "none";
-  }
+std::string_view name_of(Resampling way) {
+  return std::ranges::find(ways, way, &Way::way)->name;
+}
+
+std::optional<Resampling> resampling_of(std::string_view name) {
+  const auto* const found =
+      std::ranges::find_if(ways, [&](const Way& one) { return equal_ignoring_case(one.name, name); });
+  return found == ways.end() || found->way == Resampling::None ? std::nullopt : std::optional(found->way);
 }
 
 }  // namespace hysteron::records

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "records/read_options.hpp"
@@ -26,7 +27,10 @@ struct ResamplingCost {
 [[nodiscard]] std::vector<double> resampled(std::span<const double> time, std::span<const double> values,
                                             std::span<const double> at, Resampling way, ResamplingCost& cost);
 
-/// `linear`, `hold`, `average`.
-[[nodiscard]] std::string name_of(Resampling way);
+/// `linear`, `hold`, `average`; `none`.
+[[nodiscard]] std::string_view name_of(Resampling way);
+
+/// The way of a name, without regard to case; nothing where it is none.
+[[nodiscard]] std::optional<Resampling> resampling_of(std::string_view name);
 
 }  // namespace hysteron::records

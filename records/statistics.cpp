@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "records/time/time_grid.hpp"
+
 namespace hysteron::records {
 
 ColumnStatistics statistics_of(std::span<const double> values) {
@@ -35,14 +37,7 @@ ColumnStatistics statistics_of(std::span<const double> values) {
 }
 
 double jitter_of(const Record& record) {
-  double least = 0.0;
-  double most = 0.0;
-  for (std::size_t k = 0; k < record.size(); ++k) {
-    const double off = record.time()[k] - record.time()[0] - static_cast<double>(k) * record.sample_time();
-    least = std::min(least, off);
-    most = std::max(most, off);
-  }
-  return 0.5 * (most - least);
+  return 0.5 * deviations_from_grid(record.time(), record.sample_time()).span();
 }
 
 }  // namespace hysteron::records

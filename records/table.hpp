@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "records/text/cell_value.hpp"
@@ -40,5 +41,10 @@ struct Table {
   std::shared_ptr<SourceText> source{};  ///< null where it was no text
   std::vector<std::string> notes{};      ///< what was understood that the file does not say outright
 };
+
+[[nodiscard]] std::vector<std::string> names_of(const Table& table);
+
+/// The columns of a name, without regard to case; where there is none, the one of that number, from 1 on.
+[[nodiscard]] std::vector<std::size_t> columns_called(const Table& table, std::string_view name);
 
 }  // namespace hysteron::records

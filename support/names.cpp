@@ -34,6 +34,10 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
          std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return capital(x) == capital(y); });
 }
 
+bool is_one_of(std::string_view name, std::span<const std::string_view> known) {
+  return std::ranges::any_of(known, [&](std::string_view one) { return equal_ignoring_case(one, name); });
+}
+
 std::string in_capitals(std::string_view name) {
   std::string result(name);
   std::transform(result.begin(), result.end(), result.begin(), capital);

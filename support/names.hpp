@@ -1,6 +1,7 @@
 // Names without regard to case, and the nearest known name for "did you mean".
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,12 @@ namespace hysteron {
 
 /// Whether two names are the same but for the case of ASCII letters.
 [[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+/// Whether a name is one of some, without regard to case.
+[[nodiscard]] bool is_one_of(std::string_view name, std::span<const std::string_view> known);
+[[nodiscard]] inline bool is_one_of(std::string_view name, std::initializer_list<std::string_view> known) {
+  return is_one_of(name, std::span(known.begin(), known.size()));
+}
 
 /// The name in ASCII capitals: the form to compare and sort by.
 [[nodiscard]] std::string in_capitals(std::string_view name);

@@ -145,10 +145,7 @@ int show(const RecordCommandOptions& options, Console& console) {
   }
   const std::string bytes = read_text_file(options.file);
   console.sources().put(options.file, bytes);
-  const RecordOptions reading =
-      options.parameters.empty()
-          ? options.record
-          : with_settings(options.record, parameters::read_parameter_file(options.parameters).record);
+  const RecordOptions reading = with_settings_of(options.parameters, options.record);
   const records::Record record = records::parse_record(options.file, bytes, read_options(reading));
   if (record.columns().empty()) {
     Diagnostics faults;

@@ -14,6 +14,7 @@
 #include "codegen/graph/defaults.hpp"
 #include "codegen/graph/unit.hpp"
 #include "records/read.hpp"
+#include "records/resample.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -153,6 +154,11 @@ RecordOptions with_settings(RecordOptions options, const parameters::RecordSetti
   return options;
 }
 
+RecordOptions with_settings_of(const std::string& parameter_file, const RecordOptions& options) {
+  return parameter_file.empty() ? options
+                                : with_settings(options, parameters::read_parameter_file(parameter_file).record);
+}
+
 records::ReadOptions read_options(const RecordOptions& options, const Program* program) {
   records::ReadOptions result;
   if (!options.skip.empty()) {
@@ -192,15 +198,11 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
     result.decimal = equal_ignoring_case(options.decimal, "point") ? '.' : ',';
   }
   if (!options.resample.empty()) {
-    using records::Resampling;
-    constexpr std::pair<std::string_view, Resampling> ways[] = {
-        {"linear", Resampling::Linear}, {"hold", Resampling::Hold}, {"average", Resampling::Average}};
-    const auto* const found =
-        std::ranges::find_if(ways, [&](const auto& way) { return equal_ignoring_case(way.first, options.resample); });
-    if (found == std::end(ways)) {
+    const auto way = records::resampling_of(options.resample);
+    if (!way) {
       refuse("--resample", options.resample, "the ways are: linear, hold, average.");
     }
-    result.resampling = found->second;
+    result.resampling = *way;
     if (program != nullptr && program->graph.sample_time_ns > 0) {
       result.sample_time = program->graph.sample_time();
     }

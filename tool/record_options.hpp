@@ -35,6 +35,9 @@ void add_record_options(CLI::App& app, RecordOptions& options);
 /// The same, with what [record] of a parameter file says where no option does.
 [[nodiscard]] RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings);
 
+/// The same from a parameter file, where one is named.
+[[nodiscard]] RecordOptions with_settings_of(const std::string& parameter_file, const RecordOptions& options);
+
 /// What they say. Throws InputError HY730 for one that says nothing. With a diagram, a record is resampled to its
 /// sample time.
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);

@@ -148,10 +148,7 @@ int run(const RunOptions& options, Console& console) {
   refuse_ports_named_as_time(diagnostics);
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
-  const RecordOptions reading =
-      options.diagram.parameters.empty()
-          ? options.record
-          : with_settings(options.record, parameters::read_parameter_file(options.diagram.parameters).record);
+  const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
   records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
   convert_units(record, program, diagnostics);
   settle_sample_time(record, program, diagnostics);

@@ -14,6 +14,7 @@
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/fmu/fmu.hpp"
+#include "codegen/backends/fmu/model_description.hpp"
 #include "codegen/backends/fmu/variables.hpp"
 #include "codegen/import/plcopen_import.hpp"
 #include "support/errors.hpp"
@@ -131,32 +132,23 @@ std::string main_of_c(const Graph& graph) {
   return text + "}\n" + std::string(main_in_c);
 }
 
-/// The functions of FMI by type: fmi3SetFloat64, fmi2GetReal.
-std::string fmi_type(Type type, bool two, bool float32) {
+/// The C type of a value that FMI hands over.
+std::string_view fmi_value_type(Type type, const FmuOptions& options) {
+  const bool two = options.version == FmiVersion::Two;
   switch (type) {
     case Type::Bool:
-      return "Boolean";
+      return two ? "int" : "bool";
     case Type::Int:
-      return two ? "Integer" : "Int32";
+      return two ? "int" : "int32_t";
     case Type::Word:
-      return two ? "Integer" : "UInt16";
+      return two ? "int" : "uint16_t";
     default:
-      return two ? "Real" : float32 ? "Float32" : "Float64";
+      return !two && options.float32 ? "float" : "double";
   }
 }
 
-std::string value_type(Type type, bool two, bool float32) {
-  const std::string name = fmi_type(type, two, float32);
-  return name == "Boolean"   ? (two ? "int" : "bool")
-         : name == "Integer" ? "int"
-         : name == "Int32"   ? "int32_t"
-         : name == "UInt16"  ? "uint16_t"
-         : name == "Float32" ? "float"
-                             : "double";
-}
-
-std::string main_of_fmu(const Program& program, const FmuContents& contents, const TargetOptions& options) {
-  const bool two = options.fmi == "2";
+std::string main_of_fmu(const Program& program, const FmuContents& contents, const FmuOptions& options) {
+  const bool two = options.version == FmiVersion::Two;
   const std::string prefix = two ? "fmi2" : "fmi3";
   const auto source = std::ranges::find_if(contents.sources, [&](const std::string& one) {
     return one.find(two ? "_fmi2.c" : "_fmi3.c") != std::string::npos;
@@ -181,19 +173,18 @@ std::string main_of_fmu(const Program& program, const FmuContents& contents, con
   std::string gets;
   for (std::size_t v = 0; v < variables.size(); ++v) {
     const FmuVariable& variable = variables[v];
-    const std::string type = value_type(variable.type, two, options.float32);
+    const std::string_view type = fmi_value_type(variable.type, options);
     const std::string tail = two ? "" : ", 1";
     if (variable.role == FmuVariable::Role::Input) {
       text += fmt::format(
           "  {{\n    const unsigned int reference = {}u;\n    const {} value = ({}){};\n    "
           "if ({}Set{}(one, &reference, 1, &value{}) != 0) exit(6);\n  }}\n",
-          v + 1, type, type, from_row(variable.type, input++), prefix, fmi_type(variable.type, two, options.float32),
-          tail);
+          v + 1, type, type, from_row(variable.type, input++), prefix, fmi_type_name(variable.type, options), tail);
     } else if (variable.role == FmuVariable::Role::Output) {
       gets += fmt::format(
           "  {{\n    const unsigned int reference = {}u;\n    {} value;\n    "
           "if ({}Get{}(one, &reference, 1, &value{}) != 0) exit(7);\n    results[{}] = (double)value;\n  }}\n",
-          v + 1, type, prefix, fmi_type(variable.type, two, options.float32), tail, output++);
+          v + 1, type, prefix, fmi_type_name(variable.type, options), tail, output++);
     }
   }
   text += two ? "  if (fmi2DoStep(one, (double)k * FMU_PERIOD, FMU_PERIOD, 1) != 0) exit(8);\n"
@@ -281,7 +272,7 @@ TargetProof prove(const Program& program, const Target& target, const std::vecto
       const FmuContents contents = generate_fmu(program, fmu);
       std::vector<std::string> sources = contents.sources;
       std::erase_if(sources, [](const std::string& one) { return one.find("_fmi") != std::string::npos; });
-      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, options), drive, proof.way);
+      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, fmu), drive, proof.way);
       proof.way += ", through FMI";
     } else {
       std::string text = files.front().text;

@@ -9,6 +9,7 @@
 #include "codegen/graph/defaults.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "records/time/time_grid.hpp"
+#include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 
@@ -56,19 +57,6 @@ void check_values(const Port& input, const Signal& values, const records::Record
   }
 }
 
-/// How far the times of a record stray from an even grid, first to last: what is left when it is laid on best.
-double span_of_deviations(const records::Record& record, double sample_time) {
-  const auto time = record.time();
-  double low = 0.0;
-  double high = 0.0;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    const double deviation = time[k] - time.front() - static_cast<double>(k) * sample_time;
-    low = std::min(low, deviation);
-    high = std::max(high, deviation);
-  }
-  return high - low;
-}
-
 template <class S>
 std::vector<Signal> run(const Program& program, const Drive& drive, const std::vector<Wire>& watched,
                         const std::function<void(double)>& progress) {
@@ -106,13 +94,10 @@ std::string duration_text(double seconds) {
 
 /// A record that is slower by just a thousand or a million was most likely not written in seconds.
 std::string unit_advice(double ratio, const std::string& time) {
-  for (const auto& [name, unit, factor] :
-       {std::tuple{"milliseconds", "ms", 1e3}, {"microseconds", "us", 1e6}, {"nanoseconds", "ns", 1e9}}) {
-    if (!time.empty() && std::abs(ratio / factor - 1.0) < 0.05) {
-      return fmt::format("if its times are in {}, read it with --time {}[{}]. Else ", name, time, unit);
-    }
-  }
-  return {};
+  const auto mistaken = time.empty() ? std::nullopt : records::mistaken_unit(ratio);
+  return mistaken ? fmt::format("if its times are in {}, read it with --time {}[{}]. Else ", mistaken->words, time,
+                                mistaken->unit)
+                  : std::string();
 }
 
 }  // namespace
@@ -185,7 +170,7 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
     resolution.take(number_text(time));
   }
   const double last_decimal = resolution.quantum(0.0);
-  if (span_of_deviations(record, stated) <= 1.25 * last_decimal + 0.02 * stated) {
+  if (records::deviations_from_grid(record.time(), stated).span() <= 1.25 * last_decimal + 0.02 * stated) {
     return;
   }
   diagnostics.error(

@@ -11,6 +11,7 @@
 #include "codegen/plcopen/tc6.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron::import {
 namespace {
@@ -94,11 +95,9 @@ std::string text_below(xml_node top) {
   return text;
 }
 
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const auto begin = text.find_first_not_of(blanks);
-  const auto end = text.find_last_not_of(blanks);
-  return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
+/// What stands in XML is often broken into lines.
+std::string without_blanks(std::string_view text) {
+  return std::string(trimmed(text, " \t\r\n"));
 }
 
 template <class Number>
@@ -177,7 +176,7 @@ class ProjectReader {
   DrawnPou read_pou(xml_node node) {
     DrawnPou pou{.name = node.attribute(tc6::name).value(),
                  .kind = node.attribute(tc6::pou_type).value(),
-                 .remark = trimmed(text_below(child(node, tc6::documentation))),
+                 .remark = without_blanks(text_below(child(node, tc6::documentation))),
                  .line = line_of(node)};
     const auto cycle = cycles_.find(in_capitals(pou.name));
     pou.cycle = cycle == cycles_.end() ? "" : cycle->second;
@@ -212,7 +211,7 @@ class ProjectReader {
   /// 1.5, or [1.5, 2.5] of an array; a question mark for what is neither.
   static std::string initial_of(xml_node value) {
     if (const xml_node simple = child(value, tc6::simple_value)) {
-      return trimmed(simple.attribute(tc6::value).value());
+      return without_blanks(simple.attribute(tc6::value).value());
     }
     if (const xml_node array = child(value, tc6::array_value)) {
       std::string elements;
@@ -230,7 +229,7 @@ class ProjectReader {
       DrawnVariable variable{.section = section,
                              .name = node.attribute(tc6::name).value(),
                              .initial = initial_of(child(node, tc6::initial_value)),
-                             .remark = trimmed(text_below(child(node, tc6::documentation))),
+                             .remark = without_blanks(text_below(child(node, tc6::documentation))),
                              .line = line_of(node)};
       const std::string_view address = node.attribute("address").value();
       if (section == DrawnVariable::Section::Local && address.starts_with("%I")) {
@@ -290,7 +289,7 @@ class ProjectReader {
     }
     for (const char* const name : {tc6::expression, tc6::variable}) {
       const xml_node text = child(node, name);
-      element.text = text ? trimmed(text_below(text)) : element.text;
+      element.text = text ? without_blanks(text_below(text)) : element.text;
     }
     if (element.kind == tc6::connector || element.kind == tc6::continuation) {
       element.text = node.attribute(tc6::name).value();
@@ -306,7 +305,7 @@ class ProjectReader {
 
   void read_pins(xml_node list, std::vector<DrawnPin>& pins) {
     for_each(list, tc6::variable, [&](xml_node node) {
-      DrawnPin pin{.name = trimmed(node.attribute(tc6::formal_parameter).value()),
+      DrawnPin pin{.name = without_blanks(node.attribute(tc6::formal_parameter).value()),
                    .negated = node.attribute(tc6::negated).as_bool()};
       const std::string_view edge = node.attribute(tc6::edge).value();
       pin.edge = !edge.empty() && edge != "none";
@@ -318,9 +317,9 @@ class ProjectReader {
   static void read_point(xml_node point, DrawnPin& pin) {
     for_each(point, tc6::connection, [&](xml_node one) {
       pin.links.push_back({.element = number_of<std::uint64_t>(one.attribute(tc6::reference).value()),
-                           .pin = trimmed(one.attribute(tc6::formal_parameter).value())});
+                           .pin = without_blanks(one.attribute(tc6::formal_parameter).value())});
     });
-    pin.expression = trimmed(text_below(child(point, tc6::expression)));
+    pin.expression = without_blanks(text_below(child(point, tc6::expression)));
   }
 
   const std::string& file_;

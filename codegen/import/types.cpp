@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <utility>
 
+#include "codegen/language/time_literal.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 
@@ -89,51 +88,9 @@ std::optional<double> seconds_of(std::string_view literal) {
   if (kind != "T" && kind != "TIME" && kind != "LT" && kind != "LTIME") {
     return std::nullopt;
   }
-  std::string digits;
-  std::ranges::copy_if(literal.substr(mark + 1), std::back_inserter(digits), [](char c) { return c != '_'; });
-  std::string_view rest = digits;
-  const bool negative = rest.starts_with('-');
-  rest.remove_prefix(negative ? 1 : 0);
-  double seconds = 0.0;
-  bool any = false;
-  while (!rest.empty()) {
-    double number = 0.0;
-    const auto [stop, problem] =
-        std::from_chars(rest.data(), rest.data() + rest.size(), number, std::chars_format::fixed);
-    if (problem != std::errc{}) {
-      return std::nullopt;
-    }
-    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
-    std::size_t letters = 0;
-    while (letters < rest.size() && std::isalpha(static_cast<unsigned char>(rest[letters])) != 0) {
-      ++letters;
-    }
-    const std::string unit = in_capitals(rest.substr(0, letters));
-    rest.remove_prefix(letters);
-    // A division by a whole number is rounded once: 0.1 of T#100ms is that of the text.
-    constexpr std::array<std::pair<std::string_view, double>, 4> parts{
-        {{"S", 1.0}, {"MS", 1e3}, {"US", 1e6}, {"NS", 1e9}}};
-    constexpr std::array<std::pair<std::string_view, double>, 3> multiples{
-        {{"D", 86400.0}, {"H", 3600.0}, {"M", 60.0}}};
-    bool known = false;
-    for (const auto& [name, divisor] : parts) {
-      if (unit == name) {
-        seconds += number / divisor;
-        known = true;
-      }
-    }
-    for (const auto& [name, factor] : multiples) {
-      if (unit == name) {
-        seconds += number * factor;
-        known = true;
-      }
-    }
-    if (!known) {
-      return std::nullopt;
-    }
-    any = true;
-  }
-  return any ? std::optional(negative ? -seconds : seconds) : std::nullopt;
+  // A division by a whole number is rounded once: 0.1 of T#100ms is that of the text.
+  const std::optional<double> nanoseconds = language::nanoseconds_of_time(literal.substr(mark + 1));
+  return nanoseconds ? std::optional(*nanoseconds / 1e9) : std::nullopt;
 }
 
 std::string with_known_literals(std::string_view text) {

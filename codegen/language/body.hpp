@@ -38,15 +38,8 @@ struct Access {
   Span span{};
 };
 
-struct Unary {
-  Operator op{};
-  ExpressionId operand = no_expression;
-};
-struct Binary {
-  Operator op{};
-  ExpressionId left = no_expression;
-  ExpressionId right = no_expression;
-};
+using language::Binary;
+using language::Unary;
 
 /// `PIN := value`, `value`, or `OUTPUT => variable`.
 struct Argument {

@@ -23,7 +23,7 @@ char lower(char c) {
 
 }  // namespace
 
-bool milliseconds_of_time(std::string_view written, double& milliseconds) {
+std::optional<double> nanoseconds_of_time(std::string_view written) {
   std::string text;
   for (const char c : written) {
     text += c == '_' ? std::string() : std::string(1, lower(c));
@@ -46,13 +46,21 @@ bool milliseconds_of_time(std::string_view written, double& milliseconds) {
       ++next;
     }
     if (problem != std::errc{} || next == units_of_time.size() || (fraction && name_end != end)) {
-      return false;
+      return std::nullopt;
     }
     nanoseconds += number * units_of_time[next++].nanoseconds;
     at = name_end;
   }
-  milliseconds = (negative ? -nanoseconds : nanoseconds) / 1e6;
-  return !text.empty() && next > 0;
+  if (text.empty() || next == 0) {
+    return std::nullopt;
+  }
+  return negative ? -nanoseconds : nanoseconds;
+}
+
+bool milliseconds_of_time(std::string_view text, double& milliseconds) {
+  const std::optional<double> nanoseconds = nanoseconds_of_time(text);
+  milliseconds = nanoseconds.value_or(0.0) / 1e6;
+  return nanoseconds.has_value();
 }
 
 }  // namespace hysteron::language

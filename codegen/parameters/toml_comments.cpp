@@ -4,16 +4,12 @@
 #include <utility>
 
 #include "support/names.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron::parameters {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string_view::npos ? std::string_view{}
-                                         : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
+constexpr std::string_view blanks = " \t\r";
 
 struct Line {
   std::string_view code{};
@@ -22,7 +18,7 @@ struct Line {
 };
 
 Line cut(std::string_view text) {
-  Line line{.code = trimmed(text)};
+  Line line{.code = trimmed(text, blanks)};
   char quote = '\0';
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -32,8 +28,8 @@ Line cut(std::string_view text) {
     } else if (c == '"' || c == '\'') {
       quote = c;
     } else if (c == '#') {
-      line.code = trimmed(text.substr(0, i));
-      line.comment = trimmed(text.substr(i));
+      line.code = trimmed(text.substr(0, i), blanks);
+      line.comment = trimmed(text.substr(i), blanks);
       break;
     } else {
       line.opened += c == '[' || c == '{' ? 1 : (c == ']' || c == '}' ? -1 : 0);

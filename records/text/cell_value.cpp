@@ -21,10 +21,6 @@ constexpr bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-bool is_one_of(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::ranges::any_of(words, [&](std::string_view word) { return equal_ignoring_case(text, word); });
-}
-
 /// Takes up to `most` digits off the front; nothing where there is none.
 std::optional<int> take_digits(std::string_view& text, std::size_t most) {
   std::size_t count = 0;

@@ -150,10 +150,6 @@ bool is_row_of_units(const std::vector<Cell>& cells) {
   return time || (bracketed && !cells.empty() && !cells.front().text.empty());
 }
 
-bool says_one_of(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::ranges::any_of(words, [&](std::string_view word) { return equal_ignoring_case(text, word); });
-}
-
 /// Looks for names above the rows.
 class HeadReader {
  public:
@@ -217,7 +213,7 @@ class HeadReader {
   [[nodiscard]] bool fits(const std::vector<Cell>& cells) const {
     const std::size_t n = cells.size();
     return n == cells_in_row_ || n + 1 == cells_in_row_ ||
-           (n == cells_in_row_ + 1 && says_one_of(cells.back().text, {"", "comment"}));
+           (n == cells_in_row_ + 1 && is_one_of(cells.back().text, {"", "comment"}));
   }
 
   /// A row right above the rows that has other cells is no head: to pass over it would lose a sample, or its names.
@@ -287,9 +283,8 @@ class HeadReader {
       if (cells.size() < cells_in_row_ || begins_with_text(cells) == false) {
         continue;
       }
-      const bool labels = says_one_of(cells.front().text, {"label", "labels", "channel name", "channel names"});
-      const bool units =
-          says_one_of(cells.front().text, {"vertical units", "units", "unit", "y_unit_label", "einheit"});
+      const bool labels = is_one_of(cells.front().text, {"label", "labels", "channel name", "channel names"});
+      const bool units = is_one_of(cells.front().text, {"vertical units", "units", "unit", "y_unit_label", "einheit"});
       for (std::size_t c = 1; (labels || units) && c < cells_in_row_; ++c) {
         TextLayout::Name& column = layout_.columns[c];
         if (labels && !cells[c].text.empty()) {

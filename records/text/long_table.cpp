@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -18,10 +17,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> names_of_signals{"VarName", "_field", "TagName", "variable", "signal"};
 constexpr std::array<std::string_view, 4> names_of_values{"VarValue", "_value", "value", "Value"};
-
-bool is_one_of(std::string_view name, std::span<const std::string_view> known) {
-  return std::ranges::any_of(known, [&](std::string_view one) { return equal_ignoring_case(one, name); });
-}
 
 template <class Predicate>
 std::optional<std::size_t> column_where(const Table& table, const Predicate& is_it) {

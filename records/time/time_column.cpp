@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -59,21 +58,6 @@ bool same_times(const TableColumn& a, const TableColumn& b) {
 /// t_u beside u, u_time beside u: the times of one signal.
 bool is_time_of_signal(const Table& table, std::size_t index) {
   return index + 1 < table.columns.size() && is_time_of(table.columns[index].name, table.columns[index + 1].name);
-}
-
-std::optional<std::size_t> column_called(const Table& table, std::string_view name) {
-  const auto found =
-      std::ranges::find_if(table.columns, [&](const TableColumn& one) { return equal_ignoring_case(one.name, name); });
-  if (found != table.columns.end()) {
-    return static_cast<std::size_t>(found - table.columns.begin());
-  }
-  std::size_t number = 0;
-  const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (read.ec == std::errc() && read.ptr == name.data() + name.size() && number >= 1 &&
-      number <= table.columns.size()) {
-    return number - 1;
-  }
-  return std::nullopt;
 }
 
 std::vector<std::string> names_of(const Table& table, const std::vector<std::size_t>& columns) {
@@ -324,17 +308,14 @@ Times times_of(const Table& table, const ReadOptions& options) {
   std::vector<std::size_t> found;
   std::optional<std::size_t> date;
   if (!options.time.empty()) {
-    const auto stated = column_called(table, options.time);
-    if (!stated) {
-      std::vector<std::string> names;
-      for (const TableColumn& column : table.columns) {
-        names.push_back(column.name);
-      }
-      throw InputError(error::missing_column, table.place,
-                       fmt::format("There is no column {}; the columns are {}.", options.time, fmt::join(names, ", ")),
-                       "name one of these with --time, or give its number from 1 on.");
+    const std::vector<std::size_t> stated = columns_called(table, options.time);
+    if (stated.empty()) {
+      throw InputError(
+          error::missing_column, table.place,
+          fmt::format("There is no column {}; the columns are {}.", options.time, fmt::join(names_of(table), ", ")),
+          "name one of these with --time, or give its number from 1 on.");
     }
-    found = {*stated};
+    found = {stated.front()};
   } else {
     found = candidates(table);
     if (const auto pair = date_and_clock(table, found)) {

@@ -49,31 +49,47 @@ double slope(std::span<const double> time) {
   return sum / (count * (count * count - 1.0) / 12.0);
 }
 
-struct Deviations {
-  double span = 0.0;         ///< the largest less the smallest deviation from the grid
-  std::size_t farthest = 0;  ///< the row farthest from the middle of the two
-};
-
-Deviations deviations(std::span<const double> time, double sample_time) {
-  const auto from_grid = [&](std::size_t k) { return time[k] - time.front() - static_cast<double>(k) * sample_time; };
-  double low = 0.0;
-  double high = 0.0;
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    low = std::min(low, from_grid(k));
-    high = std::max(high, from_grid(k));
+std::vector<double> steps_of(std::span<const double> time) {
+  std::vector<double> steps(time.empty() ? 0 : time.size() - 1);
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    steps[k - 1] = time[k] - time[k - 1];
   }
-  Deviations result{.span = high - low};
+  return steps;
+}
+
+double from_grid(std::span<const double> time, double sample_time, std::size_t k) {
+  return time[k] - time.front() - static_cast<double>(k) * sample_time;
+}
+
+/// The row farthest from the middle of the deviations.
+std::size_t farthest_row(std::span<const double> time, double sample_time, const Deviations& off) {
+  std::size_t farthest = 0;
   double most = -1.0;
   for (std::size_t k = 1; k < time.size(); ++k) {
-    if (const double deviation = std::abs(from_grid(k) - 0.5 * (low + high)); deviation > most) {
+    if (const double deviation = std::abs(from_grid(time, sample_time, k) - 0.5 * (off.low + off.high));
+        deviation > most) {
       most = deviation;
-      result.farthest = k;
+      farthest = k;
     }
   }
-  return result;
+  return farthest;
 }
 
 }  // namespace
+
+double median_step(std::span<const double> time) {
+  return median(steps_of(time));
+}
+
+Deviations deviations_from_grid(std::span<const double> time, double sample_time) {
+  Deviations result;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    const double off = from_grid(time, sample_time, k);
+    result.low = std::min(result.low, off);
+    result.high = std::max(result.high, off);
+  }
+  return result;
+}
 
 void PrintedResolution::take(std::string_view number) {
   int exponent = 0;
@@ -110,10 +126,7 @@ double PrintedResolution::quantum(double time) const {
 }
 
 TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& resolution) {
-  std::vector<double> steps(time.size() - 1);
-  for (std::size_t k = 1; k < time.size(); ++k) {
-    steps[k - 1] = time[k] - time[k - 1];
-  }
+  const std::vector<double> steps = steps_of(time);
   const double usual = median(steps);
 
   const double largest = std::max(std::abs(time.front()), std::abs(time.back()));
@@ -151,9 +164,9 @@ TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& r
   }
   const double allowed = 1.25 * taken_away + 0.02 * plain + rounding;
   TimeGrid grid{.sample_time = plain};
-  auto off = deviations(time, plain);
-  if (off.span > allowed) {
-    if (const auto off_fitted = deviations(time, fitted); off_fitted.span < off.span) {
+  auto off = deviations_from_grid(time, plain);
+  if (off.span() > allowed) {
+    if (const auto off_fitted = deviations_from_grid(time, fitted); off_fitted.span() < off.span()) {
       off = off_fitted;
       grid.sample_time = fitted;
     }
@@ -164,14 +177,15 @@ TimeGrid find_time_grid(std::span<const double> time, const PrintedResolution& r
       return grid;
     }
   }
-  if (off.span > allowed) {
+  if (off.span() > allowed) {
     // The first step that stands out, or else the row that lies farthest from the grid.
     const auto stands_out = std::find_if(steps.begin(), steps.end(), [&](double step) {
       return std::abs(step - usual) > 2.0 * taken_away + 0.02 * usual + rounding;
     });
     const bool any = stands_out != steps.end();
-    grid.fault = fault_at(any ? static_cast<std::size_t>(stands_out - steps.begin()) + 1 : off.farthest);
-    grid.fault->off = any ? 0.0 : off.span;
+    grid.fault = fault_at(any ? static_cast<std::size_t>(stands_out - steps.begin()) + 1
+                              : farthest_row(time, grid.sample_time, off));
+    grid.fault->off = any ? 0.0 : off.span();
   }
   return grid;
 }

@@ -28,6 +28,17 @@ class PrintedResolution {
   int significant_digits_ = 0;
 };
 
+/// s: the step in the middle of all, in size.
+[[nodiscard]] double median_step(std::span<const double> time);
+
+/// s: the least and the largest of t_k − t_0 − k·TS.
+struct Deviations {
+  double low = 0.0;
+  double high = 0.0;
+  [[nodiscard]] double span() const { return high - low; }
+};
+[[nodiscard]] Deviations deviations_from_grid(std::span<const double> time, double sample_time);
+
 struct TimeFault {
   std::size_t row = 0;    ///< the row at which it shows, never the first
   double step = 0.0;      ///< from the row before, s

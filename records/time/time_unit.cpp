@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -128,10 +129,6 @@ constexpr auto names = std::to_array<std::string_view>({
     "timecode",
 });
 
-bool is_name_of_time(std::string_view name) {
-  return std::ranges::any_of(names, [&](std::string_view known) { return equal_ignoring_case(known, name); });
-}
-
 }  // namespace
 
 std::optional<TimeUnit> time_unit(std::string_view text) {
@@ -157,9 +154,22 @@ std::optional<TimeUnit> epoch_unit(std::int64_t number) {
   return number >= first_filetime && number <= last_filetime ? std::optional(filetime) : std::nullopt;
 }
 
+std::optional<MistakenUnit> mistaken_unit(double ratio) {
+  struct Ratio {
+    MistakenUnit unit{};
+    double factor = 1.0;
+  };
+  constexpr std::array ratios{Ratio{{"milliseconds", "ms"}, 1e3}, Ratio{{"microseconds", "us"}, 1e6},
+                              Ratio{{"nanoseconds", "ns"}, 1e9}, Ratio{{"minutes", "min"}, 1.0 / 60.0},
+                              Ratio{{"days", "d"}, 1.0 / 86400.0}};
+  const auto* const found =
+      std::ranges::find_if(ratios, [&](const Ratio& one) { return std::abs(ratio / one.factor - 1.0) < 0.05; });
+  return found == ratios.end() ? std::nullopt : std::optional(found->unit);
+}
+
 std::optional<TimeName> time_name(std::string_view name) {
   name = trimmed(name);
-  if (is_name_of_time(name)) {
+  if (is_one_of(name, names)) {
     return TimeName{.unit = equal_ignoring_case(name, "second") || equal_ignoring_case(name, "seconds")
                                 ? std::optional(second)
                             : equal_ignoring_case(name, "filetime") ? std::optional(filetime)
@@ -169,7 +179,7 @@ std::optional<TimeName> time_name(std::string_view name) {
   const auto with = [&](std::string_view base, std::string_view unit) -> std::optional<TimeName> {
     base = trimmed(base);
     const auto found = time_unit(unit);
-    return found && is_name_of_time(base) ? std::optional(TimeName{.unit = found}) : std::nullopt;
+    return found && is_one_of(base, names) ? std::optional(TimeName{.unit = found}) : std::nullopt;
   };
   if (name.ends_with(')') || name.ends_with(']')) {
     const auto open = name.find_last_of("([");

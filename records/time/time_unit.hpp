@@ -26,6 +26,15 @@ struct TimeUnit {
 /// numbers. One unit alone makes each of them a year from 2001 to 2286: the sizes lie apart by a factor of 1000.
 [[nodiscard]] std::optional<TimeUnit> epoch_unit(std::int64_t number);
 
+/// A unit that was most likely taken for seconds.
+struct MistakenUnit {
+  std::string_view words{};  ///< milliseconds
+  std::string_view unit{};   ///< ms
+};
+
+/// Of a record whose step is `ratio` times the one expected, within a twentieth; nothing where it is no ratio of units.
+[[nodiscard]] std::optional<MistakenUnit> mistaken_unit(double ratio);
+
 struct TimeName {
   std::optional<TimeUnit> unit{};  ///< where the name has one: t_ms, Time (s), Zeit/ms
 };

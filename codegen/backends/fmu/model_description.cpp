@@ -97,20 +97,6 @@ void add_units(pugi::xml_node root, std::span<const FmuVariable> variables) {
   }
 }
 
-const char* type_name(Type type, const FmuOptions& options) {
-  const bool three = options.version == FmiVersion::Three;
-  switch (type) {
-    case Type::Real:
-      return !three ? "Real" : options.float32 ? "Float32" : "Float64";
-    case Type::Bool:
-      return "Boolean";
-    case Type::Int:
-      return three ? "Int32" : "Integer";
-    default:
-      return three ? "UInt16" : "Integer";
-  }
-}
-
 std::string start_text(const FmuVariable& one, const FmuOptions& options) {
   if (one.type == Type::Bool) {
     return one.start != 0.0 ? "true" : "false";
@@ -176,11 +162,11 @@ void add_variables(pugi::xml_node root, std::span<const FmuVariable> variables, 
   }
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const FmuVariable& one = variables[i];
-    pugi::xml_node node = list.append_child(three ? type_name(one.type, options) : "ScalarVariable");
+    pugi::xml_node node = list.append_child(three ? fmi_type_name(one.type, options) : "ScalarVariable");
     set(node, "name", one.name);
     set(node, "valueReference", std::to_string(i + 1));
     add_role(node, one);
-    add_type_attributes(three ? node : node.append_child(type_name(one.type, options)), one, options);
+    add_type_attributes(three ? node : node.append_child(fmi_type_name(one.type, options)), one, options);
   }
 }
 
@@ -204,6 +190,20 @@ void add_structure(pugi::xml_node root, std::span<const FmuVariable> variables, 
 }
 
 }  // namespace
+
+const char* fmi_type_name(Type type, const FmuOptions& options) {
+  const bool three = options.version == FmiVersion::Three;
+  switch (type) {
+    case Type::Real:
+      return !three ? "Real" : options.float32 ? "Float32" : "Float64";
+    case Type::Bool:
+      return "Boolean";
+    case Type::Int:
+      return three ? "Int32" : "Integer";
+    default:
+      return three ? "UInt16" : "Integer";
+  }
+}
 
 std::string model_description(const FmuModel& model, std::span<const FmuVariable> variables,
                               std::span<const std::string> sources, const FmuOptions& options) {

@@ -18,6 +18,9 @@ struct FmuModel {
   double sample_time = 0.0;  ///< s
 };
 
+/// What FMI calls a type, in XML and in the names of its functions: Float64, Integer.
+const char* fmi_type_name(Type type, const FmuOptions& options);
+
 std::string model_description(const FmuModel& model, std::span<const FmuVariable> variables,
                               std::span<const std::string> sources, const FmuOptions& options);
 

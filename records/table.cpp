@@ -1,0 +1,34 @@
+#include "records/table.hpp"
+
+#include <charconv>
+
+#include "support/names.hpp"
+
+namespace hysteron::records {
+
+std::vector<std::string> names_of(const Table& table) {
+  std::vector<std::string> names;
+  names.reserve(table.columns.size());
+  for (const TableColumn& column : table.columns) {
+    names.push_back(column.name);
+  }
+  return names;
+}
+
+std::vector<std::size_t> columns_called(const Table& table, std::string_view name) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (equal_ignoring_case(table.columns[i].name, name)) {
+      found.push_back(i);
+    }
+  }
+  std::size_t number = 0;
+  const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (found.empty() && read.ec == std::errc() && read.ptr == name.data() + name.size() && number >= 1 &&
+      number <= table.columns.size()) {
+    found.push_back(number - 1);
+  }
+  return found;
+}
+
+}  // namespace hysteron::records

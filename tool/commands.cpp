@@ -19,6 +19,8 @@ std::span<const Command> commands() {
       Command{"serve", "Runs a diagram as a cyclic task, and serves it over Modbus.", add_serve},
       Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
       Command{"map", "Prints the registers of a served diagram.", add_map},
+      Command{"retained", "Shows what a task keeps through a restart, and brings it back into a parameter file.",
+              add_retained},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
       Command{"explain", "Explains an error by its number.", add_explain},
       Command{"man", "Prints a manual page.", add_man},

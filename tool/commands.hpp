@@ -44,6 +44,7 @@ Action add_test(CLI::App& app);
 Action add_serve(CLI::App& app);
 Action add_replay(CLI::App& app);
 Action add_map(CLI::App& app);
+Action add_retained(CLI::App& app);
 Action add_blocks(CLI::App& app);
 Action add_explain(CLI::App& app);
 Action add_man(CLI::App& app);

@@ -37,6 +37,7 @@ void hysteron_set_parameter(std::size_t index, double value);
 double hysteron_parameter(std::size_t index);
 void* hysteron_state();
 std::size_t hysteron_state_size();
+std::size_t hysteron_state_offset(std::size_t index);
 }}
 
 namespace {{
@@ -50,6 +51,7 @@ hysteron::runtime::ProgramShape shape() {{
           .outputs = {{{outputs}}},
           .parameters = {{{parameters}}},
           .relations = {{{relations}}},
+          .state = {{{state}}},
           .layout = {layout}}};
 }}
 
@@ -64,7 +66,8 @@ int main(int argc, char** argv) {{
                                                      .set_parameter = hysteron_set_parameter,
                                                      .parameter = hysteron_parameter,
                                                      .state = hysteron_state,
-                                                     .state_size = hysteron_state_size}});
+                                                     .state_size = hysteron_state_size,
+                                                     .state_offset = hysteron_state_offset}});
   return hysteron::runtime::host_program(program, {{.name = "{name}_host", .addresses = addresses}}, argc, argv);
 }}
 )";
@@ -165,6 +168,8 @@ std::string_view enumerator(PointType type) {
       return "int32";
     case PointType::uint16:
       return "uint16";
+    case PointType::real32:
+      return "real32";
     default:
       return "real64";  // a diagram has no other types
   }
@@ -200,6 +205,18 @@ std::string literal(const std::vector<ProgramSignal>& signals) {
       add("low_excluded", "true");
     }
     text += "}";
+  }
+  return text;
+}
+
+/// Without offsets, which the compiled step knows.
+std::string literal(const std::vector<runtime::StateField>& state) {
+  std::string text;
+  for (const runtime::StateField& field : state) {
+    text +=
+        fmt::format("{}\n              {{.name = {}, .block = {}, .unit = {}, .type = PointType::{}, .length = {}}}",
+                    text.empty() ? "" : ",", literal(field.name), literal(field.block), literal(field.unit),
+                    enumerator(field.type), field.length);
   }
   return text;
 }
@@ -272,8 +289,8 @@ std::vector<GeneratedFile> generate_host(const Program& program, const HostReque
                        fmt::arg("title_literal", literal(shape.name)), fmt::arg("period", shape.period),
                        fmt::arg("inputs", literal(shape.inputs)), fmt::arg("outputs", literal(shape.outputs)),
                        fmt::arg("parameters", literal(shape.parameters)),
-                       fmt::arg("relations", literal(shape.relations)), fmt::arg("layout", literal(shape.layout)),
-                       fmt::arg("addresses", literal(addresses)));
+                       fmt::arg("relations", literal(shape.relations)), fmt::arg("state", literal(shape.state)),
+                       fmt::arg("layout", literal(shape.layout)), fmt::arg("addresses", literal(addresses)));
   };
   files.push_back(generate_cpp_header(program, {.float32 = request.float32}));
   files.push_back(generate_cpp_step(program));

@@ -5,17 +5,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <utility>
 
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/cpp/cpp_step.hpp"
-#include "codegen/graph/relations.hpp"
-#include "codegen/graph/sample_time.hpp"
-#include "codegen/graph/units.hpp"
+#include "codegen/backends/shared/routine.hpp"
 #include "codegen/interpreter/machine.hpp"
-#include "codegen/program_hash.hpp"
 #include "runtime/task/linked_program.hpp"
 #include "support/errors.hpp"
 #include "support/sha256.hpp"
@@ -28,56 +24,7 @@ namespace hysteron::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using runtime::PointType;
 using runtime::ProgramShape;
-using runtime::ProgramSignal;
-
-PointType point_type(Type type) {
-  switch (type) {
-    case Type::Bool:
-      return PointType::boolean;
-    case Type::Int:
-      return PointType::int32;
-    case Type::Word:
-      return PointType::uint16;
-    default:
-      return PointType::real64;
-  }
-}
-
-ProgramSignal signal_of(const Port& port) {
-  return {.name = port.name,
-          .unit = port.unit,
-          .meaning = port.meaning,
-          .type = point_type(port.type),
-          .preset = port.preset,
-          .low = port.minimum,
-          .high = port.maximum};
-}
-
-/// With elements of arrays counted one by one, as the parameters of a shape are.
-std::vector<runtime::ProgramRelation> relations_of(const Graph& graph) {
-  std::vector<std::size_t> first;
-  std::size_t count = 0;
-  for (const Parameter& parameter : graph.parameters) {
-    first.push_back(count);
-    count += parameter.value.size();
-  }
-  const auto number_of = [&](const RisingNumbers::Number& one) {
-    return one.parameter ? runtime::RelatedNumber{.parameter = first[*one.parameter] + one.element}
-                         : runtime::RelatedNumber{.constant = one.constant};
-  };
-  std::vector<runtime::ProgramRelation> relations;
-  for (const RisingNumbers& rising : rising_numbers(graph)) {
-    runtime::ProgramRelation relation{.strictly = rising.strictly};
-    std::ranges::transform(rising.numbers, std::back_inserter(relation.numbers), number_of);
-    if (rising.count) {
-      relation.count = number_of(*rising.count);
-    }
-    relations.push_back(std::move(relation));
-  }
-  return relations;
-}
 
 template <class S>
 class InterpretedProgram final : public runtime::StepProgram {
@@ -93,6 +40,7 @@ class InterpretedProgram final : public runtime::StepProgram {
         places_.emplace_back(i, element);
       }
     }
+    place_state(program);
   }
   [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
   void reset() noexcept override { machine_.reset(); }
@@ -121,6 +69,29 @@ class InterpretedProgram final : public runtime::StepProgram {
   void restore(std::span<const std::byte> bytes) noexcept override { machine_.restore(bytes); }
 
  private:
+  void place_state(const Program& program) {
+    const Routine routine = make_routine(program);
+    for (std::size_t i = 0; i < routine.cells.size(); ++i) {
+      const CellInfo& cell = routine.cells[i];
+      runtime::StateField& field = shape_.state[i];
+      if (cell.instance.empty()) {
+        field.type = runtime::PointType::uint64;
+        field.offset = machine_.place_of_steps();
+        continue;
+      }
+      const BlockType* const block = program.graph.nodes[cell.node].block;
+      const auto place_in = [&](std::span<const Field> fields) {
+        return static_cast<std::uint32_t>(std::ranges::find(fields, cell.field.name, &Field::name) - fields.begin());
+      };
+      if (cell.held) {
+        const std::uint32_t port = block == nullptr ? 0 : place_in(block->outputs);
+        field.offset = machine_.place_of_output(cell.node, static_cast<std::uint16_t>(port));
+      } else {
+        field.offset = machine_.place_of_state(cell.node, place_in(block->states));
+      }
+    }
+  }
+
   ProgramShape shape_;
   Machine<S> machine_;
   std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< parameter and element
@@ -180,7 +151,8 @@ std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, P
           .set_parameter = function_of<void (*)(std::size_t, double)>(library, "hysteron_set_parameter"),
           .parameter = function_of<double (*)(std::size_t)>(library, "hysteron_parameter"),
           .state = function_of<void* (*)()>(library, "hysteron_state"),
-          .state_size = function_of<std::size_t (*)()>(library, "hysteron_state_size")});
+          .state_size = function_of<std::size_t (*)()>(library, "hysteron_state_size"),
+          .state_offset = function_of<std::size_t (*)(std::size_t)>(library, "hysteron_state_offset")});
 }
 
 /// The program with its inner signals as further outputs, by names that no diagram can have.
@@ -193,40 +165,6 @@ Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
 }
 
 }  // namespace
-
-ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
-  const Graph& graph = program.graph;
-  require_sample_time(graph);
-  ProgramShape shape{.name = graph.name, .period = graph.sample_time_ns};
-  for (const Port& port : graph.inputs) {
-    shape.inputs.push_back(signal_of(port));
-  }
-  for (const Port& port : graph.outputs) {
-    shape.outputs.push_back(signal_of(port));
-  }
-  const auto units = units::Solution(graph, program.schedule).parameters();
-  std::size_t index = 0;
-  Program plain = program;
-  for (Parameter& parameter : plain.graph.parameters) {
-    for (std::size_t element = 0; element < parameter.value.size(); ++element) {
-      shape.parameters.push_back(
-          {.name = parameter.field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
-           .unit = units[index],
-           .meaning = std::string(parameter.field.meaning),
-           .type = point_type(parameter.field.type),
-           .preset = parameter.value[element],
-           .low = parameter.field.minimum,
-           .high = parameter.field.maximum,
-           .low_excluded = parameter.field.above_minimum});
-    }
-    ++index;
-    std::ranges::fill(parameter.value, 0.0);  // the values do not belong to the layout
-  }
-  shape.relations = relations_of(graph);
-  shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",
-                             float32 ? "-float32" : "");
-  return shape;
-}
 
 std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32,
                                                    const std::vector<InnerSignal>& inner) {

@@ -1,7 +1,6 @@
 // A diagram as the program of a task: interpreted, or compiled on the fly. Both give the same bits.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,14 +8,9 @@
 #include "codegen/compile.hpp"
 #include "runtime/task/step_program.hpp"
 #include "tool/inner_signals.hpp"
+#include "tool/program_shape.hpp"
 
 namespace hysteron::tool {
-
-enum class Engine : std::uint8_t { interpreter, compiled };
-
-/// Ports and parameters; elements of array parameters count one by one, as TABLE.X[2]. Throws InputError HY404 where
-/// the diagram states no sample time.
-[[nodiscard]] runtime::ProgramShape shape_of(const Program& program, Engine engine, bool float32);
 
 /// Throws InputError HY725 or HY726 where it cannot be compiled. The inner signals are those of `program`; with them,
 /// the state has the same layout and every output the same bits.

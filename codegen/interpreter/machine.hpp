@@ -56,6 +56,11 @@ class Machine {
 
   /// The whole state as saved_size() bytes: to be kept, and put back into this machine later. Allocates nothing.
   [[nodiscard]] std::size_t saved_size() const noexcept { return live_size_ + sizeof(steps_); }
+  /// Where in these bytes a state of a block begins, an output of a node, and the count of the steps (64 bits, from 0
+  /// to the period after which all rates repeat together).
+  [[nodiscard]] std::size_t place_of_state(std::uint32_t node, std::uint32_t state) const;
+  [[nodiscard]] std::size_t place_of_output(std::uint32_t node, std::uint16_t port) const;
+  [[nodiscard]] std::size_t place_of_steps() const noexcept { return live_size_; }
   void save(std::span<std::byte> bytes) const noexcept;
   void restore(std::span<const std::byte> bytes) noexcept;
 
@@ -98,7 +103,8 @@ class Machine {
   std::vector<Instruction<S>> resets_;
   std::vector<Instruction<S>> instructions_;
   std::vector<Timed> timed_;  ///< instead of instructions_, where there are several rates
-  std::uint64_t steps_ = 0;
+  std::uint64_t longest_period_ = 1;
+  std::uint64_t steps_ = 0;  ///< of the longest period
 };
 
 extern template class Machine<double>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/interpreter/machine.hpp"
@@ -228,6 +229,9 @@ void Machine<S>::place_instructions() {
       resets_.push_back(instruction);
     }
   }
+  for (const Node& node : graph.nodes) {
+    longest_period_ = std::lcm(longest_period_, std::uint64_t{node.rate.every});
+  }
   const bool one_rate = std::ranges::all_of(graph.nodes, [](const Node& node) { return node.rate == Rate{}; });
   for (const Action& action : program_->schedule.actions) {
     const Node& node = graph.nodes[action.node];
@@ -296,7 +300,9 @@ void Machine<S>::step() noexcept {
       instruction.run(instruction);
     }
   }
-  ++steps_;
+  if (++steps_ == longest_period_) {
+    steps_ = 0;
+  }
 }
 
 template <class S>
@@ -331,9 +337,19 @@ S* Machine<S>::real_state(std::string_view path) {
 
 template <class S>
 S* Machine<S>::real_state(std::uint32_t node, std::uint32_t state) {
+  return reinterpret_cast<S*>(memory_.get() + place_of_state(node, state));
+}
+
+template <class S>
+std::size_t Machine<S>::place_of_state(std::uint32_t node, std::uint32_t state) const {
   const BlockType* const block = program_->graph.nodes[node].block;
   const auto& code = block_codes<S>()[static_cast<std::size_t>(block - block_types().data())];
-  return reinterpret_cast<S*>(memory_.get() + placed_[node].state + code.state_offsets[state]);
+  return placed_[node].state + code.state_offsets[state];
+}
+
+template <class S>
+std::size_t Machine<S>::place_of_output(std::uint32_t node, std::uint16_t port) const {
+  return output_offset({.from = Wire::From::Node, .port = port, .index = node});
 }
 
 template <class S>

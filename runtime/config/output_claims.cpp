@@ -20,6 +20,7 @@
 #include <memory>
 #include <set>
 #include <system_error>
+#include <utility>
 #include <variant>
 
 #include "runtime/modbus/value_bits.hpp"
@@ -123,17 +124,10 @@ bool bind_to(const modbus::Descriptor& socket, const std::string& name) {
   return false;
 }
 
-/// The process that listens there; none where nobody does.
-std::optional<pid_t> listener_of(const std::string& name) {
-  const modbus::Descriptor socket = socket_or_throw();
-  const Address address = address_of(name);
-  if (::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) != 0) {
-    return std::nullopt;
-  }
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  (void)::getsockopt(socket.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size);
-  return peer.pid;
+/// Whether who is at the other end is still there: nobody sends anything.
+bool is_there(const modbus::Descriptor& socket) {
+  char nothing = 0;
+  return ::recv(socket.number(), &nothing, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN;
 }
 
 }  // namespace
@@ -171,11 +165,30 @@ std::optional<OutputClaims::Holder> OutputClaims::claim() {
     move_up(sockets.back());
     if (!bind_to(sockets.back(), claim.name)) {
       // None is kept: of two tasks that wait for one another's outputs, each would wait for ever.
-      return Holder{.output = claim.output, .address = claim.address, .guard = listener_of(claim.name)};
+      return Holder{.output = claim.output, .address = claim.address, .guard = guard_of(claim)};
     }
   }
   sockets_ = std::move(sockets);
+  asked_.reset();
   return std::nullopt;
+}
+
+/// The guard listens and never accepts, so each connection stays in its queue: where that is full, it is a guard still.
+std::optional<pid_t> OutputClaims::guard_of(const Claim& claim) {
+  if (asked_ && asked_->name == claim.name && is_there(asked_->socket)) {
+    return asked_->guard;
+  }
+  asked_.reset();
+  modbus::Descriptor socket = socket_or_throw();
+  const Address address = address_of(claim.name);
+  if (::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) != 0) {
+    return errno == EAGAIN ? std::optional<pid_t>(0) : std::nullopt;
+  }
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  (void)::getsockopt(socket.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  asked_ = Asked{.name = claim.name, .socket = std::move(socket), .guard = peer.pid};
+  return asked_->guard;
 }
 
 void OutputClaims::listen() const noexcept {

@@ -26,7 +26,8 @@ class OutputClaims {
   struct Holder {
     std::size_t output = 0;            ///< in RunConfig::device_outputs: the first that is claimed by another
     std::uint32_t address = 0;         ///< of the register or coil
-    std::optional<pid_t> guard{};      ///< the process of the guard that works there alone; none: a task
+    std::optional<pid_t> guard{};      ///< the process of the guard that works there alone, 0 where it is not known;
+                                       ///< none: a task
     std::optional<std::size_t> own{};  ///< another output of the same run file, which covers the same register
   };
   /// Claims all outputs on devices, or none, and then says who has one of them. Throws std::system_error where the
@@ -41,9 +42,18 @@ class OutputClaims {
     std::size_t output = 0;
     std::uint32_t address = 0;
   };
+  [[nodiscard]] std::optional<pid_t> guard_of(const Claim& claim);
+
   std::vector<Claim> claims_{};
   std::optional<Holder> own_{};                ///< where two outputs of the run file meet
   std::vector<modbus::Descriptor> sockets_{};  ///< as claims_, where claimed
+  /// To the guard that is waited for: it ends with the guard, so that each start asks once and not in each try.
+  struct Asked {
+    std::string name{};
+    modbus::Descriptor socket;
+    pid_t guard = 0;
+  };
+  std::optional<Asked> asked_{};
 };
 
 }  // namespace hysteron::runtime

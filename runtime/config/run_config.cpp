@@ -259,8 +259,15 @@ class Reader {
     RetainConfig retain{.place = table.place()};
     missing(table, "folder", "\"retained\"");
     table.read("folder", retain.folder);
-    table.read_whole("every", config_.task.retain_every);
-    std::size_t mismatch = 0;
+    if (table.is_whole("every")) {
+      table.read_whole("every", config_.task.retain_every);
+    } else {
+      std::int64_t every = 1'000'000'000;
+      table.read_duration("every", every);
+      config_.task.retain_every =
+          static_cast<std::uint64_t>(std::max<std::int64_t>(1, every / std::max<std::int64_t>(1, shape_.period)));
+    }
+    auto mismatch = static_cast<std::size_t>(retain.mismatch);
     table.read_choice("mismatch", mismatch);
     retain.mismatch = static_cast<MismatchPolicy>(mismatch);
     config_.retain = std::move(retain);
@@ -272,6 +279,10 @@ class Reader {
     missing(table, "file", "\"run.trace\"");
     table.read("file", file);
     trace.file = file;
+    std::uint64_t megabytes = 1024;
+    table.read_whole("megabytes", megabytes);
+    table.read_whole("files", trace.files);
+    trace.file_bytes = std::max<std::uint64_t>(1, megabytes * 1'000'000 / trace.files);
     std::string trigger;
     table.read("trigger", trigger);
     TraceTrigger kept;

@@ -47,7 +47,7 @@ struct DeviceOutput {
 
 struct RetainConfig {
   std::string folder{};
-  MismatchPolicy mismatch = MismatchPolicy::refuse;
+  MismatchPolicy mismatch = MismatchPolicy::carry;
   Place place{};
 };
 

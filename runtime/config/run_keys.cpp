@@ -33,7 +33,7 @@ constexpr std::array<Words, 9> type_words{"boolean", "int16",  "uint16", "int32"
 constexpr std::array<Words, 3> parity_words{"even", "odd", "none"};
 constexpr std::array<Words, 4> order_words{"abcd", "cdab", "badc", "dcba"};
 constexpr std::array<Words, 2> map_words{"compact", "openplc"};
-constexpr std::array<Words, 2> mismatch_words{"refuse", "cold"};
+constexpr std::array<Words, 3> mismatch_words{"refuse", "cold", "carry"};
 constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
 constexpr std::array<Words, 2> after_words{"resume", "reset"};
 
@@ -167,15 +167,20 @@ constexpr std::array device_keys{
 };
 constexpr std::array retain_keys{
     RunKey{"folder", text, "(required)", "where the state and the parameters are kept"},
-    RunKey{"every", whole, "1000", "cycles from one writing to the next", 1.0, many},
+    RunKey{"every", time, "\"1s\"", "how often they are written; a whole number counts cycles", 1.0, 24.0 * 3600.0 * s},
     RunKey{.name = "mismatch",
            .kind = choice,
-           .otherwise = "\"refuse\"",
-           .meaning = "where what was kept is of another diagram: an error, or put aside and begun anew",
+           .otherwise = "\"carry\"",
+           .meaning =
+               "where what was kept is of another diagram, or of this one before an edit: an error; put aside and "
+               "begun anew; or carried over by name as far as name, type and unit are the same",
            .words = mismatch_words},
 };
 constexpr std::array trace_keys{
     RunKey{"file", text, "(required)", "the trace, for replay, tune and diagnose"},
+    RunKey{"megabytes", whole, "1024", "what all its files take at most, together", 1.0, 1e9},
+    RunKey{"files", whole, "8", "how many there are at most, of earlier runs too: run.trace, run.trace.1, …", 2.0,
+           1000.0},
     RunKey{"trigger", text, "(none: every cycle is kept)",
            "\"U > 5.0\", an input or output and a number; or \"fault\""},
     RunKey{"before", whole, "1000", "with a trigger: cycles kept from before", 0.0, many},

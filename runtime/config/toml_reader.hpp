@@ -40,6 +40,7 @@ class TomlReader {
   }
 
   [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
+  [[nodiscard]] bool is_whole(std::string_view key) const { return has(key) && table_->get(key)->is_integer(); }
   /// Of a value; of the table where the key is not there.
   [[nodiscard]] Place place(std::string_view key) const;
   [[nodiscard]] Place place() const { return place_of(*file_, table_->source()); }

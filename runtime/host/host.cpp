@@ -268,8 +268,9 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
     }
   }
   if (config.trace) {
-    // What stands there is moved to the second name.
-    for (const auto& file : {config.trace->file, previous_trace(config.trace->file)}) {
+    // What stands there is moved to the next name.
+    for (std::size_t number = 0; number < config.trace->files; ++number) {
+      const auto file = number == 0 ? config.trace->file : previous_trace(config.trace->file, number);
       refuse_to_overwrite({.file = file.string(), .mend = mend, .place = config.trace_place}, inputs);
     }
   }
@@ -321,7 +322,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   std::unique_ptr<Retainer> retainer;
   if (retained) {
     retained->put_aside();
-    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery());
+    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset());
+    tell_of_what_is_left(retained->left());
   }
   std::unique_ptr<DeviceField> field;
   if (!config.devices.empty()) {

@@ -58,10 +58,13 @@ void WriteNotices::look() {
                                      retainer_->written(), problem)
                        : fmt::format("written again, state {}.", retainer_->written()));
   }
-  if (trace_ != nullptr && trace_->is_cut() && !told_trace_) {
-    told_trace_ = true;
-    tell("Trace", fmt::format("ends here: {}. Clear what is in the way there; the next start begins a new one.",
-                              trace_->problem()));
+  if (trace_ != nullptr && trace_->is_cut() != told_trace_) {
+    told_trace_ = !told_trace_;
+    tell("Trace", told_trace_
+                      ? fmt::format("ends here: {}. Clear what is in the way there; another file is tried every "
+                                    "10 s.",
+                                    trace_->problem())
+                      : fmt::format("written again, into another file; {} steps are in none.", trace_->dropped()));
   }
 }
 
@@ -109,6 +112,12 @@ std::string FaultNotices::line(const FaultReport& report, Clock::time_point now)
   return report.fault == Fault::none
              ? fmt::format("none any more; {} since the start, the last: {}.", report.count, last_of(report))
              : fmt::format("{}: {}; {} since the start.", last_of(report), meaning_of(report.fault), report.count);
+}
+
+void tell_of_what_is_left(const std::vector<std::string>& left) {
+  if (!left.empty()) {
+    tell("Retain", fmt::format("not taken over: {}.", fmt::join(left, ", ")));
+  }
 }
 
 void tell_of_unused_devices(const RunConfig& config) {

@@ -58,6 +58,9 @@ class FaultNotices {
 /// A line for each device that no input and no output of the task lies on.
 void tell_of_unused_devices(const RunConfig& config);
 
+/// What was retained and is not taken over, each with its reason; nothing where all is.
+void tell_of_what_is_left(const std::vector<std::string>& left);
+
 /// All that is said while a task runs.
 class RunNotices {
  public:

@@ -41,9 +41,10 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
     if (holder->guard) {
       tries = 0;
       if (!told) {
+        const std::string process = *holder->guard == 0 ? "" : fmt::format(", process {}", *holder->guard);
         print(fmt::format(
-            "{}: waits for the guard of an earlier run, process {}, which brings outputs on {} to their safe values\n",
-            title, *holder->guard, device));
+            "{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values\n", title,
+            process, device));
         told = true;
       }
       // The service manager's time for a start counts from here anew.

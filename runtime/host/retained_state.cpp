@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "runtime/task/carry.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
 
@@ -33,13 +35,20 @@ std::string names_text(const std::vector<std::string>& names) {
 }  // namespace
 
 RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
-    : config_(config), folder_(config.folder) {
+    : config_(config), folder_(config.folder), after_reset_(program.state_size()) {
   const std::vector<double> given = parameters_of(program);
+  program.save(after_reset_);
   try {
     folder_.open();
-    recovery_ = recover(folder_, program.shape().layout, config.mismatch, [&](const RetainedValues& values) {
-      return refusal_of(program.shape(), values.parameters, given);
-    });
+    recovery_ = recover(
+        folder_, program.shape().layout, config.mismatch,
+        {.refusal = [&](const RetainedValues& values) { return refusal_of(program.shape(), values.parameters, given); },
+         .not_finite =
+             [&](const RetainedValues& values) {
+               return values.state.size() == after_reset_.size()
+                          ? not_finite(program.shape(), values.state, after_reset_)
+                          : std::string();
+             }});
   } catch (const std::system_error& problem) {
     if (problem.code() == std::errc::resource_unavailable_try_again) {
       throw InputError(error::file_of_another_task, config.place,
@@ -55,21 +64,56 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
         "mismatch = \"cold\", which puts the files aside.");
   }
   if (recovery_.values) {
-    std::vector<std::string> others;
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      program.set_parameter(i, recovery_.values->parameters[i]);
-      if (program.parameter(i) != given[i]) {
-        others.push_back(program.shape().parameters[i].name);
-      }
-    }
-    program.restore(recovery_.values->state);
-    told_ = fmt::format(", from retained state {}", recovery_.sequence);
-    if (!others.empty()) {
-      told_ += fmt::format(" with {} parameter{} as retained and not as given: {} (an empty {} gives those given)",
-                           others.size(), others.size() == 1 ? "" : "s", names_text(others), config.folder);
-    }
+    recovery_.by_name ? carry(program, given) : take(program, given);
   }
   told_ += recovery_.note.empty() ? "" : ", " + recovery_.note;
+}
+
+void RetainedState::take(StepProgram& program, std::span<const double> given) {
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    program.set_parameter(i, recovery_.values->parameters[i]);
+    if (program.parameter(i) != given[i]) {
+      others.push_back(program.shape().parameters[i].name);
+    }
+  }
+  program.restore(recovery_.values->state);
+  told_ = fmt::format(", from retained state {}", recovery_.sequence);
+  if (!others.empty()) {
+    told_ += fmt::format(" with {} parameter{} as retained and not as given: {} (an empty {} gives those given)",
+                         others.size(), others.size() == 1 ? "" : "s", names_text(others), config_.folder);
+  }
+}
+
+void RetainedState::carry(StepProgram& program, std::span<const double> given) {
+  const RetainedValues& values = *recovery_.values;
+  const ProgramShape& shape = program.shape();
+  const KeptLayout kept = read_description(values.described, values.state.size());
+  CarriedValues carried = kept.parameters.size() == values.parameters.size()
+                              ? carry_parameters(kept, values.parameters, shape, given)
+                              : CarriedValues{.parameters = {given.begin(), given.end()}};
+  if (const std::string refused = refusal_of(shape, carried.parameters, given); !refused.empty()) {
+    throw InputError(error::retained_values_unfit, config_.place,
+                     "The retained parameters cannot be beside those of the edited diagram: " + refused,
+                     fmt::format("give the parameters that go together in --params and empty {}, or write mismatch = "
+                                 "\"cold\", which puts the files aside.",
+                                 config_.folder));
+  }
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    program.set_parameter(i, carried.parameters[i]);
+  }
+  program.reset();  // what starts at a parameter starts at the carried one
+  std::vector<std::byte> state(program.state_size());
+  program.save(state);
+  after_reset_ = state;
+  carry_state(kept, values.state, shape, state, carried);
+  program.restore(state);
+  left_ = std::move(carried.left);
+  told_ = fmt::format(", from retained state {}", recovery_.sequence);
+  if (!left_.empty()) {
+    told_ += fmt::format(" of another version: {} of {} parameters and {} of {} states carried over by name",
+                         carried.parameters_taken, shape.parameters.size(), carried.states_taken, shape.state.size());
+  }
 }
 
 void RetainedState::put_aside() {

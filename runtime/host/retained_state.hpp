@@ -1,7 +1,10 @@
 // What a run goes on from: the retained values of its folder, taken into the program before it starts.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/task/retain.hpp"
@@ -11,23 +14,33 @@ namespace hysteron::runtime {
 
 class RetainedState {
  public:
-  /// Takes parameters and state into the program; changes nothing in the folder. Throws InputError HY811 where what is
-  /// there is of no use, HY815 where another task holds the folder, HY816 where it cannot be used.
+  /// Takes parameters and state into the program, which is as after its reset; changes nothing in the folder. Throws
+  /// InputError HY811 where what is there is of no use, HY815 where another task holds the folder, HY816 where it
+  /// cannot be used.
   RetainedState(const RetainConfig& config, StepProgram& program);
 
   /// For the status line, beginning with a comma: what the program goes on from, and the parameters that are retained
   /// and not as they were given. Empty at a first start.
   [[nodiscard]] const std::string& told() const { return told_; }
-  /// Before anything is written: files that do not fit and are not wanted are renamed. Throws InputError HY816.
+  /// What was retained by another version of the diagram and is not taken over, each with its reason.
+  [[nodiscard]] const std::vector<std::string>& left() const { return left_; }
+  [[nodiscard]] const std::vector<std::byte>& after_reset() const { return after_reset_; }
+  /// Before anything is written: files that do not fit and are not wanted are renamed, those carried over are copied.
+  /// Throws InputError HY816.
   void put_aside();
   [[nodiscard]] RetainFolder& folder() { return folder_; }
   [[nodiscard]] const Recovery& recovery() const { return recovery_; }
 
  private:
+  void take(StepProgram& program, std::span<const double> given);
+  void carry(StepProgram& program, std::span<const double> given);
+
   RetainConfig config_;
   RetainFolder folder_;
   Recovery recovery_{};
   std::string told_{};
+  std::vector<std::string> left_{};
+  std::vector<std::byte> after_reset_{};
 };
 
 }  // namespace hysteron::runtime

@@ -14,6 +14,9 @@ std::string_view name_of(Cause cause) {
 }
 
 Verdict verdict_of(const CycleTimes& times, std::int64_t period, std::int64_t tolerance) noexcept {
+  if (times.cpu > period) {
+    return {.cause = Cause::own_cpu};
+  }
   if (times.start - times.due > tolerance) {
     const std::int64_t carried = std::max<std::int64_t>(0, times.previous_end - times.due);
     const std::int64_t wake = times.start - std::max(times.due, times.previous_end);

@@ -7,7 +7,8 @@
 //   pre-empted   the thread had work and was not run
 //   host steal   the hypervisor had taken the processor meanwhile, for at least half of the delay
 // A cycle that is late only because the one before it was is carried: it has the same cause, and is no event of its
-// own.
+// own. One that itself computes for longer than a period is always its own: where a step is too long for its period,
+// each of its cycles says so.
 #pragma once
 
 #include <array>

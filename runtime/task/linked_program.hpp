@@ -18,6 +18,7 @@ struct StepFunctions {
   double (*parameter)(std::size_t index) = nullptr;
   void* (*state)() = nullptr;
   std::size_t (*state_size)() = nullptr;
+  std::size_t (*state_offset)(std::size_t index) = nullptr;
 };
 
 /// There is one state behind the functions, and so only one such program of a kind in a process.
@@ -26,6 +27,9 @@ class LinkedProgram final : public StepProgram {
   LinkedProgram(ProgramShape shape, const StepFunctions& functions)
       : shape_(std::move(shape)), functions_(functions), results_(shape_.outputs.size() + shape_.inner.size()) {
     functions_.reset();
+    for (std::size_t i = 0; i < shape_.state.size(); ++i) {
+      shape_.state[i].offset = functions_.state_offset(i);
+    }
   }
   [[nodiscard]] const ProgramShape& shape() const noexcept override { return shape_; }
   void reset() noexcept override { functions_.reset(); }

@@ -5,10 +5,14 @@
 #include <cstring>
 #include <utility>
 
+#include "runtime/task/carry.hpp"
+
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::array<char, 8> magic{'H', 'Y', 'R', 'E', 'T', 'A', 'I', '1'};
+constexpr std::array<char, 8> magic{'H', 'Y', 'R', 'E', 'T', 'A', 'I', '2'};
+/// Of files without a description of their values.
+constexpr std::array<char, 8> magic_before{'H', 'Y', 'R', 'E', 'T', 'A', 'I', '1'};
 constexpr std::uint32_t polynomial = 0x82F63B78;  // Castagnoli's, reflected
 
 constexpr std::array<std::uint32_t, 256> make_table() {
@@ -72,16 +76,22 @@ bool decode(std::span<const std::byte> bytes, RetainedValues& values) {
   }
   const auto body = bytes.first(bytes.size() - sizeof(sum));
   std::memcpy(&sum, bytes.data() + body.size(), sizeof(sum));
-  if (std::memcmp(body.data(), magic.data(), magic.size()) != 0 || crc32c(body) != sum) {
+  const bool is_described = std::memcmp(body.data(), magic.data(), magic.size()) == 0;
+  const bool is_of_before = std::memcmp(body.data(), magic_before.data(), magic.size()) == 0;
+  if (!(is_described || is_of_before) || crc32c(body) != sum) {
     return false;
   }
   Cursor cursor(body.subspan(magic.size()));
   std::size_t length = 0;
-  if (!cursor.read(&values.sequence, sizeof(values.sequence)) || !cursor.read_length(length, 1)) {
-    return false;
-  }
-  values.layout.resize(length);
-  if (!cursor.read(values.layout.data(), length) || !cursor.read_length(length, sizeof(double))) {
+  const auto read_text = [&](std::string& text) {
+    if (!cursor.read_length(length, 1)) {
+      return false;
+    }
+    text.resize(length);
+    return cursor.read(text.data(), length);
+  };
+  if (!cursor.read(&values.sequence, sizeof(values.sequence)) || !read_text(values.layout) ||
+      (is_described && !read_text(values.described)) || !cursor.read_length(length, sizeof(double))) {
     return false;
   }
   values.parameters.resize(length);
@@ -108,6 +118,8 @@ std::vector<std::byte> encode_slot(const RetainedValues& values) {
   append(bytes, values.sequence);
   append(bytes, static_cast<std::uint32_t>(values.layout.size()));
   append(bytes, values.layout.data(), values.layout.size());
+  append(bytes, static_cast<std::uint32_t>(values.described.size()));
+  append(bytes, values.described.data(), values.described.size());
   append(bytes, static_cast<std::uint32_t>(values.parameters.size()));
   append(bytes, values.parameters.data(), values.parameters.size() * sizeof(double));
   append(bytes, static_cast<std::uint32_t>(values.state.size()));
@@ -125,33 +137,50 @@ Slot decode_slot(std::span<const std::byte> bytes) {
   return slot;
 }
 
-Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy, const RetainCheck& check) {
+Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy, const RetainChecks& checks) {
   std::array<Slot, 2> slots;
+  std::string unsound;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (const auto bytes = files.read(i)) {
       slots[i] = decode_slot(*bytes);
     }
+    if (slots[i].status == SlotStatus::whole && slots[i].values.layout == layout && checks.not_finite) {
+      if (const std::string name = checks.not_finite(slots[i].values); !name.empty()) {
+        slots[i].status = SlotStatus::broken;
+        unsound = name;
+      }
+    }
   }
   const auto sequence_of = [](const Slot& slot) { return slot.status == SlotStatus::whole ? slot.values.sequence : 0; };
   const std::size_t newest = sequence_of(slots[1]) > sequence_of(slots[0]) ? 1 : 0;
-  Recovery recovery{.sequence = sequence_of(slots[newest]), .next_slot = 1 - newest};
+  const Slot& slot = slots[newest];
+  Recovery recovery{.sequence = sequence_of(slot), .next_slot = 1 - newest};
   const bool any_broken = std::ranges::any_of(slots, [](const Slot& one) { return one.status == SlotStatus::broken; });
-  const bool is_whole = slots[newest].status == SlotStatus::whole;
-  const bool is_of_program = is_whole && slots[newest].values.layout == layout;
-  const std::string unfit = is_of_program && check ? check(slots[newest].values) : "";
-  if (is_of_program && unfit.empty()) {
-    recovery.values = slots[newest].values;
-    recovery.note = any_broken ? "one retain slot was broken; the other was taken" : "";
+  const bool is_whole = slot.status == SlotStatus::whole;
+  const bool is_of_program = is_whole && slot.values.layout == layout;
+  const std::string unfit = is_of_program && checks.refusal ? checks.refusal(slot.values) : "";
+  const bool is_carried =
+      policy == MismatchPolicy::carry && is_whole && !is_of_program && !slot.values.described.empty();
+  if ((is_of_program && unfit.empty()) || is_carried) {
+    recovery.values = slot.values;
+    recovery.by_name = is_carried;
+    if (!unsound.empty()) {
+      recovery.note = "in one retain slot " + unsound + " was not finite; the other was taken";
+    } else if (any_broken) {
+      recovery.note = "one retain slot was broken; the other was taken";
+    }
+    recovery.aside.at(newest) = is_carried;
     return recovery;
   }
   if (!is_whole && !any_broken) {
     recovery.next_slot = 0;
     return recovery;  // a first start
   }
-  const std::string what = !unfit.empty() ? "The retained parameters cannot be: " + unfit
-                           : is_whole     ? "The retained values are of another diagram, or of another engine."
-                                          : "No retain slot is whole.";
-  if (policy == MismatchPolicy::refuse) {
+  const std::string what = !unfit.empty()     ? "The retained parameters cannot be: " + unfit
+                           : is_whole         ? "The retained values are of another diagram, or of another engine."
+                           : !unsound.empty() ? "No retain slot can be taken: " + unsound + " is not finite."
+                                              : "No retain slot is whole.";
+  if (policy != MismatchPolicy::cold) {
     recovery.refused = what;
     return recovery;
   }
@@ -166,14 +195,20 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
 std::string put_aside(RetainFiles& files, const Recovery& recovery) {
   std::string problems;
   for (std::size_t i = 0; i < recovery.aside.size(); ++i) {
-    problems += recovery.aside.at(i) ? files.put_aside(i) : "";
+    if (recovery.aside.at(i)) {
+      problems += recovery.by_name ? files.copy_aside(i) : files.put_aside(i);
+    }
   }
   return problems;
 }
 
-Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start)
+Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
+                   std::vector<std::byte> after_reset)
     : files_(&files),
+      shape_(&program.shape()),
+      after_reset_(std::move(after_reset)),
       newest_(RetainedValues{.layout = program.shape().layout,
+                             .described = describe(program.shape()),
                              .parameters = std::vector<double>(program.shape().parameters.size()),
                              .state = std::vector<std::byte>(program.state_size())}),
       slot_(start.next_slot),
@@ -200,13 +235,19 @@ std::string Retainer::problem() const {
   return problem_;
 }
 
-void Retainer::offer(const StepProgram& program) noexcept {
+void Retainer::offer(const StepProgram& program, std::uint64_t commits) noexcept {
   RetainedValues& values = newest_.filling();
+  values.commits = commits;
   for (std::size_t i = 0; i < values.parameters.size(); ++i) {
     values.parameters[i] = program.parameter(i);
   }
   program.save(values.state);
   newest_.publish();
+}
+
+std::string Retainer::write(const RetainedValues& values) {
+  const std::string bad = after_reset_.empty() ? "" : not_finite(*shape_, values.state, after_reset_);
+  return bad.empty() ? files_->write(slot_, encode_slot(values)) : bad + " is not finite";
 }
 
 void Retainer::write_newest() {
@@ -216,11 +257,12 @@ void Retainer::write_newest() {
   }
   RetainedValues values = *taken;
   values.sequence = sequence_ + 1;
-  std::string problem = files_->write(slot_, encode_slot(values));
+  std::string problem = write(values);
   if (problem.empty()) {
     sequence_ = values.sequence;
     slot_ = 1 - slot_;
     written_.store(sequence_, std::memory_order_relaxed);
+    saved_commits_.store(values.commits, std::memory_order_relaxed);
   } else {
     failures_.fetch_add(1, std::memory_order_relaxed);
   }

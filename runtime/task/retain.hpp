@@ -1,9 +1,9 @@
 // Values that outlive the process: parameters and the state of the program, in two slots.
 //
 // The newest state goes into the slot that holds the older one, under a temporary name, flushed, and renamed; so a
-// power cut at any byte leaves the other slot whole. A slot is a sequence number, the layout of the program,
-// parameters, state and a CRC32C over all of it. Files are written by a thread of their own; the cyclic thread only
-// copies.
+// power cut at any byte leaves the other slot whole. A slot is a sequence number, the layout of the program, what its
+// values mean (carry.hpp), parameters, state and a CRC32C over all of it. Files are written by a thread of their own;
+// the cyclic thread only copies.
 #pragma once
 
 #include <array>
@@ -27,8 +27,10 @@ namespace hysteron::runtime {
 struct RetainedValues {
   std::uint64_t sequence = 0;
   std::string layout{};
+  std::string described{};  ///< see describe(); empty in files of before it
   std::vector<double> parameters{};
   std::vector<std::byte> state{};
+  std::uint64_t commits = 0;  ///< sets of parameters that the run had applied; in no file
 };
 
 enum class SlotStatus : std::uint8_t { whole, missing, broken };
@@ -59,6 +61,8 @@ class RetainFiles {
   virtual std::string write(std::size_t slot, std::span<const std::byte> bytes) = 0;
   /// Puts a slot aside where nothing overwrites it. Empty, or why it failed.
   virtual std::string put_aside(std::size_t slot) = 0;
+  /// A copy of it there, the slot left as it is. Empty, or why it failed.
+  virtual std::string copy_aside(std::size_t slot) = 0;
 };
 
 /// Files retain_a and retain_b in a folder.
@@ -75,6 +79,7 @@ class RetainFolder final : public RetainFiles {
   [[nodiscard]] std::optional<std::vector<std::byte>> read(std::size_t slot) override;
   std::string write(std::size_t slot, std::span<const std::byte> bytes) override;
   std::string put_aside(std::size_t slot) override;
+  std::string copy_aside(std::size_t slot) override;
   [[nodiscard]] std::filesystem::path path_of(std::size_t slot) const;
 
  private:
@@ -82,42 +87,55 @@ class RetainFolder final : public RetainFiles {
   int held_ = -1;
 };
 
+/// What a start does with the values of another diagram, of an edited one, or of another engine.
 enum class MismatchPolicy : std::uint8_t {
-  refuse,  ///< do not start
-  cold,    ///< put the files aside and start without them
+  refuse,  ///< does not start
+  cold,    ///< puts the files aside and starts without them
+  carry,   ///< takes over by name what is still the same, and keeps a copy of the files
 };
 
 struct Recovery {
   std::optional<RetainedValues> values{};
+  bool by_name = false;         ///< the values are of another layout, to be carried over
   std::string refused{};        ///< why the task must not start, a sentence; empty where it may
   std::string note{};           ///< what a reader of the status line should know
   std::uint64_t sequence = 0;   ///< of the newest slot
   std::size_t next_slot = 0;    ///< where to write first
-  std::array<bool, 2> aside{};  ///< the slots to be put aside before anything is written
+  std::array<bool, 2> aside{};  ///< the slots to be put aside before anything is written; copied, if `by_name`
 };
 
-/// Why a program cannot take retained values of its own layout, a sentence; empty where it can.
-using RetainCheck = std::function<std::string(const RetainedValues&)>;
+/// What only the program can say of retained values of its own layout.
+struct RetainChecks {
+  /// Why it cannot take their parameters, a sentence; empty where it can.
+  std::function<std::string(const RetainedValues&)> refusal{};
+  /// The number of their state that is not finite; empty where none is. Such a slot is as one that is broken.
+  std::function<std::string(const RetainedValues&)> not_finite{};
+};
 
 /// Reads both slots and says how to start; changes nothing.
 [[nodiscard]] Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy policy,
-                               const RetainCheck& check = {});
+                               const RetainChecks& checks = {});
 /// Puts aside what the recovery says. Empty, or why it failed.
 [[nodiscard]] std::string put_aside(RetainFiles& files, const Recovery& recovery);
 
 /// Copies in the cyclic thread, writes in its own.
 class Retainer {
  public:
-  Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start);
+  /// A state is not written in which a number is not finite that is so in `after_reset`, the program's state when it
+  /// begins; empty: whatever it is. The program must outlive it.
+  Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
+           std::vector<std::byte> after_reset = {});
   ~Retainer() { finish(); }
   Retainer(const Retainer&) = delete;
   Retainer& operator=(const Retainer&) = delete;
 
-  /// From the cyclic thread, between two steps.
-  void offer(const StepProgram& program) noexcept;
+  /// From the cyclic thread, between two steps; `commits`: the sets of parameters applied in this run.
+  void offer(const StepProgram& program, std::uint64_t commits = 0) noexcept;
 
   /// Sequence number of the newest slot on the disk.
   [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
+  /// The sets of parameters, of those applied in this run, that are on the disk.
+  [[nodiscard]] std::uint64_t saved_commits() const noexcept { return saved_commits_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_.load(std::memory_order_relaxed); }
   /// Why the newest state is not on the disk; empty where it is, or none was offered. From any thread.
   [[nodiscard]] std::string problem() const;
@@ -126,13 +144,17 @@ class Retainer {
 
  private:
   void write_newest();
+  [[nodiscard]] std::string write(const RetainedValues& values);
 
   RetainFiles* files_;
+  const ProgramShape* shape_;
+  std::vector<std::byte> after_reset_;  ///< the state that the program began with
   Latest<RetainedValues> newest_;
   std::size_t slot_;
   std::uint64_t sequence_;
   std::atomic<std::uint64_t> written_;
   std::atomic<std::uint64_t> failures_{0};
+  std::atomic<std::uint64_t> saved_commits_{0};
   mutable std::mutex mutex_;  ///< never taken by the cyclic thread
   std::string problem_{};
   std::atomic<bool> stop_{false};

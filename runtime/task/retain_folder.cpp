@@ -47,6 +47,20 @@ bool write_all(int file, std::span<const std::byte> bytes) {
   return true;
 }
 
+/// Gives a file a second name, the first that is not taken. Empty, or why it failed.
+std::string link_aside(const std::filesystem::path& path) {
+  for (int number = 1;; ++number) {
+    const auto aside = std::filesystem::path(path).concat(".aside" + std::to_string(number));
+    // A link fails where the name is taken; a rename would overwrite what was put aside before.
+    if (link(path.c_str(), aside.c_str()) == 0) {
+      return {};
+    }
+    if (errno != EEXIST) {
+      return problem(aside);
+    }
+  }
+}
+
 }  // namespace
 
 std::filesystem::path RetainFolder::path_of(std::size_t slot) const {
@@ -111,16 +125,16 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
 }
 
 std::string RetainFolder::put_aside(std::size_t slot) {
-  for (int number = 1;; ++number) {
-    const auto aside = std::filesystem::path(path_of(slot)).concat(".aside" + std::to_string(number));
-    // A link fails where the name is taken; a rename would overwrite what was put aside before.
-    if (link(path_of(slot).c_str(), aside.c_str()) == 0) {
-      return unlink(path_of(slot).c_str()) == 0 ? std::string() : problem(path_of(slot));
-    }
-    if (errno != EEXIST) {
-      return problem(aside);
-    }
+  std::string failed = link_aside(path_of(slot));
+  if (failed.empty() && unlink(path_of(slot).c_str()) != 0) {
+    failed = problem(path_of(slot));
   }
+  return failed;
+}
+
+/// A slot is never written in place, so a second name keeps its bytes.
+std::string RetainFolder::copy_aside(std::size_t slot) {
+  return link_aside(path_of(slot));
 }
 
 }  // namespace hysteron::runtime

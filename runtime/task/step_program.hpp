@@ -41,6 +41,16 @@ struct ProgramRelation {
   std::optional<RelatedNumber> count{};  ///< so many of them count; else all
 };
 
+/// A number of a program's state as it lies in the bytes that it saves; several where `length` is above 1.
+struct StateField {
+  std::string name{};   ///< HYST.P; the last output of a slower part: SLOW.XOUT
+  std::string block{};  ///< HY_LAG; empty: of an operation, or the task's own count of steps
+  std::string unit{};
+  PointType type = PointType::real64;
+  std::size_t length = 1;
+  std::size_t offset = 0;  ///< in bytes
+};
+
 struct ProgramShape {
   std::string name{};
   std::int64_t period = 0;  ///< of the steps, in nanoseconds
@@ -49,6 +59,7 @@ struct ProgramShape {
   std::vector<ProgramSignal> parameters{};
   std::vector<ProgramRelation> relations{};  ///< among the parameters
   std::vector<ProgramSignal> inner{};        ///< signals within the diagram that can be looked at; often none
+  std::vector<StateField> state{};           ///< all that lives from step to step
   /// Two programs whose layouts are the same text understand each other's state: same diagram, whatever its parameters.
   std::string layout{};
 };

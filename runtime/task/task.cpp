@@ -108,8 +108,8 @@ void Task::take_orders() noexcept {
       ages_[i] = 0;
     }
   }
-  if (orders->commits != status_.commits) {
-    status_.commits = orders->commits;
+  if (orders->commits != applied_commits_) {
+    applied_commits_ = orders->commits;
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
       parameters_[i] = orders->parameters[i];
       program_->set_parameter(i, parameters_[i]);
@@ -177,8 +177,10 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
     faults_.note(Fault::hang);
   }
   if (attachments_.retainer != nullptr) {
-    if (settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0 && !tripped_) {
-      attachments_.retainer->offer(*program_);
+    const bool is_due = settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0;
+    if ((is_due || applied_commits_ != offered_commits_) && !tripped_) {
+      attachments_.retainer->offer(*program_, applied_commits_);
+      offered_commits_ = applied_commits_;
     }
   }
   publish(statistics);
@@ -195,7 +197,9 @@ void Task::publish(const LoopStatistics& statistics) noexcept {
 
 void Task::count_writes() noexcept {
   status_.write_failures = 0;
+  status_.commits = applied_commits_;
   if (attachments_.retainer != nullptr) {
+    status_.commits = attachments_.retainer->saved_commits();
     status_.retained = attachments_.retainer->written();
     status_.write_failures += attachments_.retainer->failures();
   }
@@ -234,7 +238,7 @@ void Task::settle(Clock& clock, Fault fault) {
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
-    attachments_.retainer->offer(*program_);
+    attachments_.retainer->offer(*program_, applied_commits_);
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;

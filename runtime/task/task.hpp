@@ -96,6 +96,8 @@ class Task final : private CycleBody {
   SafeOutputs safe_;
   Watchdog watchdog_;
   LoopStatistics statistics_{};
+  std::uint64_t applied_commits_ = 0;
+  std::uint64_t offered_commits_ = 0;  ///< to be retained
   TaskStatus status_{};
   FaultLog faults_{};
   std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found

@@ -76,7 +76,8 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   add_status("task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later");
   add_status("task.lateness_worst", PointType::int64, "ns", "the latest start");
   add_status("task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start");
-  add_status("task.commits", PointType::uint64, "1", "sets of parameters applied");
+  add_status("task.commits", PointType::uint64, "1",
+             "sets of parameters applied, and on the disk where they are retained");
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
   add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
   add_status("task.write_failures", PointType::uint64, "1", "writes of the trace or of retained values that failed");

@@ -36,7 +36,7 @@ enum class TaskState : std::uint8_t { starting, running, faulted, stopped };
 struct TaskStatus {
   TaskState state = TaskState::starting;
   Fault fault = Fault::none;
-  std::uint64_t commits = 0;  ///< sets of parameters applied
+  std::uint64_t commits = 0;  ///< sets of parameters applied, and on the disk where they are retained
   std::uint64_t retained = 0;
   std::uint64_t dropped = 0;
   std::uint64_t write_failures = 0;  ///< of the trace and of retained values

@@ -14,6 +14,9 @@ namespace {
 /// A record is its length, its kind and its contents.
 constexpr std::size_t record_head = 5;
 
+/// From one try to begin another file to the next, where the disk is full or the folder gone.
+constexpr std::chrono::seconds time_between_tries{10};
+
 std::size_t end_of_record(std::string_view records, std::size_t begin) {
   std::uint32_t length = 0;
   std::memcpy(&length, records.data() + begin, sizeof(length));
@@ -54,7 +57,6 @@ void TraceSelector::feed_one(TraceKind kind, std::string_view record, std::strin
   const bool is_step = kind == TraceKind::step;
   if (!trigger_ || fired_) {
     out += record;
-    steps_ += is_step ? 1 : 0;
     finished_ = fired_ && is_step && --left_ == 0;
     return;
   }
@@ -77,7 +79,6 @@ void TraceSelector::feed_one(TraceKind kind, std::string_view record, std::strin
     finished_ = left_ == 0;
     for (const Segment& segment : kept_) {
       out += segment.bytes;
-      steps_ += segment.steps;
     }
     kept_.clear();
   }
@@ -101,16 +102,17 @@ bool TraceSelector::fires(std::string_view contents) {
 }
 
 Trace::Trace(const TraceSettings& settings, const StepProgram& program)
-    : ring_(settings.ring_bytes),
+    : head_(text_of(head_of(program))),
+      ring_(settings.ring_bytes),
       selector_(head_of(program), settings.trigger),
-      file_(settings.file),
+      file_(settings.file, settings.files - 1),
       parameters_(parameters_of(program)),
       state_(program.state_size()),
       state_every_(settings.trigger ? std::max<std::uint64_t>(1, settings.trigger->before)
                                     : std::numeric_limits<std::uint64_t>::max()),
-      waits_(settings.waits) {
-  const std::string head = text_of(head_of(program));
-  if (file_.write(head) < head.size()) {
+      waits_(settings.waits),
+      file_bytes_(settings.file_bytes) {
+  if (file_.write(head_) < head_.size()) {
     const int reason = errno;
     file_.give_back();
     throw std::system_error(reason, std::generic_category(), settings.file.string());
@@ -152,9 +154,10 @@ bool Trace::push(TraceKind kind, std::span<const std::span<const std::byte>> con
 }
 
 void Trace::before_step(std::uint64_t number, const StepProgram& program) noexcept {
-  if (!needs_state_ && ++since_state_ < state_every_) {
+  if (!needs_state_ && ++since_state_ < state_every_ && !wants_state_.load(std::memory_order_relaxed)) {
     return;
   }
+  wants_state_.store(false, std::memory_order_relaxed);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     parameters_[i] = program.parameter(i);
   }
@@ -187,39 +190,102 @@ void Trace::step(std::uint64_t number, std::uint64_t period, Fault fault, std::s
   }
 }
 
+std::string Trace::problem() const {
+  const std::scoped_lock lock(mutex_);
+  return problem_;
+}
+
 void Trace::write_out(bool last) {
   std::vector<std::byte> records;
   ring_.take(records);
   std::string out;
-  const std::uint64_t before = selector_.steps_written();
   selector_.feed(records, out);
-  write_records(out, selector_.steps_written() - before);
+  write_records(out);
   if (last) {
-    const std::array<std::uint64_t, 2> numbers{kept_, dropped()};
-    std::string end;
-    append_record(end, TraceKind::end, std::as_bytes(std::span(numbers)));
-    // A file that takes no more has often room for so little, once what was half a record is gone from it.
-    if (const std::size_t written = file_.write(end); written < end.size()) {
-      file_.take_back(written);
-    }
+    write_end();
+  } else if (needs_next() && !selector_.finished()) {
+    wants_state_.store(true, std::memory_order_relaxed);
   }
 }
 
-void Trace::write_records(std::string_view records, std::uint64_t steps) {
-  const std::size_t written = is_cut() ? 0 : file_.write(records);
-  if (written == records.size()) {
-    kept_ += steps;
-    return;
+void Trace::write_end() {
+  const std::array<std::uint64_t, 2> numbers{kept_, dropped() - dropped_before_};
+  std::string end;
+  append_record(end, TraceKind::end, std::as_bytes(std::span(numbers)));
+  // A file that takes no more has often room for so little, once what was half a record is gone from it.
+  if (const std::size_t written = file_.write(end); written < end.size()) {
+    file_.take_back(written);
   }
-  std::size_t whole = 0;
-  std::uint64_t whole_steps = 0;
-  for (std::size_t end = 0; (end = end_of_record(records, whole)) <= written; whole = end) {
-    whole_steps += kind_of_record(records, whole) == TraceKind::step ? 1 : 0;
+}
+
+bool Trace::needs_next() const {
+  if (is_cut()) {
+    return std::chrono::steady_clock::now() >= next_try_;
   }
-  file_.take_back(written - whole);
-  kept_ += whole_steps;
-  dropped_.fetch_add(steps - whole_steps, std::memory_order_relaxed);
+  return file_.size() >= file_bytes_ || (file_.size() > 0 && file_.is_taken_away());
+}
+
+bool Trace::begin_next() {
+  next_try_ = std::chrono::steady_clock::now() + time_between_tries;
   if (!is_cut()) {
+    write_end();
+  }
+  if (!file_.begin_next()) {
+    cut(0);
+    return false;
+  }
+  if (const std::size_t written = file_.write(head_); written < head_.size()) {
+    file_.take_back(written);
+    cut(0);
+    return false;
+  }
+  kept_ = 0;
+  dropped_before_ = dropped();
+  cut_.store(false, std::memory_order_release);
+  return true;
+}
+
+void Trace::write_records(std::string_view records) {
+  for (std::size_t begin = 0; begin < records.size();) {
+    std::size_t end = end_of_record(records, begin);
+    while (end < records.size() && kind_of_record(records, end) != TraceKind::state) {
+      end = end_of_record(records, end);
+    }
+    if (kind_of_record(records, begin) == TraceKind::state && needs_next()) {
+      (void)begin_next();
+    }
+    write_part(records.substr(begin, end - begin));
+    begin = end;
+  }
+}
+
+void Trace::write_part(std::string_view records) {
+  const std::size_t written = is_cut() ? 0 : file_.write(records);
+  std::size_t whole = 0;
+  std::uint64_t lost = 0;
+  for (std::size_t begin = 0; begin < records.size();) {
+    const std::size_t end = end_of_record(records, begin);
+    const std::uint64_t steps = kind_of_record(records, begin) == TraceKind::step ? 1 : 0;
+    if (end <= written) {
+      whole = end;
+      kept_ += steps;
+    } else {
+      lost += steps;
+    }
+    begin = end;
+  }
+  if (written < records.size()) {
+    file_.take_back(written - whole);
+    cut(lost);
+  }
+}
+
+/// From here on nothing is written until another file can be begun.
+void Trace::cut(std::uint64_t lost) {
+  dropped_.fetch_add(lost, std::memory_order_relaxed);
+  if (!is_cut()) {
+    next_try_ = std::chrono::steady_clock::now() + time_between_tries;
+    const std::scoped_lock lock(mutex_);
     problem_ = file_.problem();
     cut_.store(true, std::memory_order_release);
   }

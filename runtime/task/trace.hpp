@@ -3,14 +3,18 @@
 // Without a trigger everything is written. With one, so many steps before it, the step itself and so many after it; the
 // recording begins at a kept state, so that it can be replayed. What the ring has no room for is counted, exactly, and
 // the next state makes what follows replayable again. Where the file takes no more, the trace ends with its last whole
-// record, and every step from there on is counted as dropped.
+// record, and every step from there on is counted as dropped; now and then another file is tried, and begun where it
+// can be. A file that has grown to its size is followed by another, which begins at a state, so that each can be
+// replayed by itself; the oldest goes.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,6 +42,8 @@ struct TraceSettings {
   std::filesystem::path file{};
   std::size_t ring_bytes = std::size_t{4} << 20;
   std::optional<TraceTrigger> trigger{};
+  std::uint64_t file_bytes = 128'000'000;  ///< from which size on another file is begun
+  std::size_t files = 8;                   ///< that are there at most, the newest among them
   bool waits = false;  ///< for room in the ring: on the virtual clock, where nothing is late and nothing need be lost
 };
 
@@ -48,7 +54,6 @@ class TraceSelector {
   /// Whole records, in order. What is to be written is appended.
   void feed(std::span<const std::byte> records, std::string& out);
   [[nodiscard]] bool finished() const { return finished_; }
-  [[nodiscard]] std::uint64_t steps_written() const { return steps_; }
 
  private:
   void feed_one(TraceKind kind, std::string_view record, std::string& out);
@@ -67,7 +72,6 @@ class TraceSelector {
   bool was_beyond_ = true;  ///< a signal that begins beyond the level has not crossed it
   bool finished_ = false;
   std::uint64_t left_ = 0;
-  std::uint64_t steps_ = 0;
 };
 
 class Trace {
@@ -87,18 +91,27 @@ class Trace {
             std::span<const double> computed, std::span<const double> outputs) noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
-  /// Whether it was cut short: something could not be written, and nothing was from there on.
+  /// Whether it is cut short: something could not be written, and nothing has been from there on.
   [[nodiscard]] bool is_cut() const noexcept { return cut_.load(std::memory_order_acquire); }
-  /// Why; once it is cut.
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+  /// Why it was last cut; empty where it never was.
+  [[nodiscard]] std::string problem() const;
+  /// Whether the next step begins another file.
+  [[nodiscard]] bool wants_next() const noexcept { return wants_state_.load(std::memory_order_relaxed); }
   /// Writes what is left, and the end. No step comes after it.
   void finish();
 
  private:
   bool push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept;
   void write_out(bool last);
-  void write_records(std::string_view records, std::uint64_t steps);
+  void write_records(std::string_view records);
+  /// Records up to the next state, or from one up to the next.
+  void write_part(std::string_view records);
+  [[nodiscard]] bool needs_next() const;
+  bool begin_next();
+  void write_end();
+  void cut(std::uint64_t lost);
 
+  std::string head_;
   ByteRing ring_;
   TraceSelector selector_;
   TraceOutput file_;
@@ -109,7 +122,12 @@ class Trace {
   bool needs_state_ = true;
   bool waits_;
   std::atomic<std::uint64_t> dropped_{0};
-  std::uint64_t kept_ = 0;  ///< steps in the file; of the writer, as the next two
+  std::uint64_t file_bytes_;
+  std::uint64_t kept_ = 0;            ///< steps in the file; of the writer, as the next
+  std::uint64_t dropped_before_ = 0;  ///< when the file was begun
+  std::chrono::steady_clock::time_point next_try_{};
+  std::atomic<bool> wants_state_{false};  ///< the next file begins at one
+  mutable std::mutex mutex_;              ///< never taken by the cyclic thread
   std::string problem_{};
   std::atomic<bool> cut_{false};
   std::atomic<bool> stop_{false};

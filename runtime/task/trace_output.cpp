@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -41,13 +43,35 @@ int open_locked(const std::filesystem::path& file, struct stat& about) {
   }
 }
 
-}  // namespace
-
-std::filesystem::path previous_trace(const std::filesystem::path& file) {
-  return std::filesystem::path(file).concat(".1");
+bool is_file(const std::filesystem::path& path) {
+  struct stat about {};
+  return ::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode);
 }
 
-TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
+/// Renames FILE to FILE.1, FILE.1 to FILE.2, up to FILE.kept; what had that name is gone. False where FILE cannot be.
+bool shift(const std::filesystem::path& file, std::size_t kept) {
+  std::size_t last = 1;
+  while (last < kept && is_file(previous_trace(file, last))) {
+    ++last;
+  }
+  for (std::size_t number = last; number > 1; --number) {
+    (void)::rename(previous_trace(file, number - 1).c_str(), previous_trace(file, number).c_str());
+  }
+  return ::rename(file.c_str(), previous_trace(file).c_str()) == 0;
+}
+
+}  // namespace
+
+std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number) {
+  return std::filesystem::path(file).concat("." + std::to_string(number));
+}
+
+TraceOutput::TraceOutput(std::filesystem::path file, std::size_t kept)
+    : file_(std::move(file)), kept_(std::max<std::size_t>(1, kept)) {
+  open_next();
+}
+
+void TraceOutput::open_next() {
   const auto refuse = [](const std::filesystem::path& path) {
     throw std::system_error(errno, std::generic_category(), path.string());
   };
@@ -55,20 +79,42 @@ TraceOutput::TraceOutput(std::filesystem::path file) : file_(std::move(file)) {
   descriptor_ = open_locked(file_, about);
   if (descriptor_ >= 0 && about.st_size > 0) {
     const int before = descriptor_;  // locked until the new file is
-    const auto kept = previous_trace(file_);
-    const bool moved = ::rename(file_.c_str(), kept.c_str()) == 0;
+    const bool moved = shift(file_, kept_);
     descriptor_ = moved ? open_locked(file_, about) : -1;
     const int reason = errno;
     (void)::close(before);
     errno = reason;
     if (!moved) {
-      refuse(kept);
+      refuse(previous_trace(file_));
     }
     has_moved_ = true;
   }
   if (descriptor_ < 0) {
     refuse(file_);
   }
+  size_ = 0;
+}
+
+bool TraceOutput::begin_next() {
+  const int before = std::exchange(descriptor_, -1);
+  (void)::flock(before, LOCK_UN);  // nobody else writes it: whoever takes it now, keeps this one from its name alone
+  try {
+    open_next();
+  } catch (const std::system_error& failed) {
+    problem_ = failed.what();
+    descriptor_ = before;
+    (void)::flock(before, LOCK_EX | LOCK_NB);
+    return false;
+  }
+  (void)::close(before);
+  return true;
+}
+
+bool TraceOutput::is_taken_away() const {
+  struct stat mine {};
+  struct stat named {};
+  return ::fstat(descriptor_, &mine) != 0 || ::stat(file_.c_str(), &named) != 0 || mine.st_ino != named.st_ino ||
+         mine.st_dev != named.st_dev || static_cast<std::uint64_t>(mine.st_size) < size_;
 }
 
 TraceOutput::~TraceOutput() {

@@ -43,13 +43,8 @@ class CppHeader {
         locals_(cpp_words),
         writer_(graph_, routine_, printer_, locals_, layout_.names(), cpp_dialect) {}
 
-  std::vector<std::string> parameter_members() const {
-    std::vector<std::string> members;
-    for (const Member& member : layout_.names().parameters) {
-      members.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") + std::string(member.name));
-    }
-    return members;
-  }
+  std::vector<std::string> parameter_members() const { return members_of(layout_.names().parameters); }
+  std::vector<std::string> state_members() const { return members_of(layout_.names().cells); }
 
   GeneratedFile run() {
     // What stands before the functions is written while they are: both only read what they share.
@@ -60,6 +55,14 @@ class CppHeader {
   }
 
  private:
+  static std::vector<std::string> members_of(const std::vector<Member>& names) {
+    std::vector<std::string> members;
+    for (const Member& member : names) {
+      members.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") + std::string(member.name));
+    }
+    return members;
+  }
+
   // --- declarations ---
 
   std::string declarations() const {
@@ -205,6 +208,11 @@ GeneratedFile generate_cpp_header(const Program& program, const CppOptions& opti
 std::vector<std::string> cpp_parameter_members(const Program& program) {
   require_sample_time(program.graph);
   return CppHeader(program, {}).parameter_members();
+}
+
+std::vector<std::string> cpp_state_members(const Program& program) {
+  require_sample_time(program.graph);
+  return CppHeader(program, {}).state_members();
 }
 
 std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions& options) {

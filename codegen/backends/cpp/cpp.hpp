@@ -27,5 +27,7 @@ GeneratedFile generate_cpp_header(const Program& program, const CppOptions& opti
 
 /// The members of the header's Params, by parameter of the graph: inv.c1.
 std::vector<std::string> cpp_parameter_members(const Program& program);
+/// The members of its State, by cell of the program's routine: inv.p.
+std::vector<std::string> cpp_state_members(const Program& program);
 
 }  // namespace hysteron

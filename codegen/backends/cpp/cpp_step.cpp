@@ -53,6 +53,18 @@ void* hysteron_state() {{ return &state; }}
 
 std::size_t hysteron_state_size() {{ return sizeof(state); }}
 
+// Where a number of the state lies in its bytes, by index.
+std::size_t hysteron_state_offset(std::size_t index) {{
+  const auto offset_of = [](const auto& member) {{
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&state));
+  }};
+  switch (index) {{
+{offsets}    default:
+      static_cast<void>(offset_of);
+      return 0;
+  }}
+}}
+
 }}  // extern "C"
 )";
 
@@ -91,10 +103,16 @@ GeneratedFile generate_cpp_step(const Program& program) {
       getters += fmt::format("    case {}:\n      return static_cast<double>({});\n", index, target);
     }
   }
+  std::string offsets;
+  const auto state_members = cpp_state_members(program);
+  for (std::size_t i = 0; i < state_members.size(); ++i) {
+    offsets += fmt::format("    case {}:\n      return offset_of(state.{});\n", i, state_members[i]);
+  }
   const auto name = namespace_identifier(graph.name);
   return {name + "_step.cpp",
           fmt::format(fmt::runtime(text_of_step), fmt::arg("name", name), fmt::arg("inputs", inputs),
-                      fmt::arg("outputs", outputs), fmt::arg("setters", setters), fmt::arg("getters", getters))};
+                      fmt::arg("outputs", outputs), fmt::arg("setters", setters), fmt::arg("getters", getters),
+                      fmt::arg("offsets", offsets))};
 }
 
 }  // namespace hysteron

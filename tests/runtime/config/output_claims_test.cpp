@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -85,6 +87,29 @@ TEST(OutputClaims, TwoOutputsOfOneRunFileThatMeetAreRefused) {
     EXPECT_EQ(first.number, error::device_register_twice);
     EXPECT_NE(first.cause.find("holding register 3 of other"), std::string::npos) << first.cause;
   }
+}
+
+/// A guard never answers, so what asks for it fills its queue, 4,096 places here: it stays a guard for the one who
+/// waits, who asks once, and for every later start.
+TEST(OutputClaims, AGuardIsAGuardHoweverOftenItIsAsked) {
+  const auto config = config_of(at("127.0.0.1", test::free_port()), "register = 0");
+  auto first = std::make_unique<OutputClaims>(config);
+  ASSERT_FALSE(first->claim());
+  first->listen();
+  OutputClaims waiting(config);
+  for (int tries = 0; tries < 10'000; ++tries) {
+    const auto holder = waiting.claim();
+    ASSERT_TRUE(holder) << tries;
+    ASSERT_EQ(holder->guard, ::getpid()) << tries;
+  }
+  for (int starts = 0; starts < 5000; ++starts) {
+    const auto holder = OutputClaims(config).claim();
+    ASSERT_TRUE(holder) << starts;
+    ASSERT_TRUE(holder->guard) << starts;
+  }
+  EXPECT_EQ(waiting.claim()->guard, ::getpid());
+  first.reset();
+  EXPECT_FALSE(waiting.claim()) << "its turn, as soon as the guard is gone";
 }
 
 }  // namespace

@@ -43,6 +43,18 @@ TEST(CyclicLoop, ASkippedPeriodIsNeverRunAndTheGridIsKept) {
   EXPECT_EQ(result.statistics.elapsed, 7U);
 }
 
+/// A step that is too long for its period says so in each cycle, also where the first was late for another reason.
+TEST(CyclicLoop, PermanentOverloadIsOwnTime) {
+  std::vector<test::Event> script{{}, {.cause = Cause::late_wake, .amount = 3 * period / 2}};
+  for (int i = 0; i < 100; ++i) {
+    script.push_back({.cause = Cause::own_cpu, .amount = 8 * period / 5});
+  }
+  const auto result = test::run_script(script, {.period = period, .cycles = script.size()});
+  EXPECT_EQ(result.statistics.events[static_cast<std::size_t>(Cause::own_cpu)], 100U);
+  EXPECT_EQ(result.statistics.events[static_cast<std::size_t>(Cause::late_wake)], 1U);
+  EXPECT_GT(result.statistics.skipped, 50U);
+}
+
 TEST(CyclicLoop, CatchingUpIsBounded) {
   const auto result =
       test::run_script({{}, {.cause = Cause::own_cpu, .amount = 21 * period / 2}},

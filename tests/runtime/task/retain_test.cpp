@@ -32,6 +32,10 @@ class MemoryFiles final : public RetainFiles {
     slots[slot] = {bytes.begin(), bytes.end()};
     return {};
   }
+  std::string copy_aside(std::size_t slot) override {
+    aside.push_back(slots[slot]);
+    return {};
+  }
   std::string put_aside(std::size_t slot) override {
     aside.push_back(slots[slot]);
     slots.erase(slot);
@@ -112,16 +116,55 @@ TEST(Retain, AnotherLayoutIsRefusedOrPutAside) {
 TEST(Retain, ParametersThatTheProgramCannotTakeAreRefusedOrPutAside) {
   MemoryFiles files;
   files.slots[0] = encode_slot(some_values(4));
-  const auto check = [&](const RetainedValues& values) {
+  const RetainChecks check{.refusal = [&](const RetainedValues& values) {
     EXPECT_EQ(values.parameters, some_values(4).parameters);
     return std::string("L.MX = 1 must be at least L.MN = 5.");
-  };
+  }};
   const std::string layout = some_values(4).layout;
   EXPECT_EQ(recover(files, layout, MismatchPolicy::refuse, check).refused,
             "The retained parameters cannot be: L.MX = 1 must be at least L.MN = 5.");
   const auto cold = recover(files, layout, MismatchPolicy::cold, check);
   EXPECT_FALSE(cold.values);
   EXPECT_TRUE(cold.aside[0]);
+}
+
+TEST(Retain, AnEditedDiagramCarriesWhatHasNames) {
+  MemoryFiles files;
+  auto described = some_values(4);
+  files.slots[0] = encode_slot(described);
+  EXPECT_EQ(recover(files, "other", MismatchPolicy::carry).refused,
+            "The retained values are of another diagram, or of another engine.")
+      << "a file without names";
+  described.described = "p\tG.A\tLREAL\tum\n";
+  files.slots[0] = encode_slot(described);
+  const auto kept = files.slots[0];
+  const auto recovery = recover(files, "other", MismatchPolicy::carry);
+  EXPECT_EQ(recovery.refused, "");
+  EXPECT_TRUE(recovery.by_name);
+  ASSERT_TRUE(recovery.values);
+  EXPECT_EQ(recovery.values->described, described.described);
+  EXPECT_EQ(recovery.next_slot, 1U) << "a power cut at the first writing leaves the old one";
+  EXPECT_EQ(put_aside(files, recovery), "");
+  EXPECT_EQ(files.slots[0], kept) << "copied, not taken away";
+  ASSERT_EQ(files.aside.size(), 1U);
+  EXPECT_EQ(files.aside[0], kept);
+  EXPECT_FALSE(recover(files, some_values(4).layout, MismatchPolicy::carry).by_name);
+}
+
+TEST(Retain, AStateThatIsNotFiniteIsAsABrokenSlot) {
+  MemoryFiles files;
+  files.slots[0] = encode_slot(some_values(4));
+  files.slots[1] = encode_slot(some_values(5));
+  const RetainChecks newest{
+      .not_finite = [](const RetainedValues& values) { return std::string(values.sequence == 5 ? "LAG.Y" : ""); }};
+  const auto recovery = recover(files, some_values(4).layout, MismatchPolicy::carry, newest);
+  ASSERT_TRUE(recovery.values);
+  EXPECT_EQ(recovery.values->sequence, 4U);
+  EXPECT_EQ(recovery.next_slot, 1U);
+  EXPECT_EQ(recovery.note, "in one retain slot LAG.Y was not finite; the other was taken");
+  const RetainChecks both{.not_finite = [](const RetainedValues&) { return std::string("LAG.Y"); }};
+  EXPECT_EQ(recover(files, some_values(4).layout, MismatchPolicy::carry, both).refused,
+            "No retain slot can be taken: LAG.Y is not finite.");
 }
 
 TEST(Retain, TheThreadWritesTheNewestAndCountsRefusals) {

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
@@ -157,6 +161,58 @@ TEST(Trace, ACutFileIsReadUpToTheCutAndABrokenOneRefused) {
   program.mutable_shape().layout = "other";
   EXPECT_EQ(replay(bytes, program, result),
             "the trace is of another diagram (ACCUMULATOR), or was made by another way of running it");
+}
+
+/// Years of cycles take the room that they are given, each file can be replayed by itself, and none lacks a step.
+TEST(Trace, FilesFollowOneAnotherAndTheOldestGo) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceSettings settings{
+      .file = scratch / "trace", .ring_bytes = 4000, .file_bytes = 30'000, .files = 3, .waits = true};
+  (void)traced_run(settings, 20'000);
+  EXPECT_EQ(scratch.names(), (std::set<std::string>{"trace", "trace.1", "trace.2"}));
+  std::uint64_t next = 20'000;
+  for (std::size_t number = 0; number < 3; ++number) {
+    const auto file = number == 0 ? settings.file : previous_trace(settings.file, number);
+    const auto bytes = hysteron::test::contents_of(file);
+    EXPECT_LT(bytes.size(), 30'000U + 3 * 4000U) << number;
+    std::vector<TraceStep> steps;
+    const auto result = replayed(bytes, &steps);
+    EXPECT_EQ(result.different + result.without_state + result.dropped, 0U) << number;
+    EXPECT_TRUE(result.complete) << number;
+    ASSERT_FALSE(steps.empty());
+    EXPECT_EQ(steps.back().number + 1, next) << number;
+    next = steps.front().number;
+  }
+}
+
+/// As logrotate does it: the name is another file's, or no file's, and the task goes on in a new one.
+TEST(Trace, AFileThatIsMovedAwayIsFollowedByAnother) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceSettings settings{.file = scratch / "trace", .waits = true};
+  Accumulator program;
+  Trace trace(settings, program);
+  Task task(program, {.loop = {.cycles = 2000}, .inputs = {{}}, .outputs = {{}, {}}}, {.trace = &trace});
+  program.during_step = [&, step = 0](std::span<double>) mutable {
+    if (++step == 1000) {
+      EXPECT_TRUE(hysteron::test::soon([&] { return std::filesystem::file_size(settings.file) > 1000; }));
+      std::filesystem::rename(settings.file, scratch / "moved");
+    }
+    if (step == 1500) {
+      EXPECT_TRUE(hysteron::test::soon([&] { return trace.wants_next(); }));
+    }
+  };
+  VirtualClock clock;
+  const std::atomic<bool> stop{false};
+  (void)task.run(clock, stop);
+  trace.finish();
+  std::vector<TraceStep> before;
+  std::vector<TraceStep> after;
+  EXPECT_EQ(replayed(hysteron::test::contents_of(scratch / "moved"), &before).different, 0U);
+  EXPECT_EQ(replayed(hysteron::test::contents_of(settings.file), &after).different, 0U);
+  EXPECT_EQ(before.size() + after.size(), 2000U);
+  ASSERT_FALSE(after.empty());
+  EXPECT_EQ(after.back().number, 1999U);
+  EXPECT_FALSE(trace.is_cut());
 }
 
 TEST(Trace, AFileThatTakesNoMoreEndsWithAWholeStepAndTheRestIsCounted) {

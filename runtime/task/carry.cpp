@@ -1,0 +1,293 @@
+#include "runtime/task/carry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "runtime/task/staged_parameters.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+struct TypeName {
+  PointType type;
+  std::string_view name;
+  std::size_t size;
+};
+
+/// The types that a state or a parameter has.
+constexpr std::array type_names{TypeName{PointType::boolean, "BOOL", sizeof(bool)},
+                                TypeName{PointType::uint16, "WORD", sizeof(std::uint16_t)},
+                                TypeName{PointType::int32, "DINT", sizeof(std::int32_t)},
+                                TypeName{PointType::uint64, "ULINT", sizeof(std::uint64_t)},
+                                TypeName{PointType::real32, "REAL", sizeof(float)},
+                                TypeName{PointType::real64, "LREAL", sizeof(double)}};
+
+const TypeName& about(PointType type) {
+  const auto* const found = std::ranges::find(type_names, type, &TypeName::type);
+  return found == type_names.end() ? type_names.back() : *found;
+}
+
+std::optional<PointType> type_of(std::string_view name) {
+  const auto* const found = std::ranges::find(type_names, name, &TypeName::name);
+  return found == type_names.end() ? std::nullopt : std::optional(found->type);
+}
+
+bool is_real(PointType type) {
+  return type == PointType::real64 || type == PointType::real32;
+}
+bool is_count(PointType type) {
+  return type == PointType::int32 || type == PointType::uint64;
+}
+/// One engine computes with float what another does with double, and one counts steps in a DINT what another does not.
+bool is_alike(PointType a, PointType b) {
+  return a == b || (is_real(a) && is_real(b)) || (is_count(a) && is_count(b));
+}
+
+template <class T>
+T value_at(std::span<const std::byte> bytes, std::size_t at) {
+  T value{};
+  std::memcpy(&value, bytes.data() + at, sizeof(T));
+  return value;
+}
+
+/// Every number of these types is a double to the last bit, but for counts beyond 2^53, which no run reaches.
+double number_at(std::span<const std::byte> bytes, const StateField& field, std::size_t element) {
+  const std::size_t at = field.offset + element * about(field.type).size;
+  switch (field.type) {
+    case PointType::boolean:
+      return value_at<std::uint8_t>(bytes, at) != 0 ? 1.0 : 0.0;
+    case PointType::uint16:
+      return value_at<std::uint16_t>(bytes, at);
+    case PointType::int32:
+      return value_at<std::int32_t>(bytes, at);
+    case PointType::uint64:
+      return static_cast<double>(value_at<std::uint64_t>(bytes, at));
+    case PointType::real32:
+      return static_cast<double>(value_at<float>(bytes, at));
+    default:
+      return value_at<double>(bytes, at);
+  }
+}
+
+template <class T>
+void put(std::span<std::byte> bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof(T));
+}
+
+void put_number(std::span<std::byte> bytes, const StateField& field, std::size_t element, double value) {
+  const std::size_t at = field.offset + element * about(field.type).size;
+  switch (field.type) {
+    case PointType::boolean:
+      put(bytes, at, value != 0.0);
+      break;
+    case PointType::uint16:
+      put(bytes, at, static_cast<std::uint16_t>(value));
+      break;
+    case PointType::int32:
+      put(bytes, at, static_cast<std::int32_t>(value));
+      break;
+    case PointType::uint64:
+      put(bytes, at, static_cast<std::uint64_t>(value));
+      break;
+    case PointType::real32:
+      put(bytes, at, static_cast<float>(value));
+      break;
+    default:
+      put(bytes, at, value);
+  }
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = line.find('\t', begin);
+    cells.push_back(line.substr(begin, end - begin));
+    if (end == std::string_view::npos) {
+      return cells;
+    }
+    begin = end + 1;
+  }
+}
+
+bool read_number(std::string_view text, std::size_t& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  if (cells[0] == "p" && cells.size() == 4) {
+    const auto type = type_of(cells[2]);
+    layout.parameters.push_back(
+        {.name = std::string(cells[1]), .type = type.value_or(PointType::real64), .unit = std::string(cells[3])});
+    return type.has_value();
+  }
+  if (cells[0] != "s" || cells.size() != 7) {
+    return false;
+  }
+  const auto type = type_of(cells[3]);
+  StateField field{.name = std::string(cells[1]), .block = std::string(cells[2]), .unit = std::string(cells[6])};
+  if (!type || !read_number(cells[4], field.length) || !read_number(cells[5], field.offset) ||
+      field.offset > state_size || field.length > (state_size - field.offset) / about(*type).size) {
+    return false;
+  }
+  field.type = *type;
+  layout.state.push_back(std::move(field));
+  return true;
+}
+
+std::string unit_text(const std::string& unit) {
+  return unit.empty() ? "no unit" : unit;
+}
+
+/// Why a value with one type and unit is none of another's; empty where it is.
+std::string difference(PointType type, const std::string& unit, PointType wanted, const std::string& wanted_unit) {
+  if (!is_alike(type, wanted)) {
+    return fmt::format("{} there, {} here", about(type).name, about(wanted).name);
+  }
+  return unit == wanted_unit ? "" : fmt::format("{} there, {} here", unit_text(unit), unit_text(wanted_unit));
+}
+
+std::string left(const std::string& name, const std::string& reason) {
+  return fmt::format("{} ({})", name, reason);
+}
+
+/// The names in `kept` that the program has no more.
+template <class Kept, class Own>
+void tell_gone(const std::vector<Kept>& kept, const std::vector<Own>& own, std::vector<std::string>& told) {
+  std::map<std::string_view, bool> here;
+  for (const Own& one : own) {
+    here[one.name] = true;
+  }
+  for (const Kept& one : kept) {
+    if (!here.contains(one.name)) {
+      told.push_back(left(one.name, "gone"));
+    }
+  }
+}
+
+template <class Kept>
+std::map<std::string_view, std::size_t> by_name(const std::vector<Kept>& kept) {
+  std::map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    places.emplace(kept[i].name, i);
+  }
+  return places;
+}
+
+/// Why a number of the state is not taken over; empty where it is.
+std::string refusal_of(const StateField& was, std::span<const std::byte> from, const StateField& is) {
+  if (was.block != is.block) {
+    return fmt::format("of {} there, of {} here", was.block, is.block);
+  }
+  if (std::string why = difference(was.type, was.unit, is.type, is.unit); !why.empty()) {
+    return why;
+  }
+  if (was.length != is.length) {
+    return fmt::format("{} values there, {} here", was.length, is.length);
+  }
+  for (std::size_t i = 0; i < was.length; ++i) {
+    if (!std::isfinite(number_at(from, was, i))) {
+      return "not finite";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string describe(const ProgramShape& shape) {
+  std::string text;
+  for (const ProgramSignal& one : shape.parameters) {
+    text += fmt::format("p\t{}\t{}\t{}\n", one.name, about(one.type).name, one.unit);
+  }
+  for (const StateField& one : shape.state) {
+    text += fmt::format("s\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, one.block, about(one.type).name, one.length,
+                        one.offset, one.unit);
+  }
+  return text;
+}
+
+KeptLayout read_description(std::string_view text, std::size_t state_size) {
+  KeptLayout layout;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos || !read_line(text.substr(0, end), state_size, layout)) {
+      return {};
+    }
+    text.remove_prefix(end + 1);
+  }
+  return layout;
+}
+
+CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values, const ProgramShape& shape,
+                               std::span<const double> given) {
+  CarriedValues carried{.parameters = {given.begin(), given.end()}};
+  const auto places = by_name(kept.parameters);
+  for (std::size_t i = 0; i < shape.parameters.size(); ++i) {
+    const ProgramSignal& own = shape.parameters[i];
+    const auto found = places.find(own.name);
+    if (found == places.end()) {
+      carried.left.push_back(left(own.name, "new"));
+      continue;
+    }
+    const KeptLayout::Parameter& was = kept.parameters[found->second];
+    std::string why = difference(was.type, was.unit, own.type, own.unit);
+    if (why.empty() && !refusal_of(own, values[found->second]).empty()) {
+      why = fmt::format("{:.6g} is outside of its limits", values[found->second]);
+    }
+    if (why.empty()) {
+      carried.parameters[i] = values[found->second];
+      ++carried.parameters_taken;
+    } else {
+      carried.left.push_back(left(own.name, why));
+    }
+  }
+  tell_gone(kept.parameters, shape.parameters, carried.left);
+  return carried;
+}
+
+void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
+                 std::span<std::byte> into, CarriedValues& carried) {
+  const auto places = by_name(kept.state);
+  for (const StateField& own : shape.state) {
+    const auto found = places.find(own.name);
+    if (found == places.end()) {
+      carried.left.push_back(left(own.name, "new"));
+      continue;
+    }
+    const StateField& was = kept.state[found->second];
+    if (std::string why = refusal_of(was, from, own); !why.empty()) {
+      carried.left.push_back(left(own.name, why));
+      continue;
+    }
+    for (std::size_t i = 0; i < own.length; ++i) {
+      put_number(into, own, i, number_at(from, was, i));
+    }
+    ++carried.states_taken;
+  }
+  tell_gone(kept.state, shape.state, carried.left);
+}
+
+std::string not_finite(const ProgramShape& shape, std::span<const std::byte> state,
+                       std::span<const std::byte> after_reset) {
+  for (const StateField& field : shape.state) {
+    for (std::size_t i = 0; is_real(field.type) && i < field.length; ++i) {
+      if (!std::isfinite(number_at(state, field, i)) && std::isfinite(number_at(after_reset, field, i))) {
+        return field.name;
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,56 @@
+// Retained values of one diagram, taken over by name into another: the same one edited, or run by another engine.
+//
+// What a program keeps is bytes, as it lays them out. Beside them a slot has a description of these bytes: each
+// parameter and each number of the state with its name, type and unit. So a later program finds what is its own.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/task/step_program.hpp"
+
+namespace hysteron::runtime {
+
+/// What the bytes of a slot mean.
+struct KeptLayout {
+  struct Parameter {
+    std::string name{};
+    PointType type = PointType::real64;
+    std::string unit{};
+  };
+  std::vector<Parameter> parameters{};
+  std::vector<StateField> state{};
+};
+
+/// As text: a line for each parameter, "p name type unit", and each number, "s name block type length offset unit",
+/// separated by tabs.
+[[nodiscard]] std::string describe(const ProgramShape& shape);
+/// Empty where a line is not of that form, or where a number lies beyond `state_size` bytes.
+[[nodiscard]] KeptLayout read_description(std::string_view text, std::size_t state_size);
+
+/// What is taken over of retained values, and what is not.
+struct CarriedValues {
+  std::vector<double> parameters{};  ///< as the program's, those not taken over as they were given
+  std::size_t parameters_taken = 0;
+  std::size_t states_taken = 0;
+  std::vector<std::string> left{};  ///< what was not taken over, with the reason: "LAG.Y (um there, mm here)"
+};
+
+/// Parameters whose name, type and unit are the same, and whose value lies within the program's limits.
+[[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
+                                             const ProgramShape& shape, std::span<const double> given);
+
+/// Numbers of the state whose instance, block, type and unit are the same, and which are finite. `into` is the state of
+/// the program after its reset; the count and the reasons are added to `carried`.
+void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
+                 std::span<std::byte> into, CarriedValues& carried);
+
+/// The name of the first number of a state that is infinite or not a number, though it is finite in `after_reset`;
+/// empty where there is none. Both are of the program.
+[[nodiscard]] std::string not_finite(const ProgramShape& shape, std::span<const std::byte> state,
+                                     std::span<const std::byte> after_reset);
+
+}  // namespace hysteron::runtime

@@ -11,6 +11,7 @@ std::span<const Command> commands() {
       Command{"draw", "Draws a diagram as a picture.", add_draw},
       Command{"record", "Says what was understood of a measured record.", add_record},
       Command{"plot", "Draws records and parameters as a picture, or as a page with zoom.", add_plot},
+      Command{"compare", "Compares two records, parameter files, diagrams or verdicts.", add_compare},
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},

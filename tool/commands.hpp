@@ -36,6 +36,7 @@ Action add_fmt(CLI::App& app);
 Action add_draw(CLI::App& app);
 Action add_record(CLI::App& app);
 Action add_plot(CLI::App& app);
+Action add_compare(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
 Action add_import(CLI::App& app);

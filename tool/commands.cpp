@@ -6,6 +6,7 @@ namespace hysteron::tool {
 
 std::span<const Command> commands() {
   static constexpr std::array list{
+      Command{"new", "Makes a folder to begin with: diagram, parameters, record, test.", add_new},
       Command{"check", "Checks diagrams: syntax, names, types, wires, units, loops.", add_check},
       Command{"fmt", "Formats diagrams, and never changes what they mean.", add_fmt},
       Command{"draw", "Draws a diagram as a picture.", add_draw},

@@ -31,6 +31,7 @@ struct Command {
 /// All commands, in the order in which the help lists them.
 [[nodiscard]] std::span<const Command> commands();
 
+Action add_new(CLI::App& app);
 Action add_check(CLI::App& app);
 Action add_fmt(CLI::App& app);
 Action add_draw(CLI::App& app);

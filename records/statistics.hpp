@@ -19,6 +19,10 @@ struct ColumnStatistics {
 /// Of at least one value.
 [[nodiscard]] ColumnStatistics statistics_of(std::span<const double> values);
 
+/// How far y lies apart while u rises and while it falls, at the same u: the mean over u, as a share of the range of y.
+/// 0 of a function of u; a hysteresis, a play or a lag opens a loop. 0 where u does not go both ways.
+[[nodiscard]] double loop_width(std::span<const double> u, std::span<const double> y);
+
 /// s: how far the times of a record lie from its even grid, at most.
 [[nodiscard]] double jitter_of(const Record& record);
 

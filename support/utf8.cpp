@@ -81,6 +81,17 @@ std::size_t character_count(std::string_view text) {
   return count;
 }
 
+std::string clipped(std::string_view text, std::size_t most) {
+  if (character_count(text) <= most) {
+    return std::string(text);
+  }
+  std::size_t end = 0;
+  for (std::size_t kept = 1; kept < most; ++kept) {
+    end += utf8_length(text.substr(end));
+  }
+  return std::string(text.substr(0, end)) + "…";
+}
+
 std::string printable(std::string_view text) {
   constexpr std::string_view replacement = "\xEF\xBF\xBD";
   std::string result;

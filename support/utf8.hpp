@@ -17,6 +17,9 @@ namespace hysteron {
 /// The number of characters (code points); a malformed byte counts as one.
 [[nodiscard]] std::size_t character_count(std::string_view text);
 
+/// At most so many characters, with an ellipsis for the rest.
+[[nodiscard]] std::string clipped(std::string_view text, std::size_t most);
+
 /// The text with control characters (other than the tab) and malformed bytes replaced by U+FFFD, so that a hostile
 /// file can neither move the cursor of a terminal nor break a JSON document.
 [[nodiscard]] std::string printable(std::string_view text);

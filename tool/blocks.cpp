@@ -22,6 +22,7 @@ constexpr std::string_view blocks_examples = R"(Examples:
   hysteron blocks                 all blocks, by group
   hysteron blocks HY_LAG          equation, pins, units, ranges, defaults, feedthrough, delay
   hysteron blocks lag --json
+  hysteron blocks friction        the blocks that tell of it
   hysteron blocks FT_PT1          by the name of another library: OSCAT, CODESYS, Simulink
   hysteron blocks --markdown      the reference of the whole library
 
@@ -37,12 +38,34 @@ struct BlocksOptions {
   bool markdown = false;
 };
 
-const BlockType& find_block(const std::string& name) {
+/// The block of a name, with or without its HY_, or by the name of another library; null where there is none.
+const BlockType* named_block(const std::string& name) {
   for (const auto& candidate : {name, "HY_" + name, std::string(block_of_other_name(name))}) {
     if (const BlockType* const block = find_block_type(candidate)) {
-      return *block;
+      return block;
     }
   }
+  return nullptr;
+}
+
+/// The blocks whose name or title has the word, then those that only speak of it.
+std::vector<const BlockType*> blocks_that_tell_of(const std::string& word) {
+  const std::string wanted = in_capitals(word);
+  const auto has = [&](std::string_view text) { return in_capitals(text).find(wanted) != std::string::npos; };
+  std::vector<const BlockType*> named;
+  std::vector<const BlockType*> others;
+  for (const BlockType& block : block_types()) {
+    if (has(block.about.name) || has(block.about.title)) {
+      named.push_back(&block);
+    } else if (has(block.about.meaning)) {
+      others.push_back(&block);
+    }
+  }
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
+}
+
+[[noreturn]] void refuse_unknown(const std::string& name) {
   std::vector<std::string_view> known;
   for (const BlockType& block : block_types()) {
     known.push_back(block.about.name);
@@ -65,16 +88,24 @@ std::vector<const BlockType*> blocks_of(Group group) {
   return list;
 }
 
-std::string listed() {
+std::size_t widest_name() {
   std::size_t width = 0;
   for (const BlockType& block : block_types()) {
     width = std::max(width, block.about.name.size());
   }
+  return width;
+}
+
+std::string line_of(const BlockType& block) {
+  return fmt::format("  {:<{}}  {}\n", block.about.name, widest_name(), block.about.title);
+}
+
+std::string listed() {
   std::string text;
   for (const Group group : groups) {
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n", group_name(group));
     for (const BlockType* const block : blocks_of(group)) {
-      text += fmt::format("  {:<{}}  {}\n", block->about.name, width, block->about.title);
+      text += line_of(*block);
     }
   }
   return text;
@@ -93,12 +124,28 @@ std::string reference() {
   return text;
 }
 
+/// What a word that names no block leads to.
+std::string found(const std::string& word, const BlocksOptions& options) {
+  const std::vector<const BlockType*> blocks = blocks_that_tell_of(word);
+  if (blocks.empty()) {
+    refuse_unknown(word);
+  }
+  auto list = nlohmann::json::array();
+  std::string text = options.markdown ? std::string() : fmt::format("blocks that tell of {}\n", word);
+  for (const BlockType* const block : blocks) {
+    list.push_back(card_json(*block));
+    text += options.markdown ? block_page(*block) + "\n" : line_of(*block);
+  }
+  return options.json ? list.dump(2) + "\n" : text;
+}
+
 int show_blocks(const BlocksOptions& options, Console& console) {
   if (!options.name.empty()) {
-    const BlockType& block = find_block(options.name);
-    console.print(options.json       ? card_json(block).dump(2) + "\n"
-                  : options.markdown ? block_page(block)
-                                     : card_text(block));
+    const BlockType* const block = named_block(options.name);
+    console.print(block == nullptr   ? found(options.name, options)
+                  : options.json     ? card_json(*block).dump(2) + "\n"
+                  : options.markdown ? block_page(*block)
+                                     : card_text(*block));
   } else if (options.json) {
     auto list = nlohmann::json::array();
     for (const BlockType& block : block_types()) {
@@ -115,7 +162,8 @@ int show_blocks(const BlocksOptions& options, Console& console) {
 
 Action add_blocks(CLI::App& app) {
   const auto options = std::make_shared<BlocksOptions>();
-  app.add_option("NAME", options->name, "The block to describe, with or without its HY_.")->option_text(" ");
+  app.add_option("NAME", options->name, "The block to describe, with or without its HY_; or a word to look for.")
+      ->option_text(" ");
   auto* const json = app.add_flag("--json", options->json, "Prints JSON.");
   app.add_flag("--markdown", options->markdown, "Prints Markdown, as in the reference.")->excludes(json);
   app.footer(std::string(blocks_examples));

@@ -6,10 +6,13 @@ namespace hysteron::tool {
 
 std::span<const Command> commands() {
   static constexpr std::array list{
+      Command{"new", "Makes a folder to begin with: diagram, parameters, record, test.", add_new},
       Command{"check", "Checks diagrams: syntax, names, types, wires, units, loops.", add_check},
       Command{"fmt", "Formats diagrams, and never changes what they mean.", add_fmt},
       Command{"draw", "Draws a diagram as a picture.", add_draw},
       Command{"record", "Says what was understood of a measured record.", add_record},
+      Command{"plot", "Draws records and parameters as a picture, or as a page with zoom.", add_plot},
+      Command{"compare", "Compares two records, parameter files, diagrams or verdicts.", add_compare},
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},

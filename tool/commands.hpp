@@ -31,10 +31,13 @@ struct Command {
 /// All commands, in the order in which the help lists them.
 [[nodiscard]] std::span<const Command> commands();
 
+Action add_new(CLI::App& app);
 Action add_check(CLI::App& app);
 Action add_fmt(CLI::App& app);
 Action add_draw(CLI::App& app);
 Action add_record(CLI::App& app);
+Action add_plot(CLI::App& app);
+Action add_compare(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
 Action add_import(CLI::App& app);

@@ -75,13 +75,13 @@ std::string runner(const std::string& name, const Graph& graph) {
          "      return 4;\n    }\n  }\n  return std::fflush(stdout) == 0 ? 0 : 4;\n}\n";
 }
 
-struct Sources {
+struct GeneratedSources {
   std::string host;
   std::vector<GeneratedFile> headers;
 };
 
-Sources sources_of(const std::vector<GeneratedProgram>& programs) {
-  Sources sources{.host = std::string(host_head), .headers = {}};
+GeneratedSources sources_of(const std::vector<GeneratedProgram>& programs) {
+  GeneratedSources sources{.host = std::string(host_head), .headers = {}};
   std::string runners;
   std::string cases;
   for (std::size_t i = 0; i < programs.size(); ++i) {
@@ -105,7 +105,7 @@ std::string version_of(const std::vector<std::string>& compiler, const fs::path&
   return run_program(command, {.output = output}) == 0 ? read_text_file(output.string()) : std::string();
 }
 
-void compile_sources(const Sources& sources, std::vector<std::string> command, const fs::path& executable) {
+void compile_sources(const GeneratedSources& sources, std::vector<std::string> command, const fs::path& executable) {
   const auto folder = executable.parent_path();
   for (const GeneratedFile& header : sources.headers) {
     write_scratch(folder / header.name, header.text);
@@ -141,7 +141,7 @@ std::vector<std::string> compiler_command() {
 
 CompiledPrograms::CompiledPrograms(const std::vector<GeneratedProgram>& programs) {
   const auto compiler = compiler_command();
-  const Sources sources = sources_of(programs);
+  const GeneratedSources sources = sources_of(programs);
   for (const GeneratedProgram& one : programs) {
     shapes_.push_back({.name = one.program->graph.name,
                        .inputs = one.program->graph.inputs.size(),

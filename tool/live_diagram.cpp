@@ -11,6 +11,7 @@
 #include "diagnosis/report/drawn_graph.hpp"
 #include "diagnosis/report/html.hpp"
 #include "diagnosis/report/layered_layout.hpp"
+#include "support/utf8.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -40,7 +41,7 @@ struct Shown {
 };
 
 double width_of(const std::string& text, double each) {
-  return each * static_cast<double>(diagnosis::report::length_of(text));
+  return each * static_cast<double>(character_count(text));
 }
 
 class Picture {
@@ -122,7 +123,7 @@ class Picture {
     return small_character * static_cast<double>(value_length + 1 + (shown.unit == "1" ? 0 : shown.unit.size()));
   }
 
-  static std::string name_of(const DrawnBox& box) { return diagnosis::report::clipped(box.name, longest_name); }
+  static std::string name_of(const DrawnBox& box) { return clipped(box.name, longest_name); }
 
   [[nodiscard]] LayoutBox size_of(std::size_t index) const {
     const DrawnBox& box = drawn_.boxes[index];

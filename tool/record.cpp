@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,12 +13,11 @@
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
-#include "support/overwriting.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
-#include "tool/line_plot.hpp"
+#include "tool/picture_file.hpp"
+#include "tool/record_figures.hpp"
 #include "tool/record_options.hpp"
-#include "tool/writable.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -117,31 +115,9 @@ std::string as_json(const records::Record& record, const std::vector<Row>& rows)
   return json.dump(2) + "\n";
 }
 
-/// A plot for each column, one below the other.
-std::string picture_of(const records::Record& record) {
-  constexpr double height = line_plot_height + 20.0;
-  const std::vector<records::Column>& columns = record.columns();
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
-      "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      line_plot_width, height * static_cast<double>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const std::array lines{
-        Line{.name = columns[i].name, .colour = "#1f4e79", .x = record.time(), .y = columns[i].values}};
-    const std::string unit = columns[i].unit.empty() ? "" : fmt::format(" [{}]", columns[i].unit);
-    const std::string plot = line_plot({.title = columns[i].name, .x = "t [s]", .y = columns[i].name + unit}, lines);
-    const auto open = plot.find("<svg ");
-    svg +=
-        plot.substr(0, open) + fmt::format("<svg y=\"{}\" ", height * static_cast<double>(i)) + plot.substr(open + 5);
-  }
-  return svg + "</svg>\n";
-}
-
 int show(const RecordCommandOptions& options, Console& console) {
   if (!options.picture.empty()) {
-    const std::vector<InputFile> inputs{{.file = options.file, .named_by = "LOG"}};
-    refuse_to_overwrite({.file = options.picture, .mend = "give another name for --picture."}, inputs);
-    refuse_unwritable(options.picture);
+    refuse_unfit_picture(options.picture, "--picture", {{.file = options.file, .named_by = "LOG"}});
   }
   const std::string bytes = read_text_file(options.file);
   console.sources().put(options.file, bytes);
@@ -158,7 +134,9 @@ int show(const RecordCommandOptions& options, Console& console) {
   }
   const std::vector<Row> rows = rows_of(record);
   if (!options.picture.empty()) {
-    write_file_atomically(options.picture, picture_of(record));
+    const std::vector<NamedRecord> drawn{{.name = options.file, .record = record}};
+    const std::vector<plots::Figure> figures{figure_over_time(drawn)};
+    write_file_atomically(options.picture, picture_bytes(options.picture, options.file, figures));
   }
   console.print(options.json ? as_json(record, rows) : as_text(record, rows));
   return exit_ok;
@@ -172,7 +150,8 @@ Action add_record(CLI::App& app) {
   add_record_options(app, options->record);
   app.add_option("--params", options->parameters, "Takes [record] of a parameter file, where no option says otherwise.")
       ->option_text("P.toml");
-  app.add_option("--picture", options->picture, "Draws the columns over the time.")->option_text("FILE.svg");
+  app.add_option("--picture", options->picture, "Draws the columns over the time: .svg, .png, .html.")
+      ->option_text("FILE");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(record_examples));
   return [options](Console& console) { return show(*options, console); };

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -109,6 +111,18 @@ void take_range(const RecordOptions& options, records::ReadOptions& result) {
   }
 }
 
+/// The options that take one text, by their names.
+template <class Options>
+auto texts_of(Options& options) {
+  return std::array{std::pair(std::string_view("time"), &options.time),
+                    std::pair(std::string_view("rate"), &options.rate),
+                    std::pair(std::string_view("skip"), &options.skip),
+                    std::pair(std::string_view("range"), &options.range),
+                    std::pair(std::string_view("rows"), &options.rows),
+                    std::pair(std::string_view("decimal"), &options.decimal),
+                    std::pair(std::string_view("resample"), &options.resample)};
+}
+
 }  // namespace
 
 void add_record_options(CLI::App& app, RecordOptions& options) {
@@ -134,9 +148,7 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
 }
 
 RecordOptions with_settings(RecordOptions options, const parameters::RecordSettings& settings) {
-  const std::pair<std::string_view, std::string*> texts[] = {
-      {"time", &options.time}, {"rate", &options.rate},       {"skip", &options.skip},        {"range", &options.range},
-      {"rows", &options.rows}, {"decimal", &options.decimal}, {"resample", &options.resample}};
+  const auto texts = texts_of(options);
   for (const auto& [key, value] : settings.settings) {
     const auto* const found = std::ranges::find_if(texts, [&](const auto& text) { return text.first == key; });
     if (found != std::end(texts) && found->second->empty()) {
@@ -208,6 +220,31 @@ records::ReadOptions read_options(const RecordOptions& options, const Program* p
     }
   }
   return result;
+}
+
+std::string quoted(const std::string& word) {
+  const bool is_plain = std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-./+:,=@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain) {
+    return word;
+  }
+  std::string result = "'";
+  for (const char c : word) {
+    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return result + "'";
+}
+
+std::string record_arguments(const RecordOptions& options) {
+  std::string text;
+  for (const auto& [key, value] : texts_of(options)) {
+    text += value->empty() ? "" : fmt::format(" --{} {}", key, quoted(*value));
+  }
+  for (const std::string& column : options.columns) {
+    text += " --column " + quoted(column);
+  }
+  return text;
 }
 
 void say_what_was_read(const records::Record& record, const Program& program, bool tell_unused) {

@@ -38,6 +38,12 @@ void add_record_options(CLI::App& app, RecordOptions& options);
 /// The same from a parameter file, where one is named.
 [[nodiscard]] RecordOptions with_settings_of(const std::string& parameter_file, const RecordOptions& options);
 
+/// The same as they stand on a command line, each with a space before it; nothing where none is given.
+[[nodiscard]] std::string record_arguments(const RecordOptions& options);
+
+/// A word of a command line, in quotes where the shell would take it apart.
+[[nodiscard]] std::string quoted(const std::string& word);
+
 /// What they say. Throws InputError HY730 for one that says nothing. With a diagram, a record is resampled to its
 /// sample time.
 [[nodiscard]] records::ReadOptions read_options(const RecordOptions& options, const Program* program = nullptr);

@@ -17,6 +17,8 @@
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/output_record.hpp"
+#include "tool/picture_file.hpp"
+#include "tool/record_figures.hpp"
 #include "tool/record_options.hpp"
 #include "tool/writable.hpp"
 #include "tuning/record_units.hpp"
@@ -29,6 +31,7 @@ constexpr std::string_view run_examples = R"(Examples:
   hysteron run feedforward.st --in reference.csv --out voltage.csv
   hysteron run feedforward.st --in reference.csv --out voltage.csv --params tuned.toml --summary
   hysteron run feedforward.st --in reference.csv --out voltage.csv --trace INV.XOUT --trace BRANCH.Q
+  hysteron run plant.st --in log.csv --out out.csv --plot fit.html
   hysteron run loop.st --in reference.csv --out voltage.csv --trace ERROR --trace PLANT.HYST.XOUT
   hysteron run feedforward.st --in - --out - < reference.csv | head
 
@@ -45,6 +48,7 @@ struct RunOptions {
   std::string input;
   std::string output;
   std::vector<std::string> traces;
+  std::string plot;
   bool summary = false;
 };
 
@@ -136,12 +140,42 @@ std::string summary(const Program& program, const Drive& drive, const records::R
   return unused.empty() ? text : text + "columns not used:" + unused + "\n";
 }
 
+/// The record and the run of it, one over the other: the columns that the diagram has ports for.
+std::vector<plots::Figure> figures_of(const Program& program, const records::Record& record,
+                                      const std::vector<std::string>& names, const std::vector<Signal>& values) {
+  const Graph& graph = program.graph;
+  records::Record measured = record;
+  for (const records::Column& column : record.columns()) {
+    const auto same = [&](const Port& port) { return equal_ignoring_case(port.name, column.name); };
+    if (std::ranges::none_of(graph.inputs, same) && std::ranges::none_of(graph.outputs, same)) {
+      measured.remove(column.name);
+    }
+  }
+  std::vector<records::Column> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto port = std::ranges::find_if(graph.outputs, [&](const Port& one) { return one.name == names[i]; });
+    columns.push_back({.name = names[i], .unit = port == graph.outputs.end() ? "" : port->unit, .values = values[i]});
+  }
+  const std::vector<double> time(record.time().begin(), record.time().end());
+  const std::vector<NamedRecord> both{
+      {.name = "record", .record = std::move(measured)},
+      {.name = "run", .record = {time, record.sample_time(), std::move(columns), {.file = "run"}}}};
+  plots::Figure figure = figure_over_time(both);
+  figure.title = fmt::format("{}: run of {}", graph.name, record.file());
+  return {std::move(figure)};
+}
+
 int run(const RunOptions& options, Console& console) {
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.input, .named_by = "--in"});
   refuse_to_overwrite({.file = options.output == "-" ? "" : options.output}, inputs);
   if (options.output != "-") {
     refuse_unwritable(options.output);
+  }
+  if (!options.plot.empty()) {
+    std::vector<InputFile> taken = inputs;
+    taken.push_back({.file = options.output == "-" ? "" : options.output, .named_by = "--out"});
+    refuse_unfit_picture(options.plot, "--plot", taken);
   }
   Diagnostics diagnostics;
   Program program = load_diagram(options.diagram, diagnostics);
@@ -182,6 +216,10 @@ int run(const RunOptions& options, Console& console) {
   } else {
     write_file_atomically(options.output, text);
   }
+  if (!options.plot.empty()) {
+    const auto figures = figures_of(program, record, names, values);
+    write_file_atomically(options.plot, picture_bytes(options.plot, figures.front().title, figures));
+  }
   console.report(diagnostics);
   say_what_was_read(record, program, !options.summary);
   if (options.summary) {
@@ -207,6 +245,8 @@ Action add_run(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_record_options(app, options->record);
+  app.add_option("--plot", options->plot, "Draws the run and its record: .svg, .png, or .html for a page with zoom.")
+      ->option_text("FILE");
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(run_examples));
   return [options](Console& console) {

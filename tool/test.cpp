@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "codegen/program_hash.hpp"
+#include "plots/thinned.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -19,6 +21,7 @@
 #include "tool/commands.hpp"
 #include "tool/compiled.hpp"
 #include "tool/diagram.hpp"
+#include "tool/picture_file.hpp"
 #include "tool/test_judge.hpp"
 #include "tool/test_plan.hpp"
 #include "tool/test_report.hpp"
@@ -32,6 +35,7 @@ constexpr std::string_view test_examples = R"(Examples:
   hysteron test feedforward.st              runs feedforward.test.toml
   hysteron test src/*.st --junit tests.xml
   hysteron test feedforward.st --filter dwell --no-generated
+  hysteron test feedforward.st --plot cases.html
   hysteron test feedforward.st --update     writes the golden records that cases name
 
 A test file:
@@ -56,6 +60,7 @@ struct TestOptions {
   std::string filter;
   bool update = false;
   bool no_generated = false;
+  std::string plot;
 };
 
 std::string test_file_of(const std::string& diagram) {
@@ -96,12 +101,55 @@ void append(std::vector<Failure>& failures, std::vector<Failure> more) {
   std::move(more.begin(), more.end(), std::back_inserter(failures));
 }
 
+/// What was expected of each output and what came, and the inputs that made it.
+plots::Figure figure_of(const PlannedCase& planned, const std::vector<Signal>& outputs) {
+  const Graph& graph = planned.program.graph;
+  plots::Figure figure{.title = planned.test.name};
+  const auto panel = [&](const Port& port, const Signal& values) {
+    return plots::FigurePanel{
+        .title = port.name,
+        .x_label = "t [s]",
+        .y_label = plots::axis_label(port.name, port.unit),
+        .curves = {{.name = "got",
+                    .x = planned.time,
+                    .y = values,
+                    .stroke = port.type == Type::Real && !plots::is_of_steps(values) ? plots::Stroke::Line
+                                                                                     : plots::Stroke::Steps}}};
+  };
+  for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+    if (planned.drive.inputs[i].size() == planned.time.size()) {
+      figure.panels.push_back(panel(graph.inputs[i], planned.drive.inputs[i]));
+      figure.panels.back().curves.front().name = "input";
+      figure.panels.back().curves.front().colour = 2;
+    }
+  }
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    figure.panels.push_back(panel(graph.outputs[i], outputs[i]));
+    for (const ExpectedOutput& expected : planned.expected) {
+      if (expected.output != i) {
+        continue;
+      }
+      plots::Curve curve{.name = "expected", .stroke = plots::Stroke::Dots, .colour = 1};
+      for (const auto& [step, value] : expected.values) {
+        curve.x.push_back(planned.time[step]);
+        curve.y.push_back(value);
+      }
+      figure.panels.back().curves.push_back(std::move(curve));
+    }
+  }
+  return figure;
+}
+
 /// One case by the interpreter and, where there is one, as a generated program.
-CaseResult run_case(std::size_t number, const PlannedCase& planned, const GeneratedPrograms* generated, bool update) {
+CaseResult run_case(std::size_t number, const PlannedCase& planned, const GeneratedPrograms* generated, bool update,
+                    bool draw) {
   const auto begun = std::chrono::steady_clock::now();
   CaseResult result{.name = planned.test.name};
   const auto outputs =
       interpret(planned.program, planned.drive, output_wires(planned.program.graph), planned.test.float32);
+  if (draw) {
+    result.figure = figure_of(planned, outputs);
+  }
   append(result.failures, judge(planned, outputs));
   if (generated != nullptr) {
     append(result.failures, judge_bits(planned, outputs, generated->run(number, planned)));
@@ -152,8 +200,9 @@ void refuse_to_overwrite(const std::vector<PlannedCase>& cases, const std::vecto
   }
 }
 
-/// The results are written over none of the files that a run reads. A test file that cannot be read is reported later.
-void refuse_to_overwrite(const std::string& junit, const TestOptions& options) {
+/// The files that a run reads. A test file that cannot be read is reported later.
+std::vector<InputFile> inputs_of(const TestOptions& options) {
+  std::vector<InputFile> inputs;
   for (const std::string& diagram : options.diagrams) {
     const std::string tests = options.tests.empty() ? test_file_of(diagram) : options.tests;
     TestFile file;
@@ -162,8 +211,9 @@ void refuse_to_overwrite(const std::string& junit, const TestOptions& options) {
     } catch (const InputError&) {
       file = {};
     }
-    hysteron::refuse_to_overwrite({.file = junit}, inputs_of(diagram, tests, file, true));
+    std::ranges::move(inputs_of(diagram, tests, file, true), std::back_inserter(inputs));
   }
+  return inputs;
 }
 
 /// The cases of one file that the filter selects.
@@ -194,9 +244,24 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
   }
   for (std::size_t i = 0; i < cases.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(cases.size()), cases[i].test.name);
-    result.cases.push_back(run_case(i, cases[i], generated ? &*generated : nullptr, options.update));
+    result.cases.push_back(
+        run_case(i, cases[i], generated ? &*generated : nullptr, options.update, !options.plot.empty()));
   }
   return result;
+}
+
+/// A figure a case; of one that failed, its title says so.
+std::vector<plots::Figure> figures_of(const std::vector<FileResult>& results) {
+  std::vector<plots::Figure> figures;
+  for (const FileResult& result : results) {
+    for (const CaseResult& one : result.cases) {
+      if (one.figure) {
+        figures.push_back(*one.figure);
+        figures.back().title = fmt::format("{}: {}{}", result.file, one.name, one.failures.empty() ? "" : " (failed)");
+      }
+    }
+  }
+  return figures;
 }
 
 std::string existing_test_file(const std::string& diagram, const TestOptions& options) {
@@ -216,7 +281,12 @@ int run_tests(const TestOptions& options, Console& console) {
                      "give one diagram, or leave --tests out.");
   }
   if (!options.junit.empty()) {
-    refuse_to_overwrite(options.junit, options);
+    hysteron::refuse_to_overwrite({.file = options.junit}, inputs_of(options));
+  }
+  if (!options.plot.empty()) {
+    std::vector<InputFile> inputs = inputs_of(options);
+    inputs.push_back({.file = options.junit, .named_by = "--junit"});
+    refuse_unfit_picture(options.plot, "--plot", inputs);
   }
   Diagnostics refused;
   std::vector<FileResult> results;
@@ -236,6 +306,9 @@ int run_tests(const TestOptions& options, Console& console) {
   }
   if (!options.junit.empty()) {
     write_file_atomically(options.junit, junit_text(results));
+  }
+  if (!options.plot.empty() && cases > 0) {
+    write_file_atomically(options.plot, picture_bytes(options.plot, "Tests", figures_of(results)));
   }
   if (cases > 0) {
     console.print(closing_line(results));
@@ -261,6 +334,8 @@ Action add_test(CLI::App& app) {
   app.add_flag("--update", options->update, "Writes golden records instead of holding outputs against them.");
   app.add_option("--junit", options->junit, "Writes the results as JUnit XML, for a build server.")
       ->option_text("FILE.xml");
+  app.add_option("--plot", options->plot, "Draws what each case expects and gets: .svg, .png, .html.")
+      ->option_text("FILE");
   app.add_flag("--no-generated", options->no_generated, "Runs the interpreter alone; needs no compiler.");
   app.add_option("--filter", options->filter, "Runs only cases with this in their names.")->option_text("TEXT");
   app.footer(std::string(test_examples));

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "plots/figure.hpp"
 #include "tool/test_judge.hpp"
 
 namespace hysteron::tool {
@@ -13,6 +15,7 @@ struct CaseResult {
   std::string name{};
   double seconds = 0.0;
   std::vector<Failure> failures{};
+  std::optional<plots::Figure> figure{};
   std::string note{};  ///< what else was done: a golden record written
 };
 

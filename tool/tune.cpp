@@ -114,6 +114,17 @@ void prove_outputs(const TuneOptions& options) {
   refuse_unwritable_folder(options.report);
 }
 
+/// What looks for the cause of what this fit leaves.
+std::string diagnose_command(const TuneOptions& options) {
+  std::string command = "hysteron diagnose " + quoted(options.diagram.file);
+  command += options.diagram.top.empty() ? "" : " --top " + quoted(options.diagram.top);
+  for (const std::string& log : options.logs) {
+    command += " --log " + quoted(log);
+  }
+  return command +
+         fmt::format(" --params {} --out diagnosis{}", quoted(options.output), record_arguments(options.record));
+}
+
 int tune(const TuneOptions& options, Console& console) {
   prove_outputs(options);
   Diagnostics warnings;
@@ -140,7 +151,10 @@ int tune(const TuneOptions& options, Console& console) {
     line.finish();
   }
 
-  const TuneReport report{.problem = problem, .fit = fit};
+  TuneReport report{.problem = problem, .fit = fit, .diagnose_command = diagnose_command(options)};
+  for (std::size_t output = 0; output < problem.outputs.size(); ++output) {
+    report.floors.push_back(diagnosis::noise_floor(problem.experiments, output));
+  }
   std::vector<OutputFile> files =
       options.report.empty() ? std::vector<OutputFile>() : report_files(options.report, report);
   files.push_back({.path = options.output,

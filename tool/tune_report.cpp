@@ -9,35 +9,12 @@
 #include <utility>
 
 #include "records/csv.hpp"
-#include "support/markup.hpp"
-#include "tool/line_plot.hpp"
+#include "tool/tune_page.hpp"
 
 namespace hysteron::tool {
 namespace {
 
-std::string iterations_of(const OutputErrorFit& fit) {
-  return fmt::format("{} iteration{}", fit.solution.iterations, fit.solution.iterations == 1 ? "" : "s");
-}
-
 using Eigen::Index;
-
-std::string unit_behind(const std::string& unit) {
-  return unit.empty() || unit == "1" ? std::string() : " " + unit;
-}
-
-std::string error_text(const LeastSquaresResult& solution, double standard_error, std::size_t unknown) {
-  if (solution.at_bound[unknown] == AtBound::Lower || solution.at_bound[unknown] == AtBound::Upper) {
-    return solution.at_bound[unknown] == AtBound::Lower ? "on its lower bound" : "on its upper bound";
-  }
-  if (std::isinf(standard_error)) {
-    return "not determined";
-  }
-  return std::isnan(standard_error) ? "unknown" : fmt::format("{:.2g}", standard_error);
-}
-
-std::string share_of(double error, double range) {
-  return range > 0.0 ? fmt::format(", {:.3g} % of the range", 100.0 * error / range) : std::string();
-}
 
 /// JSON has no infinities: what is not known is null.
 nlohmann::json number(double value) {
@@ -68,86 +45,6 @@ std::string status_name(FitStatus status) {
   return {};
 }
 
-Signal residuals_of(const TuneReport& report, std::size_t record, std::size_t output) {
-  Signal residuals = report.fit.model[record][output];
-  const Signal& measured = report.problem.experiments[record].measured[output];
-  for (std::size_t k = 0; k < residuals.size(); ++k) {
-    residuals[k] -= measured[k];
-  }
-  return residuals;
-}
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
-
-std::string pictures_of(const TuneReport& report, std::size_t record) {
-  const Experiment& experiment = report.problem.experiments[record];
-  const Graph& graph = report.problem.program.graph;
-  std::string html;
-  for (std::size_t output = 0; output < report.problem.outputs.size(); ++output) {
-    const Port& port = graph.outputs[report.problem.outputs[output]];
-    const Signal& model = report.fit.model[record][output];
-    const Signal& measured = experiment.measured[output];
-    const Signal residuals = residuals_of(report, record, output);
-    const Line over_time[] = {{"measured", "#000000", experiment.time, measured},
-                              {"model", "#d55e00", experiment.time, model}};
-    html += line_plot({port.name + " over time", "t [s]", with_unit(port.name, port.unit)}, over_time);
-    const Line left[] = {{"model - measured", "#0072b2", experiment.time, residuals}};
-    html += line_plot({"Residual of " + port.name, "t [s]", with_unit(port.name, port.unit)}, left);
-    for (std::size_t input = 0; input < graph.inputs.size(); ++input) {
-      const Signal& u = experiment.drive.inputs[input];
-      if (graph.inputs[input].type == Type::Real && u.size() == measured.size()) {
-        const Line loop[] = {{"measured", "#000000", u, measured}, {"model", "#d55e00", u, model}};
-        html +=
-            line_plot({fmt::format("{} over {}", port.name, graph.inputs[input].name),
-                       with_unit(graph.inputs[input].name, graph.inputs[input].unit), with_unit(port.name, port.unit)},
-                      loop);
-      }
-    }
-  }
-  return html;
-}
-
-std::string page(const TuneReport& report) {
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Fit of {0}</title>\n"
-      "<style>body{{font-family:sans-serif;max-width:900px;margin:2em auto;color:#222}}"
-      "table{{border-collapse:collapse}}td,th{{padding:.25em .8em;border-bottom:1px solid #ccc;text-align:left}}"
-      "svg{{max-width:100%;height:auto;display:block;margin:1em 0}}</style></head>\n<body><h1>Fit of {0}</h1>\n"
-      "<p>{1} {2}, {3:.2g} s.</p>\n",
-      escaped(report.problem.program.graph.name), escaped(report.fit.solution.message), iterations_of(report.fit),
-      report.fit.seconds);
-  html += "<table><tr><th>parameter</th><th>value</th><th>standard error</th><th>unit</th></tr>\n";
-  for (std::size_t i = 0; i < report.fit.names.size(); ++i) {
-    const auto j = static_cast<Index>(i);
-    html += fmt::format("<tr><td>{}</td><td>{:.8g}</td><td>{}</td><td>{}</td></tr>\n", escaped(report.fit.names[i]),
-                        report.fit.solution.x[j],
-                        error_text(report.fit.solution, report.fit.covariance.standard_errors[j], i),
-                        escaped(report.fit.units[i]));
-  }
-  html += "</table>\n<table><tr><th>output</th><th>RMSE in train</th><th>RMSE in test</th><th>range</th></tr>\n";
-  for (const OutputScore& score : report.fit.scores) {
-    const auto cell = [&](double error, double range) {
-      return std::isnan(error) ? std::string("no samples")
-                               : fmt::format("{:.4g}{}{}", error, unit_behind(score.unit), share_of(error, range));
-    };
-    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}{}</td></tr>\n", escaped(score.output),
-                        escaped(cell(score.train, score.range)), escaped(cell(score.test, score.test_range)),
-                        score.range, escaped(unit_behind(score.unit)));
-  }
-  html += "</table>\n<ul>\n";
-  for (const std::string& warning : report.fit.covariance.warnings) {
-    html += fmt::format("<li>{}</li>\n", escaped(warning));
-  }
-  html += "</ul>\n";
-  for (std::size_t record = 0; record < report.problem.experiments.size(); ++record) {
-    html += fmt::format("<h2>{}</h2>\n", escaped(report.problem.experiments[record].name));
-    html += pictures_of(report, record);
-  }
-  return html + "</body></html>\n";
-}
-
 /// Which start was best, and what each left.
 std::string starts_text(const OutputErrorFit& fit) {
   if (fit.start_costs.size() < 2) {
@@ -175,7 +72,7 @@ bool stays_at_start(const TuneReport& report) {
 }  // namespace
 
 std::string as_text(const TuneReport& report) {
-  const auto& [problem, fit] = report;
+  const OutputErrorFit& fit = report.fit;
   std::size_t widest = 9;
   for (const std::string& name : fit.names) {
     widest = std::max(widest, name.size());
@@ -200,6 +97,7 @@ std::string as_text(const TuneReport& report) {
     text += warning + '\n';
   }
   text += starts_text(fit);
+  text += what_is_not_in_the_model(report);
   if (stays_at_start(report)) {
     text += "Nothing better than the start was found: its values are kept.\n";
   }
@@ -207,7 +105,8 @@ std::string as_text(const TuneReport& report) {
 }
 
 nlohmann::json as_json(const TuneReport& report) {
-  const auto& [problem, fit] = report;
+  const OutputErrorProblem& problem = report.problem;
+  const OutputErrorFit& fit = report.fit;
   nlohmann::json json = {{"diagram", problem.program.graph.name},
                          {"status", status_name(fit.solution.status)},
                          {"message", fit.solution.message},
@@ -215,6 +114,7 @@ nlohmann::json as_json(const TuneReport& report) {
                          {"seconds", fit.seconds},
                          {"correlation_time_samples", number(fit.covariance.correlation_time)},
                          {"warnings", fit.covariance.warnings},
+                         {"not_in_the_model", what_is_not_in_the_model(report)},
                          {"parameters", nlohmann::json::array()},
                          {"initial_states", nlohmann::json::array()},
                          {"outputs", nlohmann::json::array()},
@@ -264,7 +164,7 @@ std::vector<std::filesystem::path> report_paths(const std::filesystem::path& fol
 }
 
 std::vector<OutputFile> report_files(const std::filesystem::path& folder, const TuneReport& report) {
-  std::vector<std::string> contents{page(report), as_json(report).dump(2) + "\n"};
+  std::vector<std::string> contents{tune_page(report), as_json(report).dump(2) + "\n"};
   for (std::size_t record = 0; record < report.problem.experiments.size(); ++record) {
     const Experiment& experiment = report.problem.experiments[record];
     std::vector<records::Column> columns;

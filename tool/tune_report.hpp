@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/noise/noise_floor.hpp"
 #include "support/atomic_file.hpp"
 #include "tuning/output_error.hpp"
 
@@ -15,6 +16,8 @@ namespace hysteron::tool {
 struct TuneReport {
   const OutputErrorProblem& problem;
   const OutputErrorFit& fit;
+  std::string diagnose_command{};               ///< what looks for the cause of what is left; empty: none is named
+  std::vector<diagnosis::NoiseFloor> floors{};  ///< by measured output
 };
 
 [[nodiscard]] std::string as_text(const TuneReport& report);

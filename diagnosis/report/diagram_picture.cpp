@@ -41,7 +41,7 @@ bool names_wire(const DrawnWire& wire, const std::string& edge) {
 /// too many.
 std::vector<std::string> lines_of(std::string_view name) {
   std::vector<std::string> lines;
-  while (lines.size() + 1 < most_lines && length_of(name) > longest_line) {
+  while (lines.size() + 1 < most_lines && character_count(name) > longest_line) {
     const std::size_t fits = clipped(name, longest_line).size() - std::string_view("…").size();
     const std::size_t space = name.substr(0, fits).rfind(' ');
     const std::size_t place = space != std::string_view::npos ? space : name.substr(0, fits).find_last_of("_.");
@@ -56,7 +56,7 @@ std::vector<std::string> lines_of(std::string_view name) {
 double widest_of(const std::vector<std::string>& lines) {
   std::size_t most = 0;
   for (const std::string& line : lines) {
-    most = std::max(most, length_of(line));
+    most = std::max(most, character_count(line));
   }
   return character * static_cast<double>(most);
 }
@@ -116,9 +116,9 @@ class Picture {
     if (box.kind == DrawnBox::Kind::Expression) {
       return {name * 0.9 + 20.0, 14.0 + row * static_cast<double>(lines.size()), Side::Any};
     }
-    const double type = small_character * static_cast<double>(length_of(box.type));
+    const double type = small_character * static_cast<double>(character_count(box.type));
     const double rows = row * static_cast<double>(std::max(box.pins.size(), box.outputs.size()));
-    const double effect = added ? small_character * static_cast<double>(length_of(effect_text(box))) : 0.0;
+    const double effect = added ? small_character * static_cast<double>(character_count(effect_text(box))) : 0.0;
     LayoutBox size{std::max({name, type, effect}) + 24.0, head_of(box, added) + (has_rows(box) ? rows : 2.0),
                    Side::Any};
     if (box.kind == DrawnBox::Kind::Effect) {

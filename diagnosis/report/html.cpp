@@ -6,14 +6,6 @@
 #include <cmath>
 
 namespace hysteron::diagnosis::report {
-namespace {
-
-bool begins_character(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-}
-
-}  // namespace
-
 std::string figure(double value, int digits) {
   if (!std::isfinite(value)) {
     return "–";
@@ -49,22 +41,6 @@ std::string words_of(std::string_view identifier) {
   std::string words(identifier);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
-}
-
-std::size_t length_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
-}
-
-std::string clipped(std::string_view text, std::size_t most) {
-  if (length_of(text) <= most) {
-    return std::string(text);
-  }
-  std::size_t seen = 0;
-  std::size_t end = 0;
-  while (end < text.size() && (!begins_character(text[end]) || ++seen < most)) {
-    ++end;
-  }
-  return std::string(text.substr(0, end)) + "…";
 }
 
 std::string share_bar(double share, std::string_view css_class) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/markup.hpp"
+#include "support/utf8.hpp"
 
 namespace hysteron::diagnosis::report {
 
@@ -25,12 +26,6 @@ using hysteron::escaped;
 
 /// An identifier as words: even_nonlinearity becomes even nonlinearity.
 [[nodiscard]] std::string words_of(std::string_view identifier);
-
-/// At most so many characters of UTF-8, with an ellipsis for the rest.
-[[nodiscard]] std::string clipped(std::string_view text, std::size_t most);
-
-/// The number of characters of UTF-8.
-[[nodiscard]] std::size_t length_of(std::string_view text);
 
 /// A share as a small bar within a line of text.
 [[nodiscard]] std::string share_bar(double share, std::string_view css_class);

@@ -10,6 +10,7 @@
 #include "diagnosis/findings/evidence_findings.hpp"
 #include "diagnosis/report/html.hpp"
 #include "diagnosis/report/sections.hpp"
+#include "plots/axis.hpp"
 
 namespace hysteron::diagnosis::report {
 namespace {
@@ -23,38 +24,31 @@ constexpr double bottom = 46.0;
 /// More points hide each other.
 constexpr std::size_t most_points = 1500;
 /// Of a scale: more crowd it.
-constexpr double most_ticks = 6.0;
+constexpr int most_ticks = 6;
 
-struct Range {
-  double low = 0.0;
-  double high = 1.0;
-};
+using plots::Reach;
 
 /// From the first to the last percent of values, with room to both sides: single samples set no scale.
-Range range_of(std::vector<double> values) {
+Reach range_of(std::vector<double> values) {
   std::ranges::sort(values);
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   };
-  Range range{.low = at(0.005), .high = at(0.995)};
-  const double room = 0.06 * (range.high - range.low);
-  range.low -= room;
-  range.high += room;
-  return range.high > range.low ? range : Range{.low = range.low - 1.0, .high = range.high + 1.0};
+  return Reach{.low = at(0.005), .high = at(0.995)}.with_room(0.06);
 }
 
-double across(const Range& range, double value) {
+double across(const Reach& range, double value) {
   return left + (width - left - right) * (value - range.low) / (range.high - range.low);
 }
-double down(const Range& range, double value) {
+double down(const Reach& range, double value) {
   return top + (height - top - bottom) * (range.high - value) / (range.high - range.low);
 }
-bool within(const Range& range, double value) {
+bool within(const Reach& range, double value) {
   return value >= range.low && value <= range.high;
 }
 
 /// The law as medians in narrow bins of what it is a function of: with a memory it has several values at one place.
-std::string law_line(const MissingPicture& picture, const Range& x, const Range& y) {
+std::string law_line(const MissingPicture& picture, const Reach& x, const Reach& y) {
   constexpr std::size_t bins = 120;
   std::vector<std::vector<double>> values(bins);
   for (std::size_t k = 0; k < picture.places.size(); ++k) {
@@ -77,27 +71,15 @@ std::string law_line(const MissingPicture& picture, const Range& x, const Range&
   return fmt::format("<polyline class=\"law\" points=\"{}\"/>\n", points);
 }
 
-/// The round places of a scale: multiples of 1, 2 or 5 times a power of ten.
-std::vector<double> ticks_of(const Range& range) {
-  const double least = (range.high - range.low) / most_ticks;
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  const double step = power * (least <= 2.0 * power ? 2.0 : least <= 5.0 * power ? 5.0 : 10.0);
-  std::vector<double> result;
-  for (double at = std::ceil(range.low / step); at * step <= range.high; at += 1.0) {
-    result.push_back(at * step);
-  }
-  return result;
-}
-
-std::string axes(const MissingPicture& picture, const Range& x, const Range& y) {
+std::string axes(const MissingPicture& picture, const Reach& x, const Reach& y) {
   std::string svg;
-  for (const double at : ticks_of(x)) {
+  for (const double at : plots::round_numbers(x, most_ticks)) {
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\"/>"
         "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
         across(x, at), top, height - bottom, height - bottom + 16.0, figure(at, 3));
   }
-  for (const double at : ticks_of(y)) {
+  for (const double at : plots::round_numbers(y, most_ticks)) {
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
         "<text x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
@@ -115,10 +97,10 @@ std::string missing_section(const Diagnosis& diagnosis) {
   if (picture.places.size() < 2) {
     return {};
   }
-  const Range x = range_of(picture.places);
+  const Reach x = range_of(picture.places);
   std::vector<double> both = picture.missing;
   both.insert(both.end(), picture.law.begin(), picture.law.end());
-  const Range y = range_of(std::move(both));
+  const Reach y = range_of(std::move(both));
   std::string dots;
   const std::size_t step = std::max<std::size_t>(1, picture.places.size() / most_points);
   for (std::size_t k = 0; k < picture.places.size(); k += step) {

@@ -2,18 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "diagnosis/report/html.hpp"
 #include "diagnosis/report/page_data.hpp"
 #include "diagnosis/report/parts.hpp"
 #include "diagnosis/report/sections.hpp"
+#include "plots/page.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
 using report::escaped;
-
-/// Nothing may be loaded from anywhere, whatever a name in the data may say.
-constexpr const char* content_policy = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
 /// Places for what the script draws.
 std::string traces_section(const Diagnosis& diagnosis) {
@@ -41,16 +41,8 @@ std::string maps_section(const Diagnosis& diagnosis) {
 
 std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   const std::string& name = improved.graph.name;
-  const std::string title = "Diagnosis of " + (name.empty() ? std::string("a diagram") : escaped(name));
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-      "<title>{}</title>\n<style>\n{}</style></head>\n<body><main>\n<h1>{}</h1>\n",
-      content_policy, title, report::style(), title);
-  html +=
-      "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need JavaScript; text "
-      "and tables do not.</p></noscript>\n";
+  const std::string title = "Diagnosis of " + (name.empty() ? std::string("a diagram") : name);
+  std::string html;
   const std::string gap = report::gap_section(diagnosis);
   html += fmt::format("<div class=\"{}\">\n{}{}</div>\n", gap.empty() ? "head" : "head two",
                       report::verdict_section(diagnosis), gap);
@@ -65,13 +57,14 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
   html += report::next_section(diagnosis);
   html += report::calibration_section(diagnosis);
   html += report::improved_section(diagnosis);
-  html += fmt::format("<footer>{} candidates tried in {} s.</footer>\n</main>\n", diagnosis.tried,
+  html += fmt::format("<footer>{} candidates tried in {} s.</footer>\n", diagnosis.tried,
                       report::figure(diagnosis.seconds, 2));
-  html += fmt::format(
-      "<svg id=\"pen\" hidden=\"hidden\"></svg>\n<script type=\"application/json\" id=\"data\">\n{}\n</script>\n"
-      "<script>\n{}{}</script>\n</body></html>\n",
-      report::page_data(diagnosis), report::plot_script(), report::page_script());
-  return html;
+  return plots::page_text({.title = title,
+                           .style = std::string(report::style()),
+                           .body = std::move(html),
+                           .data = fmt::format("<script type=\"application/json\" id=\"data\">\n{}\n</script>\n",
+                                               report::page_data(diagnosis)),
+                           .script = std::string(report::page_script())});
 }
 
 }  // namespace hysteron::diagnosis

@@ -3,58 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <string_view>
+
+#include "plots/json_text.hpp"
 
 namespace hysteron::diagnosis::report {
 namespace {
 
-std::string text_of(std::string_view text) {
-  const std::string json =
-      nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);  // ASCII only
-  std::string result;
-  for (const char c : json) {
-    result += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  }
-  return result;
-}
-
-void add_number(std::string& json, double value) {
-  if (std::isfinite(value)) {
-    fmt::format_to(std::back_inserter(json), "{:.7g}", value);
-  } else {
-    json += "null";
-  }
-}
-
-std::string number_of(double value) {
-  std::string json;
-  add_number(json, value);
-  return json;
-}
-
-std::string array_of(const std::vector<double>& values) {
-  std::string json = "[";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    json += i == 0 ? "" : ",";
-    add_number(json, values[i]);
-  }
-  return json + "]";
-}
-
-/// Start and step where the samples are evenly spaced, which says the same in fewer bytes; else every time.
-std::string time_of(const std::vector<double>& time) {
-  const std::size_t count = time.size();
-  const double step = count > 1 ? (time.back() - time.front()) / static_cast<double>(count - 1) : 0.0;
-  bool even = count > 1;
-  for (std::size_t i = 0; i < count && even; ++i) {
-    even = std::fabs(time[i] - time.front() - step * static_cast<double>(i)) <= 0.01 * step;
-  }
-  return even ? fmt::format(R"({{"start":{},"step":{:.12g},"count":{}}})", number_of(time.front()), step, count)
-              : fmt::format("{{\"values\":{}}}", array_of(time));
-}
+using plots::array_of;
+using plots::json_list;
+using plots::number_of;
+using plots::text_of;
+using plots::time_of;
 
 std::string residual_of(const char* name, const std::vector<double>& model, const std::vector<double>& measured) {
   if (model.empty() || measured.empty()) {
@@ -87,15 +46,6 @@ std::string map_of(const MapFinding& map) {
   return fmt::format(R"({{"over":{},"unit":{},"share":{},"places":{},"before":{},"after":{},"mean":{}}})",
                      text_of(map.over), text_of(map.unit), number_of(map.share), array_of(map.places),
                      array_of(map.before), array_of(map.after), array_of(map.mean));
-}
-
-template <class Item, class Print>
-std::string json_list(const std::vector<Item>& items, const Print& print) {
-  std::string json = "[";
-  for (const Item& item : items) {
-    json += (json.size() == 1 ? "" : ",\n") + print(item);
-  }
-  return json + "]";
 }
 
 }  // namespace

@@ -6,26 +6,6 @@ namespace {
 constexpr std::string_view script = R"js(
 const data = JSON.parse(document.getElementById("data").textContent);
 
-function timesOf(time) {
-  return time.values ? time.values.map(t => t === null ? NaN : t)
-                     : Float64Array.from({ length: time.count }, (_, k) => time.start + k * time.step);
-}
-
-function numbers(values) {
-  return Float64Array.from(values, value => value === null ? NaN : value);
-}
-
-// The first index whose time is not before t.
-function indexOf(times, t) {
-  let low = 0, high = times.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] < t) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
 // Residuals above, signals below, over the same stretch of time.
 function traceFigure(host, trace) {
   const times = timesOf(trace.time);
@@ -33,110 +13,36 @@ function traceFigure(host, trace) {
   const residuals = [["nominal", "nominal", "nominal"], ["calibrated", "before", "before: calibrated"],
                      ["improved", "after", "after: improved"]]
     .filter(([name]) => trace[name])
-    .map(([name, kind, text]) => ({ kind, text, values: numbers(trace[name]), shown: name !== "nominal" }));
+    .map(([name, kind, text]) => ({ kind, text, x: times, y: numbers(trace[name]), shown: name !== "nominal" }));
   if (residuals.length === 1) residuals[0].shown = true;
-  for (const residual of residuals) {
-    residual.model = residual.values.map((value, k) => measured[k] + value);
-    residual.toggle = () => redraw();
-  }
+  for (const residual of residuals) residual.model = residual.y.map((value, k) => measured[k] + value);
   const floor = trace.floor > 0 && residuals.length > 0;
-  const row = keys(host, [...residuals, { kind: "measured", text: "measured" },
-                          ...(floor ? [{ kind: "band", text: "noise floor, ± 2 σ" }] : [])]);
-  const whole = add(row, "button", { type: "button", className: "whole", textContent: "Whole record", hidden: true });
-  add(row, "span", { className: "hint", textContent: "Drag to zoom, double click to see all." });
-  const area = add(host, "div", {});
-  const readout = add(host, "div", { className: "readout" });
-  const full = times.length > 1 ? [times[0], times[times.length - 1]] : [0, 1];
-  let view = full, drawnWidth = 0;
-
-  function zoom(to) {
-    view = to;
-    whole.hidden = view === full;
-    redraw();
-  }
-  whole.addEventListener("click", () => zoom(full));
-
-  function redraw() {
-    const width = drawnWidth = Math.max(420, area.clientWidth);
-    area.textContent = "";
-    const first = Math.max(0, indexOf(times, view[0]) - 1);
-    const last = Math.min(times.length, indexOf(times, view[1]) + 2);
-    const shown = residuals.filter(residual => residual.shown);
-    const frames = [];
-    const svg = draw(area, "svg", { class: "zooms", viewBox: `0 0 ${width} 500`, role: "img",
-                                    "aria-label": "Residual, measured and model over time" });
-    const clip = "clip-" + host.id;
-    const definition = draw(draw(svg, "defs", {}), "clipPath", { id: clip });
-    draw(definition, "rect", { x: 70, y: 0, width: width - 82, height: 500 });
-    function panel(top, bottom, title, curves, wanted, labels) {
-      const frame = { left: 70, right: width - 12, top, bottom };
-      const range = reach(curves.map(curve => curve.values), first, last, wanted);
-      const { x, y } = axes(svg, frame, { x: view, y: range, title, yLabel: named(trace.signal, trace.unit), ...labels });
-      const inside = draw(svg, "g", { "clip-path": `url(#${clip})` });
-      if (wanted.length === 3) {
-        draw(inside, "rect", { class: "band", x: 70, width: width - 82, y: y(wanted[2]), height: y(wanted[0]) - y(wanted[2]) });
-      }
-      for (const curve of curves) {
-        draw(inside, "path", { class: "curve " + curve.kind,
-                               d: linePath(times, curve.values, first, last, x, y) });
-      }
-      frames.push(frame);
-    }
-    panel(26, 236, "Residual, model − measured", shown,
-          floor ? [-2 * trace.floor, 0, 2 * trace.floor] : [0], { numbers: false });
-    // The best model alone: more of them would lie on top of each other.
-    const best = shown[shown.length - 1];
-    panel(272, 456, best ? "Measured and model (" + best.text.replace(/^.*: /, "") + ")" : "Measured",
-          [{ kind: "measured", values: measured }, ...(best ? [{ kind: best.kind, values: best.model }] : [])], [],
-          { xLabel: "t [s]" });
-    pointing(svg, width, frames);
-  }
-
-  function pointing(svg, width, frames) {
-    const { left, right } = frames[0];
-    const top = frames[0].top, bottom = frames[frames.length - 1].bottom;
-    const cross = draw(svg, "path", { class: "cross" });
-    const select = draw(svg, "rect", { class: "select", y: top, height: bottom - top, width: 0 });
-    const timeAt = px => view[0] + (px - left) / (right - left) * (view[1] - view[0]);
-    const pixel = event => {
-      const box = svg.getBoundingClientRect();
-      return Math.min(right, Math.max(left, (event.clientX - box.left) * width / box.width));
-    };
-    let start = null;
-    svg.addEventListener("pointerdown", event => {
-      if (event.button !== 0) return;
-      start = pixel(event);
-      if (event.isTrusted) svg.setPointerCapture(event.pointerId);
-    });
-    svg.addEventListener("pointermove", event => {
-      const at = pixel(event);
-      cross.setAttribute("d", `M${at} ${top}V${bottom}`);
-      if (start !== null) {
-        select.setAttribute("x", Math.min(start, at));
-        select.setAttribute("width", Math.abs(at - start));
-      }
-      const k = Math.min(times.length - 1, indexOf(times, timeAt(at)));
+  const label = named(trace.signal, trace.unit);
+  zoomFigure(host, {
+    name: "Residual, measured and model over time",
+    entries: [...residuals, { kind: "measured", text: "measured" },
+              ...(floor ? [{ kind: "band", text: "noise floor, ± 2 σ" }] : [])],
+    x: times.length > 1 ? [times[0], times[times.length - 1]] : [0, 1],
+    xLabel: "t [s]",
+    panels: () => {
+      const shown = residuals.filter(residual => residual.shown);
+      // The best model alone: more of them would lie on top of each other.
+      const best = shown[shown.length - 1];
+      return [
+        { title: "Residual, model − measured", yLabel: label, height: 210, curves: shown,
+          wanted: floor ? [-2 * trace.floor, 0, 2 * trace.floor] : [0],
+          band: floor ? [-2 * trace.floor, 2 * trace.floor] : null },
+        { title: best ? "Measured and model (" + best.text.replace(/^.*: /, "") + ")" : "Measured", yLabel: label,
+          height: 184, curves: [{ kind: "measured", x: times, y: measured },
+                                ...(best ? [{ kind: best.kind, x: times, y: best.model }] : [])] }];
+    },
+    read: t => {
+      const k = Math.min(times.length - 1, indexOf(times, t));
       const said = residuals.filter(residual => residual.shown)
-        .map(residual => `${residual.text} ${figure(residual.values[k])}`);
-      readout.textContent = k < 0 ? "" : [`t = ${figure(times[k])} s`, `measured ${figure(measured[k])}`, ...said].join(" · ");
-    });
-    svg.addEventListener("pointerup", event => {
-      if (start === null) return;
-      const ends = [timeAt(start), timeAt(pixel(event))].sort((a, b) => a - b);
-      const wide = Math.abs(pixel(event) - start) > 5;
-      start = null;
-      select.setAttribute("width", 0);
-      if (wide && indexOf(times, ends[1]) - indexOf(times, ends[0]) > 1) zoom(ends);
-    });
-    svg.addEventListener("pointercancel", () => { start = null; select.setAttribute("width", 0); });
-    svg.addEventListener("pointerleave", () => { cross.setAttribute("d", ""); readout.textContent = ""; });
-    svg.addEventListener("dblclick", () => zoom(full));
-  }
-
-  redraw();
-  new ResizeObserver(() => {
-    if (area.clientWidth > 0 && Math.max(420, area.clientWidth) !== drawnWidth) redraw();
-  }).observe(area);
+        .map(residual => `${residual.text} ${figure(residual.y[k])}`);
+      return k < 0 ? "" : [`t = ${figure(times[k])} s`, `measured ${figure(measured[k])}`, ...said].join(" · ");
+    },
+  });
 }
 
 // One small plot a map, those that explain most first.

@@ -1,4 +1,4 @@
-// The style and the scripts of the report, as they stand in the page.
+// The style and the script of the report, beside those of every page.
 #pragma once
 
 #include <string_view>
@@ -6,9 +6,7 @@
 namespace hysteron::diagnosis::report {
 
 [[nodiscard]] std::string_view style();
-/// Axes, lines, legends, zoom.
-[[nodiscard]] std::string_view plot_script();
-/// What is drawn where; needs the plot script before it.
+/// What is drawn where; needs the scripts of plots/page.hpp before it.
 [[nodiscard]] std::string_view page_script();
 
 }  // namespace hysteron::diagnosis::report

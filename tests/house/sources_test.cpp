@@ -37,14 +37,14 @@ constexpr std::array<Allowed, 6> allowed_words{{
     {"tests/house/instructions_test.cpp", undone_words[2], "without valgrind, outside continuous integration"},
     {"tests/support/measured_records.hpp", undone_words[2], "without the folder of measured records"},
     {"tests/records/measured_test.cpp", undone_words[2], "without the folder of measured records"},
-    {"tests/diagnosis/report/browser_test.cpp", undone_words[2], "without chromium"},
+    {"tests/support/in_browser.hpp", undone_words[2], "without chromium"},
     {"tests/codegen/backends/matiec_test.cpp", undone_words[2], "without MATIEC, an outside compiler"},
     {"tests/clients/points_test.cpp", undone_words[2], "without node, or without the clients that a script fetches"},
 }};
 
 std::vector<SourceText> all_sources() {
-  return source_files({"bench", "blocks", "codegen", "diagnosis", "docs", "examples", "records", "runtime", "support",
-                       "tests", "tool", "trials", "tuning"},
+  return source_files({"bench", "blocks", "codegen", "diagnosis", "docs", "examples", "plots", "records", "runtime",
+                       "support", "tests", "tool", "trials", "tuning"},
                       {".hpp", ".cpp", ".py"});
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 namespace hysteron {
@@ -53,6 +54,16 @@ TEST(Utf8, PrintableTextCannotSteerATerminal) {
       << "CSI as a C1 control";
   EXPECT_EQ(printable("5 \xB5m"), "5 \uFFFDm");
   EXPECT_EQ(printable("5 µm"), "5 µm");
+}
+
+TEST(Utf8, AClippedTextKeepsWholeCharacters) {
+  EXPECT_EQ(clipped("µmµm", 4), "µmµm");
+  EXPECT_EQ(clipped("µmµmµ", 4), "µmµ…");
+  EXPECT_EQ(clipped("abc", 1), "…");
+  EXPECT_EQ(clipped("", 3), "");
+  for (std::size_t most = 1; most < 8; ++most) {
+    EXPECT_LE(character_count(clipped("a€\xff𝄞b", most)), std::max<std::size_t>(most, 1));
+  }
 }
 
 }  // namespace

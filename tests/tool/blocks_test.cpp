@@ -26,6 +26,19 @@ TEST(Blocks, ListNamesEveryBlockOnce) {
   }
 }
 
+/// A word that names no block is looked for: in names and titles first, then in what the blocks mean.
+TEST(Blocks, AWordIsLookedFor) {
+  const test::Workbench bench;
+  const auto outcome = bench.shell("hysteron blocks friction");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("  HY_COULOMB_FRICTION "), HasSubstr("  HY_DAHL_FRICTION "),
+                                 testing::Not(HasSubstr("HY_GAIN "))));
+  const auto slip = bench.shell("hysteron blocks stick-slip");
+  EXPECT_THAT(slip.out, HasSubstr("HY_STRIBECK_FRICTION"));
+  EXPECT_EQ(nlohmann::json::parse(bench.shell("hysteron blocks dahl --json").out).at(0).at("name"), "HY_DAHL_FRICTION");
+  EXPECT_EQ(bench.shell("hysteron blocks xyzzy").code, 2);
+}
+
 TEST(Blocks, CardOfOneBlock) {
   const test::Workbench bench;
   const auto outcome = bench.shell("hysteron blocks hy_lag");

@@ -1,6 +1,8 @@
 // hysteron tune, as a user runs it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -71,6 +73,15 @@ void write_log(const test::Workbench& bench, const std::string& name = "log.csv"
             0);
 }
 
+constexpr std::string_view gain_alone =
+    "FUNCTION_BLOCK P  (* @ts 1ms *)\n  VAR_INPUT U : LREAL; (* @unit V *) END_VAR\n"
+    "  VAR_OUTPUT Y : LREAL; (* @unit um *) END_VAR\n  VAR AMP : HY_GAIN; END_VAR\n"
+    "  AMP(XIN := U);\n  Y := AMP.XOUT;\nEND_FUNCTION_BLOCK\n";
+constexpr std::string_view with_offset =
+    "FUNCTION_BLOCK P  (* @ts 1ms *)\n  VAR_INPUT U : LREAL; END_VAR\n  VAR_OUTPUT Y : LREAL; END_VAR\n"
+    "  VAR AMP : HY_GAIN; SHIFT : HY_OFFSET; END_VAR\n"
+    "  AMP(XIN := U);\n  SHIFT(XIN := AMP.XOUT);\n  Y := SHIFT.XOUT;\nEND_FUNCTION_BLOCK\n";
+
 class Tune : public testing::Test {
  protected:
   void SetUp() override {
@@ -105,10 +116,56 @@ TEST_F(Tune, ReportStandsAlone) {
   ASSERT_EQ(bench.shell("hysteron tune plant.st --log log.csv --params p.toml --out tuned.toml --report report").code,
             0);
   const auto page = bench.read("report/report.html");
-  EXPECT_THAT(page, AllOf(HasSubstr("<svg"), HasSubstr("Y over time"), HasSubstr("Residual of Y"),
-                          HasSubstr("Y over U"), HasSubstr("AMP.K")));
-  EXPECT_THAT(page, AllOf(Not(HasSubstr("http")), Not(HasSubstr("src=")), Not(HasSubstr("nan"))));
+  EXPECT_THAT(page,
+              AllOf(HasSubstr("Residual of Y"), HasSubstr("AMP.K"), HasSubstr("Y [mm]"), HasSubstr("Train and test"),
+                    HasSubstr("\"name\":\"train\""), HasSubstr("\"name\":\"test\"")));
+  EXPECT_THAT(page, AllOf(Not(HasSubstr("://")), Not(HasSubstr("src=")), Not(HasSubstr("nan"))));
   EXPECT_THAT(bench.read("report/residuals.csv"), HasSubstr("t,Y [mm],Y_MODEL [mm],Y_RESIDUAL [mm]\n"));
+}
+
+/// What the fit leaves is more than noise, and the way on is named; the command runs as it stands.
+TEST_F(Tune, WhatIsNotInTheModelLeadsToDiagnose) {
+  bench.write("p.st", gain_alone);
+  bench.write("p.toml", "[parameters.AMP]\nK = 1.0\n[fit.AMP]\nK = {}\n");
+  std::string log = "t,U,Y\n";
+  double play = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double u = 3.0 * std::sin(0.01 * k) + std::sin(0.037 * k);
+    play = std::min(std::max(play, u - 0.5), u + 0.5);
+    log += fmt::format("{},{},{}\n", 0.001 * k, u, 2.0 * play);
+  }
+  bench.write("a log.csv", log);
+  const auto outcome =
+      bench.shell("hysteron tune p.st --log 'a log.csv' --column U=2 --params p.toml --out tuned.toml --report report");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string command =
+      "hysteron diagnose p.st --log 'a log.csv' --params tuned.toml --out diagnosis --column U=2";
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Y keeps an RMSE of "), HasSubstr("  " + command + "\n")));
+  EXPECT_THAT(bench.read("report/report.html"),
+              AllOf(HasSubstr("Something is not in the model"), HasSubstr("Y over U")));
+  EXPECT_EQ(bench.shell(command).code, 0);
+}
+
+/// At the start of one parameter, the RMSE of the page is that of a fit without it, where the model is linear in it.
+TEST_F(Tune, TheCostOfAParameterIsThatOfAFitWithoutIt) {
+  bench.write("p.st", with_offset);
+  std::string log = "t,U,Y\n";
+  for (int k = 0; k < 400; ++k) {
+    const double u = std::sin(0.05 * k);
+    log += fmt::format("{},{},{}\n", 0.001 * k, u, 2.0 * u + 0.3 + 0.2 * ((k * 7919) % 101 - 50) / 50.0);
+  }
+  bench.write("log.csv", log);
+  const std::string gain = "[parameters.AMP]\nK = 1.0\n[parameters.SHIFT]\nBIAS = 0.0\n[fit.AMP]\nK = {}\n";
+  bench.write("both.toml", gain + "[fit.SHIFT]\nBIAS = {}\n");
+  bench.write("one.toml", gain);
+  const auto rmse = [&](const std::string& file) {
+    const auto outcome =
+        bench.shell("hysteron tune p.st --log log.csv --params " + file + " --out t.toml --report r --json");
+    return nlohmann::json::parse(outcome.out)["outputs"][0]["rmse_train"].get<double>();
+  };
+  const double without = rmse("one.toml");
+  const double with = rmse("both.toml");
+  EXPECT_THAT(bench.read("r/report.html"), HasSubstr(fmt::format("× {:.3g}<", without / with)));
 }
 
 TEST_F(Tune, FittedValuesRunAndTuneAgain) {

@@ -9,10 +9,16 @@
 #include <vector>
 
 #include "codegen/backends/reference/block_response.hpp"
-#include "codegen/backends/reference/svg_plot.hpp"
+#include "plots/svg_plot.hpp"
+#include "plots/thinned.hpp"
 
 namespace hysteron {
 namespace {
+
+using plots::LineStyle;
+using plots::Panel;
+using plots::Polyline;
+using plots::SvgPlot;
 
 constexpr std::array<std::string_view, 4> input_colours{"#666666", "#009e73", "#cc79a7", "#8c6d31"};
 constexpr std::array<std::string_view, 4> output_colours{"#0072b2", "#d55e00", "#e69f00", "#56b4e9"};
@@ -44,11 +50,7 @@ Polyline over(const ResponseTrace& abscissa, const ResponseTrace& trace) {
 /// Whether a number is drawn as held between samples: where it changes in a few of them only, or where they are few.
 bool is_held(const ResponseTrace& trace) {
   constexpr std::size_t few = 50;
-  std::size_t changes = 0;
-  for (std::size_t k = 1; k < trace.values.size(); ++k) {
-    changes += trace.values[k] != trace.values[k - 1] ? 1 : 0;
-  }
-  return trace.type != Type::Real || trace.values.size() < few || (changes > 0 && changes * 8 < trace.values.size());
+  return trace.type != Type::Real || trace.values.size() < few || plots::changes_seldom(trace.values);
 }
 
 class Picture {
@@ -97,7 +99,7 @@ class Picture {
       Panel panel{.left = 78, .top = 12, .right = 430, .bottom = middle - (lanes_.empty() ? 0 : 10)};
       panel.x_label = lanes_.empty() ? label : std::string();
       panel.x_numbers = lanes_.empty();
-      panel.fixed_x = {0.0, end};
+      panel.fixed_x = {.low = 0.0, .high = end};
       for (const ResponseTrace* const trace : curves_) {
         panel.lines.push_back({.name = trace->name,
                                .line = over_time(*trace, response_.sample_time, is_held(*trace)),
@@ -113,9 +115,10 @@ class Picture {
 
   Panel lanes(double top, double bottom, double end, const std::string& label) {
     constexpr double distance = 1.5;
-    Panel panel{.left = 78, .top = top, .right = 430, .bottom = bottom, .x_label = label, .legend = false};
-    panel.fixed_x = {0.0, end};
-    panel.fixed_y = {-0.25, static_cast<double>(lanes_.size()) * distance - 0.25};
+    Panel panel{
+        .left = 78, .top = top, .right = 430, .bottom = bottom, .x_label = label, .legend = plots::Legend::None};
+    panel.fixed_x = {.low = 0.0, .high = end};
+    panel.fixed_y = {.low = -0.25, .high = static_cast<double>(lanes_.size()) * distance - 0.25};
     for (std::size_t i = 0; i < lanes_.size(); ++i) {
       const double base = static_cast<double>(lanes_.size() - 1 - i) * distance;
       Polyline line = over_time(*lanes_[i], response_.sample_time, true);

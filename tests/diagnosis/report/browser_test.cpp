@@ -1,12 +1,11 @@
 // The report in a browser without a screen: the script runs without fault, and drags and double clicks zoom.
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <string>
 
 #include "diagnosis/report/page.hpp"
 #include "tests/diagnosis/report/fixture.hpp"
-#include "tests/support/scratch_folder.hpp"
+#include "tests/support/in_browser.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -14,40 +13,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class ReportInBrowser : public testing::Test {
- protected:
-  void SetUp() override {
-    if (std::system("command -v chromium > /dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "chromium is not installed: scripts/install-dependencies test";
-    }
-  }
-};
-
-struct Shown {
-  std::string page{};  ///< after its script has run
-  std::string log{};
-};
-
-Shown shown(std::string html, const std::string& script = {}) {
-  const hysteron::test::ScratchFolder folder;
-  html.insert(html.rfind("</body>"), "<script>" + script + "</script>");
-  const std::string file = folder.write("report.html", html);
-  const std::string command =
-      "timeout 120 chromium --headless --no-sandbox --disable-gpu --enable-logging=stderr --window-size=1280,1000 "
-      "--virtual-time-budget=5000 --user-data-dir=" +
-      folder.path().string() + "/profile --dump-dom file://" + file + " > " + (folder / "dom") + " 2> " +
-      (folder / "log");
-  const int status = std::system(command.c_str());
-  Shown result{hysteron::test::contents_of(folder / "dom"), hysteron::test::contents_of(folder / "log")};
-  EXPECT_EQ(status, 0) << result.log;
-  return result;
-}
-
-void expect_no_fault(const Shown& shown) {
-  EXPECT_THAT(shown.log, Not(HasSubstr("Uncaught")));
-  EXPECT_THAT(shown.log, Not(HasSubstr("CONSOLE")));
-  EXPECT_THAT(shown.page, Not(HasSubstr("class=\"box fault\"")));
-}
+using ReportInBrowser = hysteron::test::InBrowser;
+using hysteron::test::expect_no_fault;
+using hysteron::test::Shown;
+using hysteron::test::shown;
 
 TEST_F(ReportInBrowser, AllFiguresAreDrawnWithoutAFault) {
   const Shown rich = shown(report_page(fixture::rich_diagnosis(), fixture::rich_program()));

@@ -1,6 +1,6 @@
-#include "diagnosis/report/parts.hpp"
+#include "plots/page.hpp"
 
-namespace hysteron::diagnosis::report {
+namespace hysteron::plots {
 namespace {
 
 constexpr std::string_view plots = R"js("use strict";
@@ -45,8 +45,9 @@ function ticks(low, high, most) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
     const value = k * step;
     const plain = big < 1e6 && digits < 6;
+    const needed = Math.min(15, Math.max(6, Math.ceil(Math.log10(big / step)) + 1));
     found.push({ value, label: plain ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1")
-                                     : String(Number(value.toPrecision(6))) });
+                                     : String(Number(value.toPrecision(needed))) });
   }
   return found;
 }
@@ -93,7 +94,7 @@ function axes(svg, frame, options) {
   const y = value => bottom - (value - yl) / (yh - yl) * (bottom - top);
   const wide = Math.max(2, Math.min(10, Math.floor((right - left) / 52))), tall = Math.max(2, Math.floor((bottom - top) / 34));
   let last = -Infinity;
-  for (const tick of log ? decades(...options.x) : ticks(xl, xh, wide)) {
+  for (const tick of options.names ?? (log ? decades(...options.x) : ticks(xl, xh, wide))) {
     draw(svg, "path", { class: "grid", d: `M${x(tick.value)} ${top}V${bottom}` });
     const half = 3.5 * tick.label.length;
     if (options.numbers !== false && x(tick.value) - half > last) {
@@ -181,4 +182,4 @@ std::string_view plot_script() {
   return plots;
 }
 
-}  // namespace hysteron::diagnosis::report
+}  // namespace hysteron::plots

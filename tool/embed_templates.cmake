@@ -1,0 +1,15 @@
+# Writes the folders of tool/templates into one translation unit, for `hysteron new`:
+#   cmake -DTEMPLATES=tool/templates -DOUTPUT=FILE.cpp -P embed_templates.cmake
+cmake_policy(VERSION 3.25)
+file(GLOB files RELATIVE ${TEMPLATES} ${TEMPLATES}/*/*)
+list(SORT files)
+set(text "// The files of tool/templates, written by embed_templates.cmake.\n#include \"tool/templates.hpp\"\n\n")
+string(APPEND text "#include <array>\n\nnamespace hysteron::tool {\nnamespace {\n\nconstexpr std::array files{\n")
+foreach(file ${files})
+  string(REGEX REPLACE "/.*" "" folder ${file})
+  string(REGEX REPLACE ".*/" "" name ${file})
+  file(READ ${TEMPLATES}/${file} source)
+  string(APPEND text "    TemplateFile{\"${folder}\", \"${name}\", R\"embedded(${source})embedded\"},\n")
+endforeach()
+string(APPEND text "};\n\n}  // namespace\n\nstd::span<const TemplateFile> template_files() {\n  return files;\n}\n\n}  // namespace hysteron::tool\n")
+file(WRITE ${OUTPUT} "${text}")

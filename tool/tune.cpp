@@ -18,6 +18,8 @@
 #include "tool/record_options.hpp"
 #include "tool/tune_report.hpp"
 #include "tool/writable.hpp"
+#include "tuning/fit_json.hpp"
+#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -122,7 +124,7 @@ int tune(const TuneOptions& options, Console& console) {
   refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
   const std::vector<records::Record> records =
-      read_measured_records(options.logs, with_settings(options.record, file.record), program, true, warnings);
+      read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
 
   OutputErrorFit fit;
@@ -147,7 +149,7 @@ int tune(const TuneOptions& options, Console& console) {
                    .contents = parameters::parameter_text(tuned_file(file, problem, fit), tuned_remarks(problem, fit),
                                                           tuned_heading(problem, fit))});
   write_files_atomically(files);
-  console.print(options.json ? as_json(report).dump(2) + "\n" : as_text(report));
+  console.print(options.json ? fit_json(problem, fit).dump(2) + "\n" : as_text(report));
   console.report(warnings);
   if (fit.solution.status == FitStatus::Cancelled) {
     return exit_interrupted;

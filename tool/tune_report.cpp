@@ -11,6 +11,7 @@
 #include "records/csv.hpp"
 #include "support/markup.hpp"
 #include "tool/line_plot.hpp"
+#include "tuning/fit_json.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -37,35 +38,6 @@ std::string error_text(const LeastSquaresResult& solution, double standard_error
 
 std::string share_of(double error, double range) {
   return range > 0.0 ? fmt::format(", {:.3g} % of the range", 100.0 * error / range) : std::string();
-}
-
-/// JSON has no infinities: what is not known is null.
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
-
-std::string status_name(FitStatus status) {
-  switch (status) {
-    case FitStatus::Converged:
-      return "converged";
-    case FitStatus::NearlyConverged:
-      return "nearly converged";
-    case FitStatus::IterationLimit:
-      return "iteration limit";
-    case FitStatus::Cancelled:
-      return "cancelled";
-    case FitStatus::Stalled:
-      return "stalled";
-    case FitStatus::NoInfluence:
-      return "no influence";
-    case FitStatus::Diverging:
-      return "diverging";
-    case FitStatus::ModelFailed:
-      return "model failed";
-    case FitStatus::SolverFailed:
-      return "solver failed";
-  }
-  return {};
 }
 
 Signal residuals_of(const TuneReport& report, std::size_t record, std::size_t output) {
@@ -206,54 +178,6 @@ std::string as_text(const TuneReport& report) {
   return text + fmt::format("{} {}, {:.2f} s.\n", fit.solution.message, iterations_of(fit), fit.seconds);
 }
 
-nlohmann::json as_json(const TuneReport& report) {
-  const auto& [problem, fit] = report;
-  nlohmann::json json = {{"diagram", problem.program.graph.name},
-                         {"status", status_name(fit.solution.status)},
-                         {"message", fit.solution.message},
-                         {"iterations", fit.solution.iterations},
-                         {"seconds", fit.seconds},
-                         {"correlation_time_samples", number(fit.covariance.correlation_time)},
-                         {"warnings", fit.covariance.warnings},
-                         {"parameters", nlohmann::json::array()},
-                         {"initial_states", nlohmann::json::array()},
-                         {"outputs", nlohmann::json::array()},
-                         {"correlation", nlohmann::json::array()},
-                         {"start_costs", nlohmann::json::array()}};
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const auto j = static_cast<Index>(i);
-    const AtBound bound = fit.solution.at_bound[i];
-    json[i < problem.parameters.size() ? "parameters" : "initial_states"].push_back(
-        {{"name", fit.names[i]},
-         {"value", fit.solution.x[j]},
-         {"standard_error", number(fit.covariance.standard_errors[j])},
-         {"unit", fit.units[i]},
-         {"at_bound", bound == AtBound::Lower   ? "lower"
-                      : bound == AtBound::Upper ? "upper"
-                                                : ""}});
-    nlohmann::json row = nlohmann::json::array();
-    for (Index k = 0; k < std::ssize(fit.names); ++k) {
-      row.push_back(number(fit.covariance.correlation(j, k)));
-    }
-    json["correlation"].push_back(std::move(row));
-  }
-  for (const OutputScore& score : fit.scores) {
-    json["outputs"].push_back({{"name", score.output},
-                               {"unit", score.unit},
-                               {"range", score.range},
-                               {"range_test", score.test_range},
-                               {"rmse_train", number(score.train)},
-                               {"rmse_test", number(score.test)},
-                               {"rmse_before", number(score.before)},
-                               {"train_samples", score.train_samples},
-                               {"test_samples", score.test_samples}});
-  }
-  for (const double cost : fit.start_costs) {
-    json["start_costs"].push_back(number(cost));
-  }
-  return json;
-}
-
 std::vector<std::filesystem::path> report_paths(const std::filesystem::path& folder, std::size_t records) {
   std::vector<std::filesystem::path> paths{folder / "report.html", folder / "report.json"};
   for (std::size_t record = 0; record < records; ++record) {
@@ -264,7 +188,7 @@ std::vector<std::filesystem::path> report_paths(const std::filesystem::path& fol
 }
 
 std::vector<OutputFile> report_files(const std::filesystem::path& folder, const TuneReport& report) {
-  std::vector<std::string> contents{page(report), as_json(report).dump(2) + "\n"};
+  std::vector<std::string> contents{page(report), fit_json(report.problem, report.fit).dump(2) + "\n"};
   for (std::size_t record = 0; record < report.problem.experiments.size(); ++record) {
     const Experiment& experiment = report.problem.experiments[record];
     std::vector<records::Column> columns;

@@ -1,9 +1,8 @@
-// What a fit says: as text, as JSON, as a page with pictures, and the residuals as a record.
+// What a fit says: as text, as a page with pictures, and the residuals as a record.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,6 @@ struct TuneReport {
 };
 
 [[nodiscard]] std::string as_text(const TuneReport& report);
-[[nodiscard]] nlohmann::json as_json(const TuneReport& report);
 
 /// The names of the files of a report in a folder: report.html, report.json and residuals.csv, residuals-2.csv … for
 /// further records.

@@ -28,12 +28,14 @@ const Arrows& allowed() {
       {"runtime", {"blocks", "support"}},
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records"}},
+      {"bindings", {"blocks", "codegen", "tuning", "diagnosis", "support", "records"}},
       {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records"}},
       {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records"}},
       {"tests",
-       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "examples", "bench"}},
+       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "examples", "bench",
+        "bindings"}},
   };
   return arrows;
 }

@@ -43,8 +43,8 @@ constexpr std::array<Allowed, 6> allowed_words{{
 }};
 
 std::vector<SourceText> all_sources() {
-  return source_files({"bench", "blocks", "codegen", "diagnosis", "docs", "examples", "records", "runtime", "support",
-                       "tests", "tool", "trials", "tuning"},
+  return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "records", "runtime",
+                       "support", "tests", "tool", "trials", "tuning"},
                       {".hpp", ".cpp", ".py"});
 }
 

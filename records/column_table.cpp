@@ -12,6 +12,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "support/utf8.hpp"
 
 namespace hysteron::records {
 namespace {
@@ -150,12 +151,13 @@ Table table_of(const std::string& file, std::vector<NumberColumn> columns, const
       column.name = std::move(found.name);
       column.unit = std::move(found.unit);
     }
-    if (column.name.empty() || std::ranges::any_of(column.name + column.unit, [](char one) {
-          return one == '"' || (one >= 0 && one < ' ') || one == '\x7F';
-        })) {
-      throw InputError(error::missing_header, {.file = file},
-                       "The name of a column is empty, or holds a quote or a control character.",
-                       "use letters, digits and _ in the names of columns, as a diagram does.");
+    const std::string written = column.name + column.unit;
+    if (column.name.empty() || first_invalid_utf8(written) != std::string::npos ||
+        std::ranges::any_of(written, [](char one) { return one == '"' || (one >= 0 && one < ' ') || one == '\x7F'; })) {
+      throw InputError(
+          error::missing_header, {.file = file},
+          "The name of a column is empty, or holds a quote, a control character, or bytes that are no UTF-8.",
+          "use letters, digits and _ in the names of columns, as a diagram does.");
     }
   }
   return Columns(file, std::move(columns), options).table();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
+#include "codegen/graph/units.hpp"
 #include "codegen/language/syntax.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "support/errors.hpp"
@@ -144,14 +145,16 @@ std::string diagram_json(const Program& program) {
   for (const Port& output : graph.outputs) {
     json["outputs"].push_back(port_json(output));
   }
-  for (const Parameter& parameter : graph.parameters) {
+  const std::vector<std::string> units = units::Solution(graph, program.schedule).parameters();
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    const Parameter& parameter = graph.parameters[i];
     const Field& field = parameter.field;
     Json value = Json::array();
     for (const double one : parameter.value) {
       value.push_back(field.type == Type::Bool ? Json(one != 0.0) : number(one));
     }
     json["parameters"].push_back({{"name", parameter.path},
-                                  {"unit", field.unit},
+                                  {"unit", units[i]},
                                   {"meaning", field.meaning},
                                   {"type", name_of(field.type)},
                                   {"minimum", number(field.minimum)},

@@ -45,6 +45,7 @@ class Diagrams(Folder):
         lag = plant.parameters["AMP.T1"]
         self.assertEqual((lag.unit, lag.value, lag.minimum), ("s", 0.004, 0.0))
         self.assertIn("time constant", lag.meaning)
+        self.assertEqual(plant.parameters["HYST.C1"].unit, "um/V")  # as the wires give it
 
     def test_a_path_a_text_and_parameters_in_four_ways(self):
         path = self.write("plant.st", PLANT)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "records/binary/readers.hpp"
 #include "records/text/text_reader.hpp"
 
 namespace hysteron::records {
@@ -18,13 +19,16 @@ bool begins(std::string_view bytes, std::string_view with, std::size_t at = 0) {
   return bytes.size() >= at + with.size() && bytes.substr(at, with.size()) == with;
 }
 
+constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1A\n";
+
 constexpr auto formats = std::to_array<Format>({
-    {"MATLAB 7.3", [](std::string_view bytes, std::string_view) { return begins(bytes, "MATLAB 7.3 MAT-file"); }, nullptr,
-     "in MATLAB, writetable(table(t,u,y), \"log.csv\") writes what is read here."},
-    {"MATLAB 5", [](std::string_view bytes, std::string_view) { return begins(bytes, "MATLAB 5.0 MAT-file"); }, nullptr,
-     "in MATLAB, writetable(table(t,u,y), \"log.csv\") writes what is read here."},
-    {"HDF5", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "\x89HDF\r\n\x1A\n") || ending == "h5" || ending == "hdf5"; },
-     nullptr, "h5dump -d /NAME -y -o column.txt FILE writes a column; in Python, h5py reads it for pandas.to_csv."},
+    {"MATLAB", [](std::string_view bytes, std::string_view) { return begins(bytes, "MATLAB 7.3 MAT-file") || begins(bytes, "MATLAB 5.0 MAT-file"); },
+     read_mat, ""},
+    {"HDF5", [](std::string_view bytes, std::string_view ending) {
+       // What a user puts before it takes 512 bytes, or twice, four times … as many.
+       return ending == "h5" || ending == "hdf5" || begins(bytes, hdf5_mark) || begins(bytes, hdf5_mark, 512) || begins(bytes, hdf5_mark, 1024);
+     },
+     read_hdf5, ""},
     {"TDMS of LabVIEW", [](std::string_view bytes, std::string_view ending) { return begins(bytes, "TDSm") || ending == "tdms"; }, nullptr,
      "write a .lvm instead (Write To Measurement File, text), or export it: in Python, nptdms.TdmsFile(\"log.tdms\")."
      "as_dataframe().to_csv(\"log.csv\")."},
@@ -46,8 +50,8 @@ constexpr auto formats = std::to_array<Format>({
      "unpack it; a workbook has to be saved as CSV UTF-8."},
     {"gzip archive", [](std::string_view bytes, std::string_view) { return begins(bytes, "\x1F\x8B"); }, nullptr,
      "unpack it: gunzip FILE."},
-    {"WAV sound", [](std::string_view bytes, std::string_view) { return begins(bytes, "RIFF") && begins(bytes, "WAVE", 8); }, nullptr,
-     "write it as text: sox FILE.wav log.dat; its first two lines begin with a semicolon and are passed over."},
+    {"WAV sound", [](std::string_view bytes, std::string_view) { return (begins(bytes, "RIFF") || begins(bytes, "RF64")) && begins(bytes, "WAVE", 8); },
+     read_wav, ""},
     {"LeCroy waveform", [](std::string_view bytes, std::string_view) { return bytes.substr(0, 64).find("WAVEDESC") != std::string_view::npos; },
      nullptr, "save the waveform as ASCII or CSV on the oscilloscope."},
     {"Tektronix waveform", [](std::string_view bytes, std::string_view ending) { return ending == "wfm" || ending == "isf" || begins(bytes, ":WFM"); }, nullptr,

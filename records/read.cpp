@@ -24,15 +24,6 @@
 namespace hysteron::records {
 namespace {
 
-Table table_of(const std::string& file, std::string bytes, const ReadOptions& options) {
-  const Format& format = format_of(file, bytes);
-  if (format.read == nullptr) {
-    throw InputError(error::unread_format, {.file = file},
-                     fmt::format("The file is {}, which is not read.", format.name), std::string(format.mend));
-  }
-  return format.read(file, std::move(bytes), options);
-}
-
 // ---- names ----------------------------------------------------------------------------------------------------------
 
 /// The one column that is meant.
@@ -289,12 +280,12 @@ Record record_of(Table table, const ReadOptions& options) {
 
 }  // namespace
 
-Record parse_record(const std::string& file, std::string bytes, const ReadOptions& options) {
+Record read_table(const std::string& file, const TableReader& read, const ReadOptions& options) {
   if (!options.begin && !options.end) {
-    return record_of(table_of(file, std::move(bytes), options), options);
+    return record_of(read(options), options);
   }
   // Rows outside of the range are not read at all, so that a fault there is none.
-  Table whole = table_of(file, bytes, options);
+  Table whole = read(options);
   rename(whole, options);
   const Times times = times_of(whole, options);
   const double equal = 0.01 * times.grid.sample_time;
@@ -317,7 +308,20 @@ Record parse_record(const std::string& file, std::string bytes, const ReadOption
   narrowed.end.reset();
   narrowed.first_row = options.first_row + first;
   narrowed.last_row = options.first_row + last - 1;
-  return record_of(table_of(file, std::move(bytes), narrowed), narrowed);
+  return record_of(read(narrowed), narrowed);
+}
+
+Record parse_record(const std::string& file, std::string bytes, const ReadOptions& options) {
+  const Format& format = format_of(file, bytes);
+  if (format.read == nullptr) {
+    throw InputError(error::unread_format, {.file = file},
+                     fmt::format("The file is {}, which is not read.", format.name), std::string(format.mend));
+  }
+  if (!options.begin && !options.end) {
+    return record_of(format.read(file, std::move(bytes), options), options);
+  }
+  return read_table(
+      file, [&](const ReadOptions& how) { return format.read(file, bytes, how); }, options);
 }
 
 Record read_record(const std::string& path, const ReadOptions& options) {

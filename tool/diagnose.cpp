@@ -1,7 +1,6 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,14 +13,12 @@
 #include <thread>
 #include <vector>
 
-#include "codegen/graph/definition.hpp"
-#include "codegen/parameters/apply.hpp"
-#include "diagnosis/effects/effects.hpp"
+#include "diagnosis/effects/known_effects.hpp"
 #include "diagnosis/model/ignored_columns.hpp"
+#include "diagnosis/model/limits.hpp"
+#include "diagnosis/report/diagnosis_files.hpp"
 #include "diagnosis/report/verdict_json.hpp"
 #include "support/errors.hpp"
-#include "support/names.hpp"
-#include "support/numbers.hpp"
 #include "support/overwriting.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
@@ -68,99 +65,6 @@ struct DiagnoseOptions {
   bool json = false;
 };
 
-using Limits = std::vector<std::pair<std::string, double>>;
-
-/// The limits of the next experiment: U=5.0 the largest size of the input U, and its ends and fastest change, U.low,
-/// U.high, U.rate. Throws InputError HY730.
-class LimitReader {
- public:
-  explicit LimitReader(const Graph& graph) {
-    for (const Port& input : graph.inputs) {
-      if (input.type == Type::Real) {
-        inputs_.push_back(input.name);
-      }
-    }
-  }
-
-  Limits read(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      add(text);
-    }
-    for (const auto& [name, low] : limits_) {
-      const double* const high = name.ends_with(".low") ? find(name.substr(0, name.size() - 3) + "high") : nullptr;
-      if (high != nullptr && !(low < *high)) {
-        refuse(fmt::format("--limit {} is {}, and its upper end {}.", name, low, *high),
-               "give a range: low below high.");
-      }
-    }
-    return std::move(limits_);
-  }
-
- private:
-  [[noreturn]] static void refuse(std::string cause, std::string mend) {
-    throw InputError(error::bad_usage, {}, std::move(cause), std::move(mend));
-  }
-
-  [[nodiscard]] const double* find(std::string_view name) const {
-    const auto found =
-        std::ranges::find_if(limits_, [&](const auto& limit) { return equal_ignoring_case(limit.first, name); });
-    return found == limits_.end() ? nullptr : &found->second;
-  }
-
-  void add(const std::string& text) {
-    const auto equals = text.find('=');
-    const ParsedNumber number =
-        parse_number(equals == std::string::npos ? std::string_view() : std::string_view(text).substr(equals + 1));
-    if (equals == std::string::npos || equals == 0 || number.status != NumberStatus::Finite) {
-      refuse(fmt::format("--limit {} is no limit.", text), "write --limit U=5.0: the input and its largest size.");
-    }
-    const std::string name = text.substr(0, equals);
-    const auto dot = name.rfind('.');
-    const std::string part = in_capitals(dot == std::string::npos ? "" : name.substr(dot + 1));
-    if (!part.empty() && part != "LOW" && part != "HIGH" && part != "RATE") {
-      refuse(fmt::format("--limit {} limits no part of an input.", text), "write U, U.low, U.high or U.rate.");
-    }
-    const std::string input = name.substr(0, dot);
-    if (std::ranges::none_of(inputs_, [&](const std::string& one) { return equal_ignoring_case(one, input); })) {
-      const std::string_view near = nearest_name(input, inputs_);
-      refuse(fmt::format("--limit {}: the diagram has no real input {}.", text, input),
-             near.empty() ? fmt::format("its inputs are {}.", fmt::join(inputs_, ", "))
-                          : fmt::format("did you mean {}?", near));
-    }
-    if (find(name) != nullptr) {
-      refuse(fmt::format("--limit names {} twice.", name), "give each limit once.");
-    }
-    if ((part.empty() || part == "RATE") && !(number.value > 0.0)) {
-      refuse(fmt::format("--limit {} leaves the input no room.", text),
-             "give a size above 0: it counts in both directions, U.low and U.high give an end each.");
-    }
-    limits_.emplace_back(name, number.value);
-  }
-
-  std::vector<std::string> inputs_{};
-  Limits limits_{};
-};
-
-/// HY730 for an effect that neither the library nor the file of the diagram has.
-void check_effects(const std::vector<std::string>& wanted, const Program& program) {
-  std::vector<std::string> known{"glitches"};
-  Diagnostics ignored;  // the file compiles
-  for (const diagnosis::EffectKind& kind : diagnosis::effect_kinds(define(program.graph.source, ignored))) {
-    if (kind.id != known.back()) {
-      known.push_back(kind.id);
-    }
-  }
-  std::ranges::sort(known);
-  for (const std::string& effect : wanted) {
-    if (std::ranges::find(known, effect) == known.end()) {
-      const std::string_view near = nearest_name(effect, known);
-      throw InputError(error::bad_usage, {}, fmt::format("There is no effect {}.", effect),
-                       near.empty() ? fmt::format("the effects are {}.", fmt::join(known, ", "))
-                                    : fmt::format("did you mean {}?", near));
-    }
-  }
-}
-
 /// The controller's trace, replayed on its diagram.
 diagnosis::ControllerFinding replayed(const DiagnoseOptions& options, Diagnostics& warnings) {
   const Replayed found = replay_trace(options.controller, options.trace, {}, warnings);
@@ -191,7 +95,7 @@ void prove_outputs(const DiagnoseOptions& options) {
   inputs.push_back({.file = options.controller.parameters, .named_by = "--controller-params"});
   std::error_code unknown;
   for (const auto& entry : std::filesystem::directory_iterator(options.output, unknown)) {
-    if (is_diagnosis_file(entry.path().filename().string())) {
+    if (diagnosis::is_diagnosis_file(entry.path().filename().string())) {
       refuse_to_overwrite({.file = entry.path().string(), .mend = "give another folder for --out."}, inputs);
     }
   }
@@ -206,17 +110,17 @@ int diagnose(DiagnoseOptions options, Console& console) {
   }
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
-  check_effects(options.effects, program);
+  diagnosis::refuse_unknown_effects(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
   input.records =
-      read_measured_records(options.logs, with_settings(options.record, input.file.record), program, false, warnings);
+      read_and_told(options.logs, with_settings(options.record, input.file.record), program, false, warnings);
   for (const std::string& column : options.ignored) {
     input.file.diagnose.ignore.push_back({.text = column});
   }
   diagnosis::ignore_columns(input);
   options.diagnosis.effects = options.effects;
-  options.diagnosis.limits = LimitReader(program.graph).read(options.limits);
+  options.diagnosis.limits = diagnosis::read_limits(program.graph, options.limits);
   std::optional<diagnosis::ControllerFinding> controller;
   if (!options.trace.empty()) {
     controller = replayed(options, warnings);

@@ -4,15 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <system_error>
 
-#include "codegen/compile.hpp"
-#include "diagnosis/report/page.hpp"
-#include "diagnosis/report/verdict_json.hpp"
-#include "records/csv.hpp"
+#include "diagnosis/report/diagnosis_files.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::tool {
@@ -37,46 +33,6 @@ std::string line_of(const ParameterFinding& one) {
   }
   return fmt::format("    {:<24} {}   ({:.4g} to {:.4g})\n", one.name, with_unit(one.value, one.unit), one.low,
                      one.high);
-}
-
-/// One record for each signal and file: time, measured, nominal, calibrated, improved.
-records::Record trace_record(const diagnosis::Trace& trace) {
-  const std::size_t rows = trace.time.size();
-  const double step = rows > 1 ? (trace.time.back() - trace.time.front()) / static_cast<double>(rows - 1) : 1.0;
-  records::Record record = records::Record::even(trace.time.front(), step, rows);
-  record.add({.name = trace.signal + "_measured", .unit = trace.unit, .values = trace.measured});
-  record.add({.name = trace.signal + "_nominal", .unit = trace.unit, .values = trace.nominal});
-  record.add({.name = trace.signal + "_calibrated", .unit = trace.unit, .values = trace.calibrated});
-  record.add({.name = trace.signal + "_improved", .unit = trace.unit, .values = trace.improved});
-  return record;
-}
-
-/// The command of the next experiment, ready to be played.
-records::Record command_record(const diagnosis::NextExperiment& next) {
-  const std::size_t rows = next.time.size();
-  const double step = rows > 1 ? (next.time.back() - next.time.front()) / static_cast<double>(rows - 1) : 1.0;
-  records::Record record = records::Record::even(next.time.front(), step, rows);
-  record.add({.name = next.input, .unit = next.unit, .values = next.values});
-  for (const diagnosis::NextExperiment::Resting& rest : next.resting) {
-    record.add({.name = rest.input, .unit = rest.unit, .values = std::vector<double>(rows, rest.value)});
-  }
-  return record;
-}
-
-constexpr std::string_view verdict_file = "verdict.json";
-constexpr std::string_view report_file = "report.html";
-constexpr std::string_view improved_diagram_file = "improved.st";
-constexpr std::string_view improved_parameters_file = "improved.toml";
-constexpr std::string_view feedforward_file = "feedforward.st";
-constexpr std::string_view next_experiment_file = "next_experiment.csv";
-
-/// The only one, or one of several that are numbered from 1.
-std::string traces_file(std::size_t number, std::size_t count) {
-  return count == 1 ? "traces.csv" : fmt::format("traces{}.csv", number);
-}
-
-Program improved_program(const Diagnosis& found) {
-  return compile_text(found.improved_text, {.top = found.top, .any_order = true});
 }
 
 std::string controller_text(const diagnosis::ControllerFinding& controller) {
@@ -180,7 +136,7 @@ std::string diagnosis_text(const Diagnosis& found) {
                         found.next.reason);
   }
   for (std::size_t i = 0; found.traces.size() > 1 && i < found.traces.size(); ++i) {
-    text += fmt::format("  {}: {} of {}\n", traces_file(i + 1, found.traces.size()), found.traces[i].signal,
+    text += fmt::format("  {}: {} of {}\n", diagnosis::traces_file(i + 1, found.traces.size()), found.traces[i].signal,
                         found.traces[i].record);
   }
   for (const std::string& warning : found.warnings) {
@@ -194,30 +150,14 @@ std::string diagnosis_text(const Diagnosis& found) {
   return text + fmt::format("{} candidates, {:.1f} s\n", found.tried, found.seconds);
 }
 
-bool is_diagnosis_file(std::string_view name) {
-  constexpr std::array fixed{verdict_file,     report_file,         improved_diagram_file, improved_parameters_file,
-                             feedforward_file, next_experiment_file};
-  if (std::ranges::find(fixed, name) != fixed.end()) {
-    return true;
-  }
-  // How many traces there will be is not known before the diagnosis.
-  constexpr std::string_view before = "traces";
-  constexpr std::string_view behind = ".csv";
-  if (!name.starts_with(before) || !name.ends_with(behind) || name.size() < before.size() + behind.size()) {
-    return false;
-  }
-  const std::string_view number = name.substr(before.size(), name.size() - before.size() - behind.size());
-  return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
-}
-
 void write_diagnosis(const std::filesystem::path& folder, const Diagnosis& found) {
-  const std::vector<OutputFile> files = diagnosis_files(folder, found);
+  const std::vector<OutputFile> files = diagnosis::diagnosis_files(folder, found);
   write_files_atomically(files);
   std::vector<std::filesystem::path> stale;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const bool written = std::ranges::any_of(
         files, [&](const OutputFile& file) { return file.path.filename() == entry.path().filename(); });
-    if (!written && is_diagnosis_file(entry.path().filename().string()) &&
+    if (!written && diagnosis::is_diagnosis_file(entry.path().filename().string()) &&
         (entry.is_regular_file() || entry.is_symlink())) {
       stale.push_back(entry.path());
     }
@@ -231,30 +171,6 @@ void write_diagnosis(const std::filesystem::path& folder, const Diagnosis& found
                        "remove it: it does not belong to this verdict.");
     }
   }
-}
-
-std::vector<OutputFile> diagnosis_files(const std::filesystem::path& folder, const Diagnosis& found) {
-  std::vector<OutputFile> files{{.path = folder / verdict_file, .contents = diagnosis::verdict_json(found)}};
-  if (!found.refusals.empty()) {
-    files.push_back({.path = folder / report_file, .contents = diagnosis::report_page(found, {})});
-    return files;
-  }
-  files.push_back({.path = folder / improved_diagram_file, .contents = found.improved_text});
-  files.push_back(
-      {.path = folder / improved_parameters_file,
-       .contents = parameters::parameter_text(found.improved_file, {}, "From hysteron diagnose.\n" + found.summary)});
-  files.push_back({.path = folder / report_file, .contents = diagnosis::report_page(found, improved_program(found))});
-  if (!found.feedforward_text.empty()) {
-    files.push_back({.path = folder / feedforward_file, .contents = found.feedforward_text});
-  }
-  if (!found.next.time.empty()) {
-    files.push_back({.path = folder / next_experiment_file, .contents = records::csv_text(command_record(found.next))});
-  }
-  for (std::size_t i = 0; i < found.traces.size(); ++i) {
-    files.push_back({.path = folder / traces_file(i + 1, found.traces.size()),
-                     .contents = records::csv_text(trace_record(found.traces[i]))});
-  }
-  return files;
 }
 
 }  // namespace hysteron::tool

@@ -28,19 +28,6 @@ Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {
   return program;
 }
 
-void refuse_ports_named_as_time(const Diagnostics& warnings) {
-  Diagnostics errors;
-  for (Diagnostic one : warnings.all()) {
-    if (one.number == error::port_named_as_time) {
-      one.severity = Severity::Error;
-      errors.add(std::move(one));
-    }
-  }
-  if (errors.has_errors()) {
-    throw InputError(std::move(errors));
-  }
-}
-
 std::vector<InputFile> inputs_of(const DiagramOptions& options) {
   return {{.file = options.file}, {.file = options.parameters, .named_by = "--params"}};
 }

@@ -29,9 +29,6 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram);
 /// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
 [[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
 
-/// Refuses a diagram with a port that no record can hold: throws InputError where HY216 is among its warnings.
-void refuse_ports_named_as_time(const Diagnostics& warnings);
-
 /// What a diagram is read from, for refuse_to_overwrite.
 [[nodiscard]] std::vector<InputFile> inputs_of(const DiagramOptions& options);
 

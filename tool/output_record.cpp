@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/errors.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::tool {
@@ -38,26 +37,6 @@ std::string output_csv(std::span<const double> time, const std::vector<std::stri
     text += '\n';
   }
   return text;
-}
-
-void check_finite(const std::vector<Place>& places, std::span<const double> time, const std::vector<std::string>& names,
-                  const std::vector<Signal>& columns, Diagnostics& diagnostics) {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto finite = [](double value) { return std::isfinite(value); };
-    const auto first = std::find_if_not(columns[i].begin(), columns[i].end(), finite);
-    if (first == columns[i].end()) {
-      continue;
-    }
-    const auto step = static_cast<std::size_t>(first - columns[i].begin());
-    const auto count =
-        columns[i].size() - static_cast<std::size_t>(std::count_if(first, columns[i].end(), finite)) - step;
-    diagnostics.error(
-        error::output_not_finite, places.empty() ? Place{} : places[i],
-        fmt::format("{} is {} at step {} (t = {} s){}.", names[i], std::isnan(*first) ? "not a number" : "infinite",
-                    step, number_text(time[step]), count > 1 ? fmt::format(", and in {} steps in all", count) : ""),
-        "look for a division by 0, a root or logarithm of a negative number, or a sum that grows without bound; "
-        "--trace shows the signals inside.");
-  }
 }
 
 }  // namespace hysteron::tool

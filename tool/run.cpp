@@ -8,7 +8,6 @@
 
 #include "records/read.hpp"
 #include "support/atomic_file.hpp"
-#include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/progress.hpp"
@@ -21,8 +20,7 @@
 #include "tool/record_figures.hpp"
 #include "tool/record_options.hpp"
 #include "tool/writable.hpp"
-#include "tuning/record_units.hpp"
-#include "tuning/simulation.hpp"
+#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -52,47 +50,6 @@ struct RunOptions {
   bool summary = false;
 };
 
-/// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
-std::vector<std::string> signal_names(const Graph& graph) {
-  std::vector<std::string> names;
-  for (const NamedWire& named : graph.named) {
-    names.push_back(named.path);
-  }
-  for (const Node& node : graph.nodes) {
-    for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
-      names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
-    }
-  }
-  return names;
-}
-
-Wire find_signal(const Graph& graph, const std::string& path) {
-  for (const NamedWire& named : graph.named) {
-    if (equal_ignoring_case(named.path, path)) {
-      return named.wire;
-    }
-  }
-  const auto dot = path.rfind('.');
-  for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
-    const Node& node = graph.nodes[index];
-    if (node.block == nullptr || !equal_ignoring_case(node.path, path.substr(0, dot))) {
-      continue;
-    }
-    for (std::size_t i = 0; i < node.block->outputs.size(); ++i) {
-      if (equal_ignoring_case(node.block->outputs[i].name, path.substr(dot + 1))) {
-        return {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index};
-      }
-    }
-  }
-  const auto names = signal_names(graph);
-  const auto near = nearest_name(path, names);
-  throw InputError(error::unknown_signal, {.file = graph.source->path},
-                   fmt::format("{} has no signal {}.", graph.name, path),
-                   near.empty() ? "name a variable, an output of an instance, as INSTANCE.XOUT, or either inside a "
-                                  "nested block, as PLANT.HYST.XOUT."
-                                : fmt::format("did you mean {}?", near));
-}
-
 std::string column_summary(const std::string& name, const std::string& unit, const Signal& values,
                            const records::Column* recorded) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -113,8 +70,8 @@ std::string column_summary(const std::string& name, const std::string& unit, con
   return text + "\n";
 }
 
-std::string summary(const Program& program, const Drive& drive, const records::Record& record,
-                    const std::vector<Signal>& outputs) {
+std::string summary(const RecordedRun& run, const records::Record& record) {
+  const auto& [program, drive, names, units, outputs] = run;
   const Graph& graph = program.graph;
   std::string text = fmt::format("{}: {} steps of {} s\ninputs\n", graph.name, drive.steps,
                                  number_text(graph.sample_time_ns > 0 ? graph.sample_time() : drive.sample_time));
@@ -165,7 +122,7 @@ std::vector<plots::Figure> figures_of(const Program& program, const records::Rec
   return {std::move(figure)};
 }
 
-int run(const RunOptions& options, Console& console) {
+int run_command(const RunOptions& options, Console& console) {
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.input, .named_by = "--in"});
   refuse_to_overwrite({.file = options.output == "-" ? "" : options.output}, inputs);
@@ -179,51 +136,32 @@ int run(const RunOptions& options, Console& console) {
   }
   Diagnostics diagnostics;
   Program program = load_diagram(options.diagram, diagnostics);
-  refuse_ports_named_as_time(diagnostics);
   const std::string log = read_text_file(options.input == "-" ? "/dev/stdin" : options.input);
   console.sources().put(options.input, log);
   const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
   records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
-  convert_units(record, program, diagnostics);
-  settle_sample_time(record, program, diagnostics);
-  const Drive drive = drive_from(record, program, {}, diagnostics);
-
-  std::vector<std::string> names;
-  std::vector<Place> places;
-  for (const Port& output : program.graph.outputs) {
-    names.push_back(output.name);
-    places.push_back(program.graph.place(output.span));
-  }
-  std::vector<Wire> watched = output_wires(program.graph);
-  for (const std::string& path : options.traces) {
-    watched.push_back(find_signal(program.graph, path));
-    places.push_back({.file = options.diagram.file});
-    // A variable T would stand in a second column t.
-    names.push_back(equal_ignoring_case(path, "t") ? in_capitals(program.graph.name + "." + path) : in_capitals(path));
-  }
-  if (diagnostics.has_errors()) {
-    throw InputError(diagnostics);
-  }
 
   Progress progress("Running");
-  const auto values =
-      interpret(program, drive, watched, options.diagram.float32, [&](double fraction) { progress.update(fraction); });
+  const RecordedRun run = run_over(std::move(program), record,
+                                   {.traces = options.traces,
+                                    .float32 = options.diagram.float32,
+                                    .progress = [&](double fraction) { progress.update(fraction); }},
+                                   diagnostics);
   progress.finish();
-  check_finite(places, record.time(), names, values, diagnostics);
-  const auto text = output_csv(record.time(), names, values, options.diagram.float32);
+  const auto text = output_csv(record.time(), run.names, run.values, options.diagram.float32);
   if (options.output == "-") {
     console.print(text);
   } else {
     write_file_atomically(options.output, text);
   }
   if (!options.plot.empty()) {
-    const auto figures = figures_of(program, record, names, values);
+    const auto figures = figures_of(run.program, record, run.names, run.values);
     write_file_atomically(options.plot, picture_bytes(options.plot, figures.front().title, figures));
   }
   console.report(diagnostics);
-  say_what_was_read(record, program, !options.summary);
+  say_what_was_read(record, run.program, !options.summary);
   if (options.summary) {
-    console.print(summary(program, drive, record, values));
+    console.print(summary(run, record));
   }
   return diagnostics.has_errors() ? exit_findings : exit_ok;
 }
@@ -251,7 +189,7 @@ Action add_run(CLI::App& app) {
   app.footer(std::string(run_examples));
   return [options](Console& console) {
     options->diagram.keep_names = !options->traces.empty();
-    return run(*options, console);
+    return run_command(*options, console);
   };
 }
 

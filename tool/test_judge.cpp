@@ -11,6 +11,7 @@
 #include "tool/compiled.hpp"
 #include "tool/output_record.hpp"
 #include "tool/test_plot.hpp"
+#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {

@@ -18,6 +18,7 @@
 #include "tool/record_options.hpp"
 #include "tool/tune_report.hpp"
 #include "tool/writable.hpp"
+#include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -133,7 +134,7 @@ int tune(const TuneOptions& options, Console& console) {
   refuse_ports_named_as_time(warnings);
   const auto file = parameters::read_parameter_file(options.diagram.parameters);
   const std::vector<records::Record> records =
-      read_measured_records(options.logs, with_settings(options.record, file.record), program, true, warnings);
+      read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
 
   OutputErrorFit fit;

@@ -10,40 +10,13 @@
 
 #include "records/csv.hpp"
 #include "tool/tune_page.hpp"
+#include "tool/tune_words.hpp"
+#include "tuning/fit_json.hpp"
 
 namespace hysteron::tool {
 namespace {
 
 using Eigen::Index;
-
-/// JSON has no infinities: what is not known is null.
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
-
-std::string status_name(FitStatus status) {
-  switch (status) {
-    case FitStatus::Converged:
-      return "converged";
-    case FitStatus::NearlyConverged:
-      return "nearly converged";
-    case FitStatus::IterationLimit:
-      return "iteration limit";
-    case FitStatus::Cancelled:
-      return "cancelled";
-    case FitStatus::Stalled:
-      return "stalled";
-    case FitStatus::NoInfluence:
-      return "no influence";
-    case FitStatus::Diverging:
-      return "diverging";
-    case FitStatus::ModelFailed:
-      return "model failed";
-    case FitStatus::SolverFailed:
-      return "solver failed";
-  }
-  return {};
-}
 
 /// Which start was best, and what each left.
 std::string starts_text(const OutputErrorFit& fit) {
@@ -105,52 +78,8 @@ std::string as_text(const TuneReport& report) {
 }
 
 nlohmann::json as_json(const TuneReport& report) {
-  const OutputErrorProblem& problem = report.problem;
-  const OutputErrorFit& fit = report.fit;
-  nlohmann::json json = {{"diagram", problem.program.graph.name},
-                         {"status", status_name(fit.solution.status)},
-                         {"message", fit.solution.message},
-                         {"iterations", fit.solution.iterations},
-                         {"seconds", fit.seconds},
-                         {"correlation_time_samples", number(fit.covariance.correlation_time)},
-                         {"warnings", fit.covariance.warnings},
-                         {"not_in_the_model", what_is_not_in_the_model(report)},
-                         {"parameters", nlohmann::json::array()},
-                         {"initial_states", nlohmann::json::array()},
-                         {"outputs", nlohmann::json::array()},
-                         {"correlation", nlohmann::json::array()},
-                         {"start_costs", nlohmann::json::array()}};
-  for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const auto j = static_cast<Index>(i);
-    const AtBound bound = fit.solution.at_bound[i];
-    json[i < problem.parameters.size() ? "parameters" : "initial_states"].push_back(
-        {{"name", fit.names[i]},
-         {"value", fit.solution.x[j]},
-         {"standard_error", number(fit.covariance.standard_errors[j])},
-         {"unit", fit.units[i]},
-         {"at_bound", bound == AtBound::Lower   ? "lower"
-                      : bound == AtBound::Upper ? "upper"
-                                                : ""}});
-    nlohmann::json row = nlohmann::json::array();
-    for (Index k = 0; k < std::ssize(fit.names); ++k) {
-      row.push_back(number(fit.covariance.correlation(j, k)));
-    }
-    json["correlation"].push_back(std::move(row));
-  }
-  for (const OutputScore& score : fit.scores) {
-    json["outputs"].push_back({{"name", score.output},
-                               {"unit", score.unit},
-                               {"range", score.range},
-                               {"range_test", score.test_range},
-                               {"rmse_train", number(score.train)},
-                               {"rmse_test", number(score.test)},
-                               {"rmse_before", number(score.before)},
-                               {"train_samples", score.train_samples},
-                               {"test_samples", score.test_samples}});
-  }
-  for (const double cost : fit.start_costs) {
-    json["start_costs"].push_back(number(cost));
-  }
+  nlohmann::json json = fit_json(report.problem, report.fit);
+  json["not_in_the_model"] = what_is_not_in_the_model(report);
   return json;
 }
 

@@ -1,4 +1,4 @@
-// What a fit says: as text, as JSON, as a page with pictures, and the residuals as a record.
+// What a fit says: as text, as a page with pictures, and the residuals as a record.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +21,7 @@ struct TuneReport {
 };
 
 [[nodiscard]] std::string as_text(const TuneReport& report);
+/// The fit as fit_json has it, and what is not in the model.
 [[nodiscard]] nlohmann::json as_json(const TuneReport& report);
 
 /// The names of the files of a report in a folder: report.html, report.json and residuals.csv, residuals-2.csv … for

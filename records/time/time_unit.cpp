@@ -80,6 +80,7 @@ constexpr auto spellings = std::to_array<Spelling>({
 constexpr auto names = std::to_array<std::string_view>({
     "t",
     "time",
+    "tout",
     "zeit",
     "timestamp",
     "time stamp",

@@ -43,6 +43,9 @@ Outcome run_shell(const std::filesystem::path& folder, const std::string& comman
   const auto script = folder.string() + "/.commands";
   std::ofstream(script) << "exec 2>&1\nset -e\ncd '" << folder.string() << "'\nPATH='" << tools.string() << "':'"
                         << (tools / "examples").string() << "':$PATH\n"
+                        << "export HYSTERON_LIBRARY='" << (tools / "libhysteron.so").string() << "' PYTHONPATH='"
+                        << (source_folder() / "bindings/python").string() << "' PYTHONDONTWRITEBYTECODE=1\n"
+                        << "python3() { /usr/bin/python3 \"$@\"; }\n"
                         << commands;
   const std::string shell = "/bin/sh '" + script + "'";
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(shell.c_str(), "r"), nullptr);

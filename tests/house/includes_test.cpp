@@ -29,13 +29,14 @@ const Arrows& allowed() {
       {"runtime", {"blocks", "support"}},
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records", "plots"}},
+      {"bindings", {"blocks", "codegen", "tuning", "diagnosis", "support", "records", "plots"}},
       {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "plots"}},
       {"tests",
        {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "plots", "examples",
-        "bench"}},
+        "bench", "bindings"}},
   };
   return arrows;
 }

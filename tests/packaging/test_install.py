@@ -1,4 +1,5 @@
 """What is installed works where it lies: the program, its pages and completions, find_package, and Debian's packages."""
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -31,6 +32,8 @@ target_link_libraries(user PRIVATE axis)
 add_executable(library library.cpp)
 target_compile_features(library PRIVATE cxx_std_20)
 target_link_libraries(library PRIVATE hysteron::blocks hysteron::runtime)
+add_executable(api api.cpp)
+target_link_libraries(api PRIVATE hysteron::c)
 """
 MAIN = """#include <cstdio>
 #include "axis.hpp"
@@ -48,6 +51,15 @@ int main() {
 LIBRARY = """#include "blocks/lag.hpp"
 #include "runtime/host/host_program.hpp"
 int main() {}
+"""
+API = """#include <hysteron.h>
+#include <cstdio>
+int main() { std::puts(hysteron_version()); }
+"""
+SCRIPT = """import sys, hysteron
+axis = hysteron.compile("axis.st", LAG={"T1": 0.05})
+print(hysteron.__file__)
+print(*axis.run({"TARGET": [1.0, 1.0, 1.0]})["U"].tolist())
 """
 
 
@@ -104,7 +116,7 @@ class Install(unittest.TestCase):
     def test_a_project_finds_the_package_and_generates_its_step(self):
         user = self.work / "user"
         user.mkdir()
-        for name, text in {"CMakeLists.txt": PROJECT, "axis.st": DIAGRAM, "main.cpp": MAIN, "library.cpp": LIBRARY,
+        for name, text in {"CMakeLists.txt": PROJECT, "axis.st": DIAGRAM, "main.cpp": MAIN, "library.cpp": LIBRARY, "api.cpp": API,
                            "axis.toml": "[parameters.LAG]\nT1 = 0.05\n"}.items():
             (user / name).write_text(text)
         run("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -113,16 +125,38 @@ class Install(unittest.TestCase):
         run(self.program, "run", "axis.st", "--params", "axis.toml", "--in", "log.csv", "--out", "out.csv", cwd=user)
         wanted = [float(line.split(",")[1]) for line in (user / "out.csv").read_text().splitlines()[1:]]
         self.assertEqual([float(line) for line in run(user / "build/user").split()], wanted)
+        self.assertIn(run(user / "build/api").strip(), run(self.program, "--version"))
+
+    @unittest.skipUnless(importlib.util.find_spec("numpy"), "python3-numpy is not installed")
+    def test_python_finds_its_package_and_the_library(self):
+        folder = self.work / "python"
+        folder.mkdir()
+        (folder / "axis.st").write_text(DIAGRAM)
+        (folder / "script.py").write_text(SCRIPT)
+        (folder / "axis.toml").write_text("[parameters.LAG]\nT1 = 0.05\n")
+        (folder / "log.csv").write_text("t,TARGET\n0.000,1\n0.001,1\n0.002,1\n")
+        packages = self.prefix / "lib/python3/dist-packages"
+        bare = {key: value for key, value in os.environ.items() if key != "HYSTERON_LIBRARY"}
+        place, values = run("/usr/bin/python3", "script.py", cwd=folder,
+                            env={**bare, "PYTHONPATH": str(packages)}).splitlines()
+        self.assertEqual(Path(place), packages / "hysteron/__init__.py")
+        run(self.program, "run", "axis.st", "--params", "axis.toml", "--in", "log.csv", "--out", "out.csv", cwd=folder)
+        wanted = [float(line.split(",")[1]) for line in (folder / "out.csv").read_text().splitlines()[1:]]
+        self.assertEqual([float(value) for value in values.split()], wanted)
 
     @unittest.skipUnless(shutil.which("dpkg-shlibdeps"), "no dpkg-dev")
     def test_packages_of_debian_have_what_is_installed(self):
         packages = self.work / "packages"
         run("cpack", "-G", "DEB", "-B", packages, cwd=BUILD)
         found = {path.name.split("_")[0]: path for path in packages.glob("*.deb")}
-        self.assertEqual(set(found), {"hysteron", "hysteron-dev"})
+        self.assertEqual(set(found), {"hysteron", "hysteron-dev", "libhysteron1", "python3-hysteron"})
         self.assertIn("./usr/bin/hysteron\n", run("dpkg-deb", "-c", found["hysteron"]).replace(" ", "\n"))
         self.assertIn("libmodbus5", run("dpkg-deb", "-f", found["hysteron"], "Depends"))
-        self.assertIn("hysteronConfig.cmake", run("dpkg-deb", "-c", found["hysteron-dev"]))
+        for name, file in (("hysteron-dev", "hysteronConfig.cmake"), ("hysteron-dev", "include/hysteron.h"),
+                           ("libhysteron1", "libhysteron.so.1"), ("python3-hysteron", "hysteron/_location.py")):
+            self.assertIn(file, run("dpkg-deb", "-c", found[name]))
+        self.assertIn("coinor-libipopt", run("dpkg-deb", "-f", found["libhysteron1"], "Depends"))
+        self.assertIn("python3-numpy", run("dpkg-deb", "-f", found["python3-hysteron"], "Depends"))
 
 
 if __name__ == "__main__":

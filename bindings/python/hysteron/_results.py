@@ -1,0 +1,192 @@
+"""What a fit and a diagnosis give, as objects. Each is made of the JSON that the tool writes; `data` is all of it."""
+import dataclasses
+import json
+from dataclasses import dataclass, field
+from typing import Optional
+
+from ._library import Handle, library
+
+
+def _made(kind, data, /, **more):
+    """A dataclass of the keys that it has; keys that a later version adds are left to `data`."""
+    names = {one.name for one in dataclasses.fields(kind)}
+    return kind(**{key: value for key, value in {**data, **more}.items() if key in names})
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fitted parameter or initial state. The standard error is None where the data do not tell."""
+
+    name: str
+    value: float
+    standard_error: Optional[float]
+    unit: str
+    at_bound: str
+
+
+@dataclass(frozen=True)
+class Score:
+    """Root of the mean squared error of one output, in its unit. None where there are no samples."""
+
+    name: str
+    unit: str
+    range: float
+    range_test: float
+    rmse_train: Optional[float]
+    rmse_test: Optional[float]
+    rmse_before: Optional[float]
+    train_samples: int
+    test_samples: int
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What `tune` found. `text` is the parameter file with the fitted values, as `tune --out` writes it."""
+
+    status: str
+    message: str
+    iterations: int
+    parameters: dict
+    initial_states: dict
+    outputs: dict
+    warnings: list
+    text: str
+    data: dict = field(repr=False)
+
+    @property
+    def converged(self):
+        return self.status in ("converged", "nearly converged")
+
+
+def fit_of(pointer):
+    handle = Handle(pointer, "fit_free")
+    data = json.loads(library.hysteron_fit_json(handle.pointer))
+    return _made(Fit, data,
+                 parameters={one["name"]: _made(Fitted, one) for one in data["parameters"]},
+                 initial_states={one["name"]: _made(Fitted, one) for one in data["initial_states"]},
+                 outputs={one["name"]: _made(Score, one) for one in data["outputs"]},
+                 text=library.hysteron_fit_parameters(handle.pointer).decode(), data=data)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its 95 % interval. None where the record does not determine it."""
+
+    value: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What an effect was given and no fit moved."""
+
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect, the edge of the diagram where it acts, and its share of the gap that calibration leaves."""
+
+    id: str
+    edge: str
+    same_edges: list
+    drivers: list
+    share: float
+    invertible: bool
+    parameters: dict
+    settings: dict
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The gap of one output, RMS in its unit. `closed` is the share closed on blocks that were held out."""
+
+    signal: str
+    unit: str
+    nominal_rms: float
+    calibrated_rms: float
+    improved_rms: float
+    floor_rms: float
+    floor_evidence: str
+    closed: float
+    closed_low: float
+    closed_high: float
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family of effects, and how likely it is that one of it is there."""
+
+    family: str
+    probability: float
+    closed: float
+    closed_alone: float
+    effect: str
+    effect_probability: float
+    edge: str
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A set of effects that the data do not rule out."""
+
+    effects: list
+    edges: list
+    parameters: int
+    improved_rms: float
+    support: float
+    probability: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What `diagnose` found, as verdict.json says it. `files` are those that `diagnose --out` writes, by name."""
+
+    verdict: str
+    summary: str
+    confidence: float
+    unknown_score: float
+    refused: bool
+    refusals: list
+    effects: list
+    rivals: list
+    families: list
+    gap: Gap
+    gaps: list
+    calibration: dict
+    nominal: dict
+    cannot_tell: list
+    warnings: list
+    files: dict = field(repr=False)
+    data: dict = field(repr=False)
+
+    @property
+    def improved(self):
+        """The text of improved.st, the diagram with the effects in it; None where nothing could be diagnosed."""
+        return self.files.get("improved.st")
+
+    @property
+    def improved_parameters(self):
+        """The text of improved.toml; None where nothing could be diagnosed."""
+        return self.files.get("improved.toml")
+
+
+def _named(kind, data):
+    return {name: _made(kind, one) for name, one in data.items()}
+
+
+def verdict_of(pointer):
+    handle = Handle(pointer, "diagnosis_free")
+    names = [library.hysteron_diagnosis_file_name(handle.pointer, i)
+             for i in range(library.hysteron_diagnosis_file_count(handle.pointer))]
+    files = {name.decode(): library.hysteron_diagnosis_file(handle.pointer, name).decode() for name in names}
+    data = json.loads(files["verdict.json"])
+    effects = [_made(Effect, one, parameters=_named(Estimate, one["parameters"]),
+                     settings=_named(Setting, one["settings"])) for one in data["effects"]]
+    return _made(Verdict, data, effects=effects, rivals=[_made(Rival, one) for one in data["rival_details"]],
+                 families=[_made(Family, one) for one in data["families"]], gap=_made(Gap, data["gap"]),
+                 gaps=[_made(Gap, one) for one in data["gaps"]], calibration=_named(Estimate, data["calibration"]),
+                 nominal=_named(Estimate, data["nominal"]), files=files, data=data)

@@ -1,0 +1,36 @@
+#include "diagnosis/effects/known_effects.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "codegen/graph/definition.hpp"
+#include "diagnosis/effects/effects.hpp"
+#include "support/diagnostic.hpp"
+#include "support/errors.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::diagnosis {
+
+void refuse_unknown_effects(const std::vector<std::string>& wanted, const Program& program) {
+  std::vector<std::string> known{"glitches"};
+  Diagnostics ignored;  // the file compiles
+  for (const EffectKind& kind : effect_kinds(define(program.graph.source, ignored))) {
+    if (kind.id != known.back()) {
+      known.push_back(kind.id);
+    }
+  }
+  std::ranges::sort(known);
+  for (const std::string& effect : wanted) {
+    if (std::ranges::find(known, effect) == known.end()) {
+      const std::string_view near = nearest_name(effect, known);
+      throw InputError(error::bad_usage, {}, fmt::format("There is no effect {}.", effect),
+                       near.empty() ? fmt::format("the effects are {}.", fmt::join(known, ", "))
+                                    : fmt::format("did you mean {}?", near));
+    }
+  }
+}
+
+}  // namespace hysteron::diagnosis

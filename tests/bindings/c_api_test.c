@@ -1,0 +1,179 @@
+/* The C API as a C99 program uses it: results, errors with code and mend, and every argument that may not be NULL. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/c/hysteron.h"
+
+static int failures = 0;
+
+#define CHECK(condition)                                                \
+  do {                                                                  \
+    if (!(condition)) {                                                 \
+      fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+      ++failures;                                                       \
+    }                                                                   \
+  } while (0)
+
+static const char plant_text[] =
+    "FUNCTION_BLOCK PLANT  (* @ts 1ms *)\n"
+    "  VAR_INPUT U : LREAL; (* @unit V *) ON_OFF : BOOL := TRUE; END_VAR\n"
+    "  VAR_OUTPUT Y : LREAL; (* @unit um *) END_VAR\n"
+    "  VAR AMP : HY_GAIN := (K := 2.0); END_VAR\n"
+    "  AMP(XIN := SEL(ON_OFF, 0.0, U));\n"
+    "  Y := AMP.XOUT;\n"
+    "END_FUNCTION_BLOCK\n";
+
+static hysteron_diagram* plant(void) {
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = hysteron_compile_text(plant_text, NULL, &messages);
+  if (diagram == NULL) {
+    fprintf(stderr, "%s", hysteron_messages_text(messages));
+    exit(1);
+  }
+  hysteron_messages_free(messages);
+  return diagram;
+}
+
+/* The code of the first message, which is an error and says what to do; 0 where there is none. */
+static int code_of(hysteron_messages* messages) {
+  int code = 0;
+  if (hysteron_messages_count(messages) > 0) {
+    code = hysteron_message_code(messages, 0);
+    CHECK(hysteron_message_severity(messages, 0) == HYSTERON_ERROR);
+    CHECK(strlen(hysteron_message_cause(messages, 0)) > 0);
+    CHECK(strlen(hysteron_message_mend(messages, 0)) > 0);
+    CHECK(strstr(hysteron_messages_text(messages), hysteron_message_cause(messages, 0)) != NULL);
+  }
+  hysteron_messages_free(messages);
+  return code;
+}
+
+static void a_diagram_says_what_it_is(void) {
+  hysteron_diagram* diagram = plant();
+  CHECK(hysteron_abi() == HYSTERON_ABI);
+  CHECK(strlen(hysteron_version()) >= 5);
+  CHECK(hysteron_input_count(diagram) == 2 && hysteron_output_count(diagram) == 1);
+  CHECK(strcmp(hysteron_input_name(diagram, 0), "U") == 0);
+  CHECK(hysteron_input_name(diagram, 2) == NULL);
+  CHECK(strcmp(hysteron_output_name(diagram, 0), "Y") == 0);
+  CHECK(strstr(hysteron_diagram_json(diagram), "\"AMP.K\"") != NULL);
+  hysteron_diagram_free(diagram);
+}
+
+static void steps_and_runs_give_the_same(void) {
+  enum { rows = 4 };
+  const char* names[2] = {"U", "On_Off"};
+  const double values[2 * rows] = {0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 0.0, 1.0};
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = plant();
+  hysteron_diagram* other = hysteron_with_parameters(diagram, "{\"parameters\": {\"AMP.K\": 3}}", NULL);
+  hysteron_record* record = hysteron_record_new(2, rows, names, NULL, values, diagram, "{\"rate\": 1000}", &messages);
+  hysteron_record* out;
+  hysteron_machine* machine;
+  size_t k;
+  CHECK(other != NULL && record != NULL);
+  hysteron_messages_free(messages);
+  hysteron_diagram_free(diagram);
+  out = hysteron_run(other, record, NULL, &messages);
+  CHECK(out != NULL && messages == NULL);
+  machine = hysteron_machine_new(other, 0.0, NULL, NULL);
+  hysteron_diagram_free(other); /* what was made of it does not need it */
+  hysteron_record_free(record);
+  CHECK(hysteron_record_rows(out) == rows && hysteron_record_columns(out) == 1);
+  CHECK(strcmp(hysteron_record_name(out, 0), "Y") == 0 && strcmp(hysteron_record_unit(out, 0), "um") == 0);
+  CHECK(hysteron_record_sample_time(out) == 0.001 && hysteron_record_time(out)[3] == 0.003);
+  CHECK(hysteron_record_values(out, 1) == NULL);
+  for (k = 0; k < rows; ++k) {
+    double inputs[2];
+    double y = -1.0;
+    inputs[0] = values[k];
+    inputs[1] = values[rows + k];
+    CHECK(hysteron_machine_step(machine, inputs, &y) == 0);
+    CHECK(y == hysteron_record_values(out, 0)[k]);
+    CHECK(y == (inputs[1] != 0.0 ? 3.0 * inputs[0] : 0.0));
+  }
+  hysteron_machine_free(machine);
+  hysteron_record_free(out);
+}
+
+static void an_input_of_another_type_makes_no_step(void) {
+  hysteron_diagram* diagram = plant();
+  hysteron_machine* machine = hysteron_machine_new(diagram, 0.0, NULL, NULL);
+  const double inputs[2] = {1.0, 0.5};
+  double y = -1.0;
+  CHECK(hysteron_machine_step(machine, inputs, &y) == 2 && y == -1.0);
+  CHECK(hysteron_machine_step(machine, NULL, &y) == -1);
+  CHECK(hysteron_machine_step(machine, inputs, NULL) == -1);
+  CHECK(hysteron_machine_step(NULL, inputs, &y) == -1);
+  hysteron_machine_free(machine);
+  hysteron_diagram_free(diagram);
+}
+
+static void errors_have_code_place_and_mend(void) {
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = plant();
+  const char* names[1] = {"X"};
+  const double values[2] = {0.0, 1.0};
+  hysteron_record* record;
+  CHECK(hysteron_compile_text("FUNCTION_BLOCK A\nX := ;\nEND_FUNCTION_BLOCK\n", NULL, &messages) == NULL);
+  CHECK(strcmp(hysteron_message_file(messages, 0), "diagram") == 0);
+  CHECK(hysteron_message_line(messages, 0) == 2 && hysteron_message_column(messages, 0) > 0);
+  CHECK(strstr(hysteron_messages_text(messages), "X := ;") != NULL);
+  CHECK(code_of(messages) == 102);
+  CHECK(hysteron_compile_file("no/such/file.st", NULL, &messages) == NULL && code_of(messages) == 100);
+  CHECK(hysteron_compile_text(plant_text, "{\"toop\": \"PLANT\"}", &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_compile_text(plant_text, "[1]", &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_with_parameters(diagram, "{\"parameters\": {\"AMP.Q\": 1}}", &messages) == NULL);
+  CHECK(code_of(messages) == 603);
+  CHECK(hysteron_with_parameters(diagram, "{\"parameters\": {\"AMP.K\": \"two\"}}", &messages) == NULL);
+  CHECK(code_of(messages) == 604);
+  record = hysteron_record_new(1, 2, names, NULL, values, NULL, "{\"rate\": \"1kHz\"}", NULL);
+  CHECK(record != NULL);
+  CHECK(hysteron_run(diagram, record, NULL, &messages) == NULL && code_of(messages) == 502);
+  CHECK(hysteron_run(diagram, record, NULL, NULL) == NULL); /* nobody wants to know */
+  CHECK(hysteron_record_new(1, 2, names, NULL, values, NULL, NULL, &messages) == NULL && code_of(messages) == 502);
+  CHECK(hysteron_record_new(1, 1, names, NULL, values, NULL, "{\"rate\": 1}", &messages) == NULL);
+  CHECK(code_of(messages) == 501);
+  hysteron_record_free(record);
+  hysteron_diagram_free(diagram);
+}
+
+static void null_is_refused_or_does_nothing(void) {
+  hysteron_messages* messages = NULL;
+  const double values[2] = {0.0, 1.0};
+  const char* names[1] = {NULL};
+  CHECK(hysteron_compile_file(NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_compile_text(NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_with_parameters(NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_machine_new(NULL, 0.0, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_record_read(NULL, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_record_new(1, 2, NULL, NULL, values, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_record_new(1, 2, names, NULL, values, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_record_new(1, 2, names, NULL, NULL, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_run(NULL, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_tune(NULL, NULL, 0, NULL, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_diagnose(NULL, NULL, 0, NULL, &messages) == NULL && code_of(messages) == 730);
+  CHECK(hysteron_messages_count(NULL) == 0 && strcmp(hysteron_messages_text(NULL), "") == 0);
+  CHECK(hysteron_message_code(NULL, 0) == 0 && strcmp(hysteron_message_mend(NULL, 3), "") == 0);
+  CHECK(hysteron_diagram_json(NULL) == NULL && hysteron_input_count(NULL) == 0 && hysteron_output_name(NULL, 0) == NULL);
+  CHECK(hysteron_record_rows(NULL) == 0 && hysteron_record_time(NULL) == NULL && hysteron_record_name(NULL, 0) == NULL);
+  CHECK(hysteron_fit_json(NULL) == NULL && hysteron_fit_parameters(NULL) == NULL);
+  CHECK(hysteron_diagnosis_verdict(NULL) == NULL && hysteron_diagnosis_file_name(NULL, 0) == NULL);
+  hysteron_messages_free(NULL);
+  hysteron_diagram_free(NULL);
+  hysteron_machine_reset(NULL);
+  hysteron_machine_free(NULL);
+  hysteron_record_free(NULL);
+  hysteron_fit_free(NULL);
+  hysteron_diagnosis_free(NULL);
+}
+
+int main(void) {
+  a_diagram_says_what_it_is();
+  steps_and_runs_give_the_same();
+  an_input_of_another_type_makes_no_step();
+  errors_have_code_place_and_mend();
+  null_is_refused_or_does_nothing();
+  return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,165 @@
+"""Every output in JSON is what its schema says, no key more and none less; and every key of a schema occurs."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+try:
+    import jsonschema
+except ImportError:
+    raise unittest.SkipTest("python3-jsonschema is not installed") from None
+
+TOOL = os.environ["HYSTERON_TOOL"]
+SCHEMAS = Path(__file__).parents[2] / "docs/reference/schemas"
+
+PLANT = """FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+  VAR_INPUT
+    U : LREAL;  (* @unit V @min -10 @max 10 *)
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;  (* @unit um *)
+  END_VAR
+  VAR
+    AMP : HY_GAIN := (K := 2.0);
+    LAG : HY_LAG := (T1 := 0.01);
+  END_VAR
+
+  AMP(XIN := U);
+  LAG(XIN := AMP.XOUT);
+  Y := LAG.XOUT;
+END_FUNCTION_BLOCK
+"""
+SETTINGS = """[fit.AMP]
+K = {}
+
+[tune]
+test = [1.0, 2.0]
+initial_states = ["LAG.RATE1"]
+"""
+FAULTY = "FUNCTION_BLOCK A\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR G : HY_GAIN; H : HY_GAIN; END_VAR\n  G(XIN := H.XOUT);\n" \
+         "  H(XIN := G.XOUT);\n  Y := H.XOUT;\n  Y := 2.0;\nEND_FUNCTION_BLOCK\n"
+# What the replay of a runtime's trace and a measured inner signal say; tests of their own have them.
+RARE = {"verdict": {"agrees", "controller", "same_bits", "different", "first_different", "dropped", "outputs", "difference_rms",
+                    "limited_rms"}}
+
+
+def strict(schema):
+    """The schema that refuses a key which it does not describe."""
+    if isinstance(schema, list):
+        return [strict(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    made = {key: strict(value) for key, value in schema.items()}
+    if isinstance(schema.get("properties"), dict) and "additionalProperties" not in schema:
+        made["additionalProperties"] = False
+    return made
+
+
+def described(schema):
+    """Every key that a schema describes."""
+    if isinstance(schema, list):
+        return set().union(*map(described, schema)) if schema else set()
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema["properties"]) if isinstance(schema.get("properties"), dict) else set()
+    return own.union(*(described(value) for value in schema.values()))
+
+
+def keys_in(data):
+    if isinstance(data, list):
+        return set().union(*map(keys_in, data)) if data else set()
+    if not isinstance(data, dict):
+        return set()
+    return set(data).union(*map(keys_in, data.values()))
+
+
+class Schemas(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        machine = PLANT.replace("HY_LAG := (T1 := 0.01)", "HY_HYSTERESIS_RO := (C1 := 9.0, C2 := 1.5, C3 := 0.8)")
+        machine = machine.replace("K := 2.0", "K := 1.0")
+        files = {"plant.st": PLANT, "machine.st": machine, "faulty.st": FAULTY, "p.toml": SETTINGS}
+        rows = []
+        u = 0.0
+        noise = 7
+        for k in range(2000):
+            step = (k // 250) % 4
+            u += (0.008, -0.006, 0.005, -0.007)[step]
+            noise = 16807 * noise % 2147483647
+            rows.append((k * 0.001, u, noise / 2147483647 - 0.5))
+        files["drive.csv"] = "t,U\n" + "".join(f"{t:.3f},{u:.6f}\n" for t, u, _ in rows)
+        for name, text in files.items():
+            (cls.folder / name).write_text(text, encoding="utf-8")
+        cls.printed("run", "machine.st", "--in", "drive.csv", "--out", "moved.csv")
+        moved = [float(line.split(",")[1]) for line in (cls.folder / "moved.csv").read_text().splitlines()[1:]]
+        text = "t,U,Y,STATE\n" + "".join(f"{t:.3f},{u:.6f},{y + 0.05 * n:.5f},RUN\n" for (t, u, n), y in zip(rows, moved))
+        (cls.folder / "log.csv").write_text(text, encoding="utf-8")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def printed(cls, *arguments, codes=(0,)):
+        done = subprocess.run([TOOL, *arguments], cwd=cls.folder, capture_output=True, text=True)
+        assert done.returncode in codes, f"{arguments} ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
+        return done.stdout
+
+    def holds(self, name, *texts):
+        schema = json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
+        validator = jsonschema.Draft202012Validator(strict(schema))
+        validator.check_schema(schema)
+        seen = set()
+        for text in texts:
+            data = json.loads(text)
+            faults = [inner for one in validator.iter_errors(data) for inner in one.context or [one]]
+            self.assertEqual([f"{list(one.absolute_path)}: {one.message[-200:]}" for one in faults][:5], [])
+            seen |= keys_in(data)
+        self.assertLessEqual(described(schema) - seen, RARE.get(name, set()), "described and never seen")
+
+    def test_diagnostics(self):
+        self.holds("diagnostics", self.printed("check", "--json", "faulty.st", codes=(1,)),
+                   self.printed("check", "--json", "plant.st"), self.printed("check", "--json", "none.st", codes=(1, 2)))
+
+    def test_blocks(self):
+        self.holds("blocks", self.printed("blocks", "--json"), self.printed("blocks", "HY_LAG", "--json"))
+
+    def test_record(self):
+        self.holds("record", self.printed("record", "log.csv", "--json"))
+
+    def test_fit(self):
+        self.holds("fit", self.printed("tune", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "tuned.toml",
+                                       "--start", "2", "--report", "report", "--json", codes=(0, 1)),
+                   (self.folder / "report/report.json").read_text(encoding="utf-8"))
+
+    def test_map(self):
+        self.holds("map", self.printed("map", "plant.st", "--format", "json"))
+
+    def test_verdict(self):
+        (self.folder / "still.csv").write_text("t,U,Y\n" + "".join(f"{k * 0.001:.3f},0,0\n" for k in range(100)))
+        self.holds("verdict", self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "found",
+                                           "--explain", "--budget", "1000", "--json"),
+                   (self.folder / "found/verdict.json").read_text(encoding="utf-8"),
+                   self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",
+                                codes=(1,)))
+
+    def test_diagram(self):
+        try:
+            import hysteron
+        except ImportError as reason:
+            self.skipTest(f"the Python package cannot be imported: {reason}")
+        from hysteron import _library
+        table = PLANT.replace("AMP : HY_GAIN := (K := 2.0)", "AMP : HY_TABLE := (X := [0.0, 1.0], Y := [0.0, 2.0])")
+        texts = []
+        for text in (PLANT, table if "HY_TABLE" in self.printed("blocks") else PLANT):
+            diagram = hysteron.compile(text)
+            texts.append(_library.library.hysteron_diagram_json(diagram._pointer).decode())
+        self.holds("diagram", *texts)
+
+
+if __name__ == "__main__":
+    unittest.main()

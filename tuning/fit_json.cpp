@@ -1,0 +1,89 @@
+#include "tuning/fit_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+namespace hysteron {
+namespace {
+
+/// JSON has no infinities: what is not known is null.
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+std::string status_name(FitStatus status) {
+  switch (status) {
+    case FitStatus::Converged:
+      return "converged";
+    case FitStatus::NearlyConverged:
+      return "nearly converged";
+    case FitStatus::IterationLimit:
+      return "iteration limit";
+    case FitStatus::Cancelled:
+      return "cancelled";
+    case FitStatus::Stalled:
+      return "stalled";
+    case FitStatus::NoInfluence:
+      return "no influence";
+    case FitStatus::Diverging:
+      return "diverging";
+    case FitStatus::ModelFailed:
+      return "model failed";
+    case FitStatus::SolverFailed:
+      return "solver failed";
+  }
+  return {};
+}
+
+}  // namespace
+
+nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
+  nlohmann::json json = {{"diagram", problem.program.graph.name},
+                         {"status", status_name(fit.solution.status)},
+                         {"message", fit.solution.message},
+                         {"iterations", fit.solution.iterations},
+                         {"seconds", fit.seconds},
+                         {"correlation_time_samples", number(fit.covariance.correlation_time)},
+                         {"warnings", fit.covariance.warnings},
+                         {"parameters", nlohmann::json::array()},
+                         {"initial_states", nlohmann::json::array()},
+                         {"outputs", nlohmann::json::array()},
+                         {"correlation", nlohmann::json::array()},
+                         {"start_costs", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    const AtBound bound = fit.solution.at_bound[i];
+    json[i < problem.parameters.size() ? "parameters" : "initial_states"].push_back(
+        {{"name", fit.names[i]},
+         {"value", fit.solution.x[j]},
+         {"standard_error", number(fit.covariance.standard_errors[j])},
+         {"unit", fit.units[i]},
+         {"at_bound", bound == AtBound::Lower   ? "lower"
+                      : bound == AtBound::Upper ? "upper"
+                                                : ""}});
+    nlohmann::json row = nlohmann::json::array();
+    for (Eigen::Index k = 0; k < std::ssize(fit.names); ++k) {
+      row.push_back(number(fit.covariance.correlation(j, k)));
+    }
+    json["correlation"].push_back(std::move(row));
+  }
+  for (const OutputScore& score : fit.scores) {
+    json["outputs"].push_back({{"name", score.output},
+                               {"unit", score.unit},
+                               {"range", score.range},
+                               {"range_test", score.test_range},
+                               {"rmse_train", number(score.train)},
+                               {"rmse_test", number(score.test)},
+                               {"rmse_before", number(score.before)},
+                               {"train_samples", score.train_samples},
+                               {"test_samples", score.test_samples}});
+  }
+  for (const double cost : fit.start_costs) {
+    json["start_costs"].push_back(number(cost));
+  }
+  return json;
+}
+
+}  // namespace hysteron

@@ -1,0 +1,123 @@
+#include "tuning/recorded_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "support/errors.hpp"
+#include "support/names.hpp"
+#include "support/numbers.hpp"
+#include "tuning/record_units.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
+std::vector<std::string> signal_names(const Graph& graph) {
+  std::vector<std::string> names;
+  for (const NamedWire& named : graph.named) {
+    names.push_back(named.path);
+  }
+  for (const Node& node : graph.nodes) {
+    for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
+      names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
+    }
+  }
+  return names;
+}
+
+Wire find_signal(const Graph& graph, const std::string& path) {
+  for (const NamedWire& named : graph.named) {
+    if (equal_ignoring_case(named.path, path)) {
+      return named.wire;
+    }
+  }
+  const auto dot = path.rfind('.');
+  for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
+    if (node.block == nullptr || !equal_ignoring_case(node.path, path.substr(0, dot))) {
+      continue;
+    }
+    for (std::size_t i = 0; i < node.block->outputs.size(); ++i) {
+      if (equal_ignoring_case(node.block->outputs[i].name, path.substr(dot + 1))) {
+        return {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index};
+      }
+    }
+  }
+  const auto names = signal_names(graph);
+  const auto near = nearest_name(path, names);
+  throw InputError(error::unknown_signal, {.file = graph.source->path},
+                   fmt::format("{} has no signal {}.", graph.name, path),
+                   near.empty() ? "name a variable, an output of an instance, as INSTANCE.XOUT, or either inside a "
+                                  "nested block, as PLANT.HYST.XOUT."
+                                : fmt::format("did you mean {}?", near));
+}
+
+}  // namespace
+
+void refuse_ports_named_as_time(const Diagnostics& warnings) {
+  Diagnostics errors;
+  for (Diagnostic one : warnings.all()) {
+    if (one.number == error::port_named_as_time) {
+      one.severity = Severity::Error;
+      errors.add(std::move(one));
+    }
+  }
+  if (errors.has_errors()) {
+    throw InputError(std::move(errors));
+  }
+}
+
+void check_finite(const std::vector<Place>& places, std::span<const double> time, const std::vector<std::string>& names,
+                  const std::vector<Signal>& columns, Diagnostics& diagnostics) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto finite = [](double value) { return std::isfinite(value); };
+    const auto first = std::find_if_not(columns[i].begin(), columns[i].end(), finite);
+    if (first == columns[i].end()) {
+      continue;
+    }
+    const auto step = static_cast<std::size_t>(first - columns[i].begin());
+    const auto count =
+        columns[i].size() - static_cast<std::size_t>(std::count_if(first, columns[i].end(), finite)) - step;
+    diagnostics.error(
+        error::output_not_finite, places.empty() ? Place{} : places[i],
+        fmt::format("{} is {} at step {} (t = {} s){}.", names[i], std::isnan(*first) ? "not a number" : "infinite",
+                    step, number_text(time[step]), count > 1 ? fmt::format(", and in {} steps in all", count) : ""),
+        "look for a division by 0, a root or logarithm of a negative number, or a sum that grows without bound; "
+        "--trace shows the signals inside.");
+  }
+}
+
+RecordedRun run_over(Program program, records::Record& record, const RunRequest& request, Diagnostics& diagnostics) {
+  refuse_ports_named_as_time(diagnostics);
+  convert_units(record, program, diagnostics);
+  settle_sample_time(record, program, diagnostics);
+  RecordedRun result;
+  result.drive = drive_from(record, program, {}, diagnostics);
+  const Graph& graph = program.graph;
+  std::vector<Place> places;
+  for (const Port& output : graph.outputs) {
+    result.names.push_back(output.name);
+    result.units.push_back(output.unit);
+    places.push_back(graph.place(output.span));
+  }
+  std::vector<Wire> watched = output_wires(graph);
+  for (const std::string& path : request.traces) {
+    watched.push_back(find_signal(graph, path));
+    places.push_back({.file = graph.source->path});
+    // A variable T would stand in a second column t.
+    result.names.push_back(equal_ignoring_case(path, "t") ? in_capitals(graph.name + "." + path) : in_capitals(path));
+    result.units.emplace_back();
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+  result.values = interpret(program, result.drive, watched, request.float32, request.progress);
+  check_finite(places, record.time(), result.names, result.values, diagnostics);
+  result.program = std::move(program);
+  return result;
+}
+
+}  // namespace hysteron

@@ -207,6 +207,7 @@ Action add_run(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_record_options(app, options->record);
+  add_fmu_options(app);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(run_examples));
   return [options](Console& console) {

@@ -11,8 +11,8 @@
 
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/cpp/cpp_step.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/relations.hpp"
-#include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/program_hash.hpp"
@@ -196,7 +196,7 @@ Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
 
 ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   const Graph& graph = program.graph;
-  require_sample_time(graph);
+  require_generable(graph);
   ProgramShape shape{.name = graph.name, .period = graph.sample_time_ns};
   for (const Port& port : graph.inputs) {
     shape.inputs.push_back(signal_of(port));

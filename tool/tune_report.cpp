@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "codegen/cosimulation/fmu.hpp"
+#include "codegen/interpreter/directions.hpp"
 #include "records/csv.hpp"
 #include "support/markup.hpp"
 #include "tool/line_plot.hpp"
@@ -166,6 +168,38 @@ std::string starts_text(const OutputErrorFit& fit) {
   return text + " Number 1 is the file's own.\n";
 }
 
+/// What an FMU cost, and where its derivatives are from.
+std::string fmus_text(const Graph& graph) {
+  std::string text;
+  for (const Node& node : graph.nodes) {
+    if (node.block == nullptr || node.block->fmu == nullptr) {
+      continue;
+    }
+    const auto& counts = node.block->fmu->counts();
+    text += fmt::format(
+        "{} is an FMU, which gives no derivatives of a run: they are differences between instances of it, moved by {} "
+        "of each parameter. {} took {} instances and {} steps.\n",
+        node.path, Directions::relative_step, node.block->fmu->path(), counts.instances.load(), counts.steps.load());
+  }
+  return text;
+}
+
+nlohmann::json fmus_json(const Graph& graph) {
+  auto list = nlohmann::json::array();
+  for (const Node& node : graph.nodes) {
+    if (node.block != nullptr && node.block->fmu != nullptr) {
+      const auto& counts = node.block->fmu->counts();
+      list.push_back({{"instance", node.path},
+                      {"file", node.block->fmu->path()},
+                      {"derivatives", "differences"},
+                      {"relative_step", Directions::relative_step},
+                      {"instances", counts.instances.load()},
+                      {"steps", counts.steps.load()}});
+    }
+  }
+  return list;
+}
+
 bool stays_at_start(const TuneReport& report) {
   const auto& free = report.problem.parameters;
   return std::ranges::all_of(
@@ -200,6 +234,7 @@ std::string as_text(const TuneReport& report) {
     text += warning + '\n';
   }
   text += starts_text(fit);
+  text += fmus_text(problem.program.graph);
   if (stays_at_start(report)) {
     text += "Nothing better than the start was found: its values are kept.\n";
   }
@@ -219,7 +254,8 @@ nlohmann::json as_json(const TuneReport& report) {
                          {"initial_states", nlohmann::json::array()},
                          {"outputs", nlohmann::json::array()},
                          {"correlation", nlohmann::json::array()},
-                         {"start_costs", nlohmann::json::array()}};
+                         {"start_costs", nlohmann::json::array()},
+                         {"fmus", fmus_json(problem.program.graph)}};
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto j = static_cast<Index>(i);
     const AtBound bound = fit.solution.at_bound[i];

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "support/atomic_file.hpp"
+#include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"

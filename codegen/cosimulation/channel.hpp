@@ -82,29 +82,50 @@ class ChannelView {
   std::byte* memory_ = nullptr;
 };
 
-/// How long a side looks again and again before it goes to sleep: waking another core takes about as long.
-inline constexpr std::chrono::microseconds looking_time{30};
+/// How long a side looks again and again before it goes to sleep. Waking another core takes about as long as it looks
+/// at most; where processors are scarce, the one that looks keeps the other from working, and so it learns to look for
+/// less.
+class Patience {
+ public:
+  /// With one processor there is nothing to look for.
+  explicit Patience(bool several_processors) : microseconds_(several_processors ? most : 0) {}
+  [[nodiscard]] std::chrono::microseconds time() const { return std::chrono::microseconds(microseconds_); }
+  void learn(std::chrono::nanoseconds waited) {
+    const bool worth_it = waited <= std::chrono::microseconds(most);
+    microseconds_ = static_cast<std::uint8_t>(microseconds_ <= 1 && !worth_it ? microseconds_
+                                              : !worth_it                     ? microseconds_ / 2
+                                              : microseconds_ < most          ? microseconds_ * 2
+                                                                              : most);
+  }
+
+ private:
+  static constexpr std::uint8_t most = 32;
+  std::uint8_t microseconds_;
+};
 
 /// Waits until the turn is no longer `other`, `most` at longest. Says whether it came.
 inline bool wait_for_turn(const std::atomic<std::uint32_t>& turn, Turn other, std::chrono::nanoseconds most,
-                          bool looks_first) {
+                          Patience& patience) {
   const auto waits_for = static_cast<std::uint32_t>(other);
   const auto is_free = [&] { return turn.load(std::memory_order_acquire) != waits_for; };
+  if (is_free()) {
+    return true;
+  }
   const auto begun = std::chrono::steady_clock::now();
-  while (looks_first && !is_free() && std::chrono::steady_clock::now() - begun < looking_time) {
+  while (!is_free() && std::chrono::steady_clock::now() - begun < patience.time()) {
     for (int i = 0; i < 16 && !is_free(); ++i) {
 #if defined(__x86_64__)
       __builtin_ia32_pause();
 #endif
     }
   }
-  if (is_free()) {
-    return true;
+  if (!is_free()) {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(most);
+    const timespec timeout{.tv_sec = static_cast<std::time_t>(seconds.count()),
+                           .tv_nsec = static_cast<long>((most - seconds).count())};
+    syscall(SYS_futex, &turn, FUTEX_WAIT, waits_for, &timeout, nullptr, 0);
   }
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(most);
-  const timespec timeout{.tv_sec = static_cast<std::time_t>(seconds.count()),
-                         .tv_nsec = static_cast<long>((most - seconds).count())};
-  syscall(SYS_futex, &turn, FUTEX_WAIT, waits_for, &timeout, nullptr, 0);
+  patience.learn(std::chrono::steady_clock::now() - begun);
   return is_free();
 }
 

@@ -47,7 +47,7 @@ bool several_processors() {
 }  // namespace
 
 Session::Session(const Fmu& fmu, std::string instance, std::size_t most_lanes, double step)
-    : fmu_(fmu), instance_(std::move(instance)), looks_first_(several_processors()) {
+    : fmu_(fmu), instance_(std::move(instance)), patience_(several_processors()) {
   const Description& about = fmu.description();
   if (const double ratio = step / about.internal_step;
       about.internal_step > 0.0 && (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > 1e-9 * ratio)) {
@@ -199,9 +199,7 @@ void Session::wait() {
     return;
   }
   const ChannelHead& head = view_.head();
-  bool look = looks_first_;
-  while (!wait_for_turn(head.turn, Turn::Worker, watch_period, look)) {
-    look = false;
+  while (!wait_for_turn(head.turn, Turn::Worker, watch_period, patience_)) {
     int status = 0;
     if (waitpid(worker_, &status, WNOHANG) == worker_) {
       worker_ = -1;

@@ -61,7 +61,7 @@ class Session {
   int lifeline_ = -1;  ///< our end of a pipe: the worker ends when it is closed
   pid_t worker_ = -1;
   bool posted_ = false;
-  bool looks_first_ = true;  ///< with one processor alone, looking keeps the worker from working
+  Patience patience_;
   std::uint64_t steps_ = 0;
   std::chrono::steady_clock::time_point posted_at_{};
 };

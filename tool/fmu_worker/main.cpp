@@ -126,9 +126,9 @@ class Worker {
         parameters_(head_.version, view.variables() + head_.inputs, head_.parameters),
         outputs_(head_.version, view.variables() + head_.inputs + head_.parameters, head_.outputs) {}
 
-  void serve(bool looks_first) {
+  void serve(Patience patience) {
     while (true) {
-      while (!wait_for_turn(head_.turn, Turn::Caller, std::chrono::hours(1), looks_first)) {
+      while (!wait_for_turn(head_.turn, Turn::Caller, std::chrono::hours(1), patience)) {
       }
       try {
         head_.command == Command::Begin ? begin() : step();
@@ -211,7 +211,7 @@ int run() {
     std::filesystem::remove_all(unpacked, ignored);
     _exit(0);
   }).detach();
-  Worker(view).serve(std::thread::hardware_concurrency() > 1);
+  Worker(view).serve(Patience(std::thread::hardware_concurrency() > 1));
   return 0;
 }
 

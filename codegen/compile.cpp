@@ -229,7 +229,7 @@ Program compile_file(const std::string& path, const CompileOptions& options, Dia
 Program compile_text(std::string text, const CompileOptions& options) {
   Diagnostics syntax;
   Diagnostics warnings;
-  auto parsed = language::parse("text", std::move(text), syntax);
+  auto parsed = language::parse(options.path, std::move(text), syntax);
   return compile_source(std::move(parsed), options, syntax, warnings);
 }
 

@@ -24,6 +24,7 @@ struct CompileOptions {
   bool any_order = false;                    ///< the order of statements means nothing: HY402 becomes a warning
   bool keep_names = false;                   ///< Graph::named is filled, which costs time and memory
   std::vector<NoisyOutput> noisy_outputs{};  ///< of the block that `top` names
+  std::string path = "text";                 ///< of a text in memory: files that it names are seen from its folder
 };
 
 /// Checks every block of a file. All diagnostics, sorted by place, each once.

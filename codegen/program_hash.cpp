@@ -4,6 +4,7 @@
 
 #include <iterator>
 
+#include "codegen/cosimulation/fmu.hpp"
 #include "support/numbers.hpp"
 #include "support/sha256.hpp"
 
@@ -33,6 +34,9 @@ std::string program_hash(const Program& program) {
   for (const Node& node : graph.nodes) {
     fmt::format_to(out, "node {} {} {}", node.block != nullptr ? node.block->about.name : info(node.op).name,
                    node.rate.every, node.rate.phase);
+    if (node.block != nullptr && node.block->fmu != nullptr) {
+      fmt::format_to(out, " {}", node.block->fmu->hash());
+    }
     for (std::uint32_t pin = 0; pin < node.wire_count; ++pin) {
       wire(graph.wire(node, pin));
     }

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "codegen/backends/reference/block_page.hpp"
+#include "codegen/cosimulation/fmu.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/names.hpp"
 #include "support/utf8.hpp"
 
@@ -93,7 +95,35 @@ std::string section(std::string_view title, std::span<const Field> fields, bool 
   for (const Field& field : fields) {
     const auto limits = limits_text(field, are_outputs);
     text += fmt::format("  {}  {}  {}  {}{}\n", padded(name_text(field), names), padded(type_text(field), types),
-                        padded(unit_text(field), units), field.meaning, limits.empty() ? "" : "; " + limits);
+                        padded(unit_text(field), units), field.meaning,
+                        limits.empty() || field.meaning.empty() ? limits : "; " + limits);
+  }
+  return text;
+}
+
+/// Of an FMU: what it is, which names differ, and what is left out.
+std::string fmu_text(const BlockType& block) {
+  const cosimulation::Description& about = block.fmu->description();
+  std::string text = fmt::format("\nFMU of FMI {}.0{}\n", about.version,
+                                 about.tool.empty() ? std::string() : fmt::format(", made by {}", about.tool));
+  text += fmt::format("  NAME : HY_FMU;  (* @file {} *)\n", block.fmu->path());
+  if (about.internal_step > 0.0) {
+    text += fmt::format("  it computes every {} s: the sample time is a multiple of that\n", about.internal_step);
+  }
+  std::string names;
+  const auto add = [&](std::string_view name, std::string_view original) {
+    names += name == original ? "" : fmt::format("  {} is {} of the FMU\n", name, original);
+  };
+  for (std::size_t pin = 0; pin < block.pin_count(); ++pin) {
+    add(block.pin(pin).name, name_in_fmu(block, pin));
+  }
+  for (std::size_t output = 0; output < block.outputs.size(); ++output) {
+    add(block.outputs[output].name, output_name_in_fmu(block, output));
+  }
+  text += names.empty() ? "" : "\nnames\n" + names;
+  text += about.left_out.empty() ? "" : "\nleft out\n";
+  for (const cosimulation::LeftOut& one : about.left_out) {
+    text += fmt::format("  {}: {}\n", one.name, one.reason);
   }
   return text;
 }
@@ -156,7 +186,7 @@ std::vector<std::string_view> feedthrough_inputs(const BlockType& block, std::si
 std::string card_text(const BlockType& block) {
   const About& about = block.about;
   std::string text = fmt::format("{}: {} ({})\n\n", about.name, about.title, group_name(about.group));
-  text += wrapped(about.equation, 2) + "\n" + wrapped(about.meaning, 0);
+  text += wrapped(about.equation, 2) + (about.equation.empty() ? "" : "\n") + wrapped(about.meaning, 0);
   text += section("inputs", block.inputs, false);
   text += section("parameters", block.params, false);
   text += section("outputs", block.outputs, true);
@@ -174,6 +204,9 @@ std::string card_text(const BlockType& block) {
   }
   if (!about.enriches.empty()) {
     text += fmt::format("\ncan replace\n  {}, to the bit while every further effect is neutral\n", about.enriches);
+  }
+  if (block.fmu != nullptr) {
+    text += fmu_text(block);
   }
   if (!about.source.empty()) {
     text += "\nsource\n" + wrapped(about.source, 2);

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "codegen/backends/reference/block_page.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -24,6 +26,7 @@ constexpr std::string_view blocks_examples = R"(Examples:
   hysteron blocks lag --json
   hysteron blocks friction        the blocks that tell of it
   hysteron blocks FT_PT1          by the name of another library: OSCAT, CODESYS, Simulink
+  hysteron blocks motor.fmu       an FMU: its pins, parameters, units, and what is left out
   hysteron blocks --markdown      the reference of the whole library
 
 A unit with a quote, such as 'x, stands for whatever unit is connected; 'x/s is that unit per second.
@@ -40,6 +43,9 @@ struct BlocksOptions {
 
 /// The block of a name, with or without its HY_, or by the name of another library; null where there is none.
 const BlockType* named_block(const std::string& name) {
+  if (equal_ignoring_case(std::filesystem::path(name).extension().string(), ".fmu")) {
+    return &fmu_block(name);
+  }
   for (const auto& candidate : {name, "HY_" + name, std::string(block_of_other_name(name))}) {
     if (const BlockType* const block = find_block_type(candidate)) {
       return block;
@@ -162,7 +168,8 @@ int show_blocks(const BlocksOptions& options, Console& console) {
 
 Action add_blocks(CLI::App& app) {
   const auto options = std::make_shared<BlocksOptions>();
-  app.add_option("NAME", options->name, "The block to describe, with or without its HY_; or a word to look for.")
+  app.add_option("NAME", options->name,
+                 "The block to describe, with or without its HY_; the file of an FMU; or a word to look for.")
       ->option_text(" ");
   auto* const json = app.add_flag("--json", options->json, "Prints JSON.");
   app.add_flag("--markdown", options->markdown, "Prints Markdown, as in the reference.")->excludes(json);

@@ -9,6 +9,7 @@
 
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
 #include "tool/process.hpp"
 
 namespace hysteron::tool {

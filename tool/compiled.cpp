@@ -14,6 +14,7 @@
 #include "codegen/backends/cpp/cpp_host.hpp"
 #include "support/errors.hpp"
 #include "support/sha256.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/build_cache.hpp"
 #include "tool/compiler.hpp"

@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "codegen/cosimulation/fmu.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "support/errors.hpp"
+#include "tool/option_values.hpp"
 
 namespace hysteron::tool {
 
@@ -17,6 +19,14 @@ void add_diagram_options(CLI::App& options, DiagramOptions& diagram) {
   options.add_flag("--float32", diagram.float32, "LREAL is a 32-bit float, as on a target without a double.");
   options.add_flag("--any-order", diagram.any_order,
                    "The order of the statements means nothing: HY402 becomes a warning.");
+}
+
+void add_fmu_options(CLI::App& options) {
+  options
+      .add_option_function<double>("--fmu-time-limit", cosimulation::set_time_limit,
+                                   "The most seconds that one call of an FMU may take; 30 by default.")
+      ->check(number_above_zero())
+      ->option_text("SECONDS");
 }
 
 Program load_diagram(const DiagramOptions& options, Diagnostics& warnings) {

@@ -26,6 +26,9 @@ struct DiagramOptions {
 /// The options --top, --params, --any-order and --float32, and the file itself. The structure must outlive the parse.
 void add_diagram_options(CLI::App& options, DiagramOptions& diagram);
 
+/// The option --fmu-time-limit, of commands that may meet an FMU.
+void add_fmu_options(CLI::App& options);
+
 /// Compiles the diagram and sets its parameters. Throws InputError with all errors; adds warnings.
 [[nodiscard]] Program load_diagram(const DiagramOptions& options, Diagnostics& warnings);
 

@@ -57,7 +57,7 @@ int draw(const DrawOptions& options, Console& console) {
   const Program written = compile_file(options.file, {.top = options.top, .any_order = true}, warnings);
   // Sorted by the data flow, so that what is read early is feedback and not a slip in the order.
   const std::string sorted = format_text(options.file, *written.graph.source->text, warnings, {.any_order = true});
-  const Program program = compile_text(sorted, {.top = written.graph.name, .any_order = true});
+  const Program program = compile_text(sorted, {.top = written.graph.name, .any_order = true, .path = options.file});
   refuse_to_overwrite({.file = options.out, .mend = "give another name for --out."}, {{.file = options.file}});
   const DiagramDot diagram = diagram_dot(program);
   if (format != "dot" && diagram.boxes > most_boxes) {

@@ -7,6 +7,7 @@
 
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/process.hpp"
 

@@ -1,7 +1,6 @@
 #include "tool/process.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,12 +9,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <string_view>
 #include <system_error>
 
-#include "support/diagnostic.hpp"
-#include "support/errors.hpp"
 #include "support/failed_writes.hpp"
 
 namespace hysteron::tool {
@@ -86,21 +82,6 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return std::nullopt;
-}
-
-TemporaryFolder::TemporaryFolder(const std::filesystem::path& below) {
-  auto pattern = (below / "run-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) {
-    throw InputError(error::unwritable_file, {.file = below.string()},
-                     fmt::format("No folder can be made in {}: {}.", below.string(), std::strerror(errno)),
-                     "make room there, or set TMPDIR to a folder that can be written to.");
-  }
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace hysteron::tool

@@ -21,20 +21,4 @@ struct Streams {
 /// Where PATH has a program; nothing where it has none. A name with a slash is taken as it is.
 [[nodiscard]] std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// A folder of its own below another, removed with everything in it.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const std::filesystem::path& below);
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace hysteron::tool

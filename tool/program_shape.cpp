@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codegen/backends/shared/routine.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/relations.hpp"
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/graph/units.hpp"
@@ -102,7 +103,7 @@ PointType point_type(Type type) {
 
 ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   const Graph& graph = program.graph;
-  require_sample_time(graph);
+  require_generable(graph);
   ProgramShape shape{.name = graph.name, .period = graph.sample_time_ns};
   for (const Port& port : graph.inputs) {
     shape.inputs.push_back(signal_of(port));

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/compiler.hpp"
 #include "tool/process.hpp"

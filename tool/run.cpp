@@ -185,6 +185,7 @@ Action add_run(CLI::App& app) {
   add_record_options(app, options->record);
   app.add_option("--plot", options->plot, "Draws the run and its record: .svg, .png, or .html for a page with zoom.")
       ->option_text("FILE");
+  add_fmu_options(app);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(run_examples));
   return [options](Console& console) {

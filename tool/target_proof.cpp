@@ -19,6 +19,7 @@
 #include "codegen/import/plcopen_import.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 #include "tool/compiled.hpp"
 #include "tool/compiler.hpp"

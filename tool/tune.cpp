@@ -182,6 +182,7 @@ Action add_tune(CLI::App& app) {
       ->option_text("LOG.csv")
       ->allow_extra_args(false);
   add_record_options(app, options->record);
+  add_fmu_options(app);
   app.add_option("--params", options->diagram.parameters, "Parameters, with those to be fitted in tables [fit].")
       ->required()
       ->option_text("P.toml");

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "codegen/cosimulation/fmu.hpp"
+#include "codegen/interpreter/directions.hpp"
 #include "records/csv.hpp"
 #include "tool/tune_page.hpp"
 #include "tool/tune_words.hpp"
@@ -34,6 +36,38 @@ std::string starts_text(const OutputErrorFit& fit) {
   }
   text.back() = '.';
   return text + " Number 1 is the file's own.\n";
+}
+
+/// What an FMU cost, and where its derivatives are from.
+std::string fmus_text(const Graph& graph) {
+  std::string text;
+  for (const Node& node : graph.nodes) {
+    if (node.block == nullptr || node.block->fmu == nullptr) {
+      continue;
+    }
+    const auto& counts = node.block->fmu->counts();
+    text += fmt::format(
+        "{} is an FMU, which gives no derivatives of a run: they are differences between instances of it, moved by {} "
+        "of each parameter. {} took {} instances and {} steps.\n",
+        node.path, Directions::relative_step, node.block->fmu->path(), counts.instances.load(), counts.steps.load());
+  }
+  return text;
+}
+
+nlohmann::json fmus_json(const Graph& graph) {
+  auto list = nlohmann::json::array();
+  for (const Node& node : graph.nodes) {
+    if (node.block != nullptr && node.block->fmu != nullptr) {
+      const auto& counts = node.block->fmu->counts();
+      list.push_back({{"instance", node.path},
+                      {"file", node.block->fmu->path()},
+                      {"derivatives", "differences"},
+                      {"relative_step", Directions::relative_step},
+                      {"instances", counts.instances.load()},
+                      {"steps", counts.steps.load()}});
+    }
+  }
+  return list;
 }
 
 bool stays_at_start(const TuneReport& report) {
@@ -70,6 +104,7 @@ std::string as_text(const TuneReport& report) {
     text += warning + '\n';
   }
   text += starts_text(fit);
+  text += fmus_text(report.problem.program.graph);
   text += what_is_not_in_the_model(report);
   if (stays_at_start(report)) {
     text += "Nothing better than the start was found: its values are kept.\n";
@@ -79,6 +114,7 @@ std::string as_text(const TuneReport& report) {
 
 nlohmann::json as_json(const TuneReport& report) {
   nlohmann::json json = fit_json(report.problem, report.fit);
+  json["fmus"] = fmus_json(report.problem.program.graph);
   json["not_in_the_model"] = what_is_not_in_the_model(report);
   return json;
 }

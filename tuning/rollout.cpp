@@ -5,6 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "codegen/cosimulation/session.hpp"
+
 namespace hysteron::detail {
 namespace {
 
@@ -147,6 +149,7 @@ void Rollout::drive(Machine<S>& machine, const Drive& drive, std::size_t step) {
 template <class S>
 bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
                    VectorXd& residuals, MatrixXd* jacobian) {
+  machine.use_directions(columns.size());
   prepare(machine, x, experiment, columns);
   const Experiment& record = problem_.experiments[experiment];
   std::vector<Index> targets(columns.begin(), columns.end());
@@ -185,6 +188,14 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
 }
 
 bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
+  try {
+    return all_residuals(x, residuals, jacobian);
+  } catch (const cosimulation::FmuRefusal&) {  // a point at which a model cannot go on has no value
+    return false;
+  }
+}
+
+bool Rollout::all_residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
   if (jacobian != nullptr) {
     jacobian->setZero();
   }

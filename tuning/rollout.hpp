@@ -44,6 +44,7 @@ class Rollout {
   [[nodiscard]] std::vector<double> own_states(const Eigen::VectorXd& parameters);
 
  private:
+  bool all_residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
   /// One pass over one record: S carries the derivatives by the unknowns in `columns`.
   template <class S>
   bool pass(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment,

@@ -10,6 +10,7 @@
 
 #include "codegen/graph/body/body.hpp"
 #include "codegen/graph/call_order.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "codegen/graph/units.hpp"
@@ -28,6 +29,7 @@ using Keys = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 7> input_keys{"unit", "min", "max", "param", "neutral", "role", "doc"};
 constexpr std::array<std::string_view, 2> value_keys{"unit", "doc"};
 constexpr std::array<std::string_view, 3> instance_keys{"every", "phase", "doc"};
+constexpr std::array<std::string_view, 4> fmu_keys{"file", "every", "phase", "doc"};
 constexpr std::array<std::string_view, 5> block_keys{"ts", "effect", "family", "doc", "body"};
 
 std::string known_keys(Keys keys) {
@@ -36,6 +38,10 @@ std::string known_keys(Keys keys) {
     text += (text.empty() ? "@" : ", @") + std::string(key);
   }
   return text;
+}
+
+bool is_of_library(std::string_view name) {
+  return find_block_type(name) != nullptr || language::same_name(name, fmu_type_name);
 }
 
 bool number_of(std::string_view text, double& value) {
@@ -81,7 +87,7 @@ class Reader {
       if (!block.sequential) {  // what PLC compilers have inside, a library of blocks may define
         check_name(block.name);
       }
-      if (find_block_type(block.name.text) != nullptr) {
+      if (is_of_library(block.name.text)) {
         error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
               "Choose another name; names that begin with HY_ belong to the library.");
       }
@@ -127,7 +133,7 @@ class Reader {
     if (!definition.block->sequential) {
       check_name({name, variable.name.span});
     }
-    if (find_block_type(name) != nullptr) {
+    if (is_of_library(name)) {
       error(error::reserved_name, variable.name.span, fmt::format("'{}' is a block of the library", name),
             "Choose another name; names that begin with HY_ belong to the library.");
     }
@@ -253,6 +259,8 @@ class Reader {
     } else if (const BlockType* block = find_block_type(variable.type.text)) {
       declared.kind = Declared::Kind::LibraryBlock;
       declared.block = block;
+    } else if (language::same_name(variable.type.text, fmu_type_name)) {
+      declare_fmu(variable, declared);
     } else if (const auto found = definitions_.by_name.find(upper(variable.type.text));
                found != definitions_.by_name.end()) {
       declared.kind = Declared::Kind::UserBlock;
@@ -269,7 +277,10 @@ class Reader {
     }
     if (declared.kind != Declared::Kind::Unknown) {  // of which nobody knows what it is
       const bool input = declared.kind == Declared::Kind::Input;
-      check_keys(variable.annotations, instance ? Keys(instance_keys) : input ? Keys(input_keys) : Keys(value_keys));
+      check_keys(variable.annotations, declared.block != nullptr && declared.block->fmu != nullptr ? Keys(fmu_keys)
+                                       : instance                                                  ? Keys(instance_keys)
+                                       : input                                                     ? Keys(input_keys)
+                                                                                                   : Keys(value_keys));
       for (const Annotation& annotation : variable.annotations) {
         annotate(annotation, instance, declared);
       }
@@ -291,6 +302,27 @@ class Reader {
             fmt::format("Give a value from {} to {}.", field.minimum, field.maximum));
     }
     return declared;
+  }
+
+  /// The file is named as seen from the folder of the diagram.
+  void declare_fmu(const Variable& variable, Declared& declared) {
+    declared.kind = Declared::Kind::Unknown;
+    const auto file = std::ranges::find_if(variable.annotations, [](const Annotation& one) {
+      return language::same_name(one.key, "file") && !one.value.empty();
+    });
+    if (file == variable.annotations.end()) {
+      error(error::unusable_fmu, variable.name.span, fmt::format("the FMU '{}' names no file", variable.name.text),
+            fmt::format("Write it beside the declaration: {} : HY_FMU;  (* @file motor.fmu *)", variable.name.text));
+      return;
+    }
+    try {
+      declared.block = &fmu_block(fmu_path(source_, file->value));
+      declared.kind = Declared::Kind::LibraryBlock;
+    } catch (const InputError& problem) {
+      for (const Diagnostic& one : problem.diagnostics().all()) {
+        error(one.number, file->span, one.cause, one.mend);
+      }
+    }
   }
 
   void declare_elementary(const Variable& variable, Declared& declared) {

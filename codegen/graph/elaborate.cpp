@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "codegen/graph/elaborator.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 
@@ -34,6 +35,7 @@ Graph Elaborator::run(std::uint32_t top, OuterPlaces& places) {
   }
   finish(graph_, slots_, open_parameters_, levels_, places, diagnostics_);
   check_relations();
+  check_fmu_parameters(graph_, diagnostics_);
   return std::move(graph_);
 }
 

@@ -58,7 +58,8 @@ const Relations& known_relations(const BlockType& block) {
     }
     return map;
   }();
-  return all.at(&block);
+  static const Relations none{};  // an FMU says nothing of what its parameters are to each other
+  return block.fmu != nullptr ? none : all.at(&block);
 }
 
 }  // namespace

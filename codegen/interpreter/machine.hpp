@@ -15,6 +15,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/interpreter/block_code.hpp"
+#include "codegen/interpreter/directions.hpp"
 
 namespace hysteron {
 
@@ -24,6 +25,9 @@ template <class S>
 using NumberOf = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
 template <class S>
+class FmuNode;
+
+template <class S>
 class Machine {
  public:
   using Number = NumberOf<S>;
@@ -31,22 +35,26 @@ class Machine {
   /// Lays out a program and resets it. The sample time is the program's own, or the one given in seconds where the
   /// program has none. Throws InputError (HY404) without either.
   explicit Machine(const Program& program, double sample_time = 0.0);
-  ~Machine() = default;
+  ~Machine();
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
-  Machine(Machine&&) noexcept = default;
-  Machine& operator=(Machine&&) noexcept = default;
+  Machine(Machine&&) noexcept;
+  Machine& operator=(Machine&&) noexcept;
 
   /// Sets an element of a parameter, by its place in the graph. Takes effect at once; reset() starts from it.
   void set_parameter(std::size_t parameter, const Number& value, std::size_t element = 0);
   [[nodiscard]] Number parameter(std::size_t parameter, std::size_t element = 0) const;
 
+  /// Of a scalar with derivatives: how many of them are in use from the next reset on. An FMU runs once more for each.
+  void use_directions(std::size_t count) { next_directions_.used = count; }
+
   /// Every state as its block says, or as the program does; steps counted from 0.
   void reset();
 
   void set_input(std::size_t input, const Number& value);  ///< of any type: not 0 is TRUE
-  /// One step: allocates nothing, calls nothing of the system, throws nothing.
-  void step() noexcept;
+  /// One step: allocates nothing, calls nothing of the system, throws nothing. An FMU among the blocks does all of it:
+  /// it works in a process of its own, and throws InputError (HY219, HY750 to HY753) where it cannot go on.
+  void step();
   [[nodiscard]] Number output(std::size_t output) const;  ///< of any type, as a number
 
   /// The value that a wire carries after a step, as a number.
@@ -54,7 +62,8 @@ class Machine {
   /// A state of type LREAL, to be read or set between steps; null where there is none of that name.
   [[nodiscard]] S* real_state(std::string_view path);
 
-  /// The whole state as saved_size() bytes: to be kept, and put back into this machine later. Allocates nothing.
+  /// The whole state as saved_size() bytes: to be kept, and put back into this machine later. Allocates nothing. What
+  /// an FMU remembers is not among it.
   [[nodiscard]] std::size_t saved_size() const noexcept { return live_size_ + sizeof(steps_); }
   /// Where in these bytes a state of a block begins, an output of a node, and the count of the steps (64 bits, from 0
   /// to the period after which all rates repeat together).
@@ -79,6 +88,7 @@ class Machine {
   };
 
   void lay_out();
+  [[nodiscard]] const BlockCode<S>& code_of(std::uint32_t node) const;
   void place_instructions();
   [[nodiscard]] const void* source_of(const Wire& wire) const;
   [[nodiscard]] std::size_t output_offset(const Wire& wire) const;
@@ -102,7 +112,10 @@ class Machine {
   std::vector<std::pair<std::uint32_t, std::unique_ptr<S>>> sample_times_;  ///< by `every`
   std::vector<Instruction<S>> resets_;
   std::vector<Instruction<S>> instructions_;
-  std::vector<Timed> timed_;  ///< instead of instructions_, where there are several rates
+  std::vector<Timed> timed_;                       ///< instead of instructions_, where there are several rates
+  std::vector<std::unique_ptr<FmuNode<S>>> fmus_;  ///< by node; null for all others
+  std::unique_ptr<Directions> directions_ = std::make_unique<Directions>();  ///< since the last reset
+  Directions next_directions_{};
   std::uint64_t longest_period_ = 1;
   std::uint64_t steps_ = 0;  ///< of the longest period
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "codegen/graph/sample_time.hpp"
+#include "codegen/interpreter/fmu_node.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/trace/evaluate.hpp"
 
@@ -101,9 +102,23 @@ Machine<S>::Machine(const Program& program, double sample_time)
 }
 
 template <class S>
+Machine<S>::~Machine() = default;
+template <class S>
+Machine<S>::Machine(Machine&&) noexcept = default;
+template <class S>
+Machine<S>& Machine<S>::operator=(Machine&&) noexcept = default;
+
+template <class S>
+const BlockCode<S>& Machine<S>::code_of(std::uint32_t node) const {
+  if (fmus_[node] != nullptr) {
+    return fmus_[node]->code();
+  }
+  return block_codes<S>()[static_cast<std::size_t>(program_->graph.nodes[node].block - block_types().data())];
+}
+
+template <class S>
 void Machine<S>::lay_out() {
   const Graph& graph = program_->graph;
-  const auto codes = block_codes<S>();
   std::size_t size = 0;
   const auto reserve = [&](std::size_t bytes, std::size_t alignment) {
     size = (size + alignment - 1) / alignment * alignment;
@@ -112,10 +127,15 @@ void Machine<S>::lay_out() {
     return at;
   };
   constexpr std::size_t align = alignof(S) > 8 ? alignof(S) : 8;
-  for (const Node& node : graph.nodes) {
+  fmus_.resize(graph.nodes.size());
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
     Placed placed;
     if (node.block != nullptr) {
-      const auto& code = codes[static_cast<std::size_t>(node.block - block_types().data())];
+      if (node.block->fmu != nullptr) {
+        fmus_[index] = std::make_unique<FmuNode<S>>(*node.block, node.path, *directions_);
+      }
+      const auto& code = code_of(index);
       placed.state = reserve(code.state_size, code.alignment);
       placed.out = reserve(code.out_size, code.alignment);
     } else {
@@ -164,8 +184,7 @@ std::size_t Machine<S>::output_offset(const Wire& wire) const {
   if (node.block == nullptr) {
     return placed.out;
   }
-  const auto& code = block_codes<S>()[static_cast<std::size_t>(node.block - block_types().data())];
-  return placed.out + code.out_offsets[wire.port];
+  return placed.out + code_of(wire.index).out_offsets[wire.port];
 }
 
 template <class S>
@@ -202,9 +221,10 @@ const S* Machine<S>::ts_of(const Node& node) {
 template <class S>
 Instruction<S> Machine<S>::instruction_of(std::uint32_t index) {
   const Node& node = program_->graph.nodes[index];
+  void* const state = memory_.get() + placed_[index].state;
   return {.run = nullptr,
           .pins = pins_.data() + placed_[index].first_pin,
-          .state = memory_.get() + placed_[index].state,
+          .state = fmus_[index] != nullptr ? static_cast<void*>(fmus_[index].get()) : state,
           .out = memory_.get() + placed_[index].out,
           .ts = ts_of(node)};
 }
@@ -214,7 +234,6 @@ void Machine<S>::place_instructions() {
   static const auto operations =
       detail::operation_table<S>(std::make_index_sequence<static_cast<std::size_t>(Op::At)>{});
   const Graph& graph = program_->graph;
-  const auto codes = block_codes<S>();
   for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
     placed_[index].first_pin = pins_.size();
     const Node& node = graph.nodes[index];
@@ -223,9 +242,9 @@ void Machine<S>::place_instructions() {
     }
   }
   for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
-    if (const BlockType* block = graph.nodes[index].block; block != nullptr) {
+    if (graph.nodes[index].block != nullptr) {
       auto instruction = instruction_of(index);
-      instruction.run = codes[static_cast<std::size_t>(block - block_types().data())].reset;
+      instruction.run = code_of(index).reset;
       resets_.push_back(instruction);
     }
   }
@@ -239,7 +258,7 @@ void Machine<S>::place_instructions() {
     if (node.block == nullptr) {
       instruction.run = operations[static_cast<std::size_t>(node.op)];
     } else {
-      const auto& code = codes[static_cast<std::size_t>(node.block - block_types().data())];
+      const auto& code = code_of(action.node);
       instruction.run = action.kind == Action::Kind::Output   ? code.output
                         : action.kind == Action::Kind::Update ? code.update
                                                               : code.step;
@@ -258,6 +277,7 @@ void Machine<S>::set_parameter(std::size_t parameter, const Number& value, std::
   std::byte* target = memory_.get() + parameters_[parameter] + element * sizeof(S);
   if (type == Type::Real) {
     *reinterpret_cast<S*>(target) = static_cast<S>(value);
+    next_directions_.note(value, program_->graph.parameters[parameter].field);
   } else {
     detail::write_as<S>(target, type, value_of(value));
   }
@@ -272,6 +292,8 @@ typename Machine<S>::Number Machine<S>::parameter(std::size_t parameter, std::si
 template <class S>
 void Machine<S>::reset() {
   steps_ = 0;
+  *directions_ = next_directions_;
+  next_directions_ = {.used = next_directions_.used};
   std::memset(memory_.get(), 0, live_size_);  // a parameter that is wired to a signal begins at 0
   for (const auto& instruction : resets_) {
     instruction.run(instruction);
@@ -291,7 +313,7 @@ void Machine<S>::set_input(std::size_t input, const Number& value) {
 }
 
 template <class S>
-void Machine<S>::step() noexcept {
+void Machine<S>::step() {
   for (const auto& instruction : instructions_) {
     instruction.run(instruction);
   }
@@ -342,9 +364,7 @@ S* Machine<S>::real_state(std::uint32_t node, std::uint32_t state) {
 
 template <class S>
 std::size_t Machine<S>::place_of_state(std::uint32_t node, std::uint32_t state) const {
-  const BlockType* const block = program_->graph.nodes[node].block;
-  const auto& code = block_codes<S>()[static_cast<std::size_t>(block - block_types().data())];
-  return placed_[node].state + code.state_offsets[state];
+  return placed_[node].state + code_of(node).state_offsets[state];
 }
 
 template <class S>

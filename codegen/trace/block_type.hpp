@@ -11,12 +11,17 @@
 #include "codegen/trace/tape.hpp"
 
 namespace hysteron {
+namespace cosimulation {
+class Fmu;
+}
 
-/// A set of a block's pins: its inputs in their order, then its parameters. No block has more than 64.
+/// A set of a block's pins: its inputs in their order, then its parameters. No block of the library has more than 64; of
+/// an FMU, the pins from the 64th on are parameters that no signal drives, and in no set.
 class PinSet {
  public:
-  void insert(std::size_t pin) { bits_ |= std::uint64_t{1} << pin; }
-  [[nodiscard]] bool contains(std::size_t pin) const { return ((bits_ >> pin) & 1U) != 0; }
+  static constexpr std::size_t most = 64;
+  void insert(std::size_t pin) { bits_ |= pin < most ? std::uint64_t{1} << pin : 0U; }
+  [[nodiscard]] bool contains(std::size_t pin) const { return pin < most && ((bits_ >> pin) & 1U) != 0; }
   [[nodiscard]] bool empty() const { return bits_ == 0; }
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(std::popcount(bits_)); }
   PinSet& operator|=(PinSet other) {
@@ -48,12 +53,16 @@ struct BlockType {
   std::span<const Field> outputs;
   std::span<const Field> states;
   BlockTrace trace;
+  const cosimulation::Fmu* fmu = nullptr;  ///< the block is an FMU; null: one of the library
 
   [[nodiscard]] std::size_t pin_count() const { return inputs.size() + params.size(); }
   [[nodiscard]] const Field& pin(std::size_t index) const {
     return index < inputs.size() ? inputs[index] : params[index - inputs.size()];
   }
 };
+
+/// The type of an instance that is an FMU: `PLANT : HY_FMU;  (* @file motor.fmu *)`. Its block is found by the file.
+inline constexpr std::string_view fmu_type_name = "HY_FMU";
 
 /// All blocks, in the order of the catalogue.
 std::span<const BlockType> block_types();

@@ -23,6 +23,21 @@ DIAGRAM = """FUNCTION_BLOCK AXIS  (* @ts 1ms *)
   U := LAG.XOUT;
 END_FUNCTION_BLOCK
 """
+OUTSIDE = """FUNCTION_BLOCK OUTSIDE  (* @ts 1ms *)
+  VAR_INPUT
+    TARGET : LREAL;
+  END_VAR
+  VAR_OUTPUT
+    U : LREAL;
+  END_VAR
+  VAR
+    AXIS : HY_FMU;  (* @file axis.fmu *)
+  END_VAR
+
+  U := AXIS.U;
+  AXIS(TARGET := TARGET);
+END_FUNCTION_BLOCK
+"""
 PROJECT = """cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES CXX)
 find_package(hysteron REQUIRED)
@@ -88,6 +103,15 @@ class Install(unittest.TestCase):
         (self.work / "axis.st").write_text(DIAGRAM)
         run(self.program, "check", "axis.st", cwd=self.work)
         self.assertIn("# HY402", run(self.program, "explain", "hy402", cwd=self.work))
+
+    def test_an_fmu_is_run_without_the_source(self):
+        (self.work / "axis.st").write_text(DIAGRAM)
+        (self.work / "outside.st").write_text(OUTSIDE)
+        (self.work / "log.csv").write_text("t,TARGET\n0.000,1.0\n0.001,1.0\n0.002,1.0\n")
+        run(self.program, "generate", "axis.st", "--target", "fmu", "--out", ".", cwd=self.work)
+        inside = run(self.program, "run", "axis.st", "--in", "log.csv", "--out", "-", cwd=self.work).splitlines()
+        outside = run(self.program, "run", "outside.st", "--in", "log.csv", "--out", "-", cwd=self.work).splitlines()
+        self.assertEqual([line.split(",")[1] for line in inside[1:-1]], [line.split(",")[1] for line in outside[2:]])
 
     def test_each_command_has_a_manual_page(self):
         pages = self.prefix / "share/man/man1"

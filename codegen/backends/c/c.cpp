@@ -8,7 +8,7 @@
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/shared/words.hpp"
-#include "codegen/graph/sample_time.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -220,7 +220,7 @@ void {0}_step(const {0}_params *params, {0}_state *state, const {0}_in *in, {0}_
 }  // namespace
 
 std::vector<GeneratedFile> generate_c(const Program& program, const COptions& options) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   return CFiles(program, options).run();
 }
 

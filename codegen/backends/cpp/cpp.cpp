@@ -10,7 +10,7 @@
 #include "codegen/backends/cpp/cpp_helpers.hpp"
 #include "codegen/backends/cpp/cpp_host.hpp"
 #include "codegen/backends/cpp/dialect.hpp"
-#include "codegen/graph/sample_time.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
 #include "support/numbers.hpp"
 
@@ -201,12 +201,12 @@ class CppHeader {
 }  // namespace
 
 GeneratedFile generate_cpp_header(const Program& program, const CppOptions& options) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   return CppHeader(program, options).run();
 }
 
 std::vector<std::string> cpp_parameter_members(const Program& program) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   return CppHeader(program, {}).parameter_members();
 }
 

@@ -11,7 +11,7 @@
 #include "codegen/backends/plcopen/project_xml.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/st/pou.hpp"
-#include "codegen/graph/sample_time.hpp"
+#include "codegen/graph/fmu_block.hpp"
 
 namespace hysteron {
 namespace {
@@ -111,7 +111,7 @@ std::string plcopen_dialect_names() {
 }
 
 std::vector<GeneratedFile> generate_plcopen(const Program& program, const PlcopenOptions& options) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   const Flavour& flavour = *plcopen::find_flavour(options.dialect);
   const StDialect dialect = *st_dialect(flavour.st_dialect);
   const StOptions text{.dialect = dialect, .float32 = options.float32};

@@ -7,7 +7,7 @@
 #include "codegen/backends/st/names.hpp"
 #include "codegen/backends/st/printer.hpp"
 #include "codegen/graph/defaults.hpp"
-#include "codegen/graph/sample_time.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
 #include "support/numbers.hpp"
 
@@ -284,7 +284,7 @@ std::string st_declarations(const std::vector<StSection>& sections) {
 }
 
 StBlockAndCaller make_st_pou(const Program& program, const StOptions& options) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   return StBlock(program, options).run();
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "codegen/graph/body/standard_blocks.hpp"
+#include "codegen/trace/block_type.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::bodies {
@@ -101,6 +102,11 @@ TypeRef Types::named(const language::Name& name) {
     made.block = find_block_type(wanted);
     made.timer = wanted != name.text;
     made.kind = BodyType::Kind::Library;
+    if (same_name(name.text, fmu_type_name)) {
+      report_(error::refused_in_body, name.span, "an FMU cannot stand in a sequential body",
+              "Declare it in a diagram, and wire it to the block with this body.");
+      return nullptr;
+    }
     if (made.block == nullptr) {
       report_(error::unknown_block, name.span, fmt::format("there is no block or type '{}'", name.text),
               "Put its TYPE or FUNCTION_BLOCK into this file; `hysteron blocks` lists the library.");

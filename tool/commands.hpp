@@ -37,6 +37,7 @@ Action add_draw(CLI::App& app);
 Action add_record(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
+Action add_library(CLI::App& app);
 Action add_import(CLI::App& app);
 Action add_tune(CLI::App& app);
 Action add_diagnose(CLI::App& app);

@@ -29,6 +29,7 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --target c --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
+  hysteron generate feedforward.st --target st --structured --out plc
   hysteron generate feedforward.st --target plcopen --body fbd --out plc
   hysteron generate plant.st --target fmu --fmi 2 --out models
   hysteron generate feedforward.st --target all --out everywhere
@@ -36,7 +37,8 @@ constexpr std::string_view generate_examples = R"(Examples:
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
-The dialects of st: portable, codesys, twincat, siemens-scl.
+The dialects of st: portable, codesys, twincat, siemens-scl. --structured: the diagram as calls of its blocks, and the
+blocks of the library that it calls, as FUNCTION_BLOCKs.
 plcopen: NAME.xml, a project in PLCopen TC6 XML. --body st holds the step as text, --body fbd the diagram as a network,
 with the blocks that it calls. Its dialects: portable, openplc (plc.xml), codesys, twincat.
 fmu: NAME.fmu, for co-simulation in FMI 3.0 or 2.0, with sources and, where there is a C compiler, a binary.
@@ -76,7 +78,8 @@ void check_usage(const GenerateOptions& options) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
   }
-  if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty()) {
+  if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty() ||
+      target.structured) {
     check_target_options(target);
   }
   if (options.host == options.config.empty()) {
@@ -173,6 +176,8 @@ Action add_generate(CLI::App& app) {
   app.add_option("--dialect", options->target.dialect,
                  "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");
+  app.add_flag("--structured", options->target.structured,
+               "Of Structured Text: the blocks stay blocks, and stand beside the diagram.");
   app.add_option("--body", options->target.body, "Of PLCopen XML: the step as text, or the diagram as a network.")
       ->option_text("st|fbd");
   app.add_option("--fmi", options->target.fmi, "The version of FMI of an FMU; 3 where none is given.")

@@ -114,7 +114,7 @@ constexpr std::array titles{
     ErrorTitle{error::name_too_long, "Name too long for the target"},
     ErrorTitle{error::no_graphviz, "A program that draws is missing"},
     ErrorTitle{error::graphviz_failed, "A program cannot draw"},
-    ErrorTitle{error::no_network, "Diagram that no network of function blocks can hold"},
+    ErrorTitle{error::no_network, "Diagram that single calls of its blocks cannot hold"},
     ErrorTitle{error::not_plcopen, "File that is not PLCopen XML"},
     ErrorTitle{error::untranslatable_element, "Element of a drawing that a diagram cannot express"},
     ErrorTitle{error::fmu_without_binary, "FMU without a binary"},

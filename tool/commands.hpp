@@ -40,6 +40,7 @@ Action add_plot(CLI::App& app);
 Action add_compare(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
+Action add_library(CLI::App& app);
 Action add_import(CLI::App& app);
 Action add_tune(CLI::App& app);
 Action add_diagnose(CLI::App& app);

@@ -16,7 +16,7 @@
 #include "tool/diagram.hpp"
 #include "tool/generate_host.hpp"
 #include "tool/host_sources.hpp"
-#include "tool/target_proof.hpp"
+#include "tool/proof_sheet.hpp"
 #include "tool/targets.hpp"
 
 namespace hysteron::tool {
@@ -29,6 +29,7 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --target c --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
+  hysteron generate feedforward.st --target st --structured --out plc
   hysteron generate feedforward.st --target plcopen --body fbd --out plc
   hysteron generate plant.st --target fmu --fmi 2 --out models
   hysteron generate feedforward.st --target all --out everywhere
@@ -36,15 +37,17 @@ constexpr std::string_view generate_examples = R"(Examples:
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
-The dialects of st: portable, codesys, twincat, siemens-scl.
+The dialects of st: portable, codesys, twincat, siemens-scl. --structured: the diagram as calls of its blocks, and the
+blocks of the library that it calls, as FUNCTION_BLOCKs.
 plcopen: NAME.xml, a project in PLCopen TC6 XML. --body st holds the step as text, --body fbd the diagram as a network,
 with the blocks that it calls. Its dialects: portable, openplc (plc.xml), codesys, twincat.
 fmu: NAME.fmu, for co-simulation in FMI 3.0 or 2.0, with sources and, where there is a C compiler, a binary.
-all: each target in a folder of its own, and a table: 2000 steps of random inputs, run in each beside the interpreter.
+--proof: NAME.TARGET.proof.json beside the files: schedule, bytes, operations, hashes, the bits beside the interpreter, and
+the command that repeats it. all: each target in a folder of its own, and a table: 2000 steps of random inputs, run in each beside the interpreter.
 With --host: a program that does on another machine what `hysteron serve` does here, with the same registers and bits,
 the sources that it is built from, a systemd unit with the rights that RUN.toml needs, and a README.
 All are written or none. The step has the bits that `hysteron run` shows.
-Exit codes: 0 done; 1 done, but a target of all has other bits or could not be run; 2 an error in the diagram, the parameters, the run file or the output folder.
+Exit codes: 0 done; 1 done, but a target of all or of --proof has other bits or could not be run; 2 an error in the diagram, the parameters, the run file or the output folder.
 )";
 
 struct GenerateOptions {
@@ -54,6 +57,7 @@ struct GenerateOptions {
   std::string folder;
   bool host = false;
   bool force = false;
+  bool proof = false;
 };
 
 /// Files of these names may be someone's own: a project has a main.cpp and a CMakeLists.txt of its own.
@@ -76,8 +80,12 @@ void check_usage(const GenerateOptions& options) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
   }
-  if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty()) {
+  if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty() ||
+      target.structured) {
     check_target_options(target);
+  }
+  if (options.proof && options.host) {
+    throw InputError(error::bad_usage, {}, "A host has no proof sheet.", "write --target cpp, or leave out --proof.");
   }
   if (options.host == options.config.empty()) {
     throw InputError(error::bad_usage, {},
@@ -90,20 +98,20 @@ void check_usage(const GenerateOptions& options) {
 struct Written {
   const Target* target = nullptr;
   std::vector<GeneratedFile> files{};
+  ProofSheet sheet{};  ///< where it was asked for
 };
 
 /// A line for each target: what it is, its bytes, how it was run, and whether its bits are those of the interpreter.
-int print_proofs(const Program& program, const std::vector<Written>& written, const TargetOptions& options,
-                 Console& console) {
+int print_proofs(const std::vector<Written>& written, Console& console) {
   bool all_equal = true;
   console.print(
       fmt::format("{:<9} {:<16} {:>8}  {:<28} {:>6}  {}\n", "target", "language", "bytes", "run", "steps", "bits"));
   for (const Written& one : written) {
     std::size_t bytes = 0;
     for (const GeneratedFile& file : one.files) {
-      bytes += file.text.size();
+      bytes += file.name == one.sheet.file.name ? 0 : file.text.size();
     }
-    const TargetProof proof = prove(program, *one.target, one.files, options);
+    const TargetProof& proof = one.sheet.proof;
     all_equal = all_equal && proof.fault.empty();
     console.print(fmt::format("{:<9} {:<16} {:>8}  {:<28} {:>6}  {}\n", one.target->name, one.target->language, bytes,
                               proof.way, proof.was_run ? std::to_string(proof.steps) : "-",
@@ -133,6 +141,14 @@ int generate(const GenerateOptions& options, Console& console) {
       }
     }
   }
+  for (Written& one : written) {
+    if (one.target != nullptr && (all || options.proof)) {
+      one.sheet = proof_sheet(program, *one.target, one.files, target, options.diagram);
+      if (options.proof) {
+        one.files.push_back(one.sheet.file);
+      }
+    }
+  }
   std::vector<OutputFile> files;
   for (const Written& one : written) {
     const fs::path folder = all ? fs::path(options.folder) / one.target->name : fs::path(options.folder);
@@ -147,7 +163,7 @@ int generate(const GenerateOptions& options, Console& console) {
   write_files_atomically(files);
   console.report(warnings);
   if (all) {
-    return print_proofs(program, written, target, console);
+    return print_proofs(written, console);
   }
   for (const OutputFile& file : files) {
     if (!file.path.lexically_relative(options.folder).string().starts_with("hysteron/")) {
@@ -157,6 +173,10 @@ int generate(const GenerateOptions& options, Console& console) {
   if (options.host) {
     console.print(
         fmt::format("{}: {} sources\n", (fs::path(options.folder) / "hysteron").string(), host_sources().size()));
+  }
+  if (options.proof && !written.front().sheet.proof.fault.empty()) {
+    console.print(fmt::format("{}: {}\n", written.front().sheet.file.name, written.front().sheet.proof.fault));
+    return exit_findings;
   }
   return exit_ok;
 }
@@ -173,6 +193,8 @@ Action add_generate(CLI::App& app) {
   app.add_option("--dialect", options->target.dialect,
                  "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");
+  app.add_flag("--structured", options->target.structured,
+               "Of Structured Text: the blocks stay blocks, and stand beside the diagram.");
   app.add_option("--body", options->target.body, "Of PLCopen XML: the step as text, or the diagram as a network.")
       ->option_text("st|fbd");
   app.add_option("--fmi", options->target.fmi, "The version of FMI of an FMU; 3 where none is given.")
@@ -182,6 +204,8 @@ Action add_generate(CLI::App& app) {
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")
       ->required()
       ->option_text("DIR");
+  app.add_flag("--proof", options->proof,
+               "Runs the files beside the interpreter, and writes NAME.TARGET.proof.json beside them.");
   app.add_flag("--force", options->force, "Overwrites files that Hysteron did not write.");
   app.footer(std::string(generate_examples));
   return [options](Console& console) { return generate(*options, console); };

@@ -29,9 +29,9 @@ constexpr std::array list{
            }},
     Target{"st", "Structured Text",
            [](const Program& program, const TargetOptions& options, Diagnostics& /*warnings*/) {
-             return generate_st(program,
-                                {.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
-                                 .float32 = options.float32});
+             const StOptions given{.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
+                                   .float32 = options.float32};
+             return options.structured ? generate_st_structured(program, given) : generate_st(program, given);
            }},
     Target{"plcopen", "PLCopen XML",
            [](const Program& program, const TargetOptions& options, Diagnostics& /*warnings*/) {
@@ -98,6 +98,9 @@ void check_target_options(const TargetOptions& options) {
            fmt::format("the targets are: {}.", fmt::join(names, ", ")));
   }
   check_dialect(options);
+  if (options.structured && !equal_ignoring_case(options.target, "st")) {
+    refuse("A structured text is one of Structured Text.", "write --target st, or leave out --structured.");
+  }
   if (!options.fmi.empty() && !equal_ignoring_case(options.target, "fmu")) {
     refuse("A version of FMI is one of an FMU.", "write --target fmu, or leave out --fmi.");
   }

@@ -19,6 +19,7 @@ struct TargetOptions {
   std::string body{};     ///< of plcopen
   std::string fmi{};      ///< of fmu
   bool float32 = false;
+  bool structured = false;  ///< of st: the blocks stay blocks
 };
 
 struct Target {

@@ -80,6 +80,8 @@ class Reader {
       : definitions_(definitions), source_(*definitions.source), diagnostics_(diagnostics) {}
 
   void read_all() {
+    // A text for a PLC brings the library along; where all is executed from top to bottom, its own blocks are meant.
+    const bool only_bodies = std::ranges::all_of(source_.blocks, &language::FunctionBlock::sequential);
     for (const auto& block : source_.blocks) {
       const auto index = static_cast<std::uint32_t>(definitions_.list.size());
       Definition& definition = definitions_.list.emplace_back();
@@ -87,7 +89,7 @@ class Reader {
       if (!block.sequential) {  // what PLC compilers have inside, a library of blocks may define
         check_name(block.name);
       }
-      if (is_of_library(block.name.text)) {
+      if (is_of_library(block.name.text) && !only_bodies) {
         error(error::duplicate_name, block.name.span, fmt::format("'{}' is a block of the library", block.name.text),
               "Choose another name; names that begin with HY_ belong to the library.");
       }
@@ -96,14 +98,15 @@ class Reader {
               "Rename one of the two.");
       }
     }
-    for (auto& definition : definitions_.list) {
+    find_in_place();
+    for (std::uint32_t index = 0; index < definitions_.list.size(); ++index) {
+      Definition& definition = definitions_.list[index];
       if (definition.block->sequential) {
-        read_sequential(definition);
+        read_sequential(definition, is_in_place(index));
       } else {
         read(definition);
       }
     }
-    find_in_place();
     sort_by_calls(definitions_, diagnostics_);
   }
 
@@ -145,7 +148,14 @@ class Reader {
   }
 
   /// Of a sequential body: the border. What is inside of it, the body knows.
-  void read_sequential(Definition& definition) {
+  /// What another body executes in place may have arrays at its border: they are variables of that body.
+  [[nodiscard]] bool is_in_place(std::uint32_t index) const {
+    return std::ranges::any_of(definitions_.list, [&](const Definition& one) {
+      return std::ranges::find(one.in_place, index) != one.in_place.end();
+    });
+  }
+
+  void read_sequential(Definition& definition, bool in_place) {
     read_head(definition);
     Graph scratch;
     GraphBuilder builder(scratch);
@@ -158,7 +168,7 @@ class Reader {
     };
     bodies::Body body(*source_.bodies, source_.bodies->units[definition.block->body],
                       {.builder = builder, .report = report, .add_parameter = [](const auto&) { return Wire{}; }});
-    for (const bodies::BorderPort& port : body.ports()) {
+    for (const bodies::BorderPort& port : body.ports(in_place)) {
       const Variable& variable = definition.block->variables[port.declaration];
       add_variable(definition, variable, port.name, [&] { return declare_border(variable, port, false); });
       if (port.role == language::body::Role::InOut && port.assigned) {

@@ -15,9 +15,17 @@
 
 namespace hysteron::testing {
 
+/// What a diagram has beside blocks of one rate over X1 to X3, B1, B2 and N1.
+struct RandomWords {
+  bool rates = false;      ///< parts that run in every n-th step, between HY_SAMPLE and HY_HOLD
+  bool types = false;      ///< an input W1 and an output W of WORD, and DINT at the ends of its range
+  bool functions = false;  ///< all functions of the language
+};
+
 class RandomDiagram {
  public:
-  RandomDiagram(std::uint64_t seed, std::string name, int instances) : engine_(seed), name_(std::move(name)) {
+  RandomDiagram(std::uint64_t seed, std::string name, int instances, const RandomWords& words = {})
+      : engine_(seed), name_(std::move(name)), words_(words) {
     write(instances);
   }
 
@@ -62,6 +70,9 @@ class RandomDiagram {
       const auto integer = [&] { return source(Type::Int, depth + 1); };
       switch (type) {
         case Type::Real: {
+          if (words_.functions && pick(3) == 0) {
+            return function(real, truth, integer);
+          }
           const std::vector<std::string> forms{fmt::format("({} + {})", real(), real()),
                                                fmt::format("({} - {} * {})", real(), real(), real()),
                                                fmt::format("({} / ({} - {}))", real(), real(), real()),
@@ -94,6 +105,14 @@ class RandomDiagram {
                                                fmt::format("({} / {})", integer(), integer()),
                                                fmt::format("LREAL_TO_DINT({})", real()),
                                                fmt::format("TRUNC({})", real())};
+          if (words_.functions && pick(3) == 0) {
+            const std::vector<std::string> more{fmt::format("ABS({})", integer()),
+                                                fmt::format("MIN({}, {}, {})", integer(), integer(), integer()),
+                                                fmt::format("LIMIT(-2, {}, 5)", integer()),
+                                                fmt::format("SEL({}, {}, {})", truth(), integer(), integer()),
+                                                fmt::format("BOOL_TO_DINT({})", truth())};
+            return more[pick(more.size())];
+          }
           return forms[pick(forms.size())];
         }
         default:
@@ -101,6 +120,36 @@ class RandomDiagram {
       }
     }
     return list.empty() || pick(8) == 0 ? literal(type) : list[pick(list.size())];
+  }
+
+  template <class Real, class Truth, class Integer>
+  std::string function(Real real, Truth truth, Integer integer) {
+    switch (pick(12)) {
+      case 0:
+        return fmt::format("SQRT({})", real());
+      case 1:
+        return fmt::format("LN({})", real());
+      case 2:
+        return fmt::format("LOG(ABS({}))", real());
+      case 3:
+        return fmt::format("(COS({}) * TAN({}))", real(), real());
+      case 4:
+        return fmt::format("ASIN({})", real());
+      case 5:
+        return fmt::format("ACOS({} / 4.0)", real());
+      case 6:
+        return fmt::format("ATAN2({}, {})", real(), real());
+      case 7:
+        return fmt::format("MUX({}, {}, {}, {})", integer(), real(), real(), real());
+      case 8:
+        return fmt::format("EXPT({}, {})", real(), std::vector{"2", "0.5", "-1", "3.0", "1", "-0.5"}[pick(6)]);
+      case 9:
+        return fmt::format("MAX({}, {}, {})", real(), real(), real());
+      case 10:
+        return fmt::format("ATAN({})", real());
+      default:
+        return fmt::format("DINT_TO_LREAL(SEL({}, {}, {}))", truth(), integer(), integer());
+    }
   }
 
   std::string setting(const Field& field) {
@@ -117,6 +166,49 @@ class RandomDiagram {
                                                                 : fmt::format("{:.6f}", low + unit() * (high - low));
   }
 
+  std::string settings_of(const BlockType& type) {
+    std::vector<std::string> settings;
+    for (const Field& param : type.params) {
+      if (param.length > 1) {
+        settings.push_back(fmt::format("{} := [-2.0, -0.5, 0.25, 3.0]", param.name));
+      } else if (param.name == "COUNT") {
+        settings.emplace_back("COUNT := 4");
+      } else if (param.required || pick(2) == 0) {
+        settings.push_back(fmt::format("{} := {}", param.name, setting(param)));
+      }
+    }
+    return settings.empty() ? "" : fmt::format(" := ({})", fmt::join(settings, ", "));
+  }
+
+  /// A block that runs in every n-th step, with a sample of the signals before it and a hold of its result behind it.
+  void write_slow(const std::string& name, const BlockType& type, std::string& declarations, std::string& statements) {
+    const std::size_t every = 2 + pick(4);
+    const std::string rate = fmt::format("(* @every {} @phase {} *)", every, pick(every));
+    declarations += fmt::format("    S{0} : HY_SAMPLE;  {1}\n    {0} : {2}{3};  {1}\n", name, rate, type.about.name,
+                                settings_of(type));
+    statements += fmt::format("  S{}(XIN := {});\n", name, source(Type::Real));
+    std::vector<std::string> arguments;
+    for (const Field& input : type.inputs) {
+      if (input.required || pick(2) != 0) {
+        const std::string real =
+            pick(2) == 0 ? fmt::format("S{}.XOUT", name) : fmt::format("(S{}.XOUT * 0.5 + 1.0)", name);
+        arguments.push_back(fmt::format("{} := {}", input.name,
+                                        input.type == Type::Real   ? real
+                                        : input.type == Type::Bool ? fmt::format("(S{}.XOUT > 0.5)", name)
+                                                                   : literal(input.type)));
+      }
+    }
+    statements += fmt::format("  {}({});\n", name, fmt::join(arguments, ", "));
+    for (const Field& output : type.outputs) {
+      if (output.type == Type::Real) {
+        declarations += fmt::format("    H{} : HY_HOLD;\n", name);
+        statements += fmt::format("  H{0}(XIN := {0}.{1});\n", name, output.name);
+        sources_[static_cast<std::size_t>(Type::Real)].push_back(fmt::format("H{}.XOUT", name));
+        return;
+      }
+    }
+  }
+
   void write(int instances) {
     const auto types = block_types();
     std::string declarations;
@@ -125,24 +217,20 @@ class RandomDiagram {
     sources_[static_cast<std::size_t>(Type::Real)] = {"X1", "X2", "X3"};
     sources_[static_cast<std::size_t>(Type::Bool)] = {"B1", "B2"};
     sources_[static_cast<std::size_t>(Type::Int)] = {"N1"};
+    if (words_.types) {
+      sources_[static_cast<std::size_t>(Type::Word)] = {"W1"};
+    }
     for (int i = 0; i < 3; ++i) {  // feedback
       declarations += fmt::format("    Z{} : HY_DELAY;\n", i);
       sources_[static_cast<std::size_t>(Type::Real)].push_back(fmt::format("Z{}.XOUT", i));
     }
     for (int i = 0; i < instances; ++i) {
       const BlockType& type = types[pick(types.size())];
-      std::vector<std::string> settings;
-      for (const Field& param : type.params) {
-        if (param.length > 1) {
-          settings.push_back(fmt::format("{} := [-2.0, -0.5, 0.25, 3.0]", param.name));
-        } else if (param.name == "COUNT") {
-          settings.emplace_back("COUNT := 4");
-        } else if (param.required || pick(2) == 0) {
-          settings.push_back(fmt::format("{} := {}", param.name, setting(param)));
-        }
+      if (words_.rates && !type.about.rate_transition && pick(6) == 0) {
+        write_slow(fmt::format("I{}", i), type, declarations, statements);
+        continue;
       }
-      declarations += fmt::format("    I{} : {}{};\n", i, type.about.name,
-                                  settings.empty() ? "" : fmt::format(" := ({})", fmt::join(settings, ", ")));
+      declarations += fmt::format("    I{} : {}{};\n", i, type.about.name, settings_of(type));
       std::vector<std::string> arguments;
       for (const Field& input : type.inputs) {
         if (input.required || pick(3) != 0) {
@@ -151,7 +239,7 @@ class RandomDiagram {
       }
       statements += fmt::format("  I{}({});\n", i, fmt::join(arguments, ", "));
       for (const Field& output : type.outputs) {
-        if (output.type != Type::Word) {
+        if (output.type != Type::Word || words_.types) {
           sources_[static_cast<std::size_t>(output.type)].push_back(fmt::format("I{}.{}", i, output.name));
         }
       }
@@ -165,15 +253,19 @@ class RandomDiagram {
       outputs += fmt::format("    Y{} : LREAL;\n", i);
       late += fmt::format("  Y{} := {};\n", i, source(Type::Real));
     }
+    const std::string truth = source(Type::Bool);
+    const std::string integer = source(Type::Int);
     text_ = fmt::format(
         "FUNCTION_BLOCK {} (* @ts 1ms *)\n  VAR_INPUT\n    X1, X2, X3 : LREAL;\n    B1, B2 : BOOL;\n    N1 : DINT;\n  "
-        "END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N := "
-        "{};\nEND_FUNCTION_BLOCK\n",
-        name_, outputs, declarations, statements, late, source(Type::Bool), source(Type::Int));
+        "{}END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n{}  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N "
+        ":= {};\n{}END_FUNCTION_BLOCK\n",
+        name_, words_.types ? "  W1 : WORD;\n  " : "", outputs, words_.types ? "    W : WORD;\n" : "", declarations,
+        statements, late, truth, integer, words_.types ? fmt::format("  W := {};\n", source(Type::Word)) : "");
   }
 
   std::mt19937_64 engine_;
   std::string name_;
+  RandomWords words_;
   std::string text_;
   std::array<std::vector<std::string>, 4> sources_;
 };

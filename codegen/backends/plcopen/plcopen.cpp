@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "codegen/backends/plcopen/library_block.hpp"
 #include "codegen/backends/plcopen/network.hpp"
 #include "codegen/backends/plcopen/placing.hpp"
 #include "codegen/backends/plcopen/project_xml.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/pou.hpp"
 #include "codegen/graph/fmu_block.hpp"
 
@@ -82,7 +82,7 @@ void add_networks(const Program& program, const PlcopenOptions& options, const S
   for (const auto& used : made.library) {
     StOptions own = text;
     own.outputs_ahead = used.ahead;
-    project.pous.push_back(with_text(plcopen::library_pou(*used.block, program.graph.sample_time_ns, own)));
+    project.pous.push_back(with_text(library_pou(*used.block, program.graph.sample_time_ns, own)));
   }
   const Pou caller = caller_of(made.list.back());
   for (plcopen::Network& network : made.list) {

@@ -64,4 +64,8 @@ std::string_view Identifiers::make(std::initializer_list<std::string_view> parts
   }
 }
 
+std::string_view Identifiers::take(std::string_view name) {
+  return taken_[taken_.add(name).number];
+}
+
 }  // namespace hysteron

@@ -35,6 +35,9 @@ class Identifiers {
   /// object lives.
   std::string_view make(std::initializer_list<std::string_view> parts);
 
+  /// A name as it stands, also where it is a word of the target.
+  std::string_view take(std::string_view name);
+
  private:
   bool (*is_word_)(std::string_view) = nullptr;  ///< null: the words are in taken_
   LetterCase letter_case_ = LetterCase::Lower;

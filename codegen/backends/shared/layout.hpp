@@ -21,6 +21,7 @@ struct Layout {
   std::vector<Member> cells{};
   std::vector<std::string_view> inputs{};
   std::vector<std::string_view> outputs{};
+  std::vector<std::string_view> instances{};  ///< by node: of a block that stays a block
 };
 
 /// What the state takes in memory, without gaps.

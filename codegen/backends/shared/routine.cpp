@@ -7,19 +7,6 @@
 namespace hysteron {
 namespace {
 
-Op literal_op(Type type) {
-  switch (type) {
-    case Type::Real:
-      return Op::RealLiteral;
-    case Type::Bool:
-      return Op::BoolLiteral;
-    case Type::Int:
-      return Op::IntLiteral;
-    default:
-      return Op::WordLiteral;
-  }
-}
-
 class RoutineBuilder {
  public:
   RoutineBuilder(const Program& program, const RoutineOptions& options)
@@ -41,9 +28,7 @@ class RoutineBuilder {
                                .target = i,
                                .value = is_ahead(i) ? value_ahead(wire) : value_of_wire(wire)});
     }
-    count_uses();
-    drop_unused();
-    count_operations(first_of_step);
+    finish_routine(routine_, first_of_step);
     return std::move(routine_);
   }
 
@@ -401,54 +386,6 @@ class RoutineBuilder {
       if (from == Wire::From::Node || from == Wire::From::Input) {
         const Op op = literal_op(value.type);
         laid[id] = routine_.tape.literal(op, 0);
-      }
-    }
-  }
-
-  // --- what nobody needs ---
-
-  /// What is used once is written where it is used. An operand stands in the tape before its operation.
-  void count_uses() {
-    std::vector<std::uint32_t>& uses = routine_.uses;
-    uses.assign(routine_.tape.size(), 0);
-    const auto use = [&](ValueId id) {
-      if (id != no_value) {
-        ++uses[id];
-      }
-    };
-    for (const auto* list : {&routine_.reset, &routine_.step}) {
-      for (const Statement& statement : *list) {
-        if (statement.kind != Statement::Kind::Define) {
-          use(statement.value);
-          use(statement.index);
-        }
-      }
-    }
-    for (auto id = static_cast<ValueId>(uses.size()); id-- > 0;) {
-      if (uses[id] > 0) {
-        std::ranges::for_each(routine_.tape[id].args, use);
-      }
-    }
-  }
-
-  void drop_unused() {
-    std::erase_if(routine_.step, [&](const Statement& statement) {
-      return statement.kind == Statement::Kind::Define && routine_.uses[statement.value] == 0;
-    });
-  }
-
-  void count_operations(ValueId first_of_step) {
-    for (ValueId id = 0; id < routine_.tape.size(); ++id) {
-      const Value& value = routine_.tape[id];
-      if (routine_.uses[id] == 0) {
-        continue;
-      }
-      const bool of_step = id >= first_of_step;
-      (of_step ? routine_.used_by_step : routine_.used_by_reset).set(static_cast<std::size_t>(value.op));
-      routine_.infinite_literals = routine_.infinite_literals || !std::isfinite(value.literal);
-      if (of_step && !is_leaf(value.op)) {
-        ++routine_.operations;
-        routine_.function_calls += value.op >= Op::Exp && value.op <= Op::Power ? 1 : 0;
       }
     }
   }

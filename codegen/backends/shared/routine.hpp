@@ -29,11 +29,14 @@ struct Statement {
     StoreCell,  ///< cell target[index] := value; every element where index is no_value
     SetOutput,  ///< output target := value
     BeginRate,  ///< what follows runs in the steps of a rate
-    EndRate
+    EndRate,
+    Call  ///< of a node that stays a block; only in a routine of calls
   };
   Kind kind = Kind::Define;
-  bool always = false;       ///< Define: named also where it is used but once
-  std::uint32_t target = 0;  ///< cell, output or node; Define: the node whose value it is
+  bool always = false;               ///< Define: named also where it is used but once
+  std::uint32_t target = 0;          ///< cell, output or node; Define: the node whose value it is
+  std::uint32_t first_argument = 0;  ///< Call: in Routine::arguments
+  std::uint32_t argument_count = 0;
   ValueId value = no_value;
   ValueId index = no_value;
   Rate rate{};
@@ -44,13 +47,20 @@ struct Statement {
 /// A set of operations and leaves.
 using Operations = std::bitset<static_cast<std::size_t>(Op::At) + 1>;
 
+/// A value that a call hands to a pin of a block: its inputs, and its parameters behind them.
+struct CallArgument {
+  std::uint32_t pin = 0;
+  ValueId value = no_value;
+};
+
 /// Leaves of the tape: Op::Input, Op::Parameter and Op::Cell by their index; Op::SampleTime with the divisor as index.
 struct Routine {
   Tape tape{};
   std::vector<CellInfo> cells{};
   std::vector<Statement> reset{};
   std::vector<Statement> step{};
-  std::uint32_t longest_period = 1;  ///< least common multiple of the rates; above 1, cell `counter` counts steps
+  std::vector<CallArgument> arguments{};  ///< of calls
+  std::uint32_t longest_period = 1;       ///< least common multiple of the rates; above 1, cell `counter` counts steps
   std::uint32_t counter = 0;
   std::vector<std::uint32_t> uses{};  ///< by value of the tape: in how many values and statements it stands
   Operations used_by_reset{};
@@ -72,6 +82,12 @@ struct RoutineOptions {
 };
 
 Routine make_routine(const Program& program, const RoutineOptions& options = {});
+
+/// Counts what is used how often, and drops what nobody needs. Values from `first_of_step` on belong to the step.
+void finish_routine(Routine& routine, ValueId first_of_step);
+
+/// The leaf of a literal of a type.
+Op literal_op(Type type);
 
 /// Whether a parameter begins with a value that is infinite or not a number.
 bool has_infinite_parameter(const Graph& graph);

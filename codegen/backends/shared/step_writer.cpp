@@ -25,7 +25,7 @@ void StepWriter::write(const Statement& statement, std::string& text) {
       indentation = "    ";
       return;
     case Statement::Kind::EndRate:
-      indentation = "  ";
+      indentation = outer_indentation;
       text += indentation;
       return end_rate(text);
     case Statement::Kind::Define:
@@ -34,6 +34,18 @@ void StepWriter::write(const Statement& statement, std::string& text) {
         write_definition(statement.value, name_of(statement), text);
       }
       return;
+    case Statement::Kind::Call:
+      for (std::uint32_t i = 0; i < statement.argument_count; ++i) {
+        write_shared(routine.arguments[statement.first_argument + i].value, true, text);
+      }
+      begin_line(text);
+      return call(statement, in_reset_, text);
+    case Statement::Kind::SetOutput:
+      if (is_output(statement.value) && output_of_value[statement.value] == statement.target &&
+          expressions.is_named(statement.value)) {
+        return;
+      }
+      break;
     default:
       break;
   }
@@ -69,6 +81,9 @@ void StepWriter::write_definition(ValueId id, std::string_view name, std::string
 }
 
 std::string_view StepWriter::name_of(const Statement& definition) {
+  if (is_output(definition.value)) {
+    return output_name(output_of_value[definition.value]);
+  }
   const std::string_view owner = graph.nodes[definition.target].owner();
   if (definition.field.empty() && is_taken(owner)) {
     return locals_.make({owner, word_for(routine.tape[definition.value])});

@@ -31,10 +31,12 @@ class StepWriter {
   }
   /// The reset: values take their names from the block whose state they set.
   void write_reset(std::string& text) {
+    in_reset_ = true;
     for (const Statement& statement : routine.reset) {
-      section_ = routine.cells[statement.target].node;
+      section_ = statement.kind == Statement::Kind::Call ? statement.target : routine.cells[statement.target].node;
       write(statement, text);
     }
+    in_reset_ = false;
   }
 
  protected:
@@ -47,6 +49,10 @@ class StepWriter {
   virtual void set_cell(std::uint32_t cell, ValueId value, std::string& text) = 0;
   virtual void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) = 0;
   virtual void fill_cell(std::uint32_t cell, ValueId value, std::string& text) = 0;
+  /// Of a block that stays a block; only a target that asks for calls spells them.
+  virtual void call(const Statement& /*statement*/, bool /*reset*/, std::string& /*text*/) {}
+  /// The variable of an output, for values that are one.
+  [[nodiscard]] virtual std::string_view output_name(std::uint32_t /*output*/) const { return {}; }
   /// What a shared value is called that is no port and no state.
   [[nodiscard]] virtual std::string_view word_for(const Value& value) const = 0;
 
@@ -59,7 +65,13 @@ class StepWriter {
   const Graph& graph;
   const Routine& routine;
   ExpressionPrinter& expressions;
+  /// By value: the output whose variable it is from its computation on, or no_value; empty: none.
+  std::vector<std::uint32_t> output_of_value{};
+  [[nodiscard]] bool is_output(ValueId id) const {
+    return id < output_of_value.size() && output_of_value[id] != no_value;
+  }
   std::string_view indentation = "  ";
+  std::string_view outer_indentation = "  ";  ///< outside of a rate
 
  private:
   void write(const Statement& statement, std::string& text);
@@ -75,6 +87,7 @@ class StepWriter {
   std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state
   std::uint32_t section_ = 0;                  ///< the node to which the statement at hand belongs
   bool section_begins_ = false;
+  bool in_reset_ = false;
 };
 
 }  // namespace hysteron

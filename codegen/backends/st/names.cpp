@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "codegen/backends/st/words.hpp"
 #include "support/errors.hpp"
 
@@ -9,6 +11,9 @@ namespace hysteron {
 
 /// A name of the diagram, by which it is known outside: where it cannot be kept, the head of the file says so.
 std::string_view StBlockNames::keep(std::string_view name) {
+  if (keeps_pins_) {
+    return identifiers_.take(st_pin_name(name, dialect_));
+  }
   const std::string_view kept = identifiers_.make({name});
   if (!language::same_name(kept, name)) {
     renamed_ +=
@@ -17,8 +22,20 @@ std::string_view StBlockNames::keep(std::string_view name) {
   return kept;
 }
 
-StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect)
-    : identifiers_(dialect.shape == StDialect::Shape::Source ? is_scl_word : is_st_word, LetterCase::Upper) {
+StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect, const StCalls* calls,
+                           bool keeps_pins)
+    : dialect_(dialect),
+      keeps_pins_(keeps_pins),
+      identifiers_(dialect.shape == StDialect::Shape::Source ? is_scl_word : is_st_word, LetterCase::Upper) {
+  if (calls != nullptr) {
+    std::set<std::string_view> taken;
+    for (const StCalls::BlockName& one : calls->blocks) {
+      if (!taken.contains(one.type)) {
+        identifiers_.make({one.type});
+        taken.insert(one.type);
+      }
+    }
+  }
   for (const Port& port : graph.inputs) {
     layout_.inputs.push_back(keep(port.name));
   }
@@ -31,14 +48,33 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
     reset_ = identifiers_.make({"RESET_ALL"});
   }
   for (const Parameter& parameter : graph.parameters) {
-    layout_.parameters.push_back({.name = identifiers_.make({parameter.path})});
+    const bool setting = calls != nullptr && calls->made.is_setting[layout_.parameters.size()];
+    layout_.parameters.push_back({.name = setting       ? std::string_view()
+                                          : keeps_pins_ ? keep(parameter.path)
+                                                        : identifiers_.make({parameter.path})});
   }
   started_ = identifiers_.make({"STARTED"});
   own_ = {.sample_time = identifiers_.make({"TS"}),
           .largest = identifiers_.make({"LARGEST"}),
           .place = identifiers_.make({"PLACE"})};
-  for (const CellInfo& cell : routine.cells) {
+  if (calls != nullptr) {
+    name_instances(graph, *calls);
+  }
+  for (std::size_t i = layout_.cells.size(); i < routine.cells.size(); ++i) {
+    const CellInfo& cell = routine.cells[i];
     layout_.cells.push_back({.name = identifiers_.make({cell.instance, cell.field.name})});
+  }
+}
+
+void StBlockNames::name_instances(const Graph& graph, const StCalls& calls) {
+  layout_.instances.resize(graph.nodes.size());
+  for (const BlockInstance& one : calls.made.instances) {
+    layout_.instances[one.node] = identifiers_.make({graph.nodes[one.node].path});
+  }
+  for (std::uint32_t i = 0; i < calls.made.output_cells; ++i) {
+    const CellInfo& cell = calls.made.routine.cells[i];
+    outputs_of_instances_.push_back(fmt::format("{}.{}", layout_.instances[cell.node], cell.field.name));
+    layout_.cells.push_back({.name = outputs_of_instances_.back()});
   }
 }
 

@@ -1,18 +1,22 @@
 // The names of a block in Structured Text: one flat list, in which nothing is a word of some compiler.
 #pragma once
 
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/st/pou.hpp"
 #include "codegen/backends/st/printer.hpp"
 
 namespace hysteron {
 
 class StBlockNames {
  public:
-  StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect);
+  /// `calls`: null where no block stays a block. `keeps_pins`: see StOptions.
+  StBlockNames(const Graph& graph, const Routine& routine, const StDialect& dialect, const StCalls* calls,
+               bool keeps_pins);
   StBlockNames(const StBlockNames&) = delete;
   StBlockNames& operator=(const StBlockNames&) = delete;
 
@@ -29,13 +33,17 @@ class StBlockNames {
 
  private:
   std::string_view keep(std::string_view name);
+  void name_instances(const Graph& graph, const StCalls& calls);
 
+  const StDialect& dialect_;
+  bool keeps_pins_;
   Identifiers identifiers_;
   Layout layout_;
   StNames own_;
   std::string_view block_;
   std::string_view reset_;
   std::string_view started_;
+  std::deque<std::string> outputs_of_instances_;  ///< LAG.XOUT
   std::string renamed_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/backends/st/comment.hpp"
 #include "codegen/backends/st/names.hpp"
@@ -27,8 +29,11 @@ class StBlock {
         graph_(program.graph),
         dialect_(options.dialect),
         float32_(options.float32),
-        routine_(make_routine(program, {.outputs_ahead = options.outputs_ahead})),
-        names_(graph_, routine_, dialect_),
+        library_(options.library),
+        ahead_(options.outputs_ahead),
+        calls_(options.calls),
+        routine_(calls_ != nullptr ? calls_->made.routine : make_routine(program, {.outputs_ahead = ahead_})),
+        names_(graph_, routine_, dialect_, calls_, options.keeps_pins),
         printer_(graph_, routine_, names_.layout(), names_.own(), dialect_, float32_),
         writer_(graph_, routine_, printer_, names_.identifiers(), names_.layout(), names_.own()) {}
 
@@ -44,17 +49,52 @@ class StBlock {
   }
 
  private:
+  /// Nothing to begin anew: a block of the library without memory.
+  [[nodiscard]] bool has_no_memory() const { return library_ && routine_.cells.empty(); }
+
   std::string write_body() {
+    if (library_) {
+      writer_.name_outputs_at_once(ahead_);
+    }
+    std::string text;
+    if (!has_no_memory()) {
+      write_beginning(text);
+    }
+    if (library_ && !has_no_memory()) {
+      write_step_unless_reset(text);
+    } else {
+      writer_.write(routine_.step, text);
+    }
+    writer_.write_counter(text);
+    return text;
+  }
+
+  void write_beginning(std::string& text) {
     std::string reset;
     writer_.write_reset_body(reset);
     std::string started;
     printer_.print_variable(names_.started(), started);
-    std::string first = "  IF ";
-    printer_.print_variable(names_.reset(), first);
-    append(first, " OR NOT ", started, " THEN\n", reset, "    ", started, " := TRUE;\n  END_IF;\n\n");
-    writer_.write(routine_.step, first);
-    writer_.write_counter(first);
-    return first;
+    text += "  IF ";
+    printer_.print_variable(names_.reset(), text);
+    append(text, " OR NOT ", started, " THEN\n", reset, "    ", started, " := TRUE;\n  END_IF;\n\n");
+  }
+
+  /// Outputs of memory alone stand behind: they have their first values where a call lets the memory begin anew.
+  void write_step_unless_reset(std::string& text) {
+    std::vector<Statement> now;
+    std::vector<Statement> behind;
+    for (const Statement& one : routine_.step) {
+      const bool ahead = one.kind == Statement::Kind::SetOutput && one.target < ahead_.size() && ahead_[one.target];
+      (ahead ? behind : now).push_back(one);
+    }
+    text += "  IF NOT ";
+    printer_.print_variable(names_.reset(), text);
+    text += " THEN\n";
+    writer_.indent("    ");
+    writer_.write(now, text);
+    writer_.indent("  ");
+    text += "  END_IF;\n";
+    writer_.write(behind, text);
   }
 
   // --- the declaration ---
@@ -67,6 +107,11 @@ class StBlock {
             .length = field.length,
             .values = {},
             .remark = std::move(remark)};
+  }
+
+  /// Where the blocks of the library stand in the same file, arrays are handed from one to another.
+  [[nodiscard]] bool has_array_types() const {
+    return (library_ || calls_ != nullptr) && dialect_.shape == StDialect::Shape::OneFile;
   }
 
   [[nodiscard]] StVariable of_port(std::string_view name, const Port& port, std::string_view meaning,
@@ -90,11 +135,15 @@ class StBlock {
       list.push_back({.keyword = "VAR_INPUT", .variables = std::move(both)});
     } else {
       list.push_back({.keyword = "VAR_INPUT", .variables = inputs()});
-      list.push_back(
-          {.keyword = "VAR_INPUT", .remark = "parameters, at their tuned values", .variables = parameters()});
+      list.push_back({.keyword = "VAR_INPUT",
+                      .remark = library_ ? "parameters" : "parameters, at their tuned values",
+                      .variables = parameters()});
     }
     list.push_back({.keyword = "VAR_OUTPUT", .variables = outputs()});
     list.push_back({.keyword = "VAR CONSTANT", .variables = constants()});
+    if (calls_ != nullptr) {
+      list.push_back({.keyword = "VAR", .remark = "blocks", .variables = instances()});
+    }
     list.push_back({.keyword = "VAR", .remark = "memory, from step to step", .variables = memory()});
     list.push_back({.keyword = dialect_.temporary_section ? "VAR_TEMP" : "VAR",
                     .remark = "values within a step",
@@ -113,18 +162,71 @@ class StBlock {
     list.push_back({.name = std::string(names_.reset()),
                     .type = "BOOL",
                     .values = {"FALSE"},
-                    .remark = "TRUE: the memory begins anew, before this step"});
+                    .remark = library_ ? "TRUE: the memory begins anew, and no step is made"
+                                       : "TRUE: the memory begins anew, before this step"});
+    if (has_no_memory()) {
+      list.pop_back();
+    }
     return list;
   }
 
   [[nodiscard]] std::vector<StVariable> parameters() const {
     std::vector<StVariable> list;
     for (std::size_t i = 0; i < graph_.parameters.size(); ++i) {
-      const Field& field = graph_.parameters[i].field;
-      list.push_back(of_field(names_.layout().parameters[i].name, field,
-                              st_remark(field.unit, field.minimum, field.maximum, field.above_minimum, field.meaning)));
-      for (std::size_t element = 0; element < field.length; ++element) {
-        list.back().values.push_back(printer_.literal(field.type, graph_.parameters[i].value[element]));
+      if (calls_ == nullptr || (!calls_->made.is_setting[i] && graph_.parameters[i].field.length == 1)) {
+        list.push_back(parameter(i));
+      }
+    }
+    if (library_ && printer_.uses_sample_time) {
+      list.push_back({.name = std::string(names_.own().sample_time),
+                      .type = type(Type::Real),
+                      .values = {printer_.literal(Type::Real, graph_.sample_time())},
+                      .remark = "[s] sample time: how often the block is called"});
+    }
+    return list;
+  }
+
+  [[nodiscard]] StVariable parameter(std::size_t i) const {
+    const Field& field = graph_.parameters[i].field;
+    StVariable variable =
+        of_field(names_.layout().parameters[i].name, field,
+                 st_remark(field.unit, field.minimum, field.maximum, field.above_minimum, field.meaning));
+    if (has_array_types() && field.length > 1) {
+      variable.array_type = st_array_type(field.length);
+    }
+    for (std::size_t element = 0; element < field.length; ++element) {
+      variable.values.push_back(printer_.literal(field.type, graph_.parameters[i].value[element]));
+    }
+    return variable;
+  }
+
+  /// The blocks of the diagram, with the parameters that are theirs alone, and the arrays that are handed to them.
+  [[nodiscard]] std::vector<StVariable> instances() const {
+    std::vector<StVariable> list;
+    for (std::size_t i = 0; i < calls_->made.instances.size(); ++i) {
+      const BlockInstance& one = calls_->made.instances[i];
+      const Node& node = graph_.nodes[one.node];
+      std::vector<std::string> settings;
+      for (const std::uint32_t index : one.settings) {
+        const Parameter& given = graph_.parameters[index];
+        if (std::bit_cast<std::uint64_t>(given.value.front()) != std::bit_cast<std::uint64_t>(given.field.preset)) {
+          settings.push_back(fmt::format("{} := {}", printer_.pin_name(given.field.name),
+                                         printer_.literal(given.field.type, given.value.front())));
+        }
+      }
+      if (calls_->blocks[i].sample_time && node.rate.every > 1) {
+        const double seconds = static_cast<double>(graph_.sample_time_ns * node.rate.every) * 1e-9;
+        settings.push_back(fmt::format("TS := {}", printer_.literal(Type::Real, seconds)));
+      }
+      StVariable variable{.name = std::string(names_.layout().instances[one.node]), .type = calls_->blocks[i].type};
+      if (!settings.empty()) {
+        variable.values = {fmt::format("({})", fmt::join(settings, ", "))};
+      }
+      list.push_back(std::move(variable));
+    }
+    for (std::size_t i = 0; i < graph_.parameters.size(); ++i) {
+      if (graph_.parameters[i].field.length > 1) {
+        list.push_back(parameter(i));
       }
     }
     return list;
@@ -133,7 +235,8 @@ class StBlock {
   [[nodiscard]] std::vector<StVariable> outputs() const {
     std::vector<StVariable> list;
     for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
-      list.push_back(of_port(names_.layout().outputs[i], graph_.outputs[i], graph_.outputs[i].meaning, false));
+      const Port& port = graph_.outputs[i];
+      list.push_back(of_port(names_.layout().outputs[i], port, port.meaning, library_ && port.preset != 0.0));
     }
     return list;
   }
@@ -146,7 +249,7 @@ class StBlock {
                       .values = {printer_.literal(Type::Real, value)},
                       .remark = std::string(remark)});
     };
-    if (printer_.uses_sample_time) {
+    if (printer_.uses_sample_time && !library_) {
       add(names_.own().sample_time, graph_.sample_time(), "sample time, in seconds");
     }
     if (printer_.uses_largest) {
@@ -157,12 +260,15 @@ class StBlock {
 
   [[nodiscard]] std::vector<StVariable> memory() const {
     std::vector<StVariable> list;
-    for (std::size_t i = 0; i < routine_.cells.size(); ++i) {
+    for (std::size_t i = calls_ != nullptr ? calls_->made.output_cells : 0; i < routine_.cells.size(); ++i) {
       const Field& field = routine_.cells[i].field;
       list.push_back(of_field(names_.layout().cells[i].name, field, std::string(field.meaning)));
     }
     list.push_back(
         {.name = std::string(names_.started()), .type = "BOOL", .values = {"FALSE"}, .remark = "a step has run"});
+    if (has_no_memory()) {
+      list.clear();
+    }
     return list;
   }
 
@@ -180,14 +286,20 @@ class StBlock {
   std::string head() const {
     std::string text = fmt::format(
         "(* {}: generated by Hysteron from a block diagram; edit the diagram, not this file.\n\n", graph_.name);
-    append(
-        text,
-        fmt::format("   Call each instance once in every cycle of a task of {} ms, and in no other: its sample "
-                    "time is {} s.\n",
-                    number_text(static_cast<double>(graph_.sample_time_ns) * 1e-6), number_text(graph_.sample_time())));
+    append(text, fmt::format(
+                     "   Call each instance once in every cycle of a task of {} ms, and in no other: its sample "
+                     "time is {} s.\n",
+                     number_text(static_cast<double>(graph_.sample_time_ns) / 1e6), number_text(graph_.sample_time())));
     append(text, "   Its first call, and ", names_.reset(), ", let its memory begin anew.\n");
-    append(text, fmt::format("   State: {} bytes. Operations a step: {} (calls of EXP, LN, EXPT and the like: {}).\n",
-                             state_bytes(routine_, float32_), routine_.operations, routine_.function_calls));
+    if (calls_ != nullptr) {
+      append(
+          text, "   The blocks that it calls stand in the same ",
+          dialect_.shape == StDialect::Shape::OneFile || dialect_.shape == StDialect::Shape::Source ? "file" : "folder",
+          ". Their parameters stand with their declarations.\n");
+    } else {
+      append(text, fmt::format("   State: {} bytes. Operations a step: {} (calls of EXP, LN, EXPT and the like: {}).\n",
+                               state_bytes(routine_, float32_), routine_.operations, routine_.function_calls));
+    }
     append(text,
            fmt::format("   Dialect: {}. Hash of diagram and parameters: {}.\n", dialect_.name, program_hash(program_)));
     append(text, names_.renamed());
@@ -203,7 +315,7 @@ class StBlock {
     program.name = names_.identifiers().make({graph_.name, "program"});
     program.head = fmt::format(
         "(* An example of a program that calls {}; generated by Hysteron. Its task has a cycle of {} ms. *)\n",
-        names_.block(), number_text(static_cast<double>(graph_.sample_time_ns) * 1e-6));
+        names_.block(), number_text(static_cast<double>(graph_.sample_time_ns) / 1e6));
     StSection section{.keyword = "VAR", .variables = {{.name = instance, .type = std::string(names_.block())}}};
     std::string arguments;
     for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
@@ -228,6 +340,9 @@ class StBlock {
   const Graph& graph_;
   StDialect dialect_;
   bool float32_;
+  bool library_;
+  std::vector<bool> ahead_;
+  const StCalls* calls_;
   Routine routine_;
   StBlockNames names_;
   StPrinter printer_;
@@ -236,7 +351,9 @@ class StBlock {
 
 void append_declaration(std::string& text, std::string_view names, const StVariable& variable) {
   append(text, "    ", names, " : ",
-         variable.length > 1 ? fmt::format("ARRAY[0..{}] OF ", variable.length - 1) : std::string(), variable.type);
+         !variable.array_type.empty() ? variable.array_type
+         : variable.length > 1        ? fmt::format("ARRAY[0..{}] OF {}", variable.length - 1, variable.type)
+                                      : variable.type);
   if (!variable.values.empty()) {
     append(text, " := ", value_text(variable));
   }
@@ -262,6 +379,10 @@ void append_names(std::string& text, const std::vector<StVariable>& variables) {
 }
 
 }  // namespace
+
+std::string st_array_type(std::uint16_t length) {
+  return fmt::format("HY_ARRAY_{}", length);
+}
 
 std::string st_declarations(const std::vector<StSection>& sections) {
   std::string text;

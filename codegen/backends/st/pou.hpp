@@ -6,15 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "codegen/backends/shared/calls.hpp"
 #include "codegen/backends/st/dialect.hpp"
 #include "codegen/compile.hpp"
 
 namespace hysteron {
 
+/// The blocks of a diagram that stay blocks.
+struct StCalls {
+  struct BlockName {
+    std::string type{};        ///< what the block is called in the text
+    bool sample_time = false;  ///< it has an input TS
+  };
+  CallRoutine made{};
+  std::vector<BlockName> blocks{};  ///< by instance
+};
+
 struct StOptions {
   StDialect dialect{};
   bool float32 = false;               ///< REAL in place of LREAL
   std::vector<bool> outputs_ahead{};  ///< see RoutineOptions
+  /// A block of the library: the sample time is an input, and a call with RESET makes no step.
+  bool library = false;
+  bool keeps_pins = false;         ///< of a block of the library: see st_pin_name
+  const StCalls* calls = nullptr;  ///< the blocks of the diagram stay blocks
 };
 
 /// One declared name.
@@ -22,6 +37,7 @@ struct StVariable {
   std::string name{};
   std::string type{};                 ///< of an element, where it is an array
   std::uint16_t length = 1;           ///< above 1: ARRAY[0..length - 1]
+  std::string array_type{};           ///< the name of its array type, where it has one
   std::vector<std::string> values{};  ///< the initial value: none, one, or those of the elements
   std::string remark{};               ///< unit, range and meaning, not yet a comment
 };
@@ -49,6 +65,10 @@ struct StBlockAndCaller {
 /// Throws InputError: HY404 where the diagram states no sample time, HY732 where a name is longer than the dialect
 /// allows.
 StBlockAndCaller make_st_pou(const Program& program, const StOptions& options);
+
+/// The name of the type of arrays of a length. Where an array is handed to a block, some compilers want both to be of
+/// one named type.
+std::string st_array_type(std::uint16_t length);
 
 /// The sections as text.
 std::string st_declarations(const std::vector<StSection>& sections);

@@ -45,8 +45,12 @@ constexpr SpellingTable st_operations({
     {Op::Not, negation("NOT ")},
 });
 
-/// The digits of a real number with a large E, as the standard writes it.
+/// The digits of a real number with a large E, as the standard writes it. A constant that is not a number (LN(-1.0)) is
+/// 0, as what a guard gives for 0 / 0.
 std::string digits_of(double value, const StReals& reals) {
+  if (std::isnan(value)) {
+    value = 0.0;
+  }
   if (std::isinf(value)) {
     const double largest =
         reals.float32 || reals.small_literals ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();

@@ -10,6 +10,7 @@
 #include "codegen/backends/shared/words.hpp"
 #include "codegen/backends/st/dialect.hpp"
 #include "codegen/backends/st/guards.hpp"
+#include "codegen/backends/st/words.hpp"
 
 namespace hysteron {
 
@@ -52,6 +53,7 @@ class StPrinter final : public ExpressionPrinter {
   /// A variable of the block in its body.
   void print_variable(std::string_view name, std::string& out) const { out.append(dialect_.local_prefix).append(name); }
   void print_cell(std::uint32_t cell, std::string& out) const { print_variable(layout_.cells[cell].name, out); }
+  [[nodiscard]] std::string pin_name(std::string_view name) const { return st_pin_name(name, dialect_); }
   /// [LIMIT(0, index, last)]
   void print_place(ValueId index, std::uint16_t length, std::string& out) const;
   /// The largest number, above or below 0.
@@ -91,6 +93,10 @@ class StWriter final : public StepWriter {
   StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
            const Layout& layout, const StNames& names);
 
+  /// Values that are an output as they stand get its name at once.
+  void name_outputs_at_once(const std::vector<bool>& ahead);
+  /// What stands within an IF of the block's own.
+  void indent(std::string_view spaces) { indentation = outer_indentation = spaces; }
   void write_reset_body(std::string& text);
   void write_counter(std::string& text) const;
 
@@ -111,6 +117,8 @@ class StWriter final : public StepWriter {
   [[nodiscard]] bool is_taken(std::string_view owner) const override {
     return find_port(graph.outputs, owner) != nullptr;
   }
+  void call(const Statement& statement, bool reset, std::string& text) override;
+  [[nodiscard]] std::string_view output_name(std::uint32_t output) const override { return layout_.outputs[output]; }
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
 
  private:

@@ -1,5 +1,6 @@
 #include "codegen/backends/st/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <unordered_set>
 
@@ -9,9 +10,8 @@
 namespace hysteron {
 namespace {
 
-/// Beside the names that the language refuses (is_reserved): what its compilers have of their own.
-constexpr auto vendor_words = std::to_array<std::string_view>({
-    // instruction list, whose operators are words in the same file
+/// Instruction list, whose operators are words in the same file.
+constexpr auto instruction_words = std::to_array<std::string_view>({
     "LD",
     "LDN",
     "ST",
@@ -30,6 +30,10 @@ constexpr auto vendor_words = std::to_array<std::string_view>({
     "RET",
     "RETC",
     "RETCN",
+});
+
+/// Beside the names that the language refuses (is_reserved): what its compilers have of their own.
+constexpr auto vendor_words = std::to_array<std::string_view>({
     // function blocks and functions of the standard that compilers declare in their libraries
     "DERIVATIVE",
     "INTEGRAL",
@@ -162,6 +166,10 @@ constexpr auto scl_words = std::to_array<std::string_view>({
     "POKE",
 });
 
+bool is_instruction(std::string_view upper) {
+  return std::ranges::find(instruction_words, upper) != instruction_words.end();
+}
+
 /// LREAL_TO_DINT and its like.
 bool is_conversion(std::string_view name) {
   const auto middle = name.find("_TO_");
@@ -174,12 +182,18 @@ bool is_conversion(std::string_view name) {
 bool is_st_word(std::string_view name) {
   static const std::unordered_set<std::string_view> words(vendor_words.begin(), vendor_words.end());
   const std::string upper = language::upper(name);
-  return words.contains(upper) || is_reserved(upper) || is_conversion(upper);
+  return words.contains(upper) || is_instruction(upper) || is_reserved(upper) || is_conversion(upper);
 }
 
 bool is_scl_word(std::string_view name) {
   static const std::unordered_set<std::string_view> words(scl_words.begin(), scl_words.end());
   return words.contains(language::upper(name)) || is_st_word(name);
+}
+
+std::string st_pin_name(std::string_view name, const StDialect& dialect) {
+  const bool kept = dialect.shape == StDialect::Shape::OneFile || is_instruction(name) ||
+                    !(dialect.shape == StDialect::Shape::Source ? is_scl_word(name) : is_st_word(name));
+  return kept ? std::string(name) : std::string(name) + "_2";
 }
 
 }  // namespace hysteron

@@ -5,6 +5,9 @@
 #include "codegen/backends/st/printer.hpp"
 
 namespace hysteron {
+namespace {
+constexpr std::size_t widest_call = 100;
+}  // namespace
 
 StWriter::StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
                    const Layout& layout, const StNames& names)
@@ -27,7 +30,48 @@ void StWriter::write_counter(std::string& text) const {
   }
 }
 
+void StWriter::name_outputs_at_once(const std::vector<bool>& ahead) {
+  output_of_value.assign(routine.tape.size(), no_value);
+  for (const Statement& one : routine.step) {
+    const bool late = one.target < ahead.size() && ahead[one.target];
+    if (one.kind == Statement::Kind::SetOutput && !late && output_of_value[one.value] == no_value) {
+      output_of_value[one.value] = one.target;
+    }
+  }
+}
+
+/// A block with memory has an input RESET; it keeps its value from call to call, so each call says it.
+void StWriter::call(const Statement& statement, bool reset, std::string& text) {
+  const BlockType& block = *graph.nodes[statement.target].block;
+  std::string line;
+  printer_.print_variable(layout_.instances[statement.target], line);
+  line += '(';
+  const std::size_t first_column = line.size();
+  bool first = true;
+  const auto argument = [&](std::string_view pin, const std::string& value) {
+    const std::size_t width = line.size() - (line.rfind('\n') == std::string::npos ? 0 : line.rfind('\n'));
+    if (!first) {
+      line += width + pin.size() + value.size() > widest_call
+                  ? ",\n" + std::string(indentation.size() + first_column, ' ')
+                  : ", ";
+    }
+    append(line, pin, " := ", value);
+    first = false;
+  };
+  for (std::uint32_t i = 0; i < statement.argument_count; ++i) {
+    const CallArgument& one = routine.arguments[statement.first_argument + i];
+    argument(printer_.pin_name(block.pin(one.pin).name), printer_.text(one.value));
+  }
+  if (!block.states.empty()) {
+    argument("RESET", reset ? "TRUE" : "FALSE");
+  }
+  append(text, line, ");\n");
+}
+
 void StWriter::heading(const Node& node, std::string& text) {
+  if (node.path.empty() || !layout_.instances.empty()) {
+    return;  // a block of the library, as its own head says; or one that is called, as its call says
+  }
   append(text, "\n", indentation, "(* ", node.path, " : ", node.block->about.name, " *)\n");
 }
 
@@ -78,7 +122,9 @@ void StWriter::line(std::string_view words, std::string& text) const {
 
 void StWriter::define(ValueId id, std::string_view name, std::string& text) {
   const Value& value = routine.tape[id];
-  locals.push_back({name, value.type});
+  if (!is_output(id)) {
+    locals.push_back({name, value.type});
+  }
   std::string target;
   printer_.print_variable(name, target);
   const Guards& guards = printer_.guards();

@@ -49,7 +49,7 @@ const std::set<std::string>& Body::assigned(const Source& source) {
   return found->second;
 }
 
-std::vector<BorderPort> Body::ports() {
+std::vector<BorderPort> Body::ports(bool in_place) {
   std::vector<BorderPort> list;
   root_ = std::make_unique<Place>();
   const auto& declarations = source_.unit->declarations;
@@ -62,6 +62,9 @@ std::vector<BorderPort> Body::ports() {
       continue;
     }
     if (member.front().type->kind != BodyType::Kind::Plain) {
+      if (in_place) {
+        continue;
+      }
       refuse(error::refused_in_body, one.name.span,
              fmt::format("'{}' at the border of the block is an array, a structure or an instance", one.name.text),
              "Give it inputs and outputs of plain types, or call it from another block of this file.");

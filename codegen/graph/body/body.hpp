@@ -46,7 +46,7 @@ class Body {
   Body(const language::body::Library& library, const language::body::Unit& unit, Surroundings around);
 
   /// The inputs, outputs and VAR_IN_OUT of the block. One that is an array or a structure is reported.
-  std::vector<BorderPort> ports();
+  std::vector<BorderPort> ports(bool in_place);
   /// Executes the body: `inputs` by name in upper case. Gives the wires of outputs and VAR_IN_OUT by name.
   std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -50,7 +51,36 @@ int main(int argc, char** argv) {
   const char* folder = argv[argc - 1];
 )";
 
-TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
+/// The blocks and types of a text, each once: diagrams that stand in one file share the library.
+class TextsTogether {
+ public:
+  void add(const std::string& text) {
+    for (std::size_t begin = 0; begin < text.size();) {
+      std::size_t end = text.size();
+      for (const std::string_view last : {"\nEND_FUNCTION_BLOCK\n", "\nEND_TYPE\n"}) {
+        const std::size_t found = text.find(last, begin);
+        end = std::min(end, found == std::string::npos ? end : found + last.size());
+      }
+      const std::string unit = text.substr(begin, end - begin);
+      if (std::find(units_.begin(), units_.end(), unit) == units_.end()) {
+        units_.push_back(unit);
+        text_ += unit;
+      }
+      begin = end;
+      while (begin < text.size() && text[begin] == '\n') {
+        ++begin;
+      }
+    }
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::vector<std::string> units_;
+  std::string text_;
+};
+
+void hold_through_matiec(std::string_view what,
+                         std::vector<GeneratedFile> (*generate)(const Program& program, const StOptions& options)) {
   const char* const matiec = std::getenv("HYSTERON_MATIEC");
   if (matiec == nullptr) {
     GTEST_SKIP() << "HYSTERON_MATIEC names no folder of MATIEC";
@@ -63,18 +93,18 @@ TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
   std::size_t steps = 0;
   for (std::size_t first = 0; first < diagrams; first += at_once) {
     const test::ScratchFolder folder;
-    std::string text;
+    TextsTogether text;
     std::string host(matiec_host_head);
     std::vector<RecordedRun> runs;
     for (std::size_t i = 0; i < std::min(at_once, diagrams - first); ++i) {
       const std::size_t seed = first + i;
-      const Program program = RandomDiagram(seed + 3000, fmt::format("P{}", i), seed % 2 == 0 ? 8 : 30).program();
+      const Program program = RandomDiagram(seed + 3000, fmt::format("DIAGRAM{}", i), seed % 2 == 0 ? 8 : 30).program();
       runs.push_back(record<double>(program, matiec_steps, seed));
       write_doubles(folder / fmt::format("in{}", i), runs.back().inputs);
-      text += generate_st(program, {.dialect = *st_dialect("portable")})[0].text;
-      host += fmt::format("  RUN(P{0}, {0})\n", i);
+      text.add(generate(program, {.dialect = *st_dialect("portable")})[0].text);
+      host += fmt::format("  RUN(DIAGRAM{0}, {0})\n", i);
     }
-    folder.write("all.st", text);
+    folder.write("all.st", text.text());
     folder.write("main.c", host + "  return 0;\n}\n");
     const std::string path = folder.path().string();
     const std::string build = fmt::format(
@@ -93,9 +123,16 @@ TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
     }
   }
   std::printf(
-      "MATIEC: %zu random diagrams, %zu of them without an exception of arithmetic; %zu equal in all %zu steps; "
+      "MATIEC, %s: %zu random diagrams, %zu of them without an exception of arithmetic; %zu equal in all %zu steps; "
       "%zu steps equal\n",
-      diagrams, finite, equal, matiec_steps, steps);
+      std::string(what).c_str(), diagrams, finite, equal, matiec_steps, steps);
+}
+
+TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
+  hold_through_matiec("one block", generate_st);
+}
+TEST(StructuredText, ThroughMatiecRandomProgramsOfCallsHaveTheBitsOfTheInterpreter) {
+  hold_through_matiec("calls of the library", generate_st_structured);
 }
 
 }  // namespace

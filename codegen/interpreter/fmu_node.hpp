@@ -125,7 +125,9 @@ class FmuNode {
       const Type type = block_.pin(pin).type;
       if (type == Type::Real) {
         const S& number = *static_cast<const S*>(at.pins[pin]);
-        require_finite(value_of(number), name_in_fmu(block_, pin), "is given");
+        if (pin < block_.inputs.size()) {  // a parameter may be infinite: a limit that there is not
+          require_finite(value_of(number), name_in_fmu(block_, pin), "is given");
+        }
         for (std::size_t k = 0; k < lanes_; ++k) {
           value(k, pin) = moved(number, k);
         }

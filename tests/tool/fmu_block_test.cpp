@@ -260,7 +260,8 @@ TEST(FmuBlock, NoTargetAndNoServedTaskHasIt) {
     EXPECT_THAT(done.err, AllOf(HasSubstr("HY754"), HasSubstr("PLANT is the FMU"))) << target;
   }
   bench.write("loop.run.toml", "");
-  EXPECT_THAT(bench.shell("hysteron serve loop.st --config loop.run.toml").err, HasSubstr("HY754"));
+  EXPECT_THAT(bench.shell("hysteron serve loop.st --config loop.run.toml --engine interpreter").err,
+              HasSubstr("HY754"));
   bench.write("p.toml", "[parameters]\nGAIN = 4.0\n");
   bench.write("y.csv", "t,u,y\n0.000,1.0,0.0\n0.001,1.0,0.1\n0.002,0.25,0.2\n0.003,0.5,0.3\n");
   EXPECT_THAT(bench.shell("hysteron diagnose loop.st --log y.csv --params p.toml --out diagnosis").err,

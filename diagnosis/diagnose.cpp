@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "diagnosis/model/budget.hpp"
+#include "diagnosis/policy.hpp"
 #include "diagnosis/rules.hpp"
 #include "diagnosis/stages/answer.hpp"
 #include "diagnosis/stages/cleaned.hpp"
@@ -17,17 +18,19 @@ namespace {
 
 /// Each stage is one function from a value that no later one changes to the next.
 Diagnosis diagnosed(const DiagnosisInput& input, const DiagnosisOptions& options, Rules& rules) {
-  Budget budget(options.budget);
   Cleaned record = cleaned(input, options);
   if (!record.refusals.empty()) {
     return refused(record);
   }
+  Budget budget(record.task.effort, options.effort * policy::work.value, options.time_limit);
   Hypotheses found = hypotheses(std::move(record), options, budget);
   Judged choice = judged(std::move(found), options, budget);
   const Answer first = answer_of(choice, options, rules);
   choice = weighed(std::move(choice), first, options, rules);
   const Answer answer = choice.evidence.is_told ? answer_of(choice, options, rules) : first;
-  return told(choice, answer, options, rules);
+  Diagnosis result = told(choice, answer, options, rules);
+  result.work = choice.record.task.effort->spent();
+  return result;
 }
 
 }  // namespace

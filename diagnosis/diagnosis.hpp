@@ -191,6 +191,7 @@ struct Diagnosis {
   double tracking_improved = 0.0;     ///< and with that of the improved one; both 0 where there is none
   std::vector<Decision> decisions{};  ///< the answers of the rules, where they were asked for
   std::size_t tried = 0;
+  std::uint64_t work = 0;  ///< of the search, in block steps: the same on every machine
   double seconds = 0.0;
 };
 

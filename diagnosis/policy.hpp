@@ -27,6 +27,9 @@ namespace policy {
 inline constexpr double anything = -std::numeric_limits<double>::infinity();
 inline constexpr double nothing = std::numeric_limits<double>::infinity();
 
+inline constexpr Threshold work{"work", 8e9, "block steps", "cost: some 40 s on two cores of 2020",
+                                "after how much of it a search adds no further effect, times --effort"};
+
 inline constexpr Threshold unexplained{"unexplained",
                                        0.001,
                                        "1",
@@ -149,7 +152,7 @@ inline constexpr Threshold sure_of_unknown{"sure of unknown",
                                            "how sure it is at most that no effect of the library is the cause",
                                            nothing};
 
-inline constexpr std::array all{
+inline constexpr std::array all{work,
                                 unexplained,
                                 blocks,
                                 rows,

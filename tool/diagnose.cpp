@@ -179,7 +179,14 @@ Action add_diagnose(CLI::App& app) {
                  "U.high, U.rate.")
       ->option_text("INPUT=SIZE")
       ->allow_extra_args(false);
-  app.add_option("--budget", options->diagnosis.budget, "Seconds after which no further effect is added.")
+  app.add_option(
+         "--effort", options->diagnosis.effort,
+         "How long the search goes on: 2 is twice as long as without it. It is counted in simulated work, so that "
+         "a slow or busy machine gives the same verdict.")
+      ->check(number_above_zero())
+      ->option_text("E");
+  app.add_option("--time-limit", options->diagnosis.time_limit,
+                 "Seconds after which no further effect is added. The verdict may then be another on another machine.")
       ->check(number_above_zero())
       ->option_text("SECONDS");
   app.add_flag("--explain", options->diagnosis.explain,

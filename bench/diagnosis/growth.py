@@ -82,7 +82,7 @@ def diagnose(tool, folder, log, effects=()):
     before = os.times()
     done = subprocess.run(
         [tool, "diagnose", HERE / "axis.st", "--log", log, "--params", HERE / "params.toml", "--out", folder / "found",
-         "--budget", "100000", "--json", *(["--effects", ",".join(effects)] if effects else [])],
+         "--effort", "1e6", "--json", *(["--effects", ",".join(effects)] if effects else [])],
         check=True, capture_output=True, text=True,
     )  # fmt: skip
     after = os.times()

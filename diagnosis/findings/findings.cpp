@@ -321,11 +321,18 @@ std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects) {
                      effects ? fmt::format("; with the effects {:.3g}{} stay", gap.improved, unit) : std::string());
 }
 
-std::string warning_of_cut(double budget, std::size_t candidates) {
+std::string warning_of_effort(double effort, std::size_t candidates) {
   return fmt::format(
-      "The budget of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every set of "
-      "several. The verdict may change with more time, --budget.",
-      budget, candidates);
+      "The search ended after {} candidates: every effect alone was tried, not every set of several. --effort {:.4g} "
+      "goes on for as long again.",
+      candidates, 2.0 * effort);
+}
+
+std::string warning_of_time_limit(double seconds, std::size_t candidates) {
+  return fmt::format(
+      "The time limit of {:.4g} s cut the search after {} candidates: every effect alone was tried, not every set of "
+      "several. Another run may give another verdict; without --time-limit it gives the same.",
+      seconds, candidates);
 }
 
 std::string warning_of_floor(const GapFinding& gap) {

@@ -38,7 +38,8 @@ struct Findings {
 [[nodiscard]] std::string warning_of_worse(const GapFinding& gap, bool refit, bool effects);
 
 /// That the search ended before its time, with what it had tried.
-[[nodiscard]] std::string warning_of_cut(double budget, std::size_t candidates);
+[[nodiscard]] std::string warning_of_effort(double effort, std::size_t candidates);
+[[nodiscard]] std::string warning_of_time_limit(double seconds, std::size_t candidates);
 
 /// What is said where effects leave less than a floor that took a part of them for noise.
 [[nodiscard]] std::string warning_of_floor(const GapFinding& gap);

@@ -11,6 +11,7 @@
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
 #include "records/record.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
 
@@ -25,7 +26,8 @@ struct DiagnosisOptions {
   double material = 0.0;  ///< smallest gap that matters, RMS in the output's unit; noise_floor.hpp says the least
   std::vector<std::string> effects{};  ///< identifiers to be tried; empty: all
   int most_effects = 3;
-  double budget = 40.0;  ///< seconds after which no further effect is added
+  double effort = 1.0;           ///< of a search, in policy::work
+  double time_limit = infinity;  ///< s, after which no further effect is added either; the verdict then depends on it
   std::uint64_t seed = 1;
   bool explain = false;                ///< keeps the answers of the rules
   std::vector<std::string> without{};  ///< rules that are left out, see rules.hpp

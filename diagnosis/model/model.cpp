@@ -21,10 +21,20 @@ parameters::FitSetting fit_of(const Unknown& unknown) {
   return fit;
 }
 
+/// What a sample costs beside the blocks: its inputs, outputs, residuals and their projections; in blocks.
+constexpr std::size_t cost_of_sample = 6;
+/// Of a pass that carries the derivatives by eight unknowns, in passes without.
+constexpr std::size_t cost_of_derivatives = 5;
+/// So many products of a fit's normal equations are a unit.
+constexpr std::size_t products_of_a_unit = 16;
+
 }  // namespace
 
 Model::Model(const Task& task, const Program& program, std::span<const Unknown> further)
-    : left_out_(task.left_out), whitening_(task.whitening), first_further_(std::ssize(task.known)) {
+    : left_out_(task.left_out),
+      whitening_(task.whitening),
+      effort_(task.effort),
+      first_further_(std::ssize(task.known)) {
   parameters::ParameterFile file{.file = task.file.file, .values = task.file.values, .initial = task.file.initial};
   for (const Unknown& unknown : task.known) {
     file.fits.push_back(fit_of(unknown));
@@ -116,6 +126,7 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
   if (jacobian != nullptr) {
     jacobian->resize(rows(), unknowns());
   }
+  count_work(jacobian != nullptr);
   const bool rounded = std::ranges::any_of(quanta_, [&](Index j) { return x[j] > 0.0; });
   if (!rollout_->residuals(x, residuals, rounded ? nullptr : jacobian) || !residuals.allFinite() ||
       (jacobian != nullptr && rounded && !smooth_jacobian(x, *jacobian)) ||
@@ -136,6 +147,18 @@ bool Model::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian
     }
   }
   return true;
+}
+
+void Model::count_work(bool derivatives) const {
+  std::size_t steps = 0;
+  for (const Experiment& experiment : problem_->experiments) {
+    steps += experiment.drive.steps;
+  }
+  const auto columns = static_cast<std::size_t>(unknowns());
+  const std::size_t simulated = steps * (problem_->program.graph.nodes.size() + cost_of_sample);
+  const std::size_t passes = derivatives ? (columns + 7) / 8 : 0;
+  const std::size_t products = derivatives ? static_cast<std::size_t>(rows()) * columns * columns : 0;
+  effort_->add(simulated * (1 + passes * cost_of_derivatives) + products / products_of_a_unit);
 }
 
 void Model::forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const {

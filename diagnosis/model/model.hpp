@@ -16,6 +16,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
+#include "diagnosis/model/effort.hpp"
 #include "diagnosis/model/whitening.hpp"
 #include "records/record.hpp"
 #include "tuning/output_error.hpp"
@@ -59,6 +60,7 @@ struct Task {
   std::vector<Index> left_out{};                 ///< rows that do not count: glitches
   std::vector<double> cells{};                   ///< by output: half the step on which a sensor gives it; empty: none
   std::shared_ptr<const Whitening> whitening{};  ///< of the residuals; null: their rows are independent
+  std::shared_ptr<Effort> effort = std::make_shared<Effort>();  ///< of all that is done with it, in copies too
 };
 
 class Model {
@@ -100,6 +102,7 @@ class Model {
  private:
   bool smooth_jacobian(const VectorXd& x, MatrixXd& jacobian);
   void forgive_within_cells(VectorXd& residuals, MatrixXd* jacobian) const;
+  void count_work(bool derivatives) const;
 
   std::unique_ptr<OutputErrorProblem> problem_;  ///< the rollout keeps a reference to it
   std::unique_ptr<hysteron::detail::Rollout> rollout_;
@@ -112,6 +115,7 @@ class Model {
   std::vector<Index> left_out_{};
   std::vector<double> cells_{};  ///< in scales
   std::shared_ptr<const Whitening> whitening_{};
+  std::shared_ptr<Effort> effort_;
   std::vector<Index> quanta_{};  ///< the unknowns that round
   Index first_further_ = 0;
 };

@@ -212,6 +212,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"split", split_of(found)},
                   {"cannot_tell", found.cannot_tell},
                   {"next_experiment", std::move(next)},
+                  {"work", found.work},
                   {"seconds", number(found.seconds)},
                   {"summary", found.summary},
                   {"refused", !found.refusals.empty()},

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "diagnosis/effects/drivers.hpp"
-#include "diagnosis/model/parallel.hpp"
+#include "diagnosis/model/budget.hpp"
 #include "diagnosis/model/refusal.hpp"
 #include "diagnosis/noise/spectrum.hpp"
 #include "diagnosis/search/shortlist.hpp"
@@ -109,7 +109,7 @@ std::vector<Screened> Expansion::screen(const Explanation& from, const Wanted& w
   std::vector<Screened> list(candidates.size());
   std::vector<Grids> grids(candidates.size());
   std::atomic<std::size_t> done{0};
-  in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
+  in_batches(candidates.size(), options_.threads, options_.budget, [&](std::size_t i) {
     const Driven* const signals = drivers.find(candidates[i]);
     if (signals == nullptr || !(signals->input.range() >= 0.0) || must_stop()) {
       return;
@@ -144,7 +144,7 @@ std::vector<Explanation> Expansion::fitted_and_finished(const std::vector<Screen
   const KnownStarts known_starts = footing_.known_starts();
   std::vector<Explanation> fits(list.size());
   std::atomic<std::size_t> done{0};
-  in_parallel(list.size(), options_.threads, [&](std::size_t i) {
+  in_batches(list.size(), options_.threads, options_.budget, [&](std::size_t i) {
     if (must_stop()) {
       return;
     }
@@ -165,7 +165,7 @@ void Expansion::finish_front(std::vector<Explanation>& fits, double cost_before)
   std::ranges::stable_sort(fits, {}, cost_of_fit);
   const bool decides = !fits.empty() && is_worth_following(cost_before, fits.front().fit);
   std::atomic<std::size_t> done{0};
-  in_parallel(fits.size(), options_.threads, [&](std::size_t i) {
+  in_batches(fits.size(), options_.threads, options_.budget, [&](std::size_t i) {
     const bool in_front =
         decides && !must_stop() && cost_before - fits[i].fit.cost > 0.25 * (cost_before - fits.front().fit.cost);
     if (i < finished_always || in_front) {
@@ -180,7 +180,7 @@ void Expansion::refine(std::vector<Screened>& list, const std::vector<Candidate>
                        std::size_t count) {
   const std::vector<std::size_t> order = front_of(list, candidates, count);
   std::atomic<std::size_t> done{0};
-  in_parallel(order.size(), options_.threads, [&](std::size_t i) {
+  in_batches(order.size(), options_.threads, options_.budget, [&](std::size_t i) {
     const std::size_t at = order[i];
     if (!list[at].starts.empty() && !must_stop()) {
       list[at] = screened_about(list[at].starts, stride, task_, candidates[at], grids[at], from.fit.x, background,
@@ -196,7 +196,7 @@ void Expansion::about_calibration(std::vector<Screened>& list, const std::vector
   Model model(task_, *calibrated.variant.program);
   const Background background(model, calibrated.fit);
   std::vector<Screened> others(list.size());
-  in_parallel(list.size(), options_.threads, [&](std::size_t i) {
+  in_batches(list.size(), options_.threads, options_.budget, [&](std::size_t i) {
     if (candidates[i].own().has_gap() && !grids[i].parameters.empty()) {
       others[i] = unless_refused([&] {
         return screened(task_, candidates[i], thinned(candidates[i].own(), grids[i], stride), calibrated.fit.x,
@@ -205,7 +205,7 @@ void Expansion::about_calibration(std::vector<Screened>& list, const std::vector
     }
   });
   const std::vector<std::size_t> front = front_of(others, candidates, 0);
-  in_parallel(front.size(), options_.threads, [&](std::size_t k) {
+  in_batches(front.size(), options_.threads, options_.budget, [&](std::size_t k) {
     const std::size_t i = front[k];
     if (others[i].starts.empty()) {
       return;

@@ -64,7 +64,7 @@ class Expansion {
   /// From here on what is tried may end where it is when time is up. The first round is done whole: each effect gets
   /// its chance.
   void may_stop() { can_stop_ = true; }
-  [[nodiscard]] bool must_stop() const { return can_stop_ && options_.out_of_time && options_.out_of_time(); }
+  [[nodiscard]] bool must_stop() const { return can_stop_ && options_.is_over(); }
 
   /// What is done from here on is this part of the whole.
   void progress_within(double begin, double width);

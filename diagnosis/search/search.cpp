@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "diagnosis/model/budget.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/search/expansion.hpp"
 #include "diagnosis/search/line_start.hpp"
@@ -226,7 +227,7 @@ class Searcher {
     const std::vector<Superposition::Pair> pairs =
         pairs_that_add_up(task_, singles, from.fit.x, background, options_.pairs, options_.threads);
     std::vector<Explanation> fits(pairs.size());
-    in_parallel(pairs.size(), options_.threads, [&](std::size_t i) {
+    in_batches(pairs.size(), options_.threads, options_.budget, [&](std::size_t i) {
       if (expansion_.must_stop()) {
         return;
       }

@@ -1,11 +1,13 @@
 // How far a search goes.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string_view>
 #include <vector>
 
 #include "diagnosis/effects/candidates.hpp"
+#include "diagnosis/model/budget.hpp"
 #include "diagnosis/search/fitting.hpp"
 
 namespace hysteron::diagnosis {
@@ -21,7 +23,8 @@ struct SearchOptions {
   int edges_of_others = 4;  ///< and the others, where none of those closes the gap
   std::size_t pairs = 10;   ///< pairs that are fitted because their changes would add up to the residual
   std::function<void(double fraction, std::string_view text)> progress{};
-  std::function<bool()> out_of_time{};
+  Budget* budget = nullptr;  ///< after which nothing further is tried; null: none
+  [[nodiscard]] bool is_over() const { return budget != nullptr && budget->is_over(); }
   /// Asked with the single effects, best first: whether the record shows something beside one that has to be mended
   /// first. The search then ends there.
   std::function<bool(const std::vector<Explanation>& singles)> ends_with_singles{};

@@ -31,9 +31,6 @@ class RecordSearch {
       simulate_nominal(found_.record);
       found_.searched = searched_again();
     }
-    if (budget_.has_cut()) {
-      found_.warnings.push_back(warning_of_cut(budget_.seconds(), found_.searched->search.tried));
-    }
     return std::move(found_);
   }
 
@@ -141,7 +138,7 @@ SearchOptions search_options(const Cleaned& record, const DiagnosisOptions& opti
           .threads = options.threads,
           .most_effects = options.most_effects,
           .progress = options.progress,
-          .out_of_time = [&budget] { return budget.is_over(); }};
+          .budget = &budget};
 }
 
 Hypotheses hypotheses(Cleaned record, const DiagnosisOptions& options, Budget& budget) {

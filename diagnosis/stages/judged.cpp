@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "diagnosis/findings/findings.hpp"
 #include "diagnosis/verdict/harmonics.hpp"
 #include "diagnosis/verdict/plausibility.hpp"
 #include "diagnosis/verdict/unrepeatable.hpp"
@@ -47,6 +48,12 @@ Judged judged(Hypotheses found, const DiagnosisOptions& options, Budget& budget)
                                      materiality_of(record, options), budget, result.searched->judgement);
   if (result.unrepeatable) {
     result.warnings.push_back(result.unrepeatable->remark);
+  }
+  const std::size_t tried = result.searched->search.tried;
+  if (budget.has_cut_time()) {
+    result.warnings.push_back(warning_of_time_limit(options.time_limit, tried));
+  } else if (budget.has_cut_work()) {
+    result.warnings.push_back(warning_of_effort(options.effort, tried));
   }
   return result;
 }

@@ -109,7 +109,7 @@ class VaryingDelay {
   }
 
  private:
-  [[nodiscard]] bool is_over() const { return options_.out_of_time && options_.out_of_time(); }
+  [[nodiscard]] bool is_over() const { return options_.is_over(); }
 
   [[nodiscard]] bool explains_all() const {
     return best_ && best_->jitter.everywhere * best_->jitter.everywhere < is_noise;

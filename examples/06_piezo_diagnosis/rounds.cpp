@@ -43,7 +43,7 @@ Round next_round(const Round& before, const records::Record& record, const std::
   Round round{.file = before.file};
   round.found = diagnosis::diagnose(
       {.program = before.program, .text = *before.program.graph.source->text, .file = before.file, .records = {record}},
-      {.effects = effects, .most_effects = 1, .budget = 600.0});
+      {.effects = effects, .most_effects = 1, .effort = 15.0});
   round.program = compile_text(round.found.improved_text, {.any_order = true});
   round.file = round.found.improved_file;
   std::filesystem::create_directories(folder);

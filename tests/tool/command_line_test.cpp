@@ -111,8 +111,8 @@ TEST(CommandLine, NumbersOutOfTheirLimits) {
   const std::string diagnose = "hysteron diagnose plant.st --log log.csv --params p.toml --out found ";
   const std::string serve = "hysteron serve plant.st --config RUN.toml --virtual ";
   for (const auto& [line, said] : std::vector<std::pair<std::string, std::string>>{
-           {diagnose + "--budget -1", "--budget: a number above 0 is needed, not -1."},
-           {diagnose + "--budget nan", "--budget: a number above 0 is needed, not nan."},
+           {diagnose + "--effort -1", "--effort: a number above 0 is needed, not -1."},
+           {diagnose + "--time-limit nan", "--time-limit: a number above 0 is needed, not nan."},
            {diagnose + "--material -3", "--material: a number from 0 on is needed, not -3."},
            {diagnose + "--seed -1", "--seed: a whole number from 0 on is needed, not -1."},
            {serve + "--cycles -1", "--cycles: a whole number from 1 on is needed, not -1."},

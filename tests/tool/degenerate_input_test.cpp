@@ -204,15 +204,15 @@ TEST_F(DegenerateInput, EveryRecordIsTunedOrRefused) {
 
 TEST_F(DegenerateInput, EveryRecordIsDiagnosedOrRefused) {
   for (const Named& log : degenerate_logs()) {
-    diagnose("usual", log.name, "fit", "--effects lag,offset,delay --most 1 --budget 5");
-    diagnose("factor", log.name, "none", "--effects lag,offset --most 1 --budget 5");
+    diagnose("usual", log.name, "fit", "--effects lag,offset,delay --most 1 --effort 0.1");
+    diagnose("factor", log.name, "none", "--effects lag,offset --most 1 --effort 0.1");
   }
 }
 
 TEST_F(DegenerateInput, EveryDiagramIsDiagnosedOrRefused) {
   for (const Named& diagram : degenerate_diagrams()) {
     for (const std::string_view log : {"usual", "same", "step"}) {
-      diagnose(diagram.name, std::string(log), "none", "--effects lag,offset,delay,gain_drift --most 2 --budget 5");
+      diagnose(diagram.name, std::string(log), "none", "--effects lag,offset,delay,gain_drift --most 2 --effort 0.1");
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "support/names.hpp"
 #include "support/sha256.hpp"
 #include "support/text_file.hpp"
+#include "tool/record_options.hpp"
 #include "tool/version.hpp"
 
 namespace hysteron::tool {
@@ -46,15 +47,6 @@ std::size_t parameter_bytes(const Graph& graph, bool float32) {
     parameters.cells.push_back({.field = one.field});
   }
   return state_bytes(parameters, float32);
-}
-
-/// An argument as a shell reads it.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char letter : text) {
-    result += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  }
-  return result + "'";
 }
 
 std::string command_of(const Target& target, const TargetOptions& options, const DiagramOptions& diagram) {

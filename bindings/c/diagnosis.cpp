@@ -47,7 +47,8 @@ Asked asked(Options& options, const Program& program) {
   how.material = above_zero(options, "material", how.material, true);
   how.effects = options.texts("effects");
   how.most_effects = static_cast<int>(options.whole("most", 1, 4).value_or(how.most_effects));
-  how.budget = above_zero(options, "budget", how.budget, false);
+  how.effort = above_zero(options, "effort", how.effort, false);
+  how.time_limit = above_zero(options, "time_limit", how.time_limit, false);
   constexpr long long largest_whole = 1LL << std::numeric_limits<double>::digits;
   how.seed = static_cast<std::uint64_t>(options.whole("seed", 0, largest_whole).value_or(1));
   how.explain = options.flag("explain");

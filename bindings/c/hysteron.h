@@ -158,8 +158,8 @@ HYSTERON_API void hysteron_fit_free(hysteron_fit* fit);
 typedef struct hysteron_diagnosis hysteron_diagnosis;
 
 /* Why the records and the diagram differ. Options, as those of the tool: "material", "effects", "ignore", "most",
- * "limits" ({"U": 5.0}), "budget", "seed", "explain", "without", "threads". A record that cannot be diagnosed is no
- * failure: the verdict says so. */
+ * "limits" ({"U": 5.0}), "effort", "time_limit", "seed", "explain", "without", "threads". A record that cannot be
+ * diagnosed is no failure: the verdict says so. */
 HYSTERON_API hysteron_diagnosis* hysteron_diagnose(const hysteron_diagram* diagram,
                                                    const hysteron_record* const* records, size_t record_count,
                                                    const char* options, hysteron_messages** messages);

@@ -14,6 +14,7 @@
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "codegen/graph/units.hpp"
+#include "codegen/language/annotation.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -48,30 +49,6 @@ bool number_of(std::string_view text, double& value) {
   const auto* end = text.data() + text.size();
   const auto [stop, problem] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
   return problem == std::errc{} && stop == end && !std::isnan(value);
-}
-
-/// `50us`, `1 ms`, `0.5s` in whole nanoseconds.
-bool duration_of(std::string_view text, std::int64_t& nanoseconds) {
-  double number = 0.0;
-  const auto* end = text.data() + text.size();
-  const auto [stop, problem] = std::from_chars(text.data(), end, number);
-  if (problem != std::errc{}) {
-    return false;
-  }
-  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
-  while (unit.starts_with(' ')) {
-    unit.remove_prefix(1);
-  }
-  double factor = 0.0;
-  for (const auto& [name, scale] :
-       {std::pair<std::string_view, double>{"ns", 1.0}, {"us", 1e3}, {"µs", 1e3}, {"ms", 1e6}, {"s", 1e9}}) {
-    if (unit == name) {
-      factor = scale;
-    }
-  }
-  const double exact = number * factor;
-  nanoseconds = factor > 0.0 && exact < 9e18 ? std::llround(exact) : 0;
-  return nanoseconds > 0 && std::abs(exact - static_cast<double>(nanoseconds)) < 1e-3;
 }
 
 class Reader {
@@ -220,7 +197,7 @@ class Reader {
       const std::string key = language::upper(annotation.key);
       if (key == "TS") {
         definition.sample_time_span = annotation.span;
-        if (!duration_of(annotation.value, definition.sample_time_ns)) {
+        if (!language::duration_of(annotation.value, definition.sample_time_ns)) {
           error(error::bad_annotation, annotation.span, fmt::format("'{}' is not a sample time", annotation.value),
                 "Write a positive whole number of nanoseconds with its unit: @ts 50us, @ts 1ms, @ts 0.5s.");
         }

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
 
 #include "support/errors.hpp"
 
@@ -100,6 +103,29 @@ void attach_annotations(SourceFile& file, const std::vector<Comment>& comments,
                    "Put the comment behind the declaration that it speaks of, on the same line, or behind "
                    "FUNCTION_BLOCK and its name.");
   }
+}
+
+bool duration_of(std::string_view text, std::int64_t& nanoseconds) {
+  double number = 0.0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc{}) {
+    return false;
+  }
+  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  while (unit.starts_with(' ')) {
+    unit.remove_prefix(1);
+  }
+  double factor = 0.0;
+  for (const auto& [name, scale] :
+       {std::pair<std::string_view, double>{"ns", 1.0}, {"us", 1e3}, {"µs", 1e3}, {"ms", 1e6}, {"s", 1e9}}) {
+    if (unit == name) {
+      factor = scale;
+    }
+  }
+  const double exact = number * factor;
+  nanoseconds = factor > 0.0 && exact < 9e18 ? std::llround(exact) : 0;
+  return nanoseconds > 0 && std::abs(exact - static_cast<double>(nanoseconds)) < 1e-3;
 }
 
 }  // namespace hysteron::language

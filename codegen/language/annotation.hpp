@@ -34,6 +34,9 @@ std::vector<Annotation> annotations_of(std::string_view text, Span comment);
 void attach_annotations(SourceFile& file, const std::vector<Comment>& comments,
                         const std::vector<Declaration>& declarations, Reporter& reporter);
 
+/// The value of @ts in whole nanoseconds: `50us`, `1 ms`, `0.5s`; false where it is none.
+bool duration_of(std::string_view text, std::int64_t& nanoseconds);
+
 /// Whether a comment of a PLC program, in which @ may mean anything, holds none of the keys that are ours.
 bool has_no_key_of_ours(std::string_view text, Span comment);
 

@@ -9,6 +9,7 @@
 #include "diagnosis/effects/candidates.hpp"
 #include "diagnosis/faults/fast_clock.hpp"
 #include "diagnosis/faults/record_check.hpp"
+#include "diagnosis/findings/gaps.hpp"
 #include "diagnosis/findings/inner_signals.hpp"
 #include "diagnosis/noise/noise_floors.hpp"
 #include "diagnosis/search/loop_noise.hpp"

@@ -221,10 +221,9 @@ class Fits(Folder):
         self.write("tuned.toml", SETTINGS[:SETTINGS.index("[tune]")])
         self.columns = {name: column[:700] for name, column in self.columns.items()}
         write_csv(self.folder / "log.csv", self.columns)
-        # Of a budget that runs out a verdict depends on the load of the machine.
-        options = {"effects": ["lag"], "most": 1, "seed": 3, "explain": True, "limits": {"U": 4.0}, "budget": 1000}
+        options = {"effects": ["lag"], "most": 1, "seed": 3, "explain": True, "limits": {"U": 4.0}, "effort": 0.01}
         done = tool("diagnose", "plant.st", "--log", "log.csv", "--params", "tuned.toml", "--out", "found", "--effects", "lag",
-                    "--most", "1", "--seed", "3", "--explain", "--limit", "U=4.0", "--budget", "1000", "--json",
+                    "--most", "1", "--seed", "3", "--explain", "--limit", "U=4.0", "--effort", "0.01", "--json",
                     cwd=self.folder)
         plant = hysteron.compile(self.folder / "plant.st", self.folder / "tuned.toml")
         verdict = plant.diagnose(self.folder / "log.csv", **options)

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr const char* plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
+constexpr const char* retained_plant = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   VAR_INPUT X : LREAL := 1.0;  (* @unit V *) END_VAR
   VAR_OUTPUT Y : LREAL;  (* @unit um *) SLOW : LREAL;  (* @unit um *) N : DINT; END_VAR
   VAR
@@ -70,9 +70,9 @@ void carry_over(const runtime::StepProgram& from, runtime::StepProgram& to) {
 }
 
 TEST(Retained, AnotherEngineGoesOnWithTheSameBits) {
-  const Program program = compile_text(plant);
-  for (const auto [first, second] : {std::pair{tool::Engine::interpreter, tool::Engine::compiled},
-                                     std::pair{tool::Engine::compiled, tool::Engine::interpreter}}) {
+  const Program program = compile_text(retained_plant);
+  for (const auto& [first, second] : {std::pair{tool::Engine::interpreter, tool::Engine::compiled},
+                                      std::pair{tool::Engine::compiled, tool::Engine::interpreter}}) {
     for (const int steps : {1, 2, 3, 4, 501}) {  // in each phase of the slower part
       const auto whole = tool::step_program(program, tool::Engine::interpreter, false);
       const auto begun = tool::step_program(program, first, false);
@@ -93,9 +93,9 @@ TEST(Retained, AnEditKeepsWhatIsStillTheSameAndSaysWhatIsNot) {
   const std::string run = "hysteron serve plant.st --config RUN.toml --virtual --engine interpreter --cycles ";
   const std::string safe = "[outputs.Y]\nsafe = 0.0\n[outputs.SLOW]\nsafe = 0.0\n[outputs.N]\nsafe = 0.0\n";
   bench.write("RUN.toml", safe + "[retain]\nfolder = \"kept\"\n");
-  bench.write("plant.st", plant);
+  bench.write("plant.st", retained_plant);
   ASSERT_EQ(bench.shell(run + "500").code, 0);
-  std::string edited = plant;
+  std::string edited = retained_plant;
   const auto replace = [&](const std::string& from, const std::string& to) {
     edited.replace(edited.find(from), from.size(), to);
   };
@@ -114,13 +114,13 @@ TEST(Retained, AnEditKeepsWhatIsStillTheSameAndSaysWhatIsNot) {
   EXPECT_EQ(third.err, "") << "now it is of this diagram";
 
   bench.write("RUN.toml", safe + "[retain]\nfolder = \"kept\"\nmismatch = \"refuse\"\n");
-  bench.write("plant.st", plant);
+  bench.write("plant.st", retained_plant);
   EXPECT_THAT(bench.shell(run + "10").err, HasSubstr("HY811 error: "));
 }
 
 TEST(Retained, AnotherEngineIsNoOtherDiagram) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", retained_plant);
   bench.write(
       "RUN.toml",
       "[outputs.Y]\nsafe = 0.0\n[outputs.SLOW]\nsafe = 0.0\n[outputs.N]\nsafe = 0.0\n[retain]\nfolder = \"kept\"\n");
@@ -136,7 +136,7 @@ TEST(Retained, AnotherEngineIsNoOtherDiagram) {
 /// What was tuned at the machine goes back into the project, and the other way round.
 TEST(Retained, ParametersGoIntoAFileAndBack) {
   const test::Workbench bench;
-  bench.write("plant.st", plant);
+  bench.write("plant.st", retained_plant);
   bench.write(
       "RUN.toml",
       "[outputs.Y]\nsafe = 0.0\n[outputs.SLOW]\nsafe = 0.0\n[outputs.N]\nsafe = 0.0\n[retain]\nfolder = \"kept\"\n");

@@ -174,14 +174,15 @@ class Diagram:
         return fit
 
     def diagnose(self, records, params=None, *, material=None, effects=None, ignore=None, most=None, limits=None,
-                 budget=None, seed=None, explain=None, without=None, threads=None, **reading):
+                 effort=None, time_limit=None, seed=None, explain=None, without=None, threads=None, **reading):
         """Why records of the machine and the diagram differ; gives the verdict. Options are those of the tool."""
         diagram = self if params is None else self.with_parameters(params)
         given = diagram._records(records, reading)
         pointers = (ctypes.c_void_p * len(given))(*[one._handle.pointer for one in given])
         pointer, _ = called("diagnose", diagram._pointer, pointers, len(given),
                             options(material=material, effects=effects, ignore=ignore, most=most, limits=limits,
-                                    budget=budget, seed=seed, explain=explain, without=without, threads=threads),
+                                    effort=effort, time_limit=time_limit, seed=seed, explain=explain, without=without,
+                                    threads=threads),
                             told=self.warnings)
         return verdict_of(pointer)
 

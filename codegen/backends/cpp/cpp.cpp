@@ -211,7 +211,7 @@ std::vector<std::string> cpp_parameter_members(const Program& program) {
 }
 
 std::vector<std::string> cpp_state_members(const Program& program) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   return CppHeader(program, {}).state_members();
 }
 

@@ -54,22 +54,6 @@ std::string fmus_text(const Graph& graph) {
   return text;
 }
 
-nlohmann::json fmus_json(const Graph& graph) {
-  auto list = nlohmann::json::array();
-  for (const Node& node : graph.nodes) {
-    if (node.block != nullptr && node.block->fmu != nullptr) {
-      const auto& counts = node.block->fmu->counts();
-      list.push_back({{"instance", node.path},
-                      {"file", node.block->fmu->path()},
-                      {"derivatives", "differences"},
-                      {"relative_step", Directions::relative_step},
-                      {"instances", counts.instances.load()},
-                      {"steps", counts.steps.load()}});
-    }
-  }
-  return list;
-}
-
 bool stays_at_start(const TuneReport& report) {
   const auto& free = report.problem.parameters;
   return std::ranges::all_of(
@@ -114,7 +98,6 @@ std::string as_text(const TuneReport& report) {
 
 nlohmann::json as_json(const TuneReport& report) {
   nlohmann::json json = fit_json(report.problem, report.fit);
-  json["fmus"] = fmus_json(report.problem.program.graph);
   json["not_in_the_model"] = what_is_not_in_the_model(report);
   return json;
 }

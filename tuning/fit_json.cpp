@@ -5,6 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "codegen/cosimulation/fmu.hpp"
+#include "codegen/interpreter/directions.hpp"
+
 namespace hysteron {
 namespace {
 
@@ -35,6 +38,23 @@ std::string status_name(FitStatus status) {
       return "solver failed";
   }
   return {};
+}
+
+/// What each FMU cost, and where its derivatives are from.
+nlohmann::json fmus_json(const Graph& graph) {
+  auto list = nlohmann::json::array();
+  for (const Node& node : graph.nodes) {
+    if (node.block != nullptr && node.block->fmu != nullptr) {
+      const auto& counts = node.block->fmu->counts();
+      list.push_back({{"instance", node.path},
+                      {"file", node.block->fmu->path()},
+                      {"derivatives", "differences"},
+                      {"relative_step", Directions::relative_step},
+                      {"instances", counts.instances.load()},
+                      {"steps", counts.steps.load()}});
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -83,6 +103,7 @@ nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit&
   for (const double cost : fit.start_costs) {
     json["start_costs"].push_back(number(cost));
   }
+  json["fmus"] = fmus_json(problem.program.graph);
   return json;
 }
 

@@ -36,7 +36,12 @@ constexpr std::string_view folder_of_fmi3 = "x86-linux";
 std::atomic<double> limit{usual_time_limit};
 
 std::mutex worker_lock;
-fs::path given_worker;
+
+/// Begun where it is first asked for: what sets it may be initialised before this file is.
+fs::path& given_worker() {
+  static fs::path given;
+  return given;
+}
 
 }  // namespace
 
@@ -49,15 +54,15 @@ double time_limit() {
 
 void set_worker_program(fs::path program) {
   const std::lock_guard lock(worker_lock);
-  given_worker = std::move(program);
+  given_worker() = std::move(program);
 }
 
 fs::path worker_program() {
   constexpr std::string_view name = "hysteron-fmu-worker";
   {
     const std::lock_guard lock(worker_lock);
-    if (!given_worker.empty()) {
-      return given_worker;
+    if (!given_worker().empty()) {
+      return given_worker();
     }
   }
   std::error_code unknown;

@@ -175,7 +175,8 @@ def plant_steps(plant, values):
 
 
 def without_times(data):
-    return {key: value for key, value in data.items() if key != "seconds"}
+    # What the tool adds for a reader is not among the numbers of a fit.
+    return {key: value for key, value in data.items() if key not in ("seconds", "not_in_the_model")}
 
 
 class Fits(Folder):

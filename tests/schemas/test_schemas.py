@@ -142,7 +142,7 @@ class Schemas(unittest.TestCase):
     def test_verdict(self):
         (self.folder / "still.csv").write_text("t,U,Y\n" + "".join(f"{k * 0.001:.3f},0,0\n" for k in range(100)))
         self.holds("verdict", self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "found",
-                                           "--explain", "--budget", "1000", "--json"),
+                                           "--explain", "--effort", "0.01", "--json"),
                    (self.folder / "found/verdict.json").read_text(encoding="utf-8"),
                    self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",
                                 codes=(1,)))

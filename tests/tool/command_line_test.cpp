@@ -43,7 +43,8 @@ TEST(CommandLine, SlipsAreExplained) {
   EXPECT_EQ(refused("hysteron chekc plant.st"),
             "HY730 error: There is no command chekc.\nmend: did you mean check?\n\n1 error\n");
   EXPECT_THAT(refused("hysteron"), HasSubstr("No command is given."));
-  EXPECT_THAT(refused("hysteron compile"), HasSubstr("the commands are check, fmt, draw, record, run, "));
+  EXPECT_THAT(refused("hysteron xyzzy"),
+              HasSubstr("the commands are new, check, fmt, draw, record, plot, compare, run, "));
   EXPECT_EQ(refused("hysteron run plant.st --in a.csv --out b.csv --parms p.toml"),
             "HY730 error: hysteron run has no option --parms.\nmend: did you mean --params?\n\n1 error\n");
   EXPECT_THAT(refused("hysteron run plant.st --in a.csv"), AllOf(HasSubstr("--out"), HasSubstr("hysteron run --help")));

@@ -314,14 +314,18 @@ TEST_F(Diagnose, AParameterThatWasTunedIntoItsBoundIsRemarkedOn) {
   EXPECT_THAT(outcome.out, HasSubstr("note: MASS.K = 0.5 lies on the upper bound of its fit"));
 }
 
-TEST_F(Diagnose, ABudgetThatCutTheSearchIsTold) {
+TEST_F(Diagnose, WhatCutTheSearchIsTold) {
   // Without the load among the effects there is always something left that a second one might close.
   const std::string without =
       "hysteron diagnose plant.st --log log.csv --params p.toml --out found --effects drift,lag,gain_drift,offset";
-  const auto cut = bench.shell(without + " --budget 0.000001");
+  const auto ended = bench.shell(without + " --effort 0.000001");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("note: The search ended after "), HasSubstr("--effort 2e-06 goes on")));
+  const auto cut = bench.shell(without + " --time-limit 0.000001");
   ASSERT_EQ(cut.code, 0) << cut.err;
-  EXPECT_THAT(cut.out, AllOf(HasSubstr("note: The budget of 1e-06 s cut the search after "), HasSubstr("may change")));
-  EXPECT_THAT(bench.shell(without).out, Not(HasSubstr("cut the search")));
+  EXPECT_THAT(cut.out, AllOf(HasSubstr("note: The time limit of 1e-06 s cut the search after "),
+                             HasSubstr("without --time-limit it gives the same")));
+  EXPECT_THAT(bench.shell(without).out, AllOf(Not(HasSubstr("cut the search")), Not(HasSubstr("The search ended"))));
 }
 
 TEST_F(Diagnose, AFolderThatTakesNoFilesIsRefusedFirst) {

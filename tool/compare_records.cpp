@@ -142,6 +142,16 @@ Comparison compare_records(const records::Record& a, const records::Record& b, c
                                                      number_text(time(found.first)), found.beyond, rows.size());
     }
   }
+  // A column with something that is no finite number is not compared, and so is not the same.
+  auto not_compared = nlohmann::ordered_json::array();
+  for (const records::Record* const record : {&a, &b}) {
+    for (const records::Record::Unreadable& one : record->unreadable()) {
+      result.same = false;
+      not_compared.push_back({{"name", one.name}, {"file", record->file()}, {"cause", one.fault.cause}});
+      result.text += fmt::format("{}: not compared; {}: {}\n", one.name, record->file(), one.fault.cause);
+    }
+  }
+  result.json["columns_not_compared"] = std::move(not_compared);
   result.json["columns"] = std::move(columns);
   add_lonely(result, a, b, "columns_only_in_a", 'A');
   add_lonely(result, b, a, "columns_only_in_b", 'B');

@@ -13,6 +13,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "tool/commands.hpp"
+#include "tool/writable.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -61,6 +62,7 @@ int write_library(const LibraryOptions& options, Console& console) {
   for (const GeneratedFile& file : generate_st_library(static_cast<std::int64_t>(*nanoseconds),
                                                        {.dialect = *dialect, .float32 = options.float32})) {
     files.push_back({.path = fs::path(options.folder) / file.name, .contents = file.text});
+    refuse_foreign_file(files.back().path, file.text, "choose another folder with --out.");
   }
   write_files_atomically(files);
   for (const OutputFile& file : files) {

@@ -17,9 +17,11 @@
 #include "codegen/parameters/parameter_file.hpp"
 #include "runtime/task/carry.hpp"
 #include "runtime/task/retain.hpp"
+#include "runtime/task/staged_parameters.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/overwriting.hpp"
 #include "tool/commands.hpp"
 #include "tool/writable.hpp"
 
@@ -151,6 +153,22 @@ std::size_t length_of(const parameters::Value& value) {
   return list == nullptr ? 1 : list->size();
 }
 
+/// Why a retained parameter cannot take a value, a sentence; empty where it can.
+std::string refusal_of(const runtime::KeptLayout::Parameter& about, const parameters::Value& given, double value) {
+  const bool is_truth = about.type == runtime::PointType::boolean;
+  if (is_truth != std::holds_alternative<bool>(given)) {
+    return fmt::format("{} is {}, and takes {}.", about.name, is_truth ? "a BOOL" : "a number",
+                       is_truth ? "true or false" : "a number");
+  }
+  return runtime::refusal_of({.name = about.name,
+                              .unit = about.unit,
+                              .type = about.type,
+                              .low = about.low,
+                              .high = about.high,
+                              .low_excluded = about.low_excluded},
+                             value);
+}
+
 /// Puts the values of the file into the slot; each has to be retained there.
 void take_from(const parameters::ParameterFile& file, Newest& newest) {
   Diagnostics found;
@@ -170,7 +188,12 @@ void take_from(const parameters::ParameterFile& file, Newest& newest) {
       continue;
     }
     for (std::size_t element = 0; element < places.size(); ++element) {
-      newest.values.parameters[places[element]] = number_of(one.value, element);
+      const auto& about = newest.layout.parameters[places[element]];
+      const double value = number_of(one.value, element);
+      if (const std::string why = refusal_of(about, one.value, value); !why.empty()) {
+        found.error(error::parameter_out_of_range, one.value_place, why, "write a value that the diagram takes.");
+      }
+      newest.values.parameters[places[element]] = value;
     }
   }
   if (found.has_errors()) {
@@ -244,6 +267,9 @@ int retained(const Options& options, Console& console) {
     console.print(options.json ? json_of(newest) : table_of(newest));
     return exit_ok;
   }
+  std::vector<InputFile> inputs{{.file = folder.path_of(0).string(), .named_by = "DIR"},
+                                {.file = folder.path_of(1).string(), .named_by = "DIR"}};
+  refuse_to_overwrite({.file = options.out}, inputs);
   refuse_unwritable(options.out);
   const parameters::ParameterFile base =
       options.params.empty() ? parameters::ParameterFile{} : parameters::read_parameter_file(options.params);
@@ -261,10 +287,12 @@ int retained(const Options& options, Console& console) {
 
 Action add_retained(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("DIR", options->folder, "The folder of [retain].")->required();
-  app.add_option("--params", options->params, "A parameter file whose other lines and comments --out keeps.")
-      ->option_text("P.toml");
-  app.add_option("--out", options->out, "The parameter file to be written.")->option_text("P.toml");
+  app.add_option("DIR", options->folder, "The folder of [retain].")->required()->option_text(" ");
+  auto* const params =
+      app.add_option("--params", options->params, "A parameter file whose other lines and comments --out keeps.")
+          ->option_text("P.toml");
+  auto* const out = app.add_option("--out", options->out, "The parameter file to be written.")->option_text("P.toml");
+  params->needs(out);
   app.add_option("--set", options->set, "A parameter file whose values are put into the folder.")
       ->option_text("P.toml");
   app.add_flag("--json", options->json, "Prints JSON.");

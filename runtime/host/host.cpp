@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <system_error>
 #include <thread>
@@ -47,6 +49,22 @@ std::string status_line(const Task& task, const std::string& how, const std::str
       how, s.run, s.skipped, events(Cause::late_wake), events(Cause::own_cpu), events(Cause::preempted),
       events(Cause::host_steal), static_cast<double>(s.lateness.percentile(0.9999)) * 1e-3,
       static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), besides, name_of(fault));
+}
+
+/// What stands at the trace's name is put aside by number, and in the end deleted: it has to be a trace.
+void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
+  std::array<char, 16> begin{};
+  std::error_code unknown;
+  std::ifstream file;
+  if (std::filesystem::is_regular_file(settings.file, unknown)) {
+    file.open(settings.file, std::ios::binary);
+    file.read(begin.data(), begin.size());
+  }
+  if (!is_begin_of_trace(std::string_view(begin.data(), static_cast<std::size_t>(file.gcount())))) {
+    throw InputError(error::trace_not_writable, place,
+                     fmt::format("{} is there already, and is no trace.", settings.file.string()),
+                     "name another file: what stands at this name is put aside and, some runs later, deleted.");
+  }
 }
 
 std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
@@ -291,6 +309,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
 
   tell_of_unused_devices(config);
+  if (config.trace) {
+    refuse_foreign_trace(*config.trace, config.trace_place);
+  }
   // What can refuse the start comes first: the outputs' claims, the guard, which writes nothing before the first cycle,
   // what was retained, and the servers. Only then files are begun and devices reached.
   OutputClaims claims(config);

@@ -118,18 +118,33 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
-bool read_number(std::string_view text, std::size_t& number) {
+/// Whole, or real: infinite, too.
+template <class Number>
+bool read_number(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size();
 }
 
 bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout) {
   const std::vector<std::string_view> cells = cells_of(line);
-  if (cells[0] == "p" && cells.size() == 4) {
+  if (cells[0] == "t" && cells.size() == 2) {
+    std::size_t period = 0;
+    const bool read = read_number(cells[1], period);
+    layout.period = static_cast<std::int64_t>(period);
+    return read;
+  }
+  if (cells[0] == "p" && cells.size() == 7) {
     const auto type = type_of(cells[2]);
-    layout.parameters.push_back(
-        {.name = std::string(cells[1]), .type = type.value_or(PointType::real64), .unit = std::string(cells[3])});
-    return type.has_value();
+    double low = 0.0;
+    double high = 0.0;
+    const bool is_read = type && read_number(cells[4], low) && read_number(cells[5], high);
+    layout.parameters.push_back({.name = std::string(cells[1]),
+                                 .type = type.value_or(PointType::real64),
+                                 .unit = std::string(cells[3]),
+                                 .low = low,
+                                 .high = high,
+                                 .low_excluded = cells[6] == "1"});
+    return is_read;
   }
   if (cells[0] != "s" || cells.size() != 7) {
     return false;
@@ -207,8 +222,10 @@ std::string refusal_of(const StateField& was, std::span<const std::byte> from, c
 
 std::string describe(const ProgramShape& shape) {
   std::string text;
+  text += fmt::format("t\t{}\n", shape.period);
   for (const ProgramSignal& one : shape.parameters) {
-    text += fmt::format("p\t{}\t{}\t{}\n", one.name, about(one.type).name, one.unit);
+    text += fmt::format("p\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, about(one.type).name, one.unit, one.low, one.high,
+                        one.low_excluded ? 1 : 0);
   }
   for (const StateField& one : shape.state) {
     text += fmt::format("s\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, one.block, about(one.type).name, one.length,
@@ -258,6 +275,11 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
 
 void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
                  std::span<std::byte> into, CarriedValues& carried) {
+  if (kept.period != shape.period) {
+    carried.left.push_back(
+        left("the state", fmt::format("of steps of {} ns there, {} ns here", kept.period, shape.period)));
+    return;
+  }
   const auto places = by_name(kept.state);
   for (const StateField& own : shape.state) {
     const auto found = places.find(own.name);

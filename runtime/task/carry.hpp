@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,13 +21,17 @@ struct KeptLayout {
     std::string name{};
     PointType type = PointType::real64;
     std::string unit{};
+    double low = 0.0;
+    double high = 0.0;
+    bool low_excluded = false;
   };
+  std::int64_t period = 0;  ///< ns
   std::vector<Parameter> parameters{};
   std::vector<StateField> state{};
 };
 
-/// As text: a line for each parameter, "p name type unit", and each number, "s name block type length offset unit",
-/// separated by tabs.
+/// As text: a line "t period", one for each parameter, "p name type unit low high excluded", and each number, "s name
+/// block type length offset unit", separated by tabs.
 [[nodiscard]] std::string describe(const ProgramShape& shape);
 /// Empty where a line is not of that form, or where a number lies beyond `state_size` bytes.
 [[nodiscard]] KeptLayout read_description(std::string_view text, std::size_t state_size);
@@ -43,7 +48,8 @@ struct CarriedValues {
 [[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
                                              const ProgramShape& shape, std::span<const double> given);
 
-/// Numbers of the state whose instance, block, type and unit are the same, and which are finite. `into` is the state of
+/// Numbers of the state whose instance, block, type and unit are the same, and which are finite; none where the period
+/// is another, in which a delay of so many steps is another time. `into` is the state of
 /// the program after its reset; the count and the reasons are added to `carried`.
 void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
                  std::span<std::byte> into, CarriedValues& carried);

@@ -159,8 +159,8 @@ Recovery recover(RetainFiles& files, const std::string& layout, MismatchPolicy p
   const bool is_whole = slot.status == SlotStatus::whole;
   const bool is_of_program = is_whole && slot.values.layout == layout;
   const std::string unfit = is_of_program && checks.refusal ? checks.refusal(slot.values) : "";
-  const bool is_carried =
-      policy == MismatchPolicy::carry && is_whole && !is_of_program && !slot.values.described.empty();
+  const bool is_carried = policy == MismatchPolicy::carry && is_whole && !(is_of_program && unfit.empty()) &&
+                          !slot.values.described.empty();
   if ((is_of_program && unfit.empty()) || is_carried) {
     recovery.values = slot.values;
     recovery.by_name = is_carried;

@@ -156,6 +156,10 @@ std::size_t read_head(std::string_view bytes, TraceHead& head, std::string& faul
 
 }  // namespace
 
+bool is_begin_of_trace(std::string_view bytes) {
+  return bytes.starts_with(first_line) || first_line.starts_with(bytes);
+}
+
 TraceHead head_of(const StepProgram& program) {
   const ProgramShape& shape = program.shape();
   return {.program = shape.name,

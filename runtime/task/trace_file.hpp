@@ -59,6 +59,9 @@ struct TraceStep {
   std::vector<double> outputs{};
 };
 
+/// Whether a file that begins so is a trace, or the begin of one that was cut off.
+[[nodiscard]] bool is_begin_of_trace(std::string_view bytes);
+
 [[nodiscard]] TraceHead head_of(const StepProgram& program);
 [[nodiscard]] std::string text_of(const TraceHead& head);
 

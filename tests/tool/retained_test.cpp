@@ -162,6 +162,12 @@ TEST(Retained, ParametersGoIntoAFileAndBack) {
   EXPECT_EQ(given.code, 0) << given.err;
   EXPECT_THAT(given.out, Not(HasSubstr("not as given")));
 
+  for (const char* const beyond : {"[parameters.LATE]\nDEAD_TIME = -1.0\n", "[parameters.LATE]\nSETTLED = 7.5\n",
+                                   "[parameters.HYST]\nC1 = true\n"}) {
+    bench.write("beyond.toml", beyond);
+    EXPECT_THAT(bench.shell("hysteron retained kept --set beyond.toml").err, HasSubstr("HY214 error: beyond.toml:2"));
+  }
+  EXPECT_THAT(bench.shell("hysteron retained kept --out kept/retain_a").err, HasSubstr("HY709 error: "));
   bench.write("wrong.toml", "[parameters.NONE]\nK = 1.0\n");
   const auto refused = bench.shell("hysteron retained kept --set wrong.toml");
   EXPECT_EQ(refused.code, 2);

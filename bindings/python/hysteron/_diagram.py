@@ -81,6 +81,10 @@ class Machine:
             port = self.diagram.inputs[name]
             raise error("HY707", f"The input {name} is {value:g}, which is no {port.type}.",
                          "give 0 or 1." if port.type == "BOOL" else "give a whole number within its range.")
+        if fault < 0:
+            self._inputs[:] = before
+            raise error("HY750", "The step was not made: an FMU in the diagram refused it, or could not be started.",
+                        "run() over a record says what it answered, and at which time.")
         self._missing = set()
         return dict(zip(self._names, self._outputs.tolist()))
 

@@ -103,8 +103,13 @@ def as_record(given, diagram=None, *, units=None, columns=None, **options_given)
     has_time = "time" in options_given or "rate" in options_given or any(name.lower() in ("t", "time") for name in arrays)
     if not has_time and diagram is not None and diagram.sample_time:
         options_given["rate"] = f"{diagram.sample_time!r} s"
+    given_units = {str(name).lower(): unit for name, unit in (units or {}).items()}
+    unknown = set(given_units) - {name.lower() for name in arrays}
+    if unknown:
+        raise error("HY708", f"There is no column {', '.join(sorted(unknown))} to which units gives a unit.",
+                    f"the columns are {', '.join(arrays)}.")
     names = (ctypes.c_char_p * count)(*[name.encode() for name in arrays])
-    texts = (ctypes.c_char_p * count)(*[str((units or {}).get(name, "")).encode() for name in arrays])
+    texts = (ctypes.c_char_p * count)(*[str(given_units.get(name.lower(), "")).encode() for name in arrays])
     values = numpy.concatenate(list(arrays.values())) if rows else numpy.empty(0)
     pointer, messages = called("record_new", count, rows, names, texts,
                                values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),

@@ -80,6 +80,16 @@ TEST_F(KeptFiles, TheTraceOfTheRunBeforeIsKept) {
   EXPECT_EQ(contents_of(folder / "run.trace.2").empty(), false) << "what more files were asked for stays";
 }
 
+TEST_F(KeptFiles, WhatIsNoTraceIsNotPutAside) {
+  folder.write("run.trace", "FUNCTION_BLOCK PRECIOUS");
+  EXPECT_THAT(host_run(trace()).out, AllOf(StartsWith("HY812:"), HasSubstr("is there already, and is no trace.")));
+  EXPECT_EQ(contents_of(folder / "run.trace"), "FUNCTION_BLOCK PRECIOUS");
+  for (const char* const rest : {"", "hysteron tr"}) {  // a disk was full
+    folder.write("run.trace", rest);
+    EXPECT_TRUE(host_run(trace()).well) << rest;
+  }
+}
+
 TEST_F(KeptFiles, OfATaskThatRunsAreRefusedAndLeftAlone) {
   EXPECT_TRUE(host_run(retain() + trace()).well);
   {

@@ -33,7 +33,7 @@ TEST(RefusedStart, TouchesNoDeviceAndNoFile) {
   Stage stage;
   stage.start();
   const hysteron::test::ScratchFolder folder;
-  const std::string trace = folder.write("run.trace", "of an earlier run");
+  const std::string trace = folder.write("run.trace", "hysteron trace 1 of before");
   const std::string kept = folder.write("retain_a", "of another diagram");
   const auto taken = modbus::listen_on("127.0.0.1", 0, {});
   const std::string files =

@@ -139,6 +139,19 @@ TEST(Carry, WhatHasBecomeSomethingElseIsLeftAndSaid) {
                           "OLD.Y (V there, no unit here)", "N.Q (gone)"));
 }
 
+/// A delay of so many steps is another time then.
+TEST(Carry, TheStateOfAnotherPeriodIsLeft) {
+  ProgramShape shape = before();
+  shape.period = 1'000'000;
+  const KeptLayout kept = read_description(describe(shape), size_before);
+  shape.period = 10'000'000;
+  CarriedValues carried;
+  std::vector<std::byte> state(size_before);
+  carry_state(kept, state_before(), shape, state, carried);
+  EXPECT_EQ(state, std::vector<std::byte>(size_before));
+  EXPECT_THAT(carried.left, ElementsAre("the state (of steps of 1000000 ns there, 10000000 ns here)"));
+}
+
 TEST(Carry, ANumberIsNotFiniteWhereItWasFiniteAfterTheReset) {
   const ProgramShape shape{.state = {{.name = "LOW.Y", .block = "HY_MINIMUM"}, {.name = "LAG.Y", .offset = 8}}};
   std::vector<std::byte> reset(16);

@@ -149,6 +149,9 @@ TEST(Retain, AnEditedDiagramCarriesWhatHasNames) {
   ASSERT_EQ(files.aside.size(), 1U);
   EXPECT_EQ(files.aside[0], kept);
   EXPECT_FALSE(recover(files, some_values(4).layout, MismatchPolicy::carry).by_name);
+  const RetainChecks shrunk{.refusal = [](const RetainedValues&) { return std::string("G.A = 8 is above 5."); }};
+  EXPECT_TRUE(recover(files, some_values(4).layout, MismatchPolicy::carry, shrunk).by_name)
+      << "limits that an edit has shrunk cost the values beyond them, and no start";
 }
 
 TEST(Retain, AStateThatIsNotFiniteIsAsABrokenSlot) {

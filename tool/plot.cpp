@@ -107,6 +107,9 @@ std::vector<NamedRecord> records_of(const PlotOptions& options, Console& console
     for (const std::string& note : record.notes()) {
       Console::note(options.files[i], note);
     }
+    for (const records::Record::Unreadable& one : record.unreadable()) {
+      Console::note(options.files[i], fmt::format("{} is left out: {}", one.name, one.fault.cause));
+    }
   }
   return records;
 }

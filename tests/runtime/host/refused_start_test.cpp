@@ -52,7 +52,7 @@ TEST(RefusedStart, TouchesNoDeviceAndNoFile) {
     OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
     EXPECT_TRUE(test::soon([&] { return !claims.claim(); }));
     EXPECT_EQ(stage.door.writes(), 0U);
-    EXPECT_EQ(read_text_file(trace), "of an earlier run");
+    EXPECT_EQ(read_text_file(trace), "hysteron trace 1 of before");
     EXPECT_EQ(read_text_file(kept), "of another diagram");
     EXPECT_EQ(folder.names(), names);
   }

@@ -43,11 +43,10 @@ struct CompareOptions {
   bool json = false;
 };
 
-records::Record record_of(const std::string& file, const CompareOptions& options, Console& console) {
+records::Record record_of(const std::string& file, const records::ReadOptions& reading, Console& console) {
   const std::string bytes = read_text_file(file);
   console.sources().put(file, bytes);
-  records::Record record =
-      records::parse_record(file, bytes, read_options(with_settings_of(options.parameters, options.record)));
+  records::Record record = records::parse_record(file, bytes, reading);
   for (const std::string& note : record.notes()) {
     Console::note(file, note);
   }
@@ -72,8 +71,9 @@ Comparison compared(FileKind kind, const CompareOptions& options, std::vector<pl
                     Console& console) {
   switch (kind) {
     case FileKind::Record: {
-      std::vector<NamedRecord> records{{.name = options.a, .record = record_of(options.a, options, console)},
-                                       {.name = options.b, .record = record_of(options.b, options, console)}};
+      const records::ReadOptions reading = read_options(with_settings_of(options.parameters, options.record));
+      std::vector<NamedRecord> records{{.name = options.a, .record = record_of(options.a, reading, console)},
+                                       {.name = options.b, .record = record_of(options.b, reading, console)}};
       Comparison result = compare_records(records[0].record, records[1].record, options.tolerance);
       figures.push_back(figure_over_time(records));
       return result;

@@ -73,10 +73,15 @@ void add_rows(std::vector<ParameterRow>& rows, std::span<const ParameterValue> a
   }
 }
 
+/// In percent of the first; not finite where that is 0.
+double change_of(double a, double b) {
+  return 100.0 * (b - a) / std::abs(a);
+}
+
 }  // namespace
 
 std::string change_text(double a, double b) {
-  const double change = 100.0 * (b - a) / std::abs(a);
+  const double change = change_of(a, b);
   return std::isfinite(change) ? fmt::format("{:+.3g} %", change) : "–";
 }
 
@@ -93,7 +98,7 @@ Comparison compare_parameters(const parameters::ParameterFile& a, const paramete
     const bool has_change = row.a && row.b && numbers_of(*row.a).size() == 1 && numbers_of(*row.b).size() == 1;
     const double before = has_change ? numbers_of(*row.a).front() : not_a_number;
     const double after = has_change ? numbers_of(*row.b).front() : not_a_number;
-    const double percent = 100.0 * (after - before) / std::abs(before);
+    const double percent = change_of(before, after);
     const auto json_of = [](const std::optional<parameters::Value>& value) {
       return value ? nlohmann::ordered_json(text_of(*value)) : nlohmann::ordered_json();
     };

@@ -13,7 +13,6 @@
 #include <thread>
 #include <vector>
 
-#include "codegen/graph/fmu_block.hpp"
 #include "diagnosis/effects/known_effects.hpp"
 #include "diagnosis/model/ignored_columns.hpp"
 #include "diagnosis/model/limits.hpp"
@@ -111,9 +110,7 @@ int diagnose(DiagnoseOptions options, Console& console) {
   }
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
-  refuse_fmu(program.graph, "a diagnosis tries effects within a plant, and an FMU shows nothing of its inside",
-             "fit its parameters with `hysteron tune`; or write the plant as a diagram, and diagnose that.");
-  diagnosis::refuse_unknown_effects(options.effects, program);
+  diagnosis::refuse_undiagnosable(options.effects, program);
   diagnosis::DiagnosisInput input{.program = program, .text = *program.graph.source->text};
   input.file = parameters::read_parameter_file(options.diagram.parameters);
   input.records =

@@ -10,7 +10,6 @@ namespace hysteron::tool {
 
 FileKind kind_of_file(const std::string& path) {
   const std::string ending = in_capitals(std::filesystem::path(path).extension().string());
-  const std::string text = read_text_file(path);
   if (ending == ".TOML") {
     return FileKind::Parameters;
   }
@@ -18,7 +17,7 @@ FileKind kind_of_file(const std::string& path) {
     return FileKind::Diagram;
   }
   if (ending == ".JSON") {
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = nlohmann::json::parse(read_text_file(path), nullptr, false);
     if (json.is_object() && json.contains("verdict") && json.contains("effects")) {
       return FileKind::Verdict;
     }

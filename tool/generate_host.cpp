@@ -8,6 +8,7 @@
 #include "codegen/backends/cpp/cpp_step.hpp"
 #include "runtime/host/host.hpp"
 #include "runtime/modbus/lock_file.hpp"
+#include "runtime/modbus/value_bits.hpp"
 #include "support/numbers.hpp"
 #include "support/text_file.hpp"
 #include "tool/host_sources.hpp"
@@ -17,7 +18,6 @@
 namespace hysteron::tool {
 namespace {
 
-using runtime::PointType;
 using runtime::ProgramShape;
 using runtime::ProgramSignal;
 
@@ -160,21 +160,6 @@ std::string literal(double value) {
                            : real_literal(value);
 }
 
-std::string_view enumerator(PointType type) {
-  switch (type) {
-    case PointType::boolean:
-      return "boolean";
-    case PointType::int32:
-      return "int32";
-    case PointType::uint16:
-      return "uint16";
-    case PointType::real32:
-      return "real32";
-    default:
-      return "real64";  // a diagram has no other types
-  }
-}
-
 /// Members that are as ProgramSignal has them are left out.
 std::string literal(const std::vector<ProgramSignal>& signals) {
   const ProgramSignal plain;
@@ -196,7 +181,7 @@ std::string literal(const std::vector<ProgramSignal>& signals) {
       add("meaning", literal(signal.meaning));
     }
     if (signal.type != plain.type) {
-      add("type", fmt::format("PointType::{}", enumerator(signal.type)));
+      add("type", fmt::format("PointType::{}", runtime::modbus::name_of(signal.type)));
     }
     add_number("preset", signal.preset, plain.preset);
     add_number("low", signal.low, plain.low);
@@ -216,7 +201,7 @@ std::string literal(const std::vector<runtime::StateField>& state) {
     text +=
         fmt::format("{}\n              {{.name = {}, .block = {}, .unit = {}, .type = PointType::{}, .length = {}}}",
                     text.empty() ? "" : ",", literal(field.name), literal(field.block), literal(field.unit),
-                    enumerator(field.type), field.length);
+                    runtime::modbus::name_of(field.type), field.length);
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "tool/record_options.hpp"
 #include "tool/version.hpp"
 
 namespace hysteron::tool {
@@ -72,15 +73,6 @@ std::vector<std::string> words_of(const CLI::Option& option) {
 
 bool takes_value(const CLI::Option& option) {
   return option.get_expected_max() > 0;
-}
-
-/// In single quotes of a shell.
-std::string shell_quoted(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) {
-    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return result + "'";
 }
 
 std::string for_bash(const CLI::App& program) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,9 +58,10 @@ std::vector<std::string> short_names(const std::vector<std::string>& files) {
 
 /// All files are of one kind, which can be drawn.
 FileKind common_kind(const std::vector<std::string>& files) {
-  const FileKind first = kind_of_file(files.front());
+  std::optional<FileKind> first;
   for (const std::string& file : files) {
     const FileKind kind = kind_of_file(file);
+    first = first.value_or(kind);
     if (kind == FileKind::Diagram || kind == FileKind::Verdict) {
       throw InputError(
           error::bad_usage, {.file = file}, fmt::format("{} is {}.", file, words_of(kind)),
@@ -67,14 +69,14 @@ FileKind common_kind(const std::vector<std::string>& files) {
               ? fmt::format("`hysteron draw {} --out X.svg` draws it; plot takes records or parameter files.", file)
               : std::string("open the report.html beside it; plot takes records or parameter files."));
     }
-    if (kind != first) {
+    if (kind != *first) {
       throw InputError(
           error::bad_usage, {.file = file},
-          fmt::format("{} is {}, and {} is {}.", files.front(), words_of(first), file, words_of(kind)),
+          fmt::format("{} is {}, and {} is {}.", files.front(), words_of(*first), file, words_of(kind)),
           "give records alone or parameter files alone; --params P.toml takes [record] of a parameter file.");
     }
   }
-  return first;
+  return first.value();  // the command line asks for one file or more
 }
 
 /// U,Y of --xy.

@@ -56,15 +56,9 @@ std::vector<runtime::ProgramRelation> relations_of(const Graph& graph) {
   return relations;
 }
 
-/// The place of a field among a block's, by its name.
-std::size_t place_of(std::span<const Field> fields, std::string_view name) {
-  return static_cast<std::size_t>(std::ranges::find(fields, name, &Field::name) - fields.begin());
-}
-
-std::vector<runtime::StateField> state_of(const Program& program, bool float32) {
+std::vector<runtime::StateField> state_of(const Program& program, const units::Solution& units, bool float32) {
   const Graph& graph = program.graph;
   const Routine routine = make_routine(program);
-  const units::Solution units(graph, program.schedule);
   const auto of_states = units.states();
   const auto of_outputs = units.outputs();
   std::vector<runtime::StateField> state;
@@ -76,8 +70,7 @@ std::vector<runtime::StateField> state_of(const Program& program, bool float32) 
     const BlockType* const block = cell.instance.empty() ? nullptr : graph.nodes[cell.node].block;
     if (block != nullptr) {
       field.block = block->about.name;
-      field.unit = cell.held ? of_outputs[cell.node][place_of(block->outputs, cell.field.name)]
-                             : of_states[cell.node][place_of(block->states, cell.field.name)];
+      field.unit = cell.held ? of_outputs[cell.node][cell.place] : of_states[cell.node][cell.place];
     } else if (cell.instance.empty()) {
       field.unit = fmt::format("of {} steps", routine.longest_period);  // of another period it would be another count
     }
@@ -111,14 +104,15 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
   for (const Port& port : graph.outputs) {
     shape.outputs.push_back(signal_of(port));
   }
-  const auto units = units::Solution(graph, program.schedule).parameters();
+  const units::Solution units(graph, program.schedule);
+  const auto of_parameters = units.parameters();
   std::size_t index = 0;
   Program plain = program;
   for (Parameter& parameter : plain.graph.parameters) {
     for (std::size_t element = 0; element < parameter.value.size(); ++element) {
       shape.parameters.push_back(
           {.name = parameter.field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
-           .unit = units[index],
+           .unit = of_parameters[index],
            .meaning = std::string(parameter.field.meaning),
            .type = point_type(parameter.field.type),
            .preset = parameter.value[element],
@@ -130,7 +124,7 @@ ProgramShape shape_of(const Program& program, Engine engine, bool float32) {
     std::ranges::fill(parameter.value, 0.0);  // the values do not belong to the layout
   }
   shape.relations = relations_of(graph);
-  shape.state = state_of(program, float32);
+  shape.state = state_of(program, units, float32);
   shape.layout = fmt::format("{}-{}{}", program_hash(plain), engine == Engine::compiled ? "compiled" : "interpreter",
                              float32 ? "-float32" : "");
   return shape;

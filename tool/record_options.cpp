@@ -33,18 +33,19 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->option_text("linear|hold|average");
 }
 
+std::string shell_quoted(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) {
+    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return result + "'";
+}
+
 std::string quoted(const std::string& word) {
   const bool is_plain = std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("_-./+:,=@%").find(static_cast<char>(c)) != std::string_view::npos;
   });
-  if (is_plain) {
-    return word;
-  }
-  std::string result = "'";
-  for (const char c : word) {
-    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return result + "'";
+  return is_plain ? word : shell_quoted(word);
 }
 
 std::string record_arguments(const RecordOptions& options) {

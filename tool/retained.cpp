@@ -83,12 +83,9 @@ Newest newest_of(runtime::RetainFolder& folder, const std::string& name) {
   return std::move(*newest);
 }
 
-/// TABLE.X of TABLE.X[2], and 2; the name itself and nothing where it is no element.
-std::pair<std::string, std::optional<std::size_t>> element_of(const std::string& name) {
-  const std::size_t bracket = name.find('[');
-  return bracket == std::string::npos
-             ? std::pair(name, std::optional<std::size_t>())
-             : std::pair(name.substr(0, bracket), std::optional(std::size_t{std::stoul(name.substr(bracket + 1))}));
+/// TABLE.X of TABLE.X[2]; the name itself where it is no element.
+std::string without_element(const std::string& name) {
+  return name.substr(0, name.find('['));
 }
 
 parameters::Value value_of(runtime::PointType type, double number) {
@@ -119,9 +116,9 @@ parameters::ParameterFile with_retained(parameters::ParameterFile file, const Ne
   std::map<std::string, std::vector<double>> arrays;
   for (std::size_t i = 0; i < newest.layout.parameters.size(); ++i) {
     const auto& about = newest.layout.parameters[i];
-    const auto [path, element] = element_of(about.name);
+    const std::string path = without_element(about.name);
     const double number = newest.values.parameters[i];
-    if (element) {
+    if (path != about.name) {
       arrays[path].push_back(number);
     } else if (std::isfinite(number)) {
       put(file, path, value_of(about.type, number));
@@ -175,7 +172,7 @@ void take_from(const parameters::ParameterFile& file, Newest& newest) {
   for (const parameters::ParameterValue& one : file.values) {
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < newest.layout.parameters.size(); ++i) {
-      if (language::same_name(element_of(newest.layout.parameters[i].name).first, one.path)) {
+      if (language::same_name(without_element(newest.layout.parameters[i].name), one.path)) {
         places.push_back(i);
       }
     }
@@ -275,7 +272,7 @@ int retained(const Options& options, Console& console) {
       options.params.empty() ? parameters::ParameterFile{} : parameters::read_parameter_file(options.params);
   parameters::Remarks remarks;
   for (const auto& one : newest.layout.parameters) {
-    remarks["PARAMETERS." + language::upper(element_of(one.name).first)] = {.unit = one.unit};
+    remarks["PARAMETERS." + language::upper(without_element(one.name))] = {.unit = one.unit};
   }
   write_file_atomically(options.out, parameters::parameter_text(with_retained(base, newest), remarks));
   console.print(fmt::format("{}: {} parameters of state {}\n", options.out, newest.layout.parameters.size(),

@@ -98,9 +98,8 @@ std::string summary(const RecordedRun& run, const records::Record& record) {
 }
 
 /// The record and the run of it, one over the other: the columns that the diagram has ports for.
-std::vector<plots::Figure> figures_of(const Program& program, const records::Record& record,
-                                      const std::vector<std::string>& names, const std::vector<Signal>& values) {
-  const Graph& graph = program.graph;
+std::vector<plots::Figure> figures_of(const RecordedRun& run, const records::Record& record) {
+  const Graph& graph = run.program.graph;
   records::Record measured = record;
   for (const records::Column& column : record.columns()) {
     const auto same = [&](const Port& port) { return equal_ignoring_case(port.name, column.name); };
@@ -109,9 +108,8 @@ std::vector<plots::Figure> figures_of(const Program& program, const records::Rec
     }
   }
   std::vector<records::Column> columns;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto port = std::ranges::find_if(graph.outputs, [&](const Port& one) { return one.name == names[i]; });
-    columns.push_back({.name = names[i], .unit = port == graph.outputs.end() ? "" : port->unit, .values = values[i]});
+  for (std::size_t i = 0; i < run.names.size(); ++i) {
+    columns.push_back({.name = run.names[i], .unit = run.units[i], .values = run.values[i]});
   }
   const std::vector<double> time(record.time().begin(), record.time().end());
   const std::vector<NamedRecord> both{
@@ -155,7 +153,7 @@ int run_command(const RunOptions& options, Console& console) {
     write_file_atomically(options.output, text);
   }
   if (!options.plot.empty()) {
-    const auto figures = figures_of(run.program, record, run.names, run.values);
+    const auto figures = figures_of(run, record);
     write_file_atomically(options.plot, picture_bytes(options.plot, figures.front().title, figures));
   }
   console.report(diagnostics);

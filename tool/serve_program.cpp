@@ -79,16 +79,8 @@ class InterpretedProgram final : public runtime::StepProgram {
         field.offset = machine_.place_of_steps();
         continue;
       }
-      const BlockType* const block = program.graph.nodes[cell.node].block;
-      const auto place_in = [&](std::span<const Field> fields) {
-        return static_cast<std::uint32_t>(std::ranges::find(fields, cell.field.name, &Field::name) - fields.begin());
-      };
-      if (cell.held) {
-        const std::uint32_t port = block == nullptr ? 0 : place_in(block->outputs);
-        field.offset = machine_.place_of_output(cell.node, static_cast<std::uint16_t>(port));
-      } else {
-        field.offset = machine_.place_of_state(cell.node, place_in(block->states));
-      }
+      field.offset = cell.held ? machine_.place_of_output(cell.node, static_cast<std::uint16_t>(cell.place))
+                               : machine_.place_of_state(cell.node, cell.place);
     }
   }
 

@@ -134,18 +134,11 @@ std::string main_of_c(const Graph& graph) {
 }
 
 /// The C type of a value that FMI hands over.
-std::string_view fmi_value_type(Type type, const FmuOptions& options) {
-  const bool two = options.version == FmiVersion::Two;
-  switch (type) {
-    case Type::Bool:
-      return two ? "int" : "bool";
-    case Type::Int:
-      return two ? "int" : "int32_t";
-    case Type::Word:
-      return two ? "int" : "uint16_t";
-    default:
-      return !two && options.float32 ? "float" : "double";
+std::string fmi_value_type(Type type, const FmuOptions& options) {
+  if (options.version == FmiVersion::Two) {
+    return type == Type::Real ? "double" : "int";
   }
+  return type == Type::Real && options.float32 ? "float" : c_type(type);
 }
 
 std::string main_of_fmu(const Program& program, const FmuContents& contents, const FmuOptions& options) {
@@ -174,7 +167,7 @@ std::string main_of_fmu(const Program& program, const FmuContents& contents, con
   std::string gets;
   for (std::size_t v = 0; v < variables.size(); ++v) {
     const FmuVariable& variable = variables[v];
-    const std::string_view type = fmi_value_type(variable.type, options);
+    const std::string type = fmi_value_type(variable.type, options);
     const std::string tail = two ? "" : ", 1";
     if (variable.role == FmuVariable::Role::Input) {
       text += fmt::format(

@@ -40,12 +40,11 @@ std::string head_of(const TuneReport& report) {
   }
   html +=
       fmt::format("</p>\n<p>{} {}, {:.2g} s.</p>\n", escaped(fit.solution.message), iterations_of(fit), fit.seconds);
-  if (const std::string missing = what_is_not_in_the_model(report); !missing.empty()) {
-    const auto command = missing.find("This looks for the cause:");
+  if (const std::string missing = unexplained(report); !missing.empty()) {
     html += fmt::format(
         "<div class=\"box warnings\"><h2>Something is not in the model</h2>\n<p>{}</p>\n<p>This looks for the "
         "cause:</p>\n<pre>{}</pre></div>\n",
-        escaped(missing.substr(0, command)), escaped(report.diagnose_command));
+        escaped(missing), escaped(report.diagnose_command));
   }
   if (!fit.covariance.warnings.empty()) {
     html += "<div class=\"box warnings\"><h2>What the record tells of the parameters</h2>\n<ul>\n";

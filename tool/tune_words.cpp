@@ -40,7 +40,7 @@ Signal residuals_of(const TuneReport& report, std::size_t record, std::size_t ou
   return residuals;
 }
 
-std::string what_is_not_in_the_model(const TuneReport& report) {
+std::string unexplained(const TuneReport& report) {
   constexpr double least_correlation = 2.0;  // samples; of noise it is 1
   if (report.diagnose_command.empty() || !(report.fit.covariance.correlation_time > least_correlation)) {
     return {};
@@ -55,6 +55,11 @@ std::string what_is_not_in_the_model(const TuneReport& report) {
                           score.output, score.train, unit_behind(score.unit), floor.value, unit_behind(score.unit));
     }
   }
+  return text;
+}
+
+std::string what_is_not_in_the_model(const TuneReport& report) {
+  const std::string text = unexplained(report);
   return text.empty() ? text : text + fmt::format("This looks for the cause:\n  {}\n", report.diagnose_command);
 }
 

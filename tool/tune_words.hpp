@@ -22,6 +22,10 @@ namespace hysteron::tool {
 /// Model less measurement, over the whole record.
 [[nodiscard]] Signal residuals_of(const TuneReport& report, std::size_t record, std::size_t output);
 
+/// A sentence for each output that keeps more than its noise; empty where none does, or where no command is known that
+/// looks for the cause.
+[[nodiscard]] std::string unexplained(const TuneReport& report);
+
 /// A paragraph where the fit leaves of an output more than its noise, with the command that looks for the cause; else
 /// nothing. What is left stands out of the noise as the diagnosis asks it to, and its samples hang together.
 [[nodiscard]] std::string what_is_not_in_the_model(const TuneReport& report);

@@ -62,7 +62,7 @@ Asked asked(Options& options, const Program& program) {
   how.limits = diagnosis::read_limits(program.graph, limits);
   result.ignored = options.texts("ignore");
   options.finish();
-  diagnosis::refuse_unknown_effects(how.effects, program);
+  diagnosis::refuse_undiagnosable(how.effects, program);
   return result;
 }
 

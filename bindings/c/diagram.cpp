@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
+#include "codegen/graph/names.hpp"
 #include "codegen/graph/units.hpp"
 #include "codegen/language/syntax.hpp"
 #include "codegen/parameters/apply.hpp"
@@ -21,20 +23,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* memory_diagram = "diagram";
 constexpr const char* memory_parameters = "parameters";
 
-std::string_view name_of(Type type) {
-  switch (type) {
-    case Type::Bool:
-      return "BOOL";
-    case Type::Int:
-      return "DINT";
-    case Type::Word:
-      return "WORD";
-    case Type::Real:
-      break;
-  }
-  return "LREAL";
-}
-
 /// JSON has no sign for infinities: an open end is null.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -44,7 +32,7 @@ Json port_json(const Port& port) {
   return {{"name", port.name},
           {"unit", port.unit},
           {"meaning", port.meaning},
-          {"type", name_of(port.type)},
+          {"type", type_name(port.type)},
           {"minimum", number(port.minimum)},
           {"maximum", number(port.maximum)}};
 }
@@ -59,21 +47,13 @@ parameters::Value value_of(const std::string& name, const nlohmann::json& value)
   if (value.is_number()) {
     return value.get<double>();
   }
-  std::vector<double> list;
-  for (const nlohmann::json& one : value) {
-    if (!value.is_array() || !one.is_number()) {
-      throw InputError(error::wrong_value_type, {.file = memory_parameters},
-                       fmt::format("The parameter {} is {}.", name, value.dump()),
-                       "give a number, TRUE or FALSE, or a list of numbers.");
-    }
-    list.push_back(one.get<double>());
+  if (value.is_array() && !value.empty() &&
+      std::ranges::all_of(value, [](const nlohmann::json& one) { return one.is_number(); })) {
+    return value.get<std::vector<double>>();
   }
-  if (list.empty()) {
-    throw InputError(error::wrong_value_type, {.file = memory_parameters},
-                     fmt::format("The parameter {} is {}.", name, value.dump()),
-                     "give a number, TRUE or FALSE, or a list of numbers.");
-  }
-  return list;
+  throw InputError(error::wrong_value_type, {.file = memory_parameters},
+                   fmt::format("The parameter {} is {}.", name, value.dump()),
+                   "give a number, TRUE or FALSE, or a list of numbers.");
 }
 
 /// The parameter file that options name, with the values that they give over it.
@@ -156,7 +136,7 @@ std::string diagram_json(const Program& program) {
     json["parameters"].push_back({{"name", parameter.path},
                                   {"unit", units[i]},
                                   {"meaning", field.meaning},
-                                  {"type", name_of(field.type)},
+                                  {"type", type_name(field.type)},
                                   {"minimum", number(field.minimum)},
                                   {"maximum", number(field.maximum)},
                                   {"above_minimum", field.above_minimum},

@@ -124,7 +124,6 @@ class Reader {
     definition.variables.push_back(declare());
   }
 
-  /// Of a sequential body: the border. What is inside of it, the body knows.
   /// What another body executes in place may have arrays at its border: they are variables of that body.
   [[nodiscard]] bool is_in_place(std::uint32_t index) const {
     return std::ranges::any_of(definitions_.list, [&](const Definition& one) {
@@ -132,6 +131,7 @@ class Reader {
     });
   }
 
+  /// Of a sequential body: the border. What is inside of it, the body knows.
   void read_sequential(Definition& definition, bool in_place) {
     read_head(definition);
     Graph scratch;
@@ -433,18 +433,14 @@ class Reader {
 
   void unknown_type(const Variable& variable) {
     std::string mend = "`hysteron blocks` lists the library; other types are LREAL, BOOL, DINT and WORD.";
-    if (same_name_any(variable.type.text,
-                      {"REAL", "INT", "UINT", "UDINT", "SINT", "LINT", "TIME", "LTIME", "STRING", "BYTE", "DWORD"})) {
+    if (is_one_of(variable.type.text,
+                  {"REAL", "INT", "UINT", "UDINT", "SINT", "LINT", "TIME", "LTIME", "STRING", "BYTE", "DWORD"})) {
       mend = "Use LREAL for numbers and for seconds, DINT for counts, BOOL for truth values.";
     } else if (const std::string near = nearest_block(variable.type.text); !near.empty()) {
       mend = fmt::format("Did you mean {}? `hysteron blocks` lists the library.", near);
     }
     error(error::unknown_block, variable.type.span, fmt::format("there is no block or type '{}'", variable.type.text),
           mend);
-  }
-
-  static bool same_name_any(std::string_view name, std::initializer_list<std::string_view> list) {
-    return std::ranges::any_of(list, [&](std::string_view one) { return language::same_name(name, one); });
   }
 
   std::string nearest_block(std::string_view name) const;

@@ -74,9 +74,7 @@ std::string known_function(std::string_view name) {
       return std::string(one.here);
     }
   }
-  const bool known =
-      std::ranges::any_of(functions, [&](std::string_view one) { return equal_ignoring_case(one, name); });
-  return known ? in_capitals(name) : "";
+  return is_one_of(name, functions) ? in_capitals(name) : "";
 }
 
 std::optional<double> seconds_of(std::string_view literal) {

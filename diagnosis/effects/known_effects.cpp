@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "codegen/graph/definition.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "diagnosis/effects/effects.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
@@ -14,7 +15,9 @@
 
 namespace hysteron::diagnosis {
 
-void refuse_unknown_effects(const std::vector<std::string>& wanted, const Program& program) {
+void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program) {
+  refuse_fmu(program.graph, "a diagnosis tries effects within a plant, and an FMU shows nothing of its inside",
+             "fit its parameters with `hysteron tune`; or write the plant as a diagram, and diagnose that.");
   std::vector<std::string> known{"glitches"};
   Diagnostics ignored;  // the file compiles
   for (const EffectKind& kind : effect_kinds(define(program.graph.source, ignored))) {

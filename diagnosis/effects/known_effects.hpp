@@ -8,7 +8,8 @@
 
 namespace hysteron::diagnosis {
 
-/// Throws InputError HY730 for an effect that neither the library nor the file of the diagram has.
-void refuse_unknown_effects(const std::vector<std::string>& wanted, const Program& program);
+/// Throws InputError HY754 for a diagram with an FMU, HY730 for an effect that neither the library nor the file of the
+/// diagram has.
+void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program);
 
 }  // namespace hysteron::diagnosis

@@ -42,7 +42,6 @@ class Budget {
     clock_ends_ = std::max(clock_ends_, elapsed() + share * seconds_);
   }
 
-  [[nodiscard]] double seconds() const { return seconds_; }          ///< by the clock, the whole
   [[nodiscard]] bool has_cut_work() const { return cut_by_work_; }   ///< something was not done since it was over
   [[nodiscard]] bool has_cut_time() const { return cut_by_clock_; }  ///< since its seconds were, though not its work
 

@@ -7,7 +7,7 @@
 namespace hysteron::diagnosis {
 
 /// A unit is one block of the diagram, simulated for one sample. What costs more counts as many as it takes the time
-/// of: derivatives, and the linear algebra of a fit (`work_of` in model.cpp). Counts are whole numbers, so that the sum
+/// of: derivatives, and the linear algebra of a fit (`Model::count_work`). Counts are whole numbers, so that the sum
 /// does not depend on the order in which threads add to it.
 class Effort {
  public:

@@ -39,6 +39,10 @@ void ArrayList::refuse(const std::string& path, std::string cause, std::string m
   refused_.push_back({.path = path, .cause = std::move(cause), .mend = std::move(mend)});
 }
 
+void ArrayList::refuse_size(const std::string& path) {
+  refuse(path, fmt::format("{} claims more than {} numbers.", path, most_numbers), "save a shorter record.");
+}
+
 /// log.t, log.u, log.y are t, u and y.
 void ArrayList::leave_out_common_names() {
   for (;;) {

@@ -32,6 +32,8 @@ class ArrayList {
 
   /// What is there and no signal. Nobody is troubled by it who does not ask for it.
   void refuse(const std::string& path, std::string cause, std::string mend);
+  /// One that claims more than most_numbers.
+  void refuse_size(const std::string& path);
 
   /// The names are as short as they can be: what all lie in is left out. Times that are the same are one. Throws
   /// InputError HY513 where there is no array of numbers.

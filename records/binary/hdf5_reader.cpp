@@ -108,8 +108,7 @@ class DataSets {
     for (int i = 0; i < rank; ++i) {
       if (size.at(static_cast<std::size_t>(i)) > most_numbers ||
           (count *= size.at(static_cast<std::size_t>(i))) > most_numbers) {
-        list_.refuse(path, fmt::format("{} claims more than {} numbers.", path, most_numbers),
-                     "save a shorter record.");
+        list_.refuse_size(path);
         return;
       }
     }

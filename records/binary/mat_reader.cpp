@@ -31,11 +31,16 @@ std::vector<double> numbers_of(const matvar_t& variable, std::size_t count) {
 }
 
 /// What kind of numbers they are, and how many; none of anything else.
-std::vector<double> numbers_of(const matvar_t& variable) {
+std::size_t elements_of(const matvar_t& variable) {
   std::size_t count = 1;
   for (int i = 0; i < variable.rank; ++i) {
     count *= variable.dims[i];
   }
+  return count;
+}
+
+std::vector<double> numbers_of(const matvar_t& variable) {
+  const std::size_t count = elements_of(variable);
   if (variable.data == nullptr || count * static_cast<std::size_t>(variable.data_size) > variable.nbytes) {
     return {};
   }
@@ -111,10 +116,6 @@ class Variables {
     }
   }
 
-  void refuse_size(const std::string& path) {
-    list_.refuse(path, fmt::format("{} claims more than {} numbers.", path, most_numbers), "save a shorter record.");
-  }
-
   [[nodiscard]] ArrayList& list() { return list_; }
 
  private:
@@ -151,10 +152,7 @@ class Variables {
   void take_structure(const std::string& path, matvar_t& variable) {
     const unsigned fields = Mat_VarGetNumberOfFields(&variable);
     char* const* const names = Mat_VarGetStructFieldnames(&variable);
-    std::size_t count = 1;
-    for (int i = 0; i < variable.rank; ++i) {
-      count *= variable.dims[i];
-    }
+    const std::size_t count = elements_of(variable);
     if (fields == 0 || names == nullptr || variable.data == nullptr || count == 0) {
       return;
     }
@@ -181,10 +179,7 @@ class Variables {
   }
 
   void take_signals(const std::string& path, matvar_t& signals) {
-    std::size_t count = 1;
-    for (int i = 0; i < signals.rank; ++i) {
-      count *= signals.dims[i];
-    }
+    const std::size_t count = elements_of(signals);
     for (std::size_t i = 0; i < count; ++i) {
       matvar_t* const values = Mat_VarGetStructFieldByName(&signals, "values", i);
       if (values == nullptr) {
@@ -216,7 +211,7 @@ Table read_mat(const std::string& file, std::string bytes, const ReadOptions& op
     }
     const std::string name = variable->name != nullptr ? variable->name : "";
     if (is_too_large(*variable)) {
-      variables.refuse_size(name);
+      variables.list().refuse_size(name);
       continue;
     }
     const bool is_of_matlab = name.starts_with("__");  // what its objects are kept in

@@ -64,7 +64,11 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
         "mismatch = \"cold\", which puts the files aside.");
   }
   if (recovery_.values) {
-    recovery_.by_name ? carry(program, given) : take(program, given);
+    if (recovery_.by_name) {
+      carry(program, given);
+    } else {
+      take(program, given);
+    }
   }
   told_ += recovery_.note.empty() ? "" : ", " + recovery_.note;
 }

@@ -176,27 +176,24 @@ std::string left(const std::string& name, const std::string& reason) {
   return fmt::format("{} ({})", name, reason);
 }
 
+template <class Named>
+std::map<std::string_view, std::size_t> by_name(const std::vector<Named>& named) {
+  std::map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    places.emplace(named[i].name, i);
+  }
+  return places;
+}
+
 /// The names in `kept` that the program has no more.
 template <class Kept, class Own>
 void tell_gone(const std::vector<Kept>& kept, const std::vector<Own>& own, std::vector<std::string>& told) {
-  std::map<std::string_view, bool> here;
-  for (const Own& one : own) {
-    here[one.name] = true;
-  }
+  const auto here = by_name(own);
   for (const Kept& one : kept) {
     if (!here.contains(one.name)) {
       told.push_back(left(one.name, "gone"));
     }
   }
-}
-
-template <class Kept>
-std::map<std::string_view, std::size_t> by_name(const std::vector<Kept>& kept) {
-  std::map<std::string_view, std::size_t> places;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    places.emplace(kept[i].name, i);
-  }
-  return places;
 }
 
 /// Why a number of the state is not taken over; empty where it is.

@@ -156,8 +156,7 @@ class Diagram:
         the diagram. `progress(done, iteration)` is called once an iteration. An exception in it, Ctrl-C among them, ends
         the fit.
         """
-        diagram = self if params is None else self.with_parameters(params)
-        given = diagram._records(records, reading)
+        diagram, given, pointers = self._given(records, params, reading)
         raised = []
 
         def told(_user, done, iteration):
@@ -169,7 +168,6 @@ class Diagram:
                 raised.append(reason)
                 return 1
 
-        pointers = (ctypes.c_void_p * len(given))(*[one._handle.pointer for one in given])
         pointer, _ = called("tune", diagram._pointer, pointers, len(given), options(starts=starts), Progress(told), None,
                             told=self.warnings)
         fit = fit_of(pointer)
@@ -180,9 +178,7 @@ class Diagram:
     def diagnose(self, records, params=None, *, material=None, effects=None, ignore=None, most=None, limits=None,
                  effort=None, time_limit=None, seed=None, explain=None, without=None, threads=None, **reading):
         """Why records of the machine and the diagram differ; gives the verdict. Options are those of the tool."""
-        diagram = self if params is None else self.with_parameters(params)
-        given = diagram._records(records, reading)
-        pointers = (ctypes.c_void_p * len(given))(*[one._handle.pointer for one in given])
+        diagram, given, pointers = self._given(records, params, reading)
         pointer, _ = called("diagnose", diagram._pointer, pointers, len(given),
                             options(material=material, effects=effects, ignore=ignore, most=most, limits=limits,
                                     effort=effort, time_limit=time_limit, seed=seed, explain=explain, without=without,
@@ -190,9 +186,12 @@ class Diagram:
                             told=self.warnings)
         return verdict_of(pointer)
 
-    def _records(self, records, reading):
+    def _given(self, records, params, reading):
+        """The diagram with these parameters, the records, which own their handles, and these handles."""
+        diagram = self if params is None else self.with_parameters(params)
         many = isinstance(records, (list, tuple))
-        return [as_record(one, self, **reading) for one in (records if many else [records])]
+        given = [as_record(one, diagram, **reading) for one in (records if many else [records])]
+        return diagram, given, (ctypes.c_void_p * len(given))(*[one._handle.pointer for one in given])
 
 
 def _is_text(given):

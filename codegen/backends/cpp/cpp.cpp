@@ -205,14 +205,10 @@ GeneratedFile generate_cpp_header(const Program& program, const CppOptions& opti
   return CppHeader(program, options).run();
 }
 
-std::vector<std::string> cpp_parameter_members(const Program& program) {
+CppMembers cpp_members(const Program& program) {
   require_generable(program.graph);
-  return CppHeader(program, {}).parameter_members();
-}
-
-std::vector<std::string> cpp_state_members(const Program& program) {
-  require_generable(program.graph);
-  return CppHeader(program, {}).state_members();
+  const CppHeader header(program, {});
+  return {.parameters = header.parameter_members(), .cells = header.state_members()};
 }
 
 std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions& options) {

@@ -25,9 +25,11 @@ std::vector<GeneratedFile> generate_cpp(const Program& program, const CppOptions
 /// The header alone.
 GeneratedFile generate_cpp_header(const Program& program, const CppOptions& options = {});
 
-/// The members of the header's Params, by parameter of the graph: inv.c1.
-std::vector<std::string> cpp_parameter_members(const Program& program);
-/// The members of its State, by cell of the program's routine: inv.p.
-std::vector<std::string> cpp_state_members(const Program& program);
+/// The members of the header's structures.
+struct CppMembers {
+  std::vector<std::string> parameters{};  ///< of Params, by parameter of the graph: inv.c1
+  std::vector<std::string> cells{};       ///< of State, by cell of the program's routine: inv.p
+};
+CppMembers cpp_members(const Program& program);
 
 }  // namespace hysteron

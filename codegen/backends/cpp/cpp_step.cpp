@@ -91,12 +91,12 @@ GeneratedFile generate_cpp_step(const Program& program) {
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     outputs += fmt::format("  outputs[{}] = static_cast<double>(out.{});\n", i, output_names[i]);
   }
-  const auto members = cpp_parameter_members(program);
+  const CppMembers members = cpp_members(program);
   std::size_t index = 0;
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
     const Parameter& parameter = graph.parameters[i];
     for (std::size_t element = 0; element < parameter.value.size(); ++element, ++index) {
-      const auto target = fmt::format("params.{}{}", members[i],
+      const auto target = fmt::format("params.{}{}", members.parameters[i],
                                       parameter.field.length > 1 ? fmt::format("[{}]", element) : std::string());
       setters += fmt::format("    case {}:\n      {} = {};\n      break;\n", index, target,
                              converted(parameter.field.type, target, "value"));
@@ -104,9 +104,8 @@ GeneratedFile generate_cpp_step(const Program& program) {
     }
   }
   std::string offsets;
-  const auto state_members = cpp_state_members(program);
-  for (std::size_t i = 0; i < state_members.size(); ++i) {
-    offsets += fmt::format("    case {}:\n      return offset_of(state.{});\n", i, state_members[i]);
+  for (std::size_t i = 0; i < members.cells.size(); ++i) {
+    offsets += fmt::format("    case {}:\n      return offset_of(state.{});\n", i, members.cells[i]);
   }
   const auto name = namespace_identifier(graph.name);
   return {name + "_step.cpp",

@@ -110,14 +110,7 @@ class CallBuilder {
         add(index, port, true);
       }
     }
-    if (routine().longest_period > 1) {
-      routine().counter = static_cast<std::uint32_t>(routine().cells.size());
-      CellInfo cell;
-      cell.field.name = "STEPS";
-      cell.field.type = Type::Int;
-      cell.field.meaning = "steps since the beginning of the longest period";
-      routine().cells.push_back(cell);
-    }
+    add_counter(routine());
   }
 
   void reset_cells() {

@@ -48,8 +48,9 @@ class RoutineBuilder {
       outputs += static_cast<std::uint32_t>(output_count(node));
       first_cell_[index] = static_cast<std::uint32_t>(routine_.cells.size());
       if (node.block != nullptr) {
-        for (const Field& state : node.block->states) {
-          routine_.cells.push_back({.instance = node.path, .field = state, .node = index});
+        for (std::uint32_t state = 0; state < node.block->states.size(); ++state) {
+          routine_.cells.push_back(
+              {.instance = node.path, .field = node.block->states[state], .node = index, .place = state});
         }
       }
       routine_.longest_period = std::lcm(routine_.longest_period, node.rate.every);
@@ -61,23 +62,16 @@ class RoutineBuilder {
       if (node.rate == Rate{}) {
         continue;
       }
-      for (std::size_t port = 0; port < output_count(node); ++port) {  // read also in steps in which it does not run
+      for (std::uint32_t port = 0; port < output_count(node); ++port) {  // read also in steps in which it does not run
         held_[first_output_[index] + port] = static_cast<std::uint32_t>(routine_.cells.size());
         Field field;
         field.name = node.block != nullptr ? node.block->outputs[port].name : std::string_view("VALUE");
         field.type = output_type(node, port);
         field.meaning = "last value";
-        routine_.cells.push_back({.instance = node.path, .field = field, .node = index, .held = true});
+        routine_.cells.push_back({.instance = node.path, .field = field, .node = index, .held = true, .place = port});
       }
     }
-    if (routine_.longest_period > 1) {
-      routine_.counter = static_cast<std::uint32_t>(routine_.cells.size());
-      Field field;
-      field.name = "STEPS";
-      field.type = Type::Int;
-      field.meaning = "steps since the beginning of the longest period";
-      routine_.cells.push_back({.field = field});
-    }
+    add_counter(routine_);
   }
 
   /// The values of a node are at most those of its trace, once for the reset and once for the step, and its wires.

@@ -18,7 +18,8 @@ struct CellInfo {
   std::string_view instance{};  ///< path of the block, in the program's graph; empty for the step counter
   Field field{};
   std::uint32_t node = 0;
-  bool held = false;  ///< the last output of a slower part
+  bool held = false;        ///< the last output of a slower part
+  std::uint32_t place = 0;  ///< of the field among the block's states; of a held one among the node's outputs
 };
 
 struct Statement {
@@ -85,6 +86,9 @@ Routine make_routine(const Program& program, const RoutineOptions& options = {})
 
 /// Counts what is used how often, and drops what nobody needs. Values from `first_of_step` on belong to the step.
 void finish_routine(Routine& routine, ValueId first_of_step);
+
+/// The cell that counts steps, where there are several rates.
+void add_counter(Routine& routine);
 
 /// The leaf of a literal of a type.
 Op literal_op(Type type);

@@ -65,6 +65,17 @@ Op literal_op(Type type) {
   }
 }
 
+void add_counter(Routine& routine) {
+  if (routine.longest_period > 1) {
+    routine.counter = static_cast<std::uint32_t>(routine.cells.size());
+    Field field;
+    field.name = "STEPS";
+    field.type = Type::Int;
+    field.meaning = "steps since the beginning of the longest period";
+    routine.cells.push_back({.field = field});
+  }
+}
+
 void finish_routine(Routine& routine, ValueId first_of_step) {
   count_uses(routine);
   std::erase_if(routine.step, [&](const Statement& statement) {

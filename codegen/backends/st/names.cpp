@@ -30,9 +30,8 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
   if (calls != nullptr) {
     std::set<std::string_view> taken;
     for (const StCalls::BlockName& one : calls->blocks) {
-      if (!taken.contains(one.type)) {
+      if (taken.insert(one.type).second) {
         identifiers_.make({one.type});
-        taken.insert(one.type);
       }
     }
   }

@@ -8,7 +8,7 @@
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/printer.hpp"
-#include "codegen/graph/sample_time.hpp"
+#include "codegen/graph/fmu_block.hpp"
 #include "support/sha256.hpp"
 
 namespace hysteron {
@@ -113,7 +113,7 @@ std::vector<GeneratedFile> generate_st(const Program& program, const StOptions& 
 }
 
 std::vector<GeneratedFile> generate_st_structured(const Program& program, const StOptions& options) {
-  require_sample_time(program.graph);
+  require_generable(program.graph);
   StCalls calls{.made = make_calls(program)};
   LibraryText library(program.graph.sample_time_ns, options);
   for (const BlockInstance& one : calls.made.instances) {

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "tool/lsp.hpp"
+
 namespace hysteron::tool {
 
 std::span<const Command> commands() {
@@ -26,6 +28,7 @@ std::span<const Command> commands() {
       Command{"retained", "Shows what a task keeps through a restart, and brings it back into a parameter file.",
               add_retained},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
+      Command{"lsp", "Serves an editor: diagnostics, hover, completion, layout.", add_lsp},
       Command{"explain", "Explains an error by its number.", add_explain},
       Command{"man", "Prints a manual page.", add_man},
       Command{"completion", "Prints the completion for a shell.", add_completion},

@@ -1,0 +1,219 @@
+#include "lsp/server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "codegen/compile.hpp"
+
+namespace hysteron::lsp {
+namespace {
+
+using nlohmann::json;
+
+// The error codes of JSON-RPC 2.0 and LSP 3.17.
+constexpr int invalid_request = -32600;
+constexpr int method_not_found = -32601;
+constexpr int invalid_params = -32602;
+constexpr int internal_error = -32603;
+constexpr int server_not_initialized = -32002;
+constexpr int request_failed = -32803;
+
+struct ProtocolError : std::runtime_error {
+  ProtocolError(int the_code, const std::string& text) : std::runtime_error(text), code(the_code) {}
+  int code;
+};
+
+json failure(const json& id, int code, const std::string& text) {
+  return {{"jsonrpc", "2.0"}, {"id", id}, {"error", {{"code", code}, {"message", text}}}};
+}
+
+Position position_in(const json& position) {
+  return {position.at("line").get<std::uint64_t>(), position.at("character").get<std::uint64_t>()};
+}
+
+json as_json(Position position) {
+  return {{"line", position.line}, {"character", position.character}};
+}
+
+}  // namespace
+
+json Server::range(std::string_view text, std::size_t begin, std::size_t end) const {
+  return {{"start", as_json(position_of(text, begin, encoding_))}, {"end", as_json(position_of(text, end, encoding_))}};
+}
+
+const Server::Document& Server::document(const json& params) const {
+  const auto uri = params.at("textDocument").at("uri").get<std::string>();
+  const auto found = documents_.find(uri);
+  if (found == documents_.end()) {
+    throw ProtocolError(invalid_params, uri + " is not open. Send textDocument/didOpen first.");
+  }
+  return found->second;
+}
+
+json Server::initialize(const json& params) {
+  if (initialized_) {
+    throw ProtocolError(invalid_request, "initialize comes once.");
+  }
+  const auto encodings = params.value("/capabilities/general/positionEncodings"_json_pointer, json::array());
+  // Offsets are in UTF-8 here: where the client takes them as they are, nothing is counted twice.
+  encoding_ = std::ranges::find(encodings, json("utf-8")) != encodings.end() ? Encoding::Utf8 : Encoding::Utf16;
+  initialized_ = true;
+  return {{"serverInfo", {{"name", "hysteron"}}},
+          {"capabilities",
+           {{"positionEncoding", encoding_ == Encoding::Utf8 ? "utf-8" : "utf-16"},
+            {"textDocumentSync", {{"openClose", true}, {"change", 2}}},
+            {"hoverProvider", true},
+            {"completionProvider", {{"triggerCharacters", {".", "(", ":"}}}},
+            {"documentFormattingProvider", true}}}};
+}
+
+json Server::format(const json& params) {
+  const auto& open = document(params);
+  Diagnostics found;
+  const auto formatted = format_text(path_of(params.at("textDocument").at("uri").get<std::string>()), open.text, found);
+  if (found.has_errors()) {
+    const auto& first = *std::ranges::find(found.all(), Severity::Error, &Diagnostic::severity);
+    throw ProtocolError(request_failed, fmt::format("HY{:03}, line {}: {} {}", first.number, first.place.line,
+                                                    first.cause, first.mend));
+  }
+  auto edits = json::array();
+  if (formatted != open.text) {
+    edits.push_back({{"range", range(open.text, 0, open.text.size())}, {"newText", formatted}});
+  }
+  return edits;
+}
+
+json Server::request(const std::string& method, const json& params) {
+  if (method == "initialize") {
+    return initialize(params);
+  }
+  if (!initialized_) {
+    throw ProtocolError(server_not_initialized, "initialize comes first.");
+  }
+  if (shut_down_) {
+    throw ProtocolError(invalid_request, "After shutdown, only exit may come.");
+  }
+  if (method == "shutdown") {
+    shut_down_ = true;
+    return nullptr;
+  }
+  if (method == "textDocument/formatting") {
+    return format(params);
+  }
+  if (method == "textDocument/hover" || method == "textDocument/completion") {
+    const auto& open = document(params);
+    const Insight insight{open.text, *open.tree, open.known.get()};
+    const auto offset = offset_of(open.text, position_in(params.at("position")), encoding_);
+    if (method == "textDocument/completion") {
+      return completion(insight, offset);
+    }
+    const auto text = hover(insight, offset, card_);
+    return text.empty() ? json(nullptr) : json{{"contents", {{"kind", "plaintext"}, {"value", text}}}};
+  }
+  throw ProtocolError(method_not_found, method + " is not known here.");
+}
+
+void Server::change(Document& open, const json& change) const {
+  auto text = change.at("text").get<std::string>();
+  if (!change.contains("range")) {
+    open.text = std::move(text);
+    return;
+  }
+  const auto& range = change.at("range");
+  const auto begin = offset_of(open.text, position_in(range.at("start")), encoding_);
+  const auto end = offset_of(open.text, position_in(range.at("end")), encoding_);
+  open.text.replace(begin, std::max(begin, end) - begin, text);
+}
+
+json Server::published(const std::string& uri, Document& open) const {
+  const auto path = path_of(uri);
+  Diagnostics found;
+  try {
+    auto parsed = language::parse(path, open.text, found);
+    const bool valid = parsed.valid && !found.has_errors();
+    open.tree = std::make_shared<const language::SourceFile>(std::move(parsed));
+    if (valid) {
+      open.known = open.tree;
+      check(open.tree, found);
+    }
+  } catch (const InputError& error) {
+    found = error.diagnostics();
+  }
+  auto list = json::array();
+  for (const Diagnostic& one : found.all()) {
+    const bool here = one.place.file == path;
+    const auto begin = here ? offset_of_place(open.text, one.place.line, one.place.column) : 0;
+    const auto end = here ? offset_of_place(open.text, one.place.line, one.place.column + one.place.length) : 0;
+    list.push_back({{"range", range(open.text, begin, end)},
+                    {"severity", one.severity == Severity::Error ? 1 : 2},
+                    {"code", fmt::format("HY{:03}", one.number)},
+                    {"source", "hysteron"},
+                    {"message", (here ? "" : one.place.file + ": ") + one.cause + "\n" + one.mend}});
+  }
+  return {{"jsonrpc", "2.0"},
+          {"method", "textDocument/publishDiagnostics"},
+          {"params", {{"uri", uri}, {"diagnostics", list}}}};
+}
+
+std::vector<json> Server::notification(const std::string& method, const json& params) {
+  if (method == "exit") {
+    exited_ = true;
+  }
+  if (!initialized_ || shut_down_) {
+    return {};
+  }
+  if (method == "textDocument/didOpen") {
+    const auto& item = params.at("textDocument");
+    const auto uri = item.at("uri").get<std::string>();
+    Document open;
+    open.text = item.at("text").get<std::string>();
+    auto& kept = documents_[uri] = std::move(open);
+    return {published(uri, kept)};
+  }
+  if (method == "textDocument/didChange") {
+    const auto uri = params.at("textDocument").at("uri").get<std::string>();
+    auto next = document(params);
+    for (const auto& one : params.at("contentChanges")) {
+      change(next, one);
+    }
+    auto& kept = documents_[uri] = std::move(next);
+    return {published(uri, kept)};
+  }
+  if (method == "textDocument/didClose") {
+    const auto uri = params.at("textDocument").at("uri").get<std::string>();
+    documents_.erase(uri);
+    return {{{"jsonrpc", "2.0"},
+             {"method", "textDocument/publishDiagnostics"},
+             {"params", {{"uri", uri}, {"diagnostics", json::array()}}}}};
+  }
+  return {};
+}
+
+std::vector<json> Server::handle(const json& message) {
+  const bool is_request = message.is_object() && message.contains("id");
+  const json id = is_request ? message.at("id") : json(nullptr);
+  const auto method = message.is_object() ? message.find("method") : message.end();
+  if (!message.is_object() || (method != message.end() && !method->is_string())) {
+    return {failure(id, invalid_request, "A message is an object with a method.")};
+  }
+  if (method == message.end()) {
+    return {};  // a response: nothing was asked here
+  }
+  const json params = message.value("params", json::object());
+  try {
+    if (!is_request) {
+      return notification(*method, params);
+    }
+    return {{{"jsonrpc", "2.0"}, {"id", id}, {"result", request(*method, params)}}};
+  } catch (const ProtocolError& error) {
+    return is_request ? std::vector{failure(id, error.code, error.what())} : std::vector<json>{};
+  } catch (const json::exception& error) {
+    return is_request ? std::vector{failure(id, invalid_params, error.what())} : std::vector<json>{};
+  } catch (const std::exception& error) {
+    return is_request ? std::vector{failure(id, internal_error, error.what())} : std::vector<json>{};
+  }
+}
+
+}  // namespace hysteron::lsp

@@ -39,6 +39,7 @@ struct Point {
   bool writable = false;
   std::string meaning{};
   WriteRight right = WriteRight::parameters;  ///< where it is writable
+  bool counts = false;  ///< begins at zero with the task and only grows: of use as a rate, not as a level
 };
 
 struct PointWrite {

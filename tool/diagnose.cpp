@@ -196,6 +196,10 @@ Action add_diagnose(CLI::App& app) {
   app.add_option("--controller", options->controller.file, "The diagram that it ran.")->option_text("CONTROLLER.st");
   app.add_option("--controller-params", options->controller.parameters, "Its parameters.")->option_text("P.toml");
   app.add_option("--seed", options->diagnosis.seed, "Of the bootstrap.")->check(whole_number_from(0))->option_text("N");
+  app.add_option("--threads", options->diagnosis.threads,
+                 "How many threads work; all cores without it. The verdict is the same with any number.")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N");
   app.add_flag("--any-order", options->diagram.any_order, "The order of the statements means nothing.");
   app.add_flag("--json", options->json, "Prints verdict.json.");
   app.footer(std::string(diagnose_examples));

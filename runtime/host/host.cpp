@@ -7,9 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -21,6 +23,7 @@
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
+#include "runtime/modbus/tls_renewal.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
@@ -218,8 +221,38 @@ void watch_over(Guard& guard, Task& task) {
   task.guard_lost();
 }
 
+/// The certificate of the server in the course of years. Nothing to do where the server speaks in the clear.
+class CertificateCare {
+ public:
+  CertificateCare(modbus::Server* server, const modbus::TlsOptions* options, const modbus::TlsContext* serving)
+      : server_(server) {
+    if (serving != nullptr) {
+      renewal_.emplace(*options, *serving, modbus::TlsRenewal::Clock::now());
+    }
+  }
+
+  /// To be called as time goes by, from a thread that is not the task's.
+  void look() {
+    if (!renewal_) {
+      return;
+    }
+    const auto found = renewal_->look(modbus::TlsRenewal::Clock::now(), std::time(nullptr));
+    if (found.renewed) {
+      server_->renew(found.renewed);
+    }
+    for (const std::string& line : found.lines) {
+      tell("TLS", line);
+    }
+  }
+
+ private:
+  modbus::Server* server_;
+  std::optional<modbus::TlsRenewal> renewal_;
+};
+
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, CertificateCare& certificate,
+              nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
@@ -233,6 +266,7 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& 
       watch_over(*guard, task);
     }
     notices.look();
+    certificate.look();
     if (!is_stopping && stop_asked.load()) {
       tell_service_manager("STOPPING=1");
       is_stopping = true;
@@ -356,12 +390,13 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   task.attach(attachments);
 
   RunNotices notices(config, shape, task, attachments);
+  CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls.get());
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
-    wait_for(cyclic, task, guard.get(), notices, nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), notices, certificate, nanoseconds(shape.period));
     end = cyclic.end();
   }
   if (retainer) {

@@ -12,9 +12,11 @@
 #include <atomic>
 #include <cerrno>
 #include <map>
+#include <memory>
 #include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "runtime/modbus/allow_list.hpp"
 #include "runtime/modbus/descriptor.hpp"
@@ -66,6 +68,7 @@ class Server::Loop {
  public:
   Loop(RegisterMap map, PointDoor& door, const ServerOptions& options)
       : options_(options),
+        tls_(options.tls),
         map_(std::move(map)),
         responder_(map_, door, options.identity),
         allow_(networks(options)),
@@ -89,6 +92,7 @@ class Server::Loop {
     thread_.join();
   }
 
+  void renew(std::shared_ptr<const TlsContext> tls) { tls_.store(std::move(tls)); }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const RegisterMap& map() const { return map_; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
@@ -216,7 +220,7 @@ class Server::Loop {
       clients_.emplace(mark, Client{.socket = std::move(socket),
                                     .peer = peer,
                                     .origin = origin_of(peer),
-                                    .transport = make_transport(options_.tls.get(), options_.limits, now),
+                                    .transport = make_transport(tls_.load(), options_.limits, now),
                                     .connection = Connection(now, options_.limits)});
       add(counters_.accepted);
       counters_.open.store(clients_.size(), std::memory_order_relaxed);
@@ -336,6 +340,7 @@ class Server::Loop {
   }
 
   const ServerOptions options_;
+  std::atomic<std::shared_ptr<const TlsContext>> tls_;
   const RegisterMap map_;
   Responder responder_;
   const std::vector<Network> allow_;
@@ -359,6 +364,10 @@ Server::Server(RegisterMap map, PointDoor& door, const ServerOptions& options)
     : loop_(std::make_unique<Loop>(std::move(map), door, options)) {}
 
 Server::~Server() = default;
+
+void Server::renew(std::shared_ptr<const TlsContext> tls) {
+  loop_->renew(std::move(tls));
+}
 
 std::uint16_t Server::port() const {
   return loop_->port();

@@ -74,6 +74,8 @@ class Server {
   /// Closes all connections.
   ~Server();
 
+  /// Connections from now on are served by this certificate; those that are open go on. From any thread.
+  void renew(std::shared_ptr<const TlsContext> tls);
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] const RegisterMap& map() const;
   [[nodiscard]] ServerStatus status() const;

@@ -136,11 +136,18 @@ void require_now(const X509& certificate, const std::string& path, const Place& 
   }
 }
 
-void use_server_certificate(SSL_CTX& context, const TlsOptions& options, std::string& valid_until) {
+std::time_t seconds_of(const ASN1_TIME& time) {
+  std::tm parts{};
+  ASN1_TIME_to_tm(&time, &parts);
+  return ::timegm(&parts);
+}
+
+void use_server_certificate(SSL_CTX& context, const TlsOptions& options, std::string& valid_until, std::time_t& ends) {
   const std::string path = credential_path(options.certificate, certificate_credential);
   auto chain = read_certificates(path, "certificate", options.certificate_place);
   require_now(*chain.front(), path, options.certificate_place);
   valid_until = date_text(*X509_get0_notAfter(chain.front().get()));
+  ends = seconds_of(*X509_get0_notAfter(chain.front().get()));
   const std::string key_path = credential_path(options.key, key_credential);
   const KeyPointer key = read_key(key_path, options.key_place);
   if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
@@ -202,6 +209,11 @@ std::optional<std::string> role_of(const X509& certificate, bool& is_one) {
 
 }  // namespace
 
+std::vector<std::string> files_of(const TlsOptions& options) {
+  return {credential_path(options.certificate, certificate_credential), credential_path(options.key, key_credential),
+          credential_path(options.clients, clients_credential)};
+}
+
 void TlsContext::Free::operator()(ssl_ctx_st* context) const {
   SSL_CTX_free(context);
 }
@@ -224,7 +236,7 @@ TlsContext::TlsContext(const TlsOptions& options)
   SSL_CTX_set_verify(&context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_verify_depth(&context, longest_chain);
   SSL_CTX_set_max_cert_list(&context, longest_chain_bytes);
-  use_server_certificate(context, options, valid_until_);
+  use_server_certificate(context, options, valid_until_, ends_);
   trust_clients_of(context, options);
 }
 

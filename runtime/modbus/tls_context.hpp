@@ -3,10 +3,12 @@
 // in an extension of its certificate. Only the .cpp files of TLS see OpenSSL.
 #pragma once
 
+#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/modbus/responder.hpp"
 #include "support/diagnostic.hpp"
@@ -30,6 +32,9 @@ struct TlsOptions {
   Place clients_place{};
 };
 
+/// The files that are read, each by its path: the certificate, its key, who signs those of clients.
+[[nodiscard]] std::vector<std::string> files_of(const TlsOptions& options);
+
 class TlsContext {
  public:
   /// Throws InputError HY831 to HY834.
@@ -40,6 +45,7 @@ class TlsContext {
   [[nodiscard]] Rights rights_of(const x509_st& certificate) const;
   /// Until when the server's certificate counts: 2027-05-01.
   [[nodiscard]] const std::string& valid_until() const { return valid_until_; }
+  [[nodiscard]] std::time_t ends() const { return ends_; }
   [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
 
  private:
@@ -50,6 +56,7 @@ class TlsContext {
   std::map<std::string, Rights, std::less<>> roles_;
   Rights without_role_;
   std::string valid_until_;
+  std::time_t ends_ = 0;
 };
 
 /// The names under which a service manager hands over the files, because it may read what the service's user may not.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include "runtime/modbus/tls_session.hpp"
 
@@ -38,8 +39,8 @@ class PlainTransport final : public Transport {
 
 class TlsTransport final : public Transport {
  public:
-  TlsTransport(const TlsContext& context, const ConnectionLimits& limits, Instant now)
-      : session_(context, limits, now) {}
+  TlsTransport(std::shared_ptr<const TlsContext> context, const ConnectionLimits& limits, Instant now)
+      : context_(std::move(context)), session_(*context_, limits, now) {}
 
   Moved receive(const Descriptor& socket, std::span<std::uint8_t> into, Instant now) override {
     std::array<std::uint8_t, 4096> buffer{};
@@ -84,14 +85,16 @@ class TlsTransport final : public Transport {
     return {};
   }
 
+  std::shared_ptr<const TlsContext> context_;  ///< as long as the session: the server may have another by then
   TlsSession session_;
 };
 
 }  // namespace
 
-std::unique_ptr<Transport> make_transport(const TlsContext* tls, const ConnectionLimits& limits, Instant now) {
+std::unique_ptr<Transport> make_transport(std::shared_ptr<const TlsContext> tls, const ConnectionLimits& limits,
+                                          Instant now) {
   if (tls != nullptr) {
-    return std::make_unique<TlsTransport>(*tls, limits, now);
+    return std::make_unique<TlsTransport>(std::move(tls), limits, now);
   }
   return std::make_unique<PlainTransport>();
 }

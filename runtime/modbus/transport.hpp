@@ -50,8 +50,8 @@ class Transport {
   [[nodiscard]] virtual std::optional<Instant> next_deadline() const { return {}; }
 };
 
-/// Through TLS, or as they are where there is no context. The context must outlive it.
-[[nodiscard]] std::unique_ptr<Transport> make_transport(const TlsContext* tls, const ConnectionLimits& limits,
-                                                        Instant now);
+/// Through TLS, or as they are where there is no context.
+[[nodiscard]] std::unique_ptr<Transport> make_transport(std::shared_ptr<const TlsContext> tls,
+                                                        const ConnectionLimits& limits, Instant now);
 
 }  // namespace hysteron::runtime::modbus

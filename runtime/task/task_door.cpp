@@ -66,23 +66,22 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
       "9 not safe, 10 lost guard";
   add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
   add_status("task.fault", PointType::uint16, "1", faults);
-  add_status("task.cycles", PointType::uint64, "1", "cycles that were run");
-  add_status("task.skipped", PointType::uint64, "1", "periods that passed without a cycle");
-  add_status("task.elapsed", PointType::uint64, "1", "periods by the clock: cycles + skipped");
-  add_status("task.late_wake", PointType::uint64, "1", "late cycles: the thread was woken late");
-  add_status("task.late_cpu", PointType::uint64, "1", "late cycles: the cycle computed for too long");
-  add_status("task.late_preempted", PointType::uint64, "1", "late cycles: the thread was not run");
-  add_status("task.late_steal", PointType::uint64, "1", "late cycles: the hypervisor had the processor");
+  add_count("task.cycles", "cycles that were run");
+  add_count("task.skipped", "periods that passed without a cycle");
+  add_count("task.elapsed", "periods by the clock: cycles + skipped");
+  add_count("task.late_wake", "late cycles: the thread was woken late");
+  add_count("task.late_cpu", "late cycles: the cycle computed for too long");
+  add_count("task.late_preempted", "late cycles: the thread was not run");
+  add_count("task.late_steal", "late cycles: the hypervisor had the processor");
   add_status("task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later");
   add_status("task.lateness_worst", PointType::int64, "ns", "the latest start");
   add_status("task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start");
-  add_status("task.commits", PointType::uint64, "1",
-             "sets of parameters applied, and on the disk where they are retained");
+  add_count("task.commits", "sets of parameters applied, and on the disk where they are retained");
   add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
-  add_status("task.trace_dropped", PointType::uint64, "1", "steps that the trace had no room for");
-  add_status("task.write_failures", PointType::uint64, "1", "writes of the trace or of retained values that failed");
-  add_status("task.not_taken", PointType::uint64, "1", "values of devices beyond the limits of their input, or none");
-  add_status("task.faults", PointType::uint64, "1", "faults that began");
+  add_count("task.trace_dropped", "steps that the trace had no room for");
+  add_count("task.write_failures", "writes of the trace or of retained values that failed");
+  add_count("task.not_taken", "values of devices beyond the limits of their input, or none");
+  add_count("task.faults", "faults that began");
   add_status("task.last_fault", PointType::uint16, "1", faults);
   first_command_ = points_.size();
   add_command("task.commit", WriteRight::parameters,
@@ -98,6 +97,11 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
 
 void TaskDoor::add_status(const char* name, PointType type, const char* unit, const char* meaning) {
   add({.name = name, .kind = PointKind::status, .type = type, .unit = unit, .meaning = meaning});
+}
+
+void TaskDoor::add_count(const char* name, const char* meaning) {
+  add_status(name, PointType::uint64, "1", meaning);
+  points_.back().counts = true;
 }
 
 void TaskDoor::add_command(const char* name, WriteRight right, const char* meaning) {

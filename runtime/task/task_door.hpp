@@ -68,6 +68,7 @@ class TaskDoor final : public PointDoor {
 
   void add(Point point) { points_.push_back(std::move(point)); }
   void add_status(const char* name, PointType type, const char* unit, const char* meaning);
+  void add_count(const char* name, const char* meaning);
   void add_command(const char* name, WriteRight right, const char* meaning);
 
   std::vector<Point> points_;

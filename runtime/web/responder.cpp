@@ -55,7 +55,8 @@ const std::vector<Header>& common_headers() {
 Responder::Responder(PointDoor& door, const Subject& subject, Access access)
     : door_(door),
       access_(std::move(access)),
-      description_(description_text(subject, door, access_.can_write(), access_.reading_needs_token())) {}
+      description_(description_text(subject, door, access_.can_write(), access_.reading_needs_token())),
+      metrics_(door.points()) {}
 
 Answer Responder::answer(const Request& request) {
   if (Answer refused = refused_sender(request); refused.status != 200) {
@@ -95,7 +96,8 @@ Answer Responder::read(const Request& request) {
     }
   }
   const bool description = request.target == "/api/description";
-  if (!description && request.target != "/api/values") {
+  const bool metrics = request.target == metrics_target;
+  if (!description && !metrics && request.target != "/api/values") {
     return refusal(404, "There is nothing of this name.");
   }
   if (access_.reading_needs_token() && !is_authorized(access_, request.authorization)) {
@@ -105,6 +107,9 @@ Answer Responder::read(const Request& request) {
     return {.body = description_};
   }
   door_.read_live(live_);
+  if (metrics) {
+    return {.type = metrics_type, .body = metrics_.text(live_.values)};
+  }
   return {.body = values_text(live_)};
 }
 

@@ -4,7 +4,8 @@
 //   GET  /, /page.js, /page.css, /dygraph.js, /dygraph.css    the page
 //   GET  /api/description    what there is to be seen
 //   GET  /api/values         the values of the newest cycle
-//   GET  /api/stream         the same again and again, over a WebSocket
+//   GET  /metrics            the same for a Prometheus server
+//   GET  /api/stream         the values again and again, over a WebSocket
 //   POST /api/stage          {"HYST.C1": 1.5, …}: these wait for a commit
 //   POST /api/commit         all that wait count from the next step on, or none
 //   POST /api/discard        none of them waits any longer
@@ -19,6 +20,7 @@
 #include "runtime/point.hpp"
 #include "runtime/web/access.hpp"
 #include "runtime/web/live_text.hpp"
+#include "runtime/web/metrics.hpp"
 
 namespace hysteron::runtime::web {
 
@@ -69,6 +71,7 @@ class Responder {
   PointDoor& door_;
   Access access_;
   std::string description_;
+  Metrics metrics_;
   LiveValues live_{};
 };
 

@@ -31,13 +31,14 @@ const Arrows& allowed() {
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records", "plots"}},
       {"bindings", {"blocks", "codegen", "tuning", "diagnosis", "support", "records", "plots"}},
-      {"tool", {"lsp", "blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
+      {"fleet", {"support"}},
+      {"tool", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "support", "records", "plots"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "plots"}},
       {"tests",
-       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "lsp", "tool", "support", "records", "plots", "examples",
-        "bench", "bindings"}},
+       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "tool", "support", "records", "plots",
+        "examples", "bench", "bindings"}},
   };
   return arrows;
 }

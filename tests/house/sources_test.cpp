@@ -43,8 +43,8 @@ constexpr std::array<Allowed, 6> allowed_words{{
 }};
 
 std::vector<SourceText> all_sources() {
-  return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "plots", "records", "runtime",
-                       "support", "tests", "tool", "trials", "tuning"},
+  return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "fleet", "plots",
+                       "records", "runtime", "support", "tests", "tool", "trials", "tuning"},
                       {".hpp", ".cpp", ".py"});
 }
 

@@ -140,6 +140,14 @@ class Schemas(unittest.TestCase):
     def test_map(self):
         self.holds("map", self.printed("map", "plant.st", "--format", "json"))
 
+    def test_fleet(self):
+        (self.folder / "broken.csv").write_text("no record")
+        (self.folder / "fleet.csv").write_text("machine,when,diagram,params,log\nA,2026,plant.st,p.toml,log.csv\n"
+                                               "B,,plant.st,p.toml,broken.csv\n")
+        self.holds("fleet", self.printed("fleet", "fleet.csv", "--out", "fleet", "--effort", "0.01", "--share", "2/2", "--json",
+                                         codes=(1,)),
+                   self.printed("fleet", "fleet.csv", "--out", "fleet", "--effort", "0.01", "--json", codes=(1,)))
+
     def test_verdict(self):
         (self.folder / "still.csv").write_text("t,U,Y\n" + "".join(f"{k * 0.001:.3f},0,0\n" for k in range(100)))
         self.holds("verdict", self.printed("diagnose", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "found",

@@ -69,7 +69,8 @@ LoopStatistics run_task(Traffic& traffic, const std::function<bool(std::uint64_t
     for (int value = 1; !done.load(); ++value) {
       const std::string set = "{\"G.A\": " + std::to_string(value) + ", \"G.B\": " + std::to_string(-value) + "}";
       if (hand.ask("POST", "/api/stage", test::authorized, set).status == 200 &&
-          hand.ask("POST", "/api/commit", test::authorized).status == 200) {
+          hand.ask("POST", "/api/commit", test::authorized).status == 200 &&
+          hand.ask("GET", "/metrics").status == 200) {
         ++traffic.commits;
       }
     }

@@ -88,6 +88,16 @@ TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {
   EXPECT_EQ(values["staged"], json::array());
 }
 
+TEST(WebResponder, GivesMetricsWithWhatCountsNotWhatIsStaged) {
+  PageBench bench({.token = test::token});
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2.5})").status, 200U);
+  const Answer answer = bench.get("/metrics");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.type, metrics_type);
+  EXPECT_NE(answer.body.find("\nhysteron_parameter_g_a{point=\"G.A\",unit=\"mm\"} 1\n"), std::string::npos);
+  EXPECT_EQ(bench.post("/metrics").status, 404U);
+}
+
 TEST(WebResponder, ASetIsStagedThenCommittedWhole) {
   PageBench bench({.token = test::token});
   EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2.5, "G.B": -2.5})").status, 200U);
@@ -156,7 +166,7 @@ TEST(WebResponder, WhoWritesHasTheToken) {
 
 TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
   PageBench bench({.is_loopback = false, .token = test::token});
-  for (const char* const target : {"/api/description", "/api/values"}) {
+  for (const char* const target : {"/api/description", "/api/values", "/metrics"}) {
     EXPECT_EQ(bench.get(target).status, 401U);
     EXPECT_EQ(bench.get(target).body.find("ACCUMULATOR"), std::string::npos);
     EXPECT_EQ(bench.get(target, bearer).status, 200U);
@@ -166,7 +176,7 @@ TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
 
 TEST(WebResponder, PagesOfOthersMayNotAsk) {
   PageBench bench({.token = test::token});
-  for (const char* const target : {"/", "/api/values", "/api/description"}) {
+  for (const char* const target : {"/", "/api/values", "/api/description", "/metrics"}) {
     EXPECT_EQ(bench.responder.answer({.method = "GET", .target = target, .host = "evil.example"}).status, 421U);
     EXPECT_EQ(bench.responder
                   .answer({.method = "GET", .target = target, .host = "localhost", .origin = "http://evil.example"})

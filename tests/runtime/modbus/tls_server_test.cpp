@@ -88,6 +88,24 @@ TEST_F(TlsServer, AnswersByTls12And13) {
   EXPECT_EQ(server_->status().requests, 8U);
 }
 
+TEST_F(TlsServer, ANewCertificateIsShownToNewConnectionsAndLeavesOpenOnesAlone) {
+  const auto shown = [](const ClientSocket& client) {
+    const std::unique_ptr<X509, decltype(&X509_free)> certificate(SSL_get1_peer_certificate(client.tls()), X509_free);
+    return X509_NAME_hash_ex(X509_get_subject_name(certificate.get()), nullptr, nullptr, nullptr);
+  };
+  const auto context = files_.client_of("all");
+  const ClientSocket before = connect(context);
+  const auto old = shown(before);
+  const Certificate fresh({.name = "renewed", .for_clients = false}, &files_.authority);
+  files_.folder.write("server.pem", fresh.certificate_pem());
+  files_.private_file("server.key", fresh.key_pem());
+  server_->renew(std::make_shared<const TlsContext>(files_.options()));
+  const ClientSocket after = connect(context);
+  EXPECT_NE(shown(after), old);
+  EXPECT_EQ(ask(before, write_to(0)), write_to(0)) << "as before";
+  EXPECT_EQ(ask(after, write_to(1)), write_to(1));
+}
+
 TEST_F(TlsServer, ARoleMayDoWhatItIsGivenAndIsElseAnsweredByException01) {
   const ClientSocket reader = connect(files_.client_of("reader"));
   EXPECT_EQ(ask(reader, test::read_one), framed(1, {3, 2, 0, 0}));

@@ -1,0 +1,179 @@
+#include "fleet/manifest.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "support/diagnostic.hpp"
+#include "support/errors.hpp"
+#include "support/text_file.hpp"
+
+namespace hysteron::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Column {
+  std::string_view name;
+  std::string Unit::*member;
+  bool required;
+};
+constexpr std::array<Column, 6> columns{{{"machine", &Unit::machine, true},
+                                         {"diagram", &Unit::diagram, true},
+                                         {"params", &Unit::parameters, true},
+                                         {"log", &Unit::log, true},
+                                         {"when", &Unit::when, false},
+                                         {"group", &Unit::group, false}}};
+
+std::string trimmed(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t");
+  return begin == std::string_view::npos ? std::string()
+                                         : std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
+}
+
+/// The cells of a line; nothing where a quotation mark is not closed, or text follows one that is.
+std::optional<std::vector<std::string>> cells_of(std::string_view line) {
+  std::vector<std::string> cells;
+  std::size_t at = 0;
+  while (true) {
+    const auto begin = std::min(line.find_first_not_of(" \t", at), line.size());
+    std::string cell;
+    if (begin < line.size() && line[begin] == '"') {
+      std::size_t i = begin + 1;
+      for (; i < line.size(); ++i) {
+        if (line[i] != '"') {
+          cell += line[i];
+        } else if (i + 1 < line.size() && line[i + 1] == '"') {
+          cell += line[i++];
+        } else {
+          break;
+        }
+      }
+      const bool closed = i < line.size();
+      at = closed ? std::min(line.find(',', i), line.size()) : line.size();
+      if (!closed || !trimmed(line.substr(i + 1, at - i - 1)).empty()) {
+        return std::nullopt;
+      }
+    } else {
+      const auto end = std::min(line.find(',', at), line.size());
+      cell = trimmed(line.substr(at, end - at));
+      at = end;
+    }
+    cells.push_back(std::move(cell));
+    if (at >= line.size()) {
+      return cells;
+    }
+    ++at;
+  }
+}
+
+std::vector<std::string> names_of_columns() {
+  std::vector<std::string> names;
+  for (const Column& one : columns) {
+    names.emplace_back(one.name);
+  }
+  return names;
+}
+
+/// Which member each cell is; a null one where its name is wrong, which is reported.
+std::vector<const Column*> header_of(const std::vector<std::string>& cells, const Place& place, Diagnostics& found) {
+  std::vector<const Column*> header;
+  for (const std::string& cell : cells) {
+    const auto* const one = std::ranges::find(columns, std::string_view(cell), &Column::name);
+    const bool known = one != columns.end();
+    if (!known || std::ranges::find(header, one) != header.end()) {
+      found.error(error::duplicate_column, place,
+                  fmt::format("column \"{}\" of the manifest is {}.", cell, known ? "there twice" : "unknown"),
+                  fmt::format("remove it; columns are {}.", fmt::join(names_of_columns(), ", ")));
+    }
+    header.push_back(known ? one : nullptr);
+  }
+  for (const Column& one : columns) {
+    if (one.required && std::ranges::find(header, &one) == header.end()) {
+      found.error(error::missing_column, place, fmt::format("the manifest has no column {}.", one.name),
+                  fmt::format("add it; the first line names the columns, as machine,diagram,params,log,when."));
+    }
+  }
+  return header;
+}
+
+Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Column*>& header, const Place& place,
+             Diagnostics& found) {
+  Unit unit{.line = place.line};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (header[i]->required && cells[i].empty()) {
+      found.error(error::bad_usage, place, fmt::format("the cell of {} is empty.", header[i]->name),
+                  "write it, or remove the line.");
+    }
+    unit.*(header[i]->member) = cells[i];
+  }
+  const fs::path folder = fs::path(place.file).parent_path();
+  for (std::string* const file : {&unit.diagram, &unit.parameters, &unit.log}) {
+    std::error_code unknown;
+    if (!file->empty()) {
+      *file = (folder / *file).string();  // an absolute name stays as it is
+      if (file != &unit.log && !fs::is_regular_file(*file, unknown)) {
+        found.error(error::unreadable_file, place, fmt::format("there is no file {}.", *file),
+                    "correct its name, which is relative to the manifest.");
+      }
+    }
+  }
+  return unit;
+}
+
+}  // namespace
+
+std::vector<Unit> read_manifest(const std::string& path) {
+  const std::string text = read_text_file(path);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) {
+    rest.remove_prefix(3);
+  }
+  Diagnostics found;
+  std::vector<Unit> units;
+  std::vector<const Column*> header;
+  for (Place place{.file = path, .line = 1}; !rest.empty(); ++place.line) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    line.remove_suffix(line.ends_with('\r') ? 1 : 0);
+    if (line.find_first_not_of(" \t") == std::string_view::npos || line.starts_with('#')) {
+      continue;
+    }
+    const auto cells = cells_of(line);
+    if (!cells || (!header.empty() && cells->size() != header.size())) {
+      found.error(error::ragged_row, place,
+                  !cells ? std::string("a quotation mark has no counterpart in its line.")
+                         : fmt::format("the line has {} cells, the header {}.", cells->size(), header.size()),
+                  "correct the line; a cell with a comma stands in quotation marks.");
+      if (header.empty()) {
+        break;
+      }
+    } else if (header.empty()) {
+      header = header_of(*cells, place, found);
+      if (found.has_errors()) {
+        break;  // what the lines mean is not known
+      }
+    } else {
+      units.push_back(unit_of(*cells, header, place, found));
+    }
+  }
+  if (!found.has_errors() && units.empty()) {
+    found.error(header.empty() ? error::missing_header : error::bad_usage, {.file = path},
+                header.empty() ? "the manifest has no header." : "the manifest has no record.",
+                header.empty() ? "begin with a line that names the columns: machine,diagram,params,log,when."
+                               : "add a line for each record of a machine.");
+  }
+  if (found.has_errors()) {
+    throw InputError(found);
+  }
+  return units;
+}
+
+}  // namespace hysteron::fleet

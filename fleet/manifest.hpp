@@ -1,0 +1,30 @@
+// The manifest of a fleet: a line for each record of a machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hysteron::fleet {
+
+/// One record of one machine: what one diagnosis is made of.
+struct Unit {
+  std::string machine{};
+  std::string when{};   ///< of the record, as the manifest has it; empty where it has none
+  std::string group{};  ///< of machines of one kind; empty where it has none
+  std::string diagram{};
+  std::string parameters{};
+  std::string log{};
+  std::uint32_t line = 0;  ///< of the manifest, from 1
+};
+
+/// Reads a manifest: CSV with the columns machine, diagram, params and log, and if wanted when and group, in any order.
+/// A cell with a comma or a quotation mark stands in quotation marks (RFC 4180), within its line. Empty lines and lines
+/// that begin with # are skipped. Names of files are relative to the manifest.
+///
+/// A diagram or parameter file that is not there is an error of the manifest. A record that is not there is none: it
+/// fails alone. Throws InputError with all errors: HY100, HY502 a column that is missing, HY503 a column that is there
+/// twice or unknown, HY504 a line with other cells than the header, HY509 no header, HY730 an empty cell or no unit.
+[[nodiscard]] std::vector<Unit> read_manifest(const std::string& path);
+
+}  // namespace hysteron::fleet

@@ -1,0 +1,46 @@
+// The results of a fleet as one table, derived from the folders of the units at any time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fleet/manifest.hpp"
+#include "fleet/result.hpp"
+
+namespace hysteron::fleet {
+
+/// A line of the table: a unit, and what its verdict.json says.
+struct Row {
+  Unit unit{};
+  std::string key{};
+  Result result{};
+  std::string verdict{};     ///< empty where there is none
+  std::string effects{};     ///< `hysteresis-ro at U + lag at Y`; empty where none is named
+  double confidence = 0.0;   ///< not a number where there is no verdict; so are those below
+  double nominal_rms = 0.0;  ///< of the gap, in `unit_of_gap`
+  double improved_rms = 0.0;
+  std::string unit_of_gap{};
+};
+
+/// In the order of the manifest.
+[[nodiscard]] std::vector<Row> rows_of(const std::vector<Unit>& units, const std::vector<std::string>& keys,
+                                       const std::filesystem::path& output);
+
+/// How many rows have each status, in the order of Status.
+[[nodiscard]] std::array<std::size_t, 4> counts_of(const std::vector<Row>& rows);
+
+/// CSV with a header. Its bytes depend on the results alone, not on when or by whom they were made.
+[[nodiscard]] std::string table_csv(const std::vector<Row>& rows);
+
+/// The same as JSON, with counts; its schema is in docs/reference/schemas/fleet.json.
+[[nodiscard]] std::string table_json(const std::vector<Row>& rows, const std::string& version);
+
+/// Writes results.csv of what lies there now. Of several commands on one folder, none puts an older table over a newer
+/// one. Throws InputError HY700. Gives back the rows.
+std::vector<Row> write_table(const std::vector<Unit>& units, const std::vector<std::string>& keys,
+                             const std::filesystem::path& output);
+
+}  // namespace hysteron::fleet

@@ -1,0 +1,90 @@
+#include "runtime/modbus/tls_renewal.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <utility>
+
+#include "support/errors.hpp"
+
+namespace hysteron::runtime::modbus {
+namespace {
+
+constexpr std::time_t seconds_a_day = 86'400;
+
+std::string days_text(std::time_t days) {
+  return days == 1 ? "1 day" : fmt::format("{} days", days);
+}
+
+}  // namespace
+
+TlsRenewal::TlsRenewal(TlsOptions options, const TlsContext& serving, Clock::time_point now)
+    : options_(std::move(options)),
+      read_(stamps()),
+      seen_(read_),
+      ends_(serving.ends()),
+      valid_until_(serving.valid_until()),
+      next_(now) {}
+
+std::vector<TlsRenewal::Stamp> TlsRenewal::stamps() const {
+  std::vector<Stamp> list;
+  for (const std::string& file : files_of(options_)) {
+    struct stat status {};
+    list.push_back(::stat(file.c_str(), &status) != 0 ? Stamp{}
+                                                      : Stamp{.device = status.st_dev,
+                                                              .node = status.st_ino,
+                                                              .bytes = status.st_size,
+                                                              .seconds = status.st_mtim.tv_sec,
+                                                              .nanoseconds = status.st_mtim.tv_nsec});
+  }
+  return list;
+}
+
+TlsRenewal::Found TlsRenewal::look(Clock::time_point now, std::time_t today) {
+  Found found;
+  if (now < next_) {
+    return found;
+  }
+  next_ = now + interval;
+  auto newest = stamps();
+  const bool rests = newest == seen_;
+  seen_ = std::move(newest);
+  if (rests && seen_ != read_) {
+    read_again(found);
+  }
+  // Once a day of the clock: one that jumps tells once more at the most.
+  const std::time_t day = today / seconds_a_day;
+  if (ends_ - today < days_before * seconds_a_day && told_ != day) {
+    told_ = day;
+    found.lines.push_back(
+        ends_ > today
+            ? fmt::format("the server's certificate ends in {}, on {}; have a new one signed and write it over {}, "
+                          "it is read while the task runs",
+                          days_text((ends_ - today) / seconds_a_day), valid_until_, files_of(options_).front())
+            : fmt::format("the server's certificate ended on {}: clients refuse it, the control goes on; write a new "
+                          "one over {}, it is read while the task runs",
+                          valid_until_, files_of(options_).front()));
+  }
+  return found;
+}
+
+void TlsRenewal::read_again(Found& found) {
+  read_ = seen_;
+  try {
+    found.renewed = std::make_shared<const TlsContext>(options_);
+    ends_ = found.renewed->ends();
+    valid_until_ = found.renewed->valid_until();
+    told_.reset();
+    found.lines.push_back(fmt::format("new certificate, until {}, for connections from now on", valid_until_));
+  } catch (const InputError& refused) {
+    const Diagnostic& first = refused.diagnostics().all().front();
+    found.lines.push_back(
+        fmt::format("the new files are not taken, the certificate until {} goes on: HY{}: {} Mend: {}", valid_until_,
+                    first.number, first.cause, first.mend));
+  } catch (const std::exception& failed) {
+    found.lines.push_back(
+        fmt::format("the new files are not taken, the certificate until {} goes on: {}", valid_until_, failed.what()));
+  }
+}
+
+}  // namespace hysteron::runtime::modbus

@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "fleet/manifest.hpp"
+#include "fleet/run.hpp"
+#include "fleet/table.hpp"
+#include "support/errors.hpp"
+#include "support/numbers.hpp"
+#include "support/overwriting.hpp"
+#include "support/progress.hpp"
+#include "tool/commands.hpp"
+#include "tool/option_values.hpp"
+#include "tool/version.hpp"
+#include "tool/writable.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view fleet_examples = R"(Examples:
+  hysteron fleet fleet.csv --out fleet
+  hysteron fleet fleet.csv --out fleet --workers 8 --time-limit 120 --retry
+  hysteron fleet fleet.csv --out fleet --share 1/2
+
+MANIFEST is CSV with a line for each record. Its columns are machine,diagram,params,log and, if wanted, when,group; names of
+files are relative to it. Each record is diagnosed by a process of its own, with limits of time and memory.
+DIR gets results.csv, and a folder for each record with what `hysteron diagnose` writes, result.json and messages.txt.
+A second run does what has changed: machine, time, diagram, parameters, record, options or version. It may be killed at any
+moment; the same command goes on. Several commands may work in one folder at once, each on its share or all on the whole.
+Exit codes: 0 each record of the share has a verdict; 1 some have none, results.csv says why; 2 an error in manifest or command line.
+)";
+
+struct FleetOptions {
+  std::string manifest;
+  std::string output;
+  std::string share;
+  double effort = 1.0;
+  double material = 0.0;
+  fleet::RunOptions run;
+  bool json = false;
+};
+
+/// `K/N`, both whole numbers from 1, K at most N.
+void read_share(const std::string& text, fleet::RunOptions& run) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, run.share);
+  const bool divided = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
+  const auto second = divided ? std::from_chars(first.ptr + 1, end, run.shares) : first;
+  if (!divided || second.ec != std::errc() || second.ptr != end || run.share < 1 || run.share > run.shares) {
+    throw InputError(error::bad_usage, {}, fmt::format("--share is \"{}\", which is no share.", text),
+                     "write K/N with K from 1 to N, as 1/4.");
+  }
+}
+
+int run_fleet(FleetOptions options, Console& console) {
+  refuse_unwritable_folder(options.output);
+  refuse_to_overwrite({.file = options.output + "/results.csv", .mend = "give another folder for --out."},
+                      {{.file = options.manifest}});
+  if (!options.share.empty()) {
+    read_share(options.share, options.run);
+  }
+  const auto units = fleet::read_manifest(options.manifest);
+  // One thread each: the workers are what runs at once.
+  options.run.options = {"--threads", "1", "--effort", number_text(options.effort)};
+  if (options.material > 0.0) {
+    options.run.options.insert(options.run.options.end(), {"--material", number_text(options.material)});
+  }
+  options.run.program = std::filesystem::read_symlink("/proc/self/exe").string();
+  options.run.version = version;
+  options.run.output = options.output;
+  Progress line("Diagnosing");
+  options.run.progress = [&](std::size_t done, std::size_t all, const fleet::Unit& last) {
+    line.update(static_cast<double>(done) / static_cast<double>(all),
+                fmt::format("{} of {}, {}", done, all, last.machine));
+  };
+  const fleet::Worked worked = fleet::work_off(units, options.manifest, options.run);
+  line.finish();
+  const auto rows = fleet::write_table(units, worked.keys, options.output);
+  const auto counts = fleet::counts_of(rows);
+  if (options.json) {
+    console.print(fleet::table_json(rows, options.run.version));
+  } else {
+    console.print(fmt::format("{} of {} records have a verdict, {} refused, {} failed, {} open; {} diagnosed now\n",
+                              counts[1], rows.size(), counts[2], counts[3], counts[0], worked.ran));
+    for (const fleet::Row& row : rows) {
+      if (!row.result.reason.empty()) {
+        console.print(fmt::format("  {}{}{}: {}: {}\n", row.unit.machine, row.unit.when.empty() ? "" : " of ",
+                                  row.unit.when, name_of(row.result.status), row.result.reason));
+      }
+    }
+    console.print(options.output + "/results.csv\n");
+  }
+  for (std::size_t i = options.run.share - 1; i < rows.size(); i += options.run.shares) {
+    if (rows[i].result.status != fleet::Status::Done) {
+      return exit_findings;
+    }
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+Action add_fleet(CLI::App& app) {
+  const auto options = std::make_shared<FleetOptions>();
+  options->run.workers = std::max(1U, std::thread::hardware_concurrency());
+  app.add_option("MANIFEST", options->manifest, "The manifest, CSV.")->required()->option_text("MANIFEST.csv");
+  app.add_option("--out", options->output, "A folder for the results.")->required()->option_text("DIR");
+  app.add_option("--workers", options->run.workers, "How many processes at once; as many as cores without it.")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N");
+  app.add_option("--time-limit", options->run.time_limit, "Seconds for each record, 600 without it.")
+      ->check(CLI::Range(0.001, 1e6))
+      ->option_text("SECONDS");
+  app.add_option("--memory", options->run.megabytes, "Megabytes of address space for each record, 4096 without it.")
+      ->check(CLI::Range(1, 1 << 20))
+      ->option_text("MB");
+  app.add_option("--effort", options->effort, "As of `hysteron diagnose`.")
+      ->check(number_above_zero())
+      ->option_text("E");
+  app.add_option("--material", options->material, "As of `hysteron diagnose`.")
+      ->check(number_from_zero())
+      ->option_text("SIZE");
+  app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone.")->option_text("K/N");
+  app.add_flag("--retry", options->run.retry, "Does records that had failed again, as after a larger limit.");
+  app.add_flag("--json", options->json, "Prints the results as JSON.");
+  app.footer(std::string(fleet_examples));
+  return [options](Console& console) { return run_fleet(*options, console); };
+}
+
+}  // namespace hysteron::tool

@@ -10,9 +10,11 @@
 #include <string_view>
 #include <system_error>
 
+#include "support/byte_order_mark.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
+#include "support/trimmed.hpp"
 
 namespace hysteron::fleet {
 namespace {
@@ -30,12 +32,6 @@ constexpr std::array<Column, 6> columns{{{"machine", &Unit::machine, true},
                                          {"log", &Unit::log, true},
                                          {"when", &Unit::when, false},
                                          {"group", &Unit::group, false}}};
-
-std::string trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(" \t");
-  return begin == std::string_view::npos ? std::string()
-                                         : std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
-}
 
 /// The cells of a line; nothing where a quotation mark is not closed, or text follows one that is.
 std::optional<std::vector<std::string>> cells_of(std::string_view line) {
@@ -97,7 +93,7 @@ std::vector<const Column*> header_of(const std::vector<std::string>& cells, cons
   for (const Column& one : columns) {
     if (one.required && std::ranges::find(header, &one) == header.end()) {
       found.error(error::missing_column, place, fmt::format("the manifest has no column {}.", one.name),
-                  fmt::format("add it; the first line names the columns, as machine,diagram,params,log,when."));
+                  "add it; the first line names the columns, as machine,diagram,params,log,when.");
     }
   }
   return header;
@@ -132,8 +128,8 @@ Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Colu
 std::vector<Unit> read_manifest(const std::string& path) {
   const std::string text = read_text_file(path);
   std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) {
-    rest.remove_prefix(3);
+  if (rest.starts_with(byte_order_mark)) {
+    rest.remove_prefix(byte_order_mark.size());
   }
   Diagnostics found;
   std::vector<Unit> units;
@@ -143,7 +139,7 @@ std::vector<Unit> read_manifest(const std::string& path) {
     std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     line.remove_suffix(line.ends_with('\r') ? 1 : 0);
-    if (line.find_first_not_of(" \t") == std::string_view::npos || line.starts_with('#')) {
+    if (trimmed(line).empty() || line.starts_with('#')) {
       continue;
     }
     const auto cells = cells_of(line);

@@ -31,6 +31,7 @@ struct Running {
   Claim claim;
   fs::path folder;  ///< that becomes the unit's
   Child child;
+  bool ended = false;
   bool out_of_time = false;
 };
 
@@ -146,7 +147,9 @@ class Pool {
       const double milliseconds = std::clamp(std::ceil(1000.0 * seconds), 0.0, 60000.0);
       (void)poll(ends.data(), ends.size(), static_cast<int>(milliseconds));
     }
-    for (Running& one : running_) {
+    for (std::size_t i = 0; i < running_.size(); ++i) {
+      Running& one = running_[i];
+      one.ended = ends[i].revents != 0;
       if (one.child.seconds() >= options_.time_limit) {
         one.out_of_time = true;
         one.child.kill();
@@ -157,8 +160,7 @@ class Pool {
   std::size_t finish_ended() {
     std::size_t finished = 0;
     for (std::size_t i = 0; i < running_.size();) {
-      pollfd end{.fd = running_[i].child.descriptor(), .events = POLLIN, .revents = 0};
-      if (running_[i].out_of_time || poll(&end, 1, 0) == 1) {
+      if (running_[i].out_of_time || running_[i].ended) {
         finish(running_[i]);
         running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
         ++finished;
@@ -171,11 +173,8 @@ class Pool {
 
   void finish(Running& one) {
     one.child.kill();  // what it has started goes with it
-    const double seconds = one.child.seconds();
     const int code = one.child.wait();
-    Result result = result_of(one, code, options_);
-    result.seconds = seconds;
-    write_result(one.folder, units_[one.unit], options_.version, result);
+    write_result(one.folder, units_[one.unit], options_.version, result_of(one, code, options_));
     const fs::path place = folder_of(options_.output, keys_[one.unit]);
     const fs::path before = work() / fmt::format("{}.before", keys_[one.unit]);
     if (fs::exists(place)) {

@@ -9,7 +9,9 @@
 
 #include "fleet/claim.hpp"
 #include "support/atomic_file.hpp"
+#include "support/csv_cell.hpp"
 #include "support/diagnostic.hpp"
+#include "support/json_number.hpp"
 #include "support/numbers.hpp"
 #include "support/text_file.hpp"
 
@@ -46,23 +48,9 @@ void read_verdict(Row& row, const fs::path& file) {
   }
 }
 
-std::string cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    return std::string(text);
-  }
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  }
-  return quoted + '"';
-}
-
-std::string cell(double value) {
+/// Empty where there is none.
+std::string number_cell(double value) {
   return std::isfinite(value) ? number_text(value) : "";
-}
-
-ordered_json json_of(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
 }  // namespace
@@ -90,10 +78,10 @@ std::string table_csv(const std::vector<Row>& rows) {
   std::string text =
       "machine,when,group,status,verdict,effects,confidence,nominal_rms,improved_rms,unit,reason,folder\n";
   for (const Row& row : rows) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(row.unit.machine), cell(row.unit.when),
-                        cell(row.unit.group), name_of(row.result.status), row.verdict, cell(row.effects),
-                        cell(row.confidence), cell(row.nominal_rms), cell(row.improved_rms), cell(row.unit_of_gap),
-                        cell(row.result.reason), folder_of("", row.key).string());
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.unit.machine), csv_cell(row.unit.when),
+                        csv_cell(row.unit.group), name_of(row.result.status), row.verdict, csv_cell(row.effects),
+                        number_cell(row.confidence), number_cell(row.nominal_rms), number_cell(row.improved_rms),
+                        csv_cell(row.unit_of_gap), csv_cell(row.result.reason), folder_of("", row.key).string());
   }
   return text;
 }
@@ -112,12 +100,12 @@ std::string table_json(const std::vector<Row>& rows, const std::string& version)
                              {"status", name_of(row.result.status)},
                              {"verdict", row.verdict},
                              {"effects", row.effects},
-                             {"confidence", json_of(row.confidence)},
-                             {"nominal_rms", json_of(row.nominal_rms)},
-                             {"improved_rms", json_of(row.improved_rms)},
+                             {"confidence", number_or_null<ordered_json>(row.confidence)},
+                             {"nominal_rms", number_or_null<ordered_json>(row.nominal_rms)},
+                             {"improved_rms", number_or_null<ordered_json>(row.improved_rms)},
                              {"unit", row.unit_of_gap},
                              {"reason", row.result.reason},
-                             {"seconds", json_of(row.result.seconds)},
+                             {"seconds", number_or_null<ordered_json>(row.result.seconds)},
                              {"folder", folder_of("", row.key).string()}});
   }
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

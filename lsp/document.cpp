@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "codegen/language/lexer.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::lsp {
@@ -65,8 +65,8 @@ Position position_of(std::string_view text, std::size_t offset, Encoding encodin
 
 std::size_t offset_of_place(std::string_view text, std::uint32_t line, std::uint32_t column) {
   auto offset = line_start(text, line > 0 ? line - 1 : 0);
-  if (offset == 0 && text.starts_with(language::byte_order_mark)) {
-    offset = language::byte_order_mark.size();
+  if (offset == 0 && text.starts_with(byte_order_mark)) {
+    offset = byte_order_mark.size();
   }
   const auto end = line_end(text, offset);
   for (; column > 1 && offset < end; --column) {

@@ -1,10 +1,12 @@
 // Content-Length framing of LSP 3.17, "Base Protocol".
+#include <algorithm>
 #include <charconv>
 #include <istream>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "lsp/server.hpp"
 #include "support/names.hpp"

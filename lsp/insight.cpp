@@ -42,11 +42,16 @@ std::string_view word(std::string_view text, const Token& token) {
   return text.substr(token.offset, token.length);
 }
 
+/// Whether an offset lies in a stretch of the text, or at one of its ends.
+bool touches(const language::Span& span, std::size_t offset) {
+  return span.offset <= offset && offset <= span.offset + span.length;
+}
+
 /// The variable of a name that is nearest to an offset: of the block around it, else of any block of the file.
 const language::Variable* variable_in(const language::SourceFile& tree, std::string_view name, std::size_t offset) {
   const language::Variable* found = nullptr;
   for (const auto& block : tree.blocks) {
-    const bool around = block.span.offset <= offset && offset <= block.span.offset + block.span.length;
+    const bool around = touches(block.span, offset);
     for (const auto& one : block.variables) {
       if (language::same_name(one.name.text, name) && (around || found == nullptr)) {
         found = &one;
@@ -203,7 +208,7 @@ json completion(const Insight& insight, std::size_t offset) {
   }
   const auto& tree = insight.tree.valid || insight.known == nullptr ? insight.tree : *insight.known;
   for (const auto& block : tree.blocks) {
-    if (tree.blocks.size() > 1 && (offset < block.span.offset || offset > block.span.offset + block.span.length)) {
+    if (tree.blocks.size() > 1 && !touches(block.span, offset)) {
       continue;
     }
     for (const auto& one : block.variables) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "support/byte_order_mark.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
 #include "support/utf8.hpp"
@@ -101,7 +102,7 @@ nlohmann::json place_as_json(const Place& place) {
 }  // namespace
 
 Sources::Lines::Lines(std::string whole) : text(std::move(whole)) {
-  starts.push_back(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  starts.push_back(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1)) {
     starts.push_back(end + 1);
   }

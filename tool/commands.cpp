@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "tool/lsp.hpp"
-
 namespace hysteron::tool {
 
 std::span<const Command> commands() {

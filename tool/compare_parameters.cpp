@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "support/json_number.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "tool/comparison.hpp"
@@ -102,12 +103,11 @@ Comparison compare_parameters(const parameters::ParameterFile& a, const paramete
     const auto json_of = [](const std::optional<parameters::Value>& value) {
       return value ? nlohmann::ordered_json(text_of(*value)) : nlohmann::ordered_json();
     };
-    list.push_back(
-        {{"name", row.path},
-         {"a", json_of(row.a)},
-         {"b", json_of(row.b)},
-         {"change_percent", std::isfinite(percent) ? nlohmann::ordered_json(percent) : nlohmann::ordered_json()},
-         {"same", is_same}});
+    list.push_back({{"name", row.path},
+                    {"a", json_of(row.a)},
+                    {"b", json_of(row.b)},
+                    {"change_percent", number_or_null<nlohmann::ordered_json>(percent)},
+                    {"same", is_same}});
     if (is_same) {
       ++same;
       continue;

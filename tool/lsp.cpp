@@ -1,10 +1,9 @@
-#include "tool/lsp.hpp"
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "lsp/server.hpp"
 #include "tool/block_card.hpp"
+#include "tool/commands.hpp"
 
 namespace hysteron::tool {
 namespace {

@@ -1,20 +1,15 @@
 #include "tuning/fit_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "codegen/cosimulation/fmu.hpp"
 #include "codegen/interpreter/directions.hpp"
+#include "support/json_number.hpp"
 
 namespace hysteron {
 namespace {
-
-/// JSON has no infinities: what is not known is null.
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
 
 std::string status_name(FitStatus status) {
   switch (status) {
@@ -65,7 +60,7 @@ nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit&
                          {"message", fit.solution.message},
                          {"iterations", fit.solution.iterations},
                          {"seconds", fit.seconds},
-                         {"correlation_time_samples", number(fit.covariance.correlation_time)},
+                         {"correlation_time_samples", number_or_null<nlohmann::json>(fit.covariance.correlation_time)},
                          {"warnings", fit.covariance.warnings},
                          {"parameters", nlohmann::json::array()},
                          {"initial_states", nlohmann::json::array()},
@@ -78,14 +73,14 @@ nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit&
     json[i < problem.parameters.size() ? "parameters" : "initial_states"].push_back(
         {{"name", fit.names[i]},
          {"value", fit.solution.x[j]},
-         {"standard_error", number(fit.covariance.standard_errors[j])},
+         {"standard_error", number_or_null<nlohmann::json>(fit.covariance.standard_errors[j])},
          {"unit", fit.units[i]},
          {"at_bound", bound == AtBound::Lower   ? "lower"
                       : bound == AtBound::Upper ? "upper"
                                                 : ""}});
     nlohmann::json row = nlohmann::json::array();
     for (Eigen::Index k = 0; k < std::ssize(fit.names); ++k) {
-      row.push_back(number(fit.covariance.correlation(j, k)));
+      row.push_back(number_or_null<nlohmann::json>(fit.covariance.correlation(j, k)));
     }
     json["correlation"].push_back(std::move(row));
   }
@@ -94,14 +89,14 @@ nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit&
                                {"unit", score.unit},
                                {"range", score.range},
                                {"range_test", score.test_range},
-                               {"rmse_train", number(score.train)},
-                               {"rmse_test", number(score.test)},
-                               {"rmse_before", number(score.before)},
+                               {"rmse_train", number_or_null<nlohmann::json>(score.train)},
+                               {"rmse_test", number_or_null<nlohmann::json>(score.test)},
+                               {"rmse_before", number_or_null<nlohmann::json>(score.before)},
                                {"train_samples", score.train_samples},
                                {"test_samples", score.test_samples}});
   }
   for (const double cost : fit.start_costs) {
-    json["start_costs"].push_back(number(cost));
+    json["start_costs"].push_back(number_or_null<nlohmann::json>(cost));
   }
   json["fmus"] = fmus_json(problem.program.graph);
   return json;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
@@ -12,6 +11,7 @@
 #include "codegen/language/syntax.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "support/errors.hpp"
+#include "support/json_number.hpp"
 #include "support/names.hpp"
 
 namespace hysteron::bindings {
@@ -23,18 +23,13 @@ using Json = nlohmann::ordered_json;
 constexpr const char* memory_diagram = "diagram";
 constexpr const char* memory_parameters = "parameters";
 
-/// JSON has no sign for infinities: an open end is null.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json port_json(const Port& port) {
   return {{"name", port.name},
           {"unit", port.unit},
           {"meaning", port.meaning},
           {"type", type_name(port.type)},
-          {"minimum", number(port.minimum)},
-          {"maximum", number(port.maximum)}};
+          {"minimum", number_or_null<Json>(port.minimum)},
+          {"maximum", number_or_null<Json>(port.maximum)}};
 }
 
 parameters::Value value_of(const std::string& name, const nlohmann::json& value) {
@@ -119,7 +114,7 @@ std::string diagram_json(const Program& program) {
             {"parameters", Json::array()}};
   for (const Port& input : graph.inputs) {
     Json one = port_json(input);
-    one["default"] = has_default(graph, input) ? number(input.preset) : Json(nullptr);
+    one["default"] = has_default(graph, input) ? number_or_null<Json>(input.preset) : Json(nullptr);
     json["inputs"].push_back(std::move(one));
   }
   for (const Port& output : graph.outputs) {
@@ -131,14 +126,14 @@ std::string diagram_json(const Program& program) {
     const Field& field = parameter.field;
     Json value = Json::array();
     for (const double one : parameter.value) {
-      value.push_back(field.type == Type::Bool ? Json(one != 0.0) : number(one));
+      value.push_back(field.type == Type::Bool ? Json(one != 0.0) : number_or_null<Json>(one));
     }
     json["parameters"].push_back({{"name", parameter.path},
                                   {"unit", units[i]},
                                   {"meaning", field.meaning},
                                   {"type", type_name(field.type)},
-                                  {"minimum", number(field.minimum)},
-                                  {"maximum", number(field.maximum)},
+                                  {"minimum", number_or_null<Json>(field.minimum)},
+                                  {"maximum", number_or_null<Json>(field.maximum)},
                                   {"above_minimum", field.above_minimum},
                                   {"value", field.length > 1 ? value : value.front()}});
   }

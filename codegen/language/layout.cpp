@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codegen/language/syntax.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/utf8.hpp"
 
 namespace hysteron::language {

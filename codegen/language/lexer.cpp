@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "support/byte_order_mark.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::language {

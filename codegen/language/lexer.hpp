@@ -68,7 +68,4 @@ class Lexer {
   std::vector<Comment> comments_;
 };
 
-/// The byte order mark that some editors put before UTF-8.
-inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
 }  // namespace hysteron::language

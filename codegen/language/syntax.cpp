@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codegen/language/lexer.hpp"
+#include "support/byte_order_mark.hpp"
 #include "support/names.hpp"
 #include "support/text_file.hpp"
 #include "support/utf8.hpp"

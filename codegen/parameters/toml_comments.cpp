@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "support/byte_order_mark.hpp"
 #include "support/names.hpp"
 #include "support/trimmed.hpp"
 
@@ -110,8 +111,8 @@ class Scanner {
 }  // namespace
 
 std::vector<Comment> comments_of(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) {
-    text.remove_prefix(3);
+  if (text.starts_with(byte_order_mark)) {
+    text.remove_prefix(byte_order_mark.size());
   }
   return Scanner().scan(text);
 }

@@ -1,23 +1,20 @@
 #include "diagnosis/report/verdict_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "support/json_number.hpp"
 namespace hysteron::diagnosis {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers that JSON has no sign for become null.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json parameters_of(const std::vector<ParameterFinding>& list) {
   Json result = Json::object();
   for (const ParameterFinding& one : list) {
-    result[one.name] = {
-        {"value", number(one.value)}, {"low", number(one.low)}, {"high", number(one.high)}, {"unit", one.unit}};
+    result[one.name] = {{"value", number_or_null<Json>(one.value)},
+                        {"low", number_or_null<Json>(one.low)},
+                        {"high", number_or_null<Json>(one.high)},
+                        {"unit", one.unit}};
   }
   return result;
 }
@@ -25,7 +22,7 @@ Json parameters_of(const std::vector<ParameterFinding>& list) {
 Json settings_of(const std::vector<SettingFinding>& list) {
   Json result = Json::object();
   for (const SettingFinding& one : list) {
-    result[one.name] = {{"value", number(one.value)}, {"unit", one.unit}};
+    result[one.name] = {{"value", number_or_null<Json>(one.value)}, {"unit", one.unit}};
   }
   return result;
 }
@@ -36,9 +33,9 @@ Json sets_of(const std::vector<Rival>& list) {
     result.push_back({{"effects", one.effects},
                       {"edges", one.edges},
                       {"parameters", one.parameters},
-                      {"improved_rms", number(one.improved_rms)},
-                      {"support", number(one.support)},
-                      {"probability", number(one.probability)}});
+                      {"improved_rms", number_or_null<Json>(one.improved_rms)},
+                      {"support", number_or_null<Json>(one.support)},
+                      {"probability", number_or_null<Json>(one.probability)}});
   }
   return result;
 }
@@ -47,11 +44,11 @@ Json families_of(const Evidence& evidence) {
   Json result = Json::array();
   for (const FamilyFinding& one : evidence.families) {
     result.push_back({{"family", one.family},
-                      {"probability", number(one.probability)},
-                      {"closed", number(one.closed)},
-                      {"closed_alone", number(one.alone)},
+                      {"probability", number_or_null<Json>(one.probability)},
+                      {"closed", number_or_null<Json>(one.closed)},
+                      {"closed_alone", number_or_null<Json>(one.alone)},
                       {"effect", one.effect},
-                      {"effect_probability", number(one.member)},
+                      {"effect_probability", number_or_null<Json>(one.member)},
                       {"edge", one.edge}});
   }
   return result;
@@ -64,17 +61,18 @@ Json law_sets_of(const Evidence& evidence) {
     for (const LawFinding& law : set.laws) {
       Json values = Json::object();
       for (const LawValue& value : law.values) {
-        values[value.name] = {{"value", number(value.value)}, {"error", number(value.error)}};
+        values[value.name] = {{"value", number_or_null<Json>(value.value)},
+                              {"error", number_or_null<Json>(value.error)}};
       }
       laws.push_back({{"effect", law.effect},
                       {"family", law.family},
                       {"edge", law.edge},
                       {"drivers", law.drivers},
-                      {"closed", number(law.closed)},
+                      {"closed", number_or_null<Json>(law.closed)},
                       {"values", std::move(values)}});
     }
-    result.push_back({{"probability", number(set.probability)},
-                      {"closed", number(set.closed)},
+    result.push_back({{"probability", number_or_null<Json>(set.probability)},
+                      {"closed", number_or_null<Json>(set.closed)},
                       {"compared_at", set.space},
                       {"effects", std::move(laws)}});
   }
@@ -84,13 +82,13 @@ Json law_sets_of(const Evidence& evidence) {
 Json gap_of(const GapFinding& gap) {
   return {{"signal", gap.signal},
           {"unit", gap.unit},
-          {"nominal_rms", number(gap.nominal)},
-          {"calibrated_rms", number(gap.calibrated)},
-          {"improved_rms", number(gap.improved)},
-          {"floor_rms", number(gap.floor.value)},
-          {"closed", number(gap.closed)},
-          {"closed_low", number(gap.closed_low)},
-          {"closed_high", number(gap.closed_high)},
+          {"nominal_rms", number_or_null<Json>(gap.nominal)},
+          {"calibrated_rms", number_or_null<Json>(gap.calibrated)},
+          {"improved_rms", number_or_null<Json>(gap.improved)},
+          {"floor_rms", number_or_null<Json>(gap.floor.value)},
+          {"closed", number_or_null<Json>(gap.closed)},
+          {"closed_low", number_or_null<Json>(gap.closed_low)},
+          {"closed_high", number_or_null<Json>(gap.closed_high)},
           {"floor_evidence", gap.floor.evidence}};
 }
 
@@ -101,9 +99,9 @@ Json prediction_of(const std::vector<GapFinding>& gaps) {
     if (gap.next) {
       list.push_back({{"signal", gap.signal},
                       {"unit", gap.unit},
-                      {"rms", number(gap.next->rms)},
-                      {"low", number(gap.next->low)},
-                      {"high", number(gap.next->high)}});
+                      {"rms", number_or_null<Json>(gap.next->rms)},
+                      {"low", number_or_null<Json>(gap.next->low)},
+                      {"high", number_or_null<Json>(gap.next->high)}});
     }
   }
   return list;
@@ -112,7 +110,7 @@ Json prediction_of(const std::vector<GapFinding>& gaps) {
 Json where_of(const Diagnosis& found) {
   Json edges = Json::array();
   for (const EdgeFinding& edge : found.edges) {
-    edges.push_back({{"edge", edge.edge}, {"share", number(edge.share)}, {"group", edge.group}});
+    edges.push_back({{"edge", edge.edge}, {"share", number_or_null<Json>(edge.share)}, {"group", edge.group}});
   }
   Json cuts = Json::array();
   for (const CutFinding& cut : found.cuts) {
@@ -122,7 +120,7 @@ Json where_of(const Diagnosis& found) {
   Json bands = Json::array();
   Json times = Json::array();
   for (const MapFinding& map : found.maps) {
-    Json one = {{"over", map.over},     {"unit", map.unit},     {"share", number(map.share)},
+    Json one = {{"over", map.over},     {"unit", map.unit},     {"share", number_or_null<Json>(map.share)},
                 {"places", map.places}, {"before", map.before}, {"after", map.after}};
     (map.over == "frequency" ? bands : map.over == "run time" ? times : regions).push_back(std::move(one));
   }
@@ -134,15 +132,15 @@ Json where_of(const Diagnosis& found) {
 }
 
 Json split_of(const Diagnosis& found) {
-  Json result = {{"input_output", number(found.split.input_output)},
-                 {"plant", number(found.split.plant)},
-                 {"open", number(found.split.open)}};
+  Json result = {{"input_output", number_or_null<Json>(found.split.input_output)},
+                 {"plant", number_or_null<Json>(found.split.plant)},
+                 {"open", number_or_null<Json>(found.split.open)}};
   if (found.controller) {
     Json outputs = Json::object();
     for (const ControllerFinding::Output& output : found.controller->outputs) {
       outputs[output.name] = {{"unit", output.unit},
-                              {"difference_rms", number(output.difference_rms)},
-                              {"limited_rms", number(output.limited_rms)}};
+                              {"difference_rms", number_or_null<Json>(output.difference_rms)},
+                              {"limited_rms", number_or_null<Json>(output.limited_rms)}};
     }
     result["controller"] = {
         {"same_bits", found.controller->different == 0}, {"steps", found.controller->steps},
@@ -161,7 +159,7 @@ std::string verdict_json(const Diagnosis& found) {
                        {"edge", effect.edge},
                        {"same_edges", effect.same_edges},
                        {"drivers", effect.drivers},
-                       {"share", number(effect.share)},
+                       {"share", number_or_null<Json>(effect.share)},
                        {"invertible", effect.inverse == Inverse::Exact},
                        {"parameters", parameters_of(effect.parameters)},
                        {"settings", settings_of(effect.settings)}});
@@ -180,7 +178,7 @@ std::string verdict_json(const Diagnosis& found) {
             {"reason", found.next.reason},
             {"input", found.next.input},
             {"unit", found.next.unit},
-            {"separation", number(found.next.separation)},
+            {"separation", number_or_null<Json>(found.next.separation)},
             {"steps", std::move(steps)}};
   } else if (!found.next.reason.empty()) {
     next = {{"reason", found.next.reason}};
@@ -193,8 +191,8 @@ std::string verdict_json(const Diagnosis& found) {
   for (const Decision& one : found.decisions) {
     decisions.push_back({{"rule", one.rule},
                          {"about", one.about},
-                         {"measured", number(one.measured)},
-                         {"threshold", number(one.threshold)},
+                         {"measured", number_or_null<Json>(one.measured)},
+                         {"threshold", number_or_null<Json>(one.threshold)},
                          {"unit", one.unit},
                          {"outcome", one.outcome}});
   }
@@ -202,10 +200,10 @@ std::string verdict_json(const Diagnosis& found) {
                   {"verdict", name_of(found.verdict)},
                   {"effects", std::move(effects)},
                   {"rivals", std::move(rivals)},
-                  {"confidence", number(found.confidence)},
+                  {"confidence", number_or_null<Json>(found.confidence)},
                   {"families", families_of(found.evidence)},
                   {"evidence", law_sets_of(found.evidence)},
-                  {"unknown_score", number(found.unknown_score)},
+                  {"unknown_score", number_or_null<Json>(found.unknown_score)},
                   {"gap", gap_of(found.gap)},
                   {"prediction", prediction_of(found.gaps)},
                   {"where", where_of(found)},
@@ -213,7 +211,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"cannot_tell", found.cannot_tell},
                   {"next_experiment", std::move(next)},
                   {"work", found.work},
-                  {"seconds", number(found.seconds)},
+                  {"seconds", number_or_null<Json>(found.seconds)},
                   {"summary", found.summary},
                   {"refused", !found.refusals.empty()},
                   {"refusals", found.refusals},
@@ -224,8 +222,8 @@ std::string verdict_json(const Diagnosis& found) {
                   {"fitted", sets_of(found.fitted)},
                   {"gaps", std::move(gaps)},
                   {"tracking",
-                   {{"nominal_rms", number(found.tracking_nominal)},
-                    {"improved_rms", number(found.tracking_improved)},
+                   {{"nominal_rms", number_or_null<Json>(found.tracking_nominal)},
+                    {"improved_rms", number_or_null<Json>(found.tracking_improved)},
                     {"notes", found.feedforward_notes}}},
                   {"candidates_tried", found.tried}};
   if (!found.decisions.empty()) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "support/byte_order_mark.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/utf8.hpp"
@@ -121,8 +122,8 @@ std::size_t first_control(std::string_view text) {
 DecodedText decoded(const std::string& file, std::string bytes) {
   if (const auto order = utf16_order(bytes)) {
     DecodedText result{.text = from_utf16(bytes, *order), .encoding = "UTF-16"};
-    if (result.text.starts_with("\xEF\xBB\xBF")) {
-      result.text.erase(0, 3);
+    if (result.text.starts_with(byte_order_mark)) {
+      result.text.erase(0, byte_order_mark.size());
     }
     if (const auto bad = first_control(result.text); bad != std::string_view::npos) {
       refuse(file, result.text, bad);
@@ -132,8 +133,8 @@ DecodedText decoded(const std::string& file, std::string bytes) {
   if (const auto bad = first_control(bytes); bad != std::string_view::npos) {
     refuse(file, bytes, bad);
   }
-  if (bytes.starts_with("\xEF\xBB\xBF")) {
-    bytes.erase(0, 3);
+  if (bytes.starts_with(byte_order_mark)) {
+    bytes.erase(0, byte_order_mark.size());
   }
   const auto bad = first_invalid_utf8(bytes);
   if (bad == std::string_view::npos) {

@@ -224,10 +224,11 @@ void watch_over(Guard& guard, Task& task) {
 /// The certificate of the server in the course of years. Nothing to do where the server speaks in the clear.
 class CertificateCare {
  public:
-  CertificateCare(modbus::Server* server, const modbus::TlsOptions* options, const modbus::TlsContext* serving)
+  CertificateCare(modbus::Server* server, const modbus::TlsOptions* options,
+                  const std::shared_ptr<const modbus::TlsContext>& serving)
       : server_(server) {
     if (serving != nullptr) {
-      renewal_.emplace(*options, *serving, modbus::TlsRenewal::Clock::now());
+      renewal_.emplace(*options, serving, modbus::TlsRenewal::Clock::now());
     }
   }
 
@@ -390,7 +391,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   task.attach(attachments);
 
   RunNotices notices(config, shape, task, attachments);
-  CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls.get());
+  CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/modbus/value_bits.hpp"
+#include "support/csv_cell.hpp"
+#include "support/json_number.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -31,17 +33,6 @@ constexpr const char* kind_name(PointKind kind) {
 
 std::string access_of(const Point& point) {
   return point.writable ? "read write" : "read";
-}
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + '"';
 }
 
 std::string markdown_cell(const std::string& text) {
@@ -68,10 +59,6 @@ std::string namespace_of(const std::string& title) {
     name += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : '_';
   }
   return name + "_registers";
-}
-
-nlohmann::ordered_json limit(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace
@@ -103,8 +90,8 @@ std::string as_json(const RegisterMap& map) {
                     {"reference", reference_number(entry.at)},
                     {"type", name_of(point.type)},
                     {"unit", point.unit},
-                    {"low", limit(point.low)},
-                    {"high", limit(point.high)},
+                    {"low", number_or_null<nlohmann::ordered_json>(point.low)},
+                    {"high", number_or_null<nlohmann::ordered_json>(point.high)},
                     {"writable", point.writable},
                     {"kind", kind_name(point.kind)},
                     {"meaning", point.meaning}});

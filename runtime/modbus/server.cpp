@@ -66,14 +66,14 @@ std::vector<Network> networks(const ServerOptions& options) {
 
 class Server::Loop {
  public:
-  Loop(RegisterMap map, PointDoor& door, const ServerOptions& options)
-      : options_(options),
-        tls_(options.tls),
+  Loop(RegisterMap map, PointDoor& door, ServerOptions options)
+      : tls_(std::move(options.tls)),
+        options_(std::move(options)),
         map_(std::move(map)),
-        responder_(map_, door, options.identity),
-        allow_(networks(options)),
-        heartbeat_(options.heartbeat),
-        listening_(listen_on(options.listen, options.port, options.place)),
+        responder_(map_, door, options_.identity),
+        allow_(networks(options_)),
+        heartbeat_(options_.heartbeat),
+        listening_(listen_on(options_.listen, options_.port, options_.place)),
         port_(port_of(listening_)),
         stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
@@ -339,8 +339,8 @@ class Server::Loop {
     }
   }
 
-  const ServerOptions options_;
   std::atomic<std::shared_ptr<const TlsContext>> tls_;
+  const ServerOptions options_;  ///< but for TLS, which is renewed
   const RegisterMap map_;
   Responder responder_;
   const std::vector<Network> allow_;

@@ -120,34 +120,33 @@ bool counts_now(const X509& certificate) {
          X509_cmp_current_time(X509_get0_notAfter(&certificate)) > 0;
 }
 
-std::string date_text(const ASN1_TIME& time) {
-  std::tm parts{};
-  ASN1_TIME_to_tm(&time, &parts);
-  return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
-}
-
-void require_now(const X509& certificate, const std::string& path, const Place& place) {
-  if (!counts_now(certificate)) {
-    throw InputError(
-        error::certificate_out_of_date, place,
-        fmt::format("The certificate {} counts from {} to {}, and not today.", path,
-                    date_text(*X509_get0_notBefore(&certificate)), date_text(*X509_get0_notAfter(&certificate))),
-        "have a new one signed; where the date of this machine is wrong, set its clock.");
-  }
-}
-
 std::time_t seconds_of(const ASN1_TIME& time) {
   std::tm parts{};
   ASN1_TIME_to_tm(&time, &parts);
   return ::timegm(&parts);
 }
 
-void use_server_certificate(SSL_CTX& context, const TlsOptions& options, std::string& valid_until, std::time_t& ends) {
+std::string date_text(std::time_t time) {
+  std::tm parts{};
+  ::gmtime_r(&time, &parts);
+  return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
+}
+
+void require_now(const X509& certificate, const std::string& path, const Place& place) {
+  if (!counts_now(certificate)) {
+    throw InputError(error::certificate_out_of_date, place,
+                     fmt::format("The certificate {} counts from {} to {}, and not today.", path,
+                                 date_text(seconds_of(*X509_get0_notBefore(&certificate))),
+                                 date_text(seconds_of(*X509_get0_notAfter(&certificate)))),
+                     "have a new one signed; where the date of this machine is wrong, set its clock.");
+  }
+}
+
+/// Gives back when it ends.
+std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) {
   const std::string path = credential_path(options.certificate, certificate_credential);
   auto chain = read_certificates(path, "certificate", options.certificate_place);
   require_now(*chain.front(), path, options.certificate_place);
-  valid_until = date_text(*X509_get0_notAfter(chain.front().get()));
-  ends = seconds_of(*X509_get0_notAfter(chain.front().get()));
   const std::string key_path = credential_path(options.key, key_credential);
   const KeyPointer key = read_key(key_path, options.key_place);
   if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
@@ -166,6 +165,7 @@ void use_server_certificate(SSL_CTX& context, const TlsOptions& options, std::st
                      fmt::format("The certificate {} does not serve: {}.", path, library_reason()),
                      "have one signed for a key of today's strength: RSA of 2048 bits, or an elliptic curve.");
   }
+  return seconds_of(*X509_get0_notAfter(chain.front().get()));
 }
 
 void trust_clients_of(SSL_CTX& context, const TlsOptions& options) {
@@ -236,8 +236,12 @@ TlsContext::TlsContext(const TlsOptions& options)
   SSL_CTX_set_verify(&context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_verify_depth(&context, longest_chain);
   SSL_CTX_set_max_cert_list(&context, longest_chain_bytes);
-  use_server_certificate(context, options, valid_until_, ends_);
+  ends_ = use_server_certificate(context, options);
   trust_clients_of(context, options);
+}
+
+std::string TlsContext::valid_until() const {
+  return date_text(ends_);
 }
 
 Rights TlsContext::rights_of(const x509_st& certificate) const {

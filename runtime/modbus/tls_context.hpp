@@ -44,7 +44,7 @@ class TlsContext {
   /// nothing.
   [[nodiscard]] Rights rights_of(const x509_st& certificate) const;
   /// Until when the server's certificate counts: 2027-05-01.
-  [[nodiscard]] const std::string& valid_until() const { return valid_until_; }
+  [[nodiscard]] std::string valid_until() const;
   [[nodiscard]] std::time_t ends() const { return ends_; }
   [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
 
@@ -55,7 +55,6 @@ class TlsContext {
   std::unique_ptr<ssl_ctx_st, Free> context_;
   std::map<std::string, Rights, std::less<>> roles_;
   Rights without_role_;
-  std::string valid_until_;
   std::time_t ends_ = 0;
 };
 

@@ -18,13 +18,8 @@ std::string days_text(std::time_t days) {
 
 }  // namespace
 
-TlsRenewal::TlsRenewal(TlsOptions options, const TlsContext& serving, Clock::time_point now)
-    : options_(std::move(options)),
-      read_(stamps()),
-      seen_(read_),
-      ends_(serving.ends()),
-      valid_until_(serving.valid_until()),
-      next_(now) {}
+TlsRenewal::TlsRenewal(TlsOptions options, std::shared_ptr<const TlsContext> serving, Clock::time_point now)
+    : options_(std::move(options)), read_(stamps()), seen_(read_), serving_(std::move(serving)), next_(now) {}
 
 std::vector<TlsRenewal::Stamp> TlsRenewal::stamps() const {
   std::vector<Stamp> list;
@@ -54,16 +49,18 @@ TlsRenewal::Found TlsRenewal::look(Clock::time_point now, std::time_t today) {
   }
   // Once a day of the clock: one that jumps tells once more at the most.
   const std::time_t day = today / seconds_a_day;
-  if (ends_ - today < days_before * seconds_a_day && told_ != day) {
+  const std::time_t ends = serving_->ends();
+  if (ends - today < days_before * seconds_a_day && told_ != day) {
     told_ = day;
     found.lines.push_back(
-        ends_ > today
+        ends > today
             ? fmt::format("the server's certificate ends in {}, on {}; have a new one signed and write it over {}, "
                           "it is read while the task runs",
-                          days_text((ends_ - today) / seconds_a_day), valid_until_, files_of(options_).front())
+                          days_text((ends - today) / seconds_a_day), serving_->valid_until(),
+                          files_of(options_).front())
             : fmt::format("the server's certificate ended on {}: clients refuse it, the control goes on; write a new "
                           "one over {}, it is read while the task runs",
-                          valid_until_, files_of(options_).front()));
+                          serving_->valid_until(), files_of(options_).front()));
   }
   return found;
 }
@@ -71,19 +68,19 @@ TlsRenewal::Found TlsRenewal::look(Clock::time_point now, std::time_t today) {
 void TlsRenewal::read_again(Found& found) {
   read_ = seen_;
   try {
-    found.renewed = std::make_shared<const TlsContext>(options_);
-    ends_ = found.renewed->ends();
-    valid_until_ = found.renewed->valid_until();
+    serving_ = std::make_shared<const TlsContext>(options_);
+    found.renewed = serving_;
     told_.reset();
-    found.lines.push_back(fmt::format("new certificate, until {}, for connections from now on", valid_until_));
+    found.lines.push_back(
+        fmt::format("new certificate, until {}, for connections from now on", serving_->valid_until()));
   } catch (const InputError& refused) {
     const Diagnostic& first = refused.diagnostics().all().front();
     found.lines.push_back(
-        fmt::format("the new files are not taken, the certificate until {} goes on: HY{}: {} Mend: {}", valid_until_,
-                    first.number, first.cause, first.mend));
+        fmt::format("the new files are not taken, the certificate until {} goes on: HY{}: {} Mend: {}",
+                    serving_->valid_until(), first.number, first.cause, first.mend));
   } catch (const std::exception& failed) {
-    found.lines.push_back(
-        fmt::format("the new files are not taken, the certificate until {} goes on: {}", valid_until_, failed.what()));
+    found.lines.push_back(fmt::format("the new files are not taken, the certificate until {} goes on: {}",
+                                      serving_->valid_until(), failed.what()));
   }
 }
 

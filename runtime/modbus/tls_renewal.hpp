@@ -25,7 +25,7 @@ class TlsRenewal {
   static constexpr int days_before = 30;
 
   /// `serving` was made from these options.
-  TlsRenewal(TlsOptions options, const TlsContext& serving, Clock::time_point now);
+  TlsRenewal(TlsOptions options, std::shared_ptr<const TlsContext> serving, Clock::time_point now);
 
   struct Found {
     std::shared_ptr<const TlsContext> renewed{};  ///< for connections from now on; none: as before
@@ -50,8 +50,7 @@ class TlsRenewal {
   TlsOptions options_;
   std::vector<Stamp> read_;  ///< of the files as they were read last
   std::vector<Stamp> seen_;  ///< at the last look
-  std::time_t ends_;
-  std::string valid_until_;
+  std::shared_ptr<const TlsContext> serving_;
   Clock::time_point next_;
   std::optional<std::time_t> told_{};  ///< the day on which its end was told of
 };

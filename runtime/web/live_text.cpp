@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "support/json_number.hpp"
 namespace hysteron::runtime::web {
 namespace {
 
@@ -33,10 +34,6 @@ std::string_view name_of(PointType type) {
   return type == PointType::boolean                               ? "boolean"
          : type == PointType::real32 || type == PointType::real64 ? "real"
                                                                   : "integer";
-}
-
-json limit(double value) {
-  return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
 /// Texts are the user's: what is no UTF-8 is replaced.
@@ -70,8 +67,8 @@ std::string description_text(const Subject& subject, const PointDoor& door, bool
                       {"kind", name_of(point.kind)},
                       {"type", name_of(point.type)},
                       {"unit", point.unit},
-                      {"low", limit(point.low)},
-                      {"high", limit(point.high)},
+                      {"low", number_or_null<json>(point.low)},
+                      {"high", number_or_null<json>(point.high)},
                       {"meaning", point.meaning}});
   }
   json inner = json::array();

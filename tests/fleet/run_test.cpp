@@ -60,6 +60,19 @@ class Fleet : public ::testing::Test {
 
   Worked work() { return work_off(units_, "fleet.csv", options_); }
   std::vector<Row> rows() { return write_table(units_, work().keys, options_.output); }
+  /// Processes that work on the same folder at once.
+  std::vector<pid_t> controllers(int count) {
+    std::vector<pid_t> started;
+    for (int i = 0; i < count; ++i) {
+      const pid_t one = fork();
+      if (one == 0) {
+        (void)rows();
+        _exit(0);
+      }
+      started.push_back(one);
+    }
+    return started;
+  }
   [[nodiscard]] std::size_t ran() const { return test::contents_of(folder_ / "ran").size(); }
   [[nodiscard]] bool nothing_left_over() const { return fs::is_empty(options_.output / "work"); }
 
@@ -207,16 +220,7 @@ TEST_F(Fleet, KilledAtAnyMomentNothingIsLostOrDoneTwice) {
   std::size_t killed_in_work = 0;
   std::uint32_t random = 7;
   for (int round = 0; round < 12; ++round) {
-    std::vector<pid_t> controllers;
-    for (int i = 0; i < 3; ++i) {
-      const pid_t one = fork();
-      if (one == 0) {
-        (void)rows();
-        _exit(0);
-      }
-      controllers.push_back(one);
-    }
-    for (const pid_t one : controllers) {
+    for (const pid_t one : controllers(3)) {
       random = random * 1664525U + 1013904223U;
       std::this_thread::sleep_for(std::chrono::milliseconds(5 + (random >> 16U) % 60U));
       ::kill(one, SIGKILL);
@@ -245,16 +249,7 @@ TEST_F(Fleet, SeveralAtOnceDoEachUnitOnce) {
   for (int i = 0; i < 30; ++i) {
     add("M" + std::to_string(i), "verdict named\n");
   }
-  std::vector<pid_t> controllers;
-  for (int i = 0; i < 3; ++i) {
-    const pid_t one = fork();
-    if (one == 0) {
-      (void)rows();
-      _exit(0);
-    }
-    controllers.push_back(one);
-  }
-  for (const pid_t one : controllers) {
+  for (const pid_t one : controllers(3)) {
     waitpid(one, nullptr, 0);
   }
   EXPECT_EQ(ran(), 30U);

@@ -24,7 +24,7 @@ class Renewal : public ::testing::Test {
   void serve_for(long days) {
     write_server(days);
     serving_ = std::make_shared<const TlsContext>(files_.options());
-    renewal_.emplace(files_.options(), *serving_, now_);
+    renewal_.emplace(files_.options(), serving_, now_);
   }
   void write_server(long days) {
     const Certificate fresh({.name = "server", .ends = days * a_day + 600, .for_clients = false}, &files_.authority);

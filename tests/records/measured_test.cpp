@@ -77,7 +77,8 @@ TEST(DataFolder, TheEnvironmentVariableComesFirst) {
   const auto current = fs::current_path();
   fs::current_path(folder / "checkout");
   EXPECT_EQ(data_folder(), fs::canonical(folder.path()) / "shared/data");
-  fs::current_path("/");
+  fs::create_directories(folder / "elsewhere/within");  // where no folder beside has data, as the root could
+  fs::current_path(folder / "elsewhere/within");
   EXPECT_EQ(data_folder(folder.path() / "checkout"), folder.path() / "shared/data");
   fs::current_path(current);
   if (!saved.empty()) {

@@ -1,0 +1,165 @@
+#include "database/sqlite.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <limits>
+
+namespace hysteron::database {
+namespace {
+
+constexpr int patience_ms = 5000;
+
+bool passes(int code) {
+  const int kind = code & 0xff;
+  return kind == SQLITE_BUSY || kind == SQLITE_LOCKED || kind == SQLITE_FULL || kind == SQLITE_IOERR ||
+         kind == SQLITE_CANTOPEN;
+}
+
+}  // namespace
+
+void Database::Closed::operator()(sqlite3* file) const {
+  sqlite3_close_v2(file);
+}
+
+Database::Database(const std::filesystem::path& path, Mode mode) : name_(path.string()) {
+  sqlite3* file = nullptr;
+  const int flags = mode == Mode::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  const int code = sqlite3_open_v2(name_.c_str(), &file, flags, nullptr);
+  file_.reset(file);
+  if (code != SQLITE_OK) {
+    fail();
+  }
+  sqlite3_extended_result_codes(file, 1);
+  sqlite3_busy_timeout(file, patience_ms);
+  if (mode == Mode::Write) {
+    run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+  } else {
+    run("SELECT count(*) FROM sqlite_master;");  // says now that it is no file of SQLite
+  }
+}
+
+void Database::fail() const {
+  const int code = file_ == nullptr ? SQLITE_NOMEM : sqlite3_errcode(file_.get());
+  throw DatabaseError(fmt::format("{}: {}", name_, file_ == nullptr ? "out of memory" : sqlite3_errmsg(file_.get())),
+                      passes(code));
+}
+
+void Database::run(const std::string& sql) {
+  if (sqlite3_exec(file_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
+    fail();
+  }
+}
+
+Statement Database::prepared(std::string_view sql) {
+  Statement result(*this);
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v2(file_.get(), sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
+  result.statement_.reset(statement);
+  if (code != SQLITE_OK) {
+    fail();
+  }
+  return result;
+}
+
+int Database::version() {
+  Statement asked = prepared("PRAGMA user_version");
+  return asked.step() ? static_cast<int>(asked.integer(0)) : 0;
+}
+
+void Database::set_version(int version) {
+  run(fmt::format("PRAGMA user_version = {}", version));
+}
+
+void Statement::Ended::operator()(sqlite3_stmt* statement) const {
+  sqlite3_finalize(statement);
+}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK) {
+    database_->fail();
+  }
+}
+
+Statement& Statement::bind(int place, double value) {
+  check(std::isnan(value) ? sqlite3_bind_null(statement_.get(), place)
+                          : sqlite3_bind_double(statement_.get(), place, value));
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_.get(), place, value));
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::string_view value) {
+  // An empty text is a text: a null pointer would be NULL.
+  check(sqlite3_bind_text(statement_.get(), place, value.empty() ? "" : value.data(), static_cast<int>(value.size()),
+                          SQLITE_TRANSIENT));  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): a macro of SQLite
+  return *this;
+}
+
+Statement& Statement::bind_null(int place) {
+  check(sqlite3_bind_null(statement_.get(), place));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) {
+    database_->fail();
+  }
+  return code == SQLITE_ROW;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  reset();
+}
+
+void Statement::reset() {
+  sqlite3_reset(statement_.get());
+}
+
+double Statement::number(int column) const {
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(statement_.get(), column);
+}
+
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+std::string Statement::text(int column) const {
+  const unsigned char* const found = sqlite3_column_text(statement_.get(), column);
+  return found == nullptr ? std::string()
+                          : std::string(reinterpret_cast<const char*>(found),
+                                        static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+bool Statement::is_null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+Transaction::Transaction(Database& database) : database_(&database) {
+  database_->run("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+  if (is_open_) {
+    try {
+      database_->run("ROLLBACK");
+    } catch (const DatabaseError&) {
+      // What failed before has said so; SQLite rolls back by itself when the file is closed.
+      is_open_ = false;
+    }
+  }
+}
+
+void Transaction::commit() {
+  database_->run("COMMIT");
+  is_open_ = false;
+}
+
+}  // namespace hysteron::database

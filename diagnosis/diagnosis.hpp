@@ -168,8 +168,9 @@ struct Diagnosis {
   std::vector<ParameterFinding> calibration{};  ///< known parameters, as refitted
   std::vector<ParameterFinding> nominal{};      ///< as they were given
   std::vector<Rival> rivals{};
-  Evidence evidence{};          ///< where effects leave more than noise: what is there, by families
-  std::vector<Rival> fitted{};  ///< the best of all sets that were fitted, ruled out or not
+  Evidence evidence{};                ///< where effects leave more than noise: what is there, by families
+  std::optional<GapBudget> budget{};  ///< of which kind the gap is; empty where there is none
+  std::vector<Rival> fitted{};        ///< the best of all sets that were fitted, ruled out or not
   double confidence = 0.0;
   double unknown_score = 0.0;
   GapFinding gap{};                ///< of the output with the largest gap over its floor

@@ -8,6 +8,7 @@
 #include <span>
 #include <system_error>
 
+#include "diagnosis/evidence/gap_kinds.hpp"
 #include "diagnosis/report/diagnosis_files.hpp"
 #include "support/errors.hpp"
 
@@ -57,6 +58,20 @@ std::string controller_text(const diagnosis::ControllerFinding& controller) {
   return text;
 }
 
+/// The gap by kinds, the larger parts of it.
+std::string budget_text(const diagnosis::GapBudget& budget) {
+  constexpr double least_told = 0.05;
+  std::string parts;
+  for (const diagnosis::KindFinding& one : budget.kinds) {
+    if (one.share >= least_told) {
+      const auto* const text = std::ranges::find(diagnosis::gap_kinds, one.kind, &diagnosis::GapKindText::name);
+      parts += fmt::format("{}{} {:.0f} %", parts.empty() ? "" : ", ", text->words, 100.0 * one.share);
+    }
+  }
+  return fmt::format("  by kind, at {}: {}{:.0f} % of no kind\n", budget.at, parts.empty() ? "" : parts + "; ",
+                     100.0 * (1.0 - budget.closed));
+}
+
 /// How well the feedforward is predicted to do, or why there is none; what it leaves as it is.
 std::string feedforward_text(const Diagnosis& found) {
   std::string text;
@@ -92,6 +107,9 @@ std::string diagnosis_text(const Diagnosis& found) {
                         with_unit(gap.improved, gap.unit), with_unit(gap.floor.value, gap.unit), gap.floor.evidence);
     text += fmt::format("  {:<10} closed {:.1f} % ({:.1f} to {:.1f}) on blocks held out\n", "",
                         closed_percent(gap.closed), closed_percent(gap.closed_low), closed_percent(gap.closed_high));
+  }
+  if (found.budget) {
+    text += budget_text(*found.budget);
   }
   for (const diagnosis::EffectFinding& effect : found.effects) {
     text += fmt::format("  {} at {}{}{}: {:.0f} % of the gap\n", effect.id, effect.edge,

@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "diagnosis/evidence/gap_budget.hpp"
 #include "diagnosis/evidence/missing_space.hpp"
 #include "diagnosis/evidence/open_loop.hpp"
 #include "diagnosis/evidence/output_space.hpp"
@@ -287,19 +288,24 @@ bool is_worth_telling(const Evidence& evidence, Rules& rules) {
 }
 
 struct Weighing::Sets {
-  bool is_open_loop = false;
+  std::optional<OpenLoop> open{};
+  Explanation plant{};  ///< of the opened loop
+  const Task* task = nullptr;
   std::vector<Explored> spaces{};
   AllSets all{};
 };
 
 Weighing::Weighing(const Task& task, const std::string& top, const Explanation& calibrated,
                    const EvidenceOptions& options)
-    : seed_(options.seed), sets_(std::make_unique<Sets>()) {
-  const std::optional<OpenLoop> open = opened(task, top, calibrated.variant);
-  const Explanation plant = open ? footing_of(open->task, open->variant).nominal : Explanation();
+    : seed_(options.seed), threads_(options.threads), sets_(std::make_unique<Sets>()) {
+  sets_->open = opened(task, top, calibrated.variant);  // kept, since the spaces keep references
+  const std::optional<OpenLoop>& open = sets_->open;
+  if (open) {
+    sets_->plant = footing_of(open->task, open->variant).nominal;
+  }
   const Task& asked = open ? open->task : task;
-  const Explanation& fitted = open ? plant : calibrated;
-  sets_->is_open_loop = open.has_value();
+  const Explanation& fitted = open ? sets_->plant : calibrated;
+  sets_->task = &asked;
   std::vector<Explored>& spaces = sets_->spaces;
   std::unique_ptr<MissingSpace> missing =
       MissingSpace::of_bottleneck(asked, top, fitted, options.columns, options.threads);
@@ -314,6 +320,10 @@ Weighing::Weighing(const Task& task, const std::string& top, const Explanation& 
 }
 
 Weighing::~Weighing() = default;
+
+std::optional<GapBudget> Weighing::budget(const std::string& output) const {
+  return gap_budget(*sets_->task, *sets_->spaces.back().space, output, threads_);
+}
 
 void Weighing::strike_out_first() {
   std::vector<LawSet>& told = sets_->all.told;
@@ -335,7 +345,7 @@ Evidence Weighing::told(const Rules& rules) {
   std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
 
   Evidence result;
-  result.is_open_loop = sets_->is_open_loop;
+  result.is_open_loop = sets_->open.has_value();
   for (const Explored& one : spaces) {
     result.tried += one.laws->size();
   }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,12 +37,16 @@ class Weighing {
   /// Of all sets that are not struck out; empty where none is left.
   [[nodiscard]] Evidence told(const Rules& rules = {});
 
+  /// The gap by kinds, where what is missing can be seen; else of a measured output, by its name.
+  [[nodiscard]] std::optional<GapBudget> budget(const std::string& output) const;
+
   /// The most probable set of what was told last is none.
   void strike_out_first();
 
  private:
   struct Sets;
   std::uint64_t seed_;
+  unsigned threads_;
   std::unique_ptr<Sets> sets_;
 };
 

@@ -43,6 +43,24 @@ struct FamilyFinding {
   std::string edge{};
 };
 
+/// What functions of one kind, whatever they are called, could predict of a gap on stretches that no fit saw.
+struct KindFinding {
+  std::string kind{};  ///< by its name in gap_kinds.hpp
+  double alone = 0.0;  ///< by itself, with its 95 % interval by the jackknife over the stretches
+  double low = 0.0;
+  double high = 0.0;
+  double only = 0.0;   ///< nothing else can
+  double share = 0.0;  ///< its part of what all kinds close together: the mean of `alone` and `only`, to scale
+};
+
+/// The gap by kinds, before any effect has a name.
+struct GapBudget {
+  std::string at{};                  ///< the output, or the edge where what is missing can be seen
+  double closed = 0.0;               ///< by all kinds together; the rest is noise, or of no kind
+  double noise = 0.0;                ///< of the gap at the outputs, at most; 0 at an edge
+  std::vector<KindFinding> kinds{};  ///< largest share first
+};
+
 /// What is missing beside all that is explained otherwise, over the signal that it is a function of, with the law.
 struct MissingPicture {
   std::string edge{};

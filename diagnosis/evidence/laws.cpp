@@ -7,13 +7,12 @@
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <numbers>
-#include <numeric>
 #include <optional>
 
 #include "codegen/graph/definition.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "diagnosis/effects/grid_points.hpp"
+#include "diagnosis/evidence/driver_lines.hpp"
 #include "diagnosis/evidence/roles.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/noise/spectrum.hpp"
@@ -278,30 +277,6 @@ std::string family_at(const EffectKind& kind, const Law& law, double block) {
              : family;
 }
 
-/// Of a signal's energy about its mean, what a sine of that frequency explains, within the resolution of the record.
-double share_of_line(const RecordSignals& values, double frequency, double sample_time) {
-  double best = 0.0;
-  for (const Signal& one : values) {
-    const auto n = static_cast<double>(one.size());
-    const double mean = std::accumulate(one.begin(), one.end(), 0.0) / std::max(n, 1.0);
-    double whole = 0.0;
-    for (const double value : one) {
-      whole += (value - mean) * (value - mean);
-    }
-    for (const double off : {-0.5, 0.0, 0.5}) {
-      const double angle = 2.0 * std::numbers::pi * (frequency + off / (n * sample_time)) * sample_time;
-      double sine = 0.0;
-      double cosine = 0.0;
-      for (std::size_t k = 0; k < one.size(); ++k) {
-        sine += (one[k] - mean) * std::sin(angle * static_cast<double>(k));
-        cosine += (one[k] - mean) * std::cos(angle * static_cast<double>(k));
-      }
-      best = std::max(best, whole > 0.0 ? 2.0 * (sine * sine + cosine * cosine) / (n * whole) : 0.0);
-    }
-  }
-  return best;
-}
-
 /// Time constants and dead times by ratios of a third of a decade less: nothing is fitted between them.
 Grids with_finer_durations(const Applied& effect, Grids grids) {
   for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
@@ -321,22 +296,6 @@ Grids with_finer_durations(const Applied& effect, Grids grids) {
     values = std::move(finer);
   }
   return grids;
-}
-
-/// Takes off the lines that a driver has, or has a whole fraction of: what it drives repeats with it, and a disturbance
-/// in time would stand for any law of it.
-void bar_lines_of(const std::vector<DriverSignal>& drivers, double sample_time, std::vector<double>& frequencies) {
-  constexpr int harmonics = 6;
-  std::erase_if(frequencies, [&](double frequency) {
-    return std::ranges::any_of(drivers, [&](const DriverSignal& driver) {
-      for (int k = 1; k <= harmonics; ++k) {
-        if (share_of_line(driver.values, frequency / k, sample_time) > policy::line_of_driver.value) {
-          return true;
-        }
-      }
-      return false;
-    });
-  });
 }
 
 struct Job {

@@ -10,8 +10,8 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr std::size_t lanes = 8;
-using Lanes = Dual<static_cast<int>(lanes)>;
+constexpr std::size_t tangents_at_once = 8;
+using Tangents = Dual<static_cast<int>(tangents_at_once)>;
 
 }  // namespace
 
@@ -103,16 +103,16 @@ TangentRun::Steps TangentRun::along(std::size_t record, const Course& course,
   const Index rows = states() + std::ssize(outputs_);
   const auto width = std::ssize(variables);
   Steps result{.values = MatrixXd(rows, steps), .slopes = MatrixXd(rows, steps * width)};
-  for (std::size_t first = 0; first < variables.size(); first += lanes) {
-    const auto seeded = variables.subspan(first, std::min(lanes, variables.size() - first));
-    run<Lanes>(record, &course, seeded, [&](auto& machine, const auto& at, std::size_t step, bool before) {
+  for (std::size_t first = 0; first < variables.size(); first += tangents_at_once) {
+    const auto seeded = variables.subspan(first, std::min(tangents_at_once, variables.size() - first));
+    run<Tangents>(record, &course, seeded, [&](auto& machine, const auto& at, std::size_t step, bool before) {
       if (before) {
         return;
       }
       const auto column = static_cast<Index>(step);
       for (Index row = 0; row < rows; ++row) {
-        const Lanes value = row < states() ? *at[static_cast<std::size_t>(row)]
-                                           : machine.output(outputs_[static_cast<std::size_t>(row - states())]);
+        const Tangents value = row < states() ? *at[static_cast<std::size_t>(row)]
+                                              : machine.output(outputs_[static_cast<std::size_t>(row - states())]);
         result.values(row, column) = value.value();
         for (std::size_t lane = 0; lane < seeded.size(); ++lane) {
           result.slopes(row, column * width + static_cast<Index>(first + lane)) =
@@ -127,7 +127,7 @@ TangentRun::Steps TangentRun::along(std::size_t record, const Course& course,
 MatrixXd TangentRun::held(std::size_t record, std::size_t input) const {
   MatrixXd result(std::ssize(outputs_), static_cast<Index>(task_.records[record].size()));
   const Variable variable{.kind = Kind::Signal, .index = input};
-  run<Lanes>(record, nullptr, {&variable, 1}, [&](auto& machine, const auto& /*at*/, std::size_t step, bool before) {
+  run<Tangents>(record, nullptr, {&variable, 1}, [&](auto& machine, const auto& /*at*/, std::size_t step, bool before) {
     for (std::size_t o = 0; !before && o < outputs_.size(); ++o) {
       result(static_cast<Index>(o), static_cast<Index>(step)) = machine.output(outputs_[o]).derivative(0);
     }

@@ -48,6 +48,7 @@ std::string report_page(const Diagnosis& diagnosis, const Program& improved) {
                       report::verdict_section(diagnosis), gap);
   html += report::missing_section(diagnosis);
   html += report::families_section(diagnosis);
+  html += report::budget_section(diagnosis);
   html += report::effects_section(diagnosis);
   html += report::split_section(diagnosis);
   html += report::where_section(diagnosis, improved.graph);

@@ -13,6 +13,8 @@ namespace hysteron::diagnosis::report {
 [[nodiscard]] std::string missing_section(const Diagnosis& diagnosis);
 /// Families with their probabilities; nothing where no evidence was asked for.
 [[nodiscard]] std::string families_section(const Diagnosis& diagnosis);
+/// The gap by kinds; nothing where there is none.
+[[nodiscard]] std::string budget_section(const Diagnosis& diagnosis);
 /// Each effect with its edge, its parameters and whether a feedforward can take it back.
 [[nodiscard]] std::string effects_section(const Diagnosis& diagnosis);
 /// The gap by controller, inputs and outputs, and plant; and on which side of a measured inner signal it lies.

@@ -79,6 +79,25 @@ Json law_sets_of(const Evidence& evidence) {
   return result;
 }
 
+Json budget_of(const std::optional<GapBudget>& budget) {
+  if (!budget) {
+    return nullptr;
+  }
+  Json kinds = Json::array();
+  for (const KindFinding& one : budget->kinds) {
+    kinds.push_back({{"kind", one.kind},
+                     {"share", number_or_null<Json>(one.share)},
+                     {"alone", number_or_null<Json>(one.alone)},
+                     {"alone_low", number_or_null<Json>(one.low)},
+                     {"alone_high", number_or_null<Json>(one.high)},
+                     {"only", number_or_null<Json>(one.only)}});
+  }
+  return {{"at", budget->at},
+          {"closed", number_or_null<Json>(budget->closed)},
+          {"noise", number_or_null<Json>(budget->noise)},
+          {"kinds", std::move(kinds)}};
+}
+
 Json gap_of(const GapFinding& gap) {
   return {{"signal", gap.signal},
           {"unit", gap.unit},
@@ -203,6 +222,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"confidence", number_or_null<Json>(found.confidence)},
                   {"families", families_of(found.evidence)},
                   {"evidence", law_sets_of(found.evidence)},
+                  {"budget", budget_of(found.budget)},
                   {"unknown_score", number_or_null<Json>(found.unknown_score)},
                   {"gap", gap_of(found.gap)},
                   {"prediction", prediction_of(found.gaps)},

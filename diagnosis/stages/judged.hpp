@@ -15,8 +15,9 @@ struct Judged {
   std::unique_ptr<Searched> searched{};  ///< its judgement points into its search and into `instead`
   std::vector<std::shared_ptr<const Explanation>> instead{};
   std::optional<Unrepeatable> unrepeatable{};
-  Evidence evidence{};     ///< see weighed.hpp; empty where it was not asked
-  bool is_related = true;  ///< the calibrated diagram follows the record at least a little
+  Evidence evidence{};                ///< see weighed.hpp; empty where it was not asked
+  std::optional<GapBudget> budget{};  ///< see weighed.hpp; empty where there is no gap
+  bool is_related = true;             ///< the calibrated diagram follows the record at least a little
   std::size_t tried = 0;
   std::vector<std::string> warnings{};
 

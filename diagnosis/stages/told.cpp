@@ -120,6 +120,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   Diagnosis result{.verdict = answer.verdict,
                    .warnings = record.warnings,
                    .evidence = judged.evidence,
+                   .budget = judged.budget,
                    .unknown_score = answer.unknown_score,
                    .top = record.top,
                    .tried = judged.tried};

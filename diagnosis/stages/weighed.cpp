@@ -5,6 +5,9 @@
 
 #include "diagnosis/evidence/evidence.hpp"
 #include "diagnosis/evidence/explained.hpp"
+#include "diagnosis/evidence/gap_budget.hpp"
+#include "diagnosis/evidence/output_space.hpp"
+#include "diagnosis/verdict/fitted_evidence.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -18,17 +21,38 @@ bool leaves_a_cause(const Judged& judged, const Answer& answer, Rules& rules) {
          rules.is_above(policy::unexplained, left / gap);
 }
 
+/// Tells of the sets that the search fitted, where these predict better than the set of laws as it was fitted.
+void hold_against_fits(Judged& judged, const Explanation& of_laws, const DiagnosisOptions& options, Rules& rules) {
+  std::optional<FittedEvidence> fits = fitted_evidence(judged.record.task, judged.searched->search, of_laws,
+                                                       {.threads = options.threads, .seed = options.seed}, rules);
+  if (!fits) {
+    return;
+  }
+  fits->evidence.tried = judged.evidence.tried;
+  fits->evidence.is_told = is_worth_telling(fits->evidence, rules);
+  if (fits->evidence.is_told) {
+    judged.choose(*fits->chosen);
+    judged.evidence = std::move(fits->evidence);
+  }
+}
+
 }  // namespace
 
 Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& options, Rules& rules) {
-  if (!leaves_a_cause(judged, answer, rules)) {
-    return judged;
-  }
   const Cleaned& record = judged.record;
   const Explanation& calibrated = judged.calibrated();
+  const std::string& output = record.task.outputs[answer.gap_output];
+  if (!leaves_a_cause(judged, answer, rules)) {
+    if (answer.verdict != Verdict::None && answer.verdict != Verdict::Calibration) {
+      const OutputSpace outputs(record.task, record.top, calibrated, record.unused, options.threads);
+      judged.budget = gap_budget(record.task, outputs, output, options.threads);
+    }
+    return judged;
+  }
   Weighing weighing(
       record.task, record.top, calibrated,
       {.effects = options.effects, .columns = record.unused, .threads = options.threads, .seed = options.seed});
+  judged.budget = weighing.budget(output);
   for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
     Evidence evidence = weighing.told(rules);
     if (run == 0) {
@@ -45,6 +69,9 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
       judged.choose(fitted.explanation ? *fitted.explanation : calibrated);
       judged.unrepeatable.reset();
       judged.evidence = std::move(evidence);
+      if (fitted.explanation) {
+        hold_against_fits(judged, *fitted.explanation, options, rules);
+      }
       break;
     }
     weighing.strike_out_first();

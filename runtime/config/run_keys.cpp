@@ -192,7 +192,7 @@ constexpr std::array history_keys{
            "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`"},
     RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods; for `tune` and `diagnose`, one period",
            1.0, 86400.0 * s},
-    RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 36500.0 * 86400.0 * s},
+    RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 10000.0 * 86400.0 * s},
     RunKey{"megabytes", whole, "1000", "what it takes on the disk at most: the oldest rows give way", 1.0, 1e6},
 };
 constexpr std::array modbus_keys{

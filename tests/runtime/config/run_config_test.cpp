@@ -363,7 +363,10 @@ TEST(RunConfig, DurationsAreWholeNanoseconds) {
   EXPECT_EQ(parse_duration("5ms"), 5'000'000);
   EXPECT_EQ(parse_duration("0.25us"), 250);
   EXPECT_EQ(parse_duration("2s"), 2'000'000'000);
-  for (const char* const wrong : {"", "5", "ms", "5 ms", "-5ms", "0.5ns", "5min", "1e3ms", "99999999s"}) {
+  EXPECT_EQ(parse_duration("1.5min"), 90'000'000'000);
+  EXPECT_EQ(parse_duration("12h"), 43'200'000'000'000);
+  EXPECT_EQ(parse_duration("30d"), 2'592'000'000'000'000);
+  for (const char* const wrong : {"", "5", "ms", "5 ms", "-5ms", "0.5ns", "5m", "5D", "1e3ms", "99999999999s"}) {
     EXPECT_FALSE(parse_duration(wrong)) << wrong;
   }
 }

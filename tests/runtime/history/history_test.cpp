@@ -4,17 +4,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <csignal>
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <random>
 
 #include "runtime/history/tables.hpp"
 #include "tests/runtime/history/history_bench.hpp"
+#include "tests/runtime/history/history_kill.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -350,40 +348,15 @@ TEST_F(Histories, AProgramThatReadsForLongCannotMakeItGrow) {
 
 TEST_F(Histories, AKillLosesNothingThatWasConfirmed) {
   std::mt19937 random(5);
-  std::uint64_t confirmed = 0;
+  std::int64_t rows = 0;
   for (int kill = 0; kill < 20; ++kill) {
-    std::array<int, 2> ends{};
-    ASSERT_EQ(::pipe(ends.data()), 0);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      HistoryBench bench(file(), 1, 100'000'000);
-      bench.settings().plan.run.key = std::to_string(kill);
-      for (bench.start();;) {
-        bench.run(50);
-        bench.turn();
-        const std::uint64_t done = bench.count().done;
-        if (::write(ends[1], &done, sizeof done) != sizeof done) {
-          ::_exit(1);
-        }
-      }
-    }
-    ::close(ends[1]);
-    std::uint64_t done = 0;
-    for (auto turns = 1 + random() % 8; turns > 0 && ::read(ends[0], &done, sizeof done) == sizeof done; --turns) {
-    }
-    ::usleep(static_cast<useconds_t>(random() % 3000));
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-    while (::read(ends[0], &done, sizeof done) == sizeof done) {
-    }
-    ::close(ends[0]);
-    confirmed += done;
-    const auto found = stretches().stretches;
-    ASSERT_EQ(found.size(), static_cast<std::size_t>(kill) + 1) << "each run without a gap";
-    EXPECT_GE(found.back().rows, static_cast<std::int64_t>(done));
-    EXPECT_EQ(found.back().rows % 50, 0) << "whole transactions";
+    const auto result =
+        test::kill_history(file(), kill, 1 + static_cast<int>(random() % 8), static_cast<useconds_t>(random() % 3000));
+    EXPECT_GT(result.confirmed, 0U);
+    EXPECT_TRUE(result.is_whole) << result.rows << " rows, " << result.confirmed << " confirmed";
+    rows += result.rows;
   }
-  EXPECT_GE(test::column_of(file(), 0).size(), confirmed);
+  EXPECT_EQ(test::column_of(file(), 0).size(), static_cast<std::size_t>(rows)) << "of all runs";
 }
 
 TEST_F(Histories, AnotherTaskKeepsOut) {

@@ -183,8 +183,9 @@ int export_record(HistoryReader& reader, const std::vector<RecordedRun>& runs, c
   std::string text =
       fmt::format("{}: run {}, {} rows every {} s, {}\n", options.output, run.run, record.size(),
                   number_text(run.sample_time()), span_text(taken.front().first_ms, taken.back().last_ms));
-  text += options.gaps ? fmt::format("{} stretches with gaps between them: read it with --resample\n", taken.size())
-                       : left_out(found.stretches, longest);
+  text += options.gaps && taken.size() == 1 ? "there is no gap\n"
+          : options.gaps ? fmt::format("{} stretches with gaps between them: read it with --resample\n", taken.size())
+                         : left_out(found.stretches, longest);
   for (const records::Column& column : record.columns()) {
     const auto lost = std::ranges::count_if(column.values, [](double value) { return std::isnan(value); });
     text += lost == 0 ? "" : fmt::format("{} is not a number in {} rows\n", column.name, lost);

@@ -5,16 +5,49 @@
 
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 namespace hysteron::database {
 namespace {
 
 constexpr int patience_ms = 5000;
 
-bool passes(int code) {
-  const int kind = code & 0xff;
-  return kind == SQLITE_BUSY || kind == SQLITE_LOCKED || kind == SQLITE_FULL || kind == SQLITE_IOERR ||
-         kind == SQLITE_CANTOPEN;
+Trouble trouble_of(int code) {
+  switch (code & 0xff) {
+    case SQLITE_FULL:
+      return Trouble::Full;
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Trouble::Held;
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return Trouble::Unreachable;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return Trouble::Damaged;
+    default:
+      return Trouble::Other;
+  }
+}
+
+/// Without a write-ahead log beside it, nobody is about to write what is in the file.
+bool is_at_rest(const std::filesystem::path& path) {
+  std::error_code unknown;
+  auto log = path;
+  log += "-wal";
+  return std::filesystem::exists(path, unknown) && !std::filesystem::exists(log, unknown);
+}
+
+/// As a URI, in which the file is said to change no more.
+std::string unchanging(const std::filesystem::path& path) {
+  std::string uri = "file:";
+  for (const char sign : std::filesystem::absolute(path).string()) {
+    uri += sign == '%' || sign == '?' || sign == '#' ? fmt::format("%{:02X}", static_cast<unsigned>(sign))
+                                                     : std::string(1, sign);
+  }
+  return uri + "?immutable=1";
 }
 
 }  // namespace
@@ -24,26 +57,47 @@ void Database::Closed::operator()(sqlite3* file) const {
 }
 
 Database::Database(const std::filesystem::path& path, Mode mode) : name_(path.string()) {
+  open(name_, mode == Mode::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  if (mode == Mode::Write) {
+    // The first counts for a new file alone, and only before anything is in it.
+    run("PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
+        "PRAGMA foreign_keys = ON;");
+    return;
+  }
+  const std::string look = "SELECT count(*) FROM sqlite_master;";  // says now that it is no file of SQLite
+  try {
+    run(look);
+  } catch (const DatabaseError& refused) {
+    if (refused.trouble() != Trouble::Unreachable || !is_at_rest(path)) {
+      throw;
+    }
+    open(unchanging(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+    run(look);
+  }
+}
+
+void Database::open(const std::string& name, int flags) {
   sqlite3* file = nullptr;
-  const int flags = mode == Mode::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-  const int code = sqlite3_open_v2(name_.c_str(), &file, flags, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &file, flags, nullptr);
   file_.reset(file);
   if (code != SQLITE_OK) {
     fail();
   }
   sqlite3_extended_result_codes(file, 1);
   sqlite3_busy_timeout(file, patience_ms);
-  if (mode == Mode::Write) {
-    run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
-  } else {
-    run("SELECT count(*) FROM sqlite_master;");  // says now that it is no file of SQLite
-  }
 }
 
 void Database::fail() const {
-  const int code = file_ == nullptr ? SQLITE_NOMEM : sqlite3_errcode(file_.get());
-  throw DatabaseError(fmt::format("{}: {}", name_, file_ == nullptr ? "out of memory" : sqlite3_errmsg(file_.get())),
-                      passes(code));
+  if (file_ == nullptr) {
+    throw DatabaseError(name_ + ": out of memory", Trouble::Other);
+  }
+  const int code = sqlite3_errcode(file_.get());
+  const int cause = sqlite3_system_errno(file_.get());
+  const Trouble trouble = trouble_of(code);
+  const bool tells = cause != 0 && trouble == Trouble::Unreachable;
+  throw DatabaseError(fmt::format("{}: {}{}", name_, sqlite3_errmsg(file_.get()),
+                                  tells ? fmt::format(" ({})", std::generic_category().message(cause)) : ""),
+                      trouble);
 }
 
 void Database::run(const std::string& sql) {

@@ -14,15 +14,25 @@ struct sqlite3_stmt;
 
 namespace hysteron::database {
 
-/// What SQLite says of a file: "fleet.sqlite: database is locked". `is_passing`: another try may succeed, as where
-/// another process writes or the disk is full.
+/// What kept SQLite from its work.
+enum class Trouble : std::uint8_t {
+  Full,         ///< no room on the disk
+  Unreachable,  ///< the file cannot be opened, read or written
+  Damaged,      ///< it is no file of SQLite, or was one
+  Held,         ///< another process writes, or holds it
+  Other,        ///< a statement that is wrong, no memory
+};
+
+/// What SQLite says of a file: "fleet.sqlite: database is locked".
 class DatabaseError : public std::runtime_error {
  public:
-  DatabaseError(const std::string& text, bool is_passing) : std::runtime_error(text), is_passing_(is_passing) {}
-  [[nodiscard]] bool is_passing() const { return is_passing_; }
+  DatabaseError(const std::string& text, Trouble trouble) : std::runtime_error(text), trouble_(trouble) {}
+  [[nodiscard]] Trouble trouble() const { return trouble_; }
+  /// Another try may succeed, as where another process writes or the disk is full.
+  [[nodiscard]] bool is_passing() const { return trouble_ != Trouble::Damaged && trouble_ != Trouble::Other; }
 
  private:
-  bool is_passing_ = false;
+  Trouble trouble_;
 };
 
 class Statement;
@@ -33,7 +43,9 @@ class Database {
   enum class Mode { Read, Write };
 
   /// Opens a file; to write, it is made where it is not there. A writer keeps a write-ahead log, so that readers never
-  /// wait for it and a power cut loses no more than the last transaction. Waits up to 5 s for other writers.
+  /// wait for it and a power cut loses no more than the last transaction. Waits up to 5 s for other writers. A new file
+  /// gives the pages of what is deleted back where it is asked to (`PRAGMA incremental_vacuum`). A file that nobody
+  /// writes can be read from a folder that may not be written.
   /// Throws DatabaseError where it cannot be opened, or is no file of SQLite.
   Database(const std::filesystem::path& path, Mode mode);
 
@@ -49,6 +61,7 @@ class Database {
 
  private:
   friend class Statement;
+  void open(const std::string& name, int flags);
   [[noreturn]] void fail() const;
 
   struct Closed {

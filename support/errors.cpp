@@ -2,6 +2,7 @@
 
 #include <array>
 
+
 namespace hysteron {
 namespace {
 
@@ -139,6 +140,9 @@ constexpr std::array titles{
     ErrorTitle{error::output_of_another_task, "Output that another task writes"},
     ErrorTitle{error::file_of_another_task, "Trace or retained values that another task writes"},
     ErrorTitle{error::unusable_retain_folder, "Retain folder that cannot be used"},
+    ErrorTitle{error::foreign_history, "History in a file of something else"},
+    ErrorTitle{error::unreadable_history, "History that cannot be read"},
+    ErrorTitle{error::nothing_in_history, "Nothing of that in the history"},
     ErrorTitle{error::register_address_twice, "Register address given twice"},
     ErrorTitle{error::lock_file_syntax, "Line of a lock file that is not understood"},
     ErrorTitle{error::point_addressed_twice, "Point with two addresses"},

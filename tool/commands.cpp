@@ -23,6 +23,7 @@ std::span<const Command> commands() {
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
       Command{"serve", "Runs a diagram as a cyclic task, and serves it over Modbus.", add_serve},
       Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
+      Command{"history", "What a task has kept for days: listed, or as a record.", add_history},
       Command{"map", "Prints the registers of a served diagram.", add_map},
       Command{"retained", "Shows what a task keeps through a restart, and brings it back into a parameter file.",
               add_retained},

@@ -1,10 +1,12 @@
 # Writes the sources of a generated host into one translation unit, so that the tool carries them: run at build time as
-#   cmake -DROOT=… -DRUNTIME=LIST -DSUPPORT=LIST -DOUTPUT=FILE.cpp -DDEPFILE=FILE.d -P embed_sources.cmake
+#   cmake -DROOT=… -DRUNTIME=LIST -DSUPPORT=LIST -DDATABASE=LIST -DOUTPUT=FILE.cpp -DDEPFILE=FILE.d
+#     -P embed_sources.cmake
 #
-# RUNTIME and SUPPORT name files with the sources of these targets, a line each. The rooms of the runtime that a host
-# needs go in whole, with every header that they include; of support, what they include and the source beside it.
+# RUNTIME, SUPPORT and DATABASE name files with the sources of these targets, a line each. The rooms of the runtime that
+# a host needs go in whole, with every header that they include; of the others, what they include and the source beside
+# it.
 cmake_policy(VERSION 3.25)
-set(rooms "^runtime/(config|host|modbus|task)/")
+set(rooms "^runtime/(config|history|host|modbus|task)/")
 
 # The sources of a target, relative to the root.
 function(read_list file folder result)
@@ -18,7 +20,9 @@ function(read_list file folder result)
 endfunction()
 
 read_list(${RUNTIME} runtime waiting)
-read_list(${SUPPORT} support support_sources)
+read_list(${SUPPORT} support below)
+read_list(${DATABASE} database of_database)
+list(APPEND below ${of_database})
 list(FILTER waiting INCLUDE REGEX ${rooms})
 # What the generated main includes besides.
 list(APPEND waiting LICENSE runtime/host/host_program.hpp runtime/task/linked_program.hpp)
@@ -35,7 +39,7 @@ while(waiting)
     string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" include "${include}")
     list(APPEND waiting ${include})
     string(REGEX REPLACE "\\.hpp$" ".cpp" source ${include})
-    if(source IN_LIST support_sources)
+    if(source IN_LIST below)
       list(APPEND waiting ${source})
     endif()
   endforeach()

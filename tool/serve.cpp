@@ -75,10 +75,13 @@ int serve(const ServeOptions& options, Console& console) {
   inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
   runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
   console.report(warnings);
+  const auto history = config.history.value_or(runtime::HistoryConfig{});
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
     const runtime::web::Subject subject{.name = program->shape().name,
                                         .period = program->shape().period,
-                                        .diagram = live_diagram(diagram.graph, inner)};
+                                        .diagram = live_diagram(diagram.graph, inner),
+                                        .history = history.file,
+                                        .history_points = history.points};
     auto server = std::make_shared<runtime::web::Server>(door, subject, *web);
     where += fmt::format("; live page on http://{}/", runtime::web::text_of(web->endpoint, server->port()));
     return server;

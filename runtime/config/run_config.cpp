@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "runtime/config/device_reader.hpp"
+#include "runtime/config/history_reading.hpp"
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
@@ -71,6 +72,10 @@ class Reader {
     }
     if (const auto* const table = table_at(root_, "trace")) {
       read_trace({file_, "[trace]", *table, run_table("trace").keys, found_});
+    }
+    if (const auto* const table = table_at(root_, "history")) {
+      config_.history =
+          HistoryReading(shape_, found_).read({file_, "[history]", *table, run_table("history").keys, found_});
     }
     if (const auto* const table = table_at(root_, "modbus")) {
       read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
@@ -404,9 +409,16 @@ std::optional<std::int64_t> parse_duration(std::string_view text) {
   }
   const auto number = parse_number(text.substr(0, unit));
   const auto name = text.substr(unit);
-  const double scale = name == "ns" ? 1.0 : name == "us" ? 1e3 : name == "ms" ? 1e6 : name == "s" ? 1e9 : 0.0;
+  const double scale = name == "ns"    ? 1.0
+                       : name == "us"  ? 1e3
+                       : name == "ms"  ? 1e6
+                       : name == "s"   ? 1e9
+                       : name == "min" ? 60e9
+                       : name == "h"   ? 3600e9
+                       : name == "d"   ? 86'400e9
+                                       : 0.0;
   const double value = number.value * scale;
-  if (number.status != NumberStatus::Finite || scale == 0.0 || value > 1e15 || value != std::round(value)) {
+  if (number.status != NumberStatus::Finite || scale == 0.0 || value > 1e18 || value != std::round(value)) {
     return std::nullopt;
   }
   return static_cast<std::int64_t>(value);

@@ -51,6 +51,15 @@ struct RetainConfig {
   Place place{};
 };
 
+struct HistoryConfig {
+  std::string file{};
+  std::vector<std::string> points{};  ///< as the task's door names them
+  std::uint64_t step = 1;             ///< periods from row to row
+  std::int64_t keep = 30 * std::int64_t{86'400'000'000'000};
+  std::uint64_t bytes = 1'000'000'000;
+  Place place{};
+};
+
 struct ModbusConfig {
   std::string listen = "127.0.0.1";
   std::uint16_t port = 1502;
@@ -76,6 +85,7 @@ struct RunConfig {
   std::optional<RetainConfig> retain{};
   std::optional<TraceSettings> trace{};
   Place trace_place{};
+  std::optional<HistoryConfig> history{};
   std::optional<ModbusConfig> modbus{};
   std::vector<modbus::DeviceOptions> devices{};
   std::vector<DeviceInput> device_inputs{};
@@ -86,7 +96,7 @@ struct RunConfig {
 /// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
 
-/// A length of time as "5ms": a number and one of ns, us, ms, s. In nanoseconds; nothing where it is none.
+/// A length of time as "5ms": a number and one of ns, us, ms, s, min, h, d. In nanoseconds; nothing where it is none.
 [[nodiscard]] std::optional<std::int64_t> parse_duration(std::string_view text);
 
 /// A trigger as "U > 5.0", "Y_REF < -1", or "fault"; nothing where it is none of the program's.

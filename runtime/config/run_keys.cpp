@@ -186,6 +186,15 @@ constexpr std::array trace_keys{
     RunKey{"before", whole, "1000", "with a trigger: cycles kept from before", 0.0, many},
     RunKey{"after", whole, "1000", "with a trigger: cycles kept from then on", 0.0, many},
 };
+constexpr std::array history_keys{
+    RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
+    RunKey{"points", texts, "(all inputs and outputs)",
+           "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`"},
+    RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods; for `tune` and `diagnose`, one period",
+           1.0, 86400.0 * s},
+    RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 10000.0 * 86400.0 * s},
+    RunKey{"megabytes", whole, "1000", "what it takes on the disk at most: the oldest rows give way", 1.0, 1e6},
+};
 constexpr std::array modbus_keys{
     RunKey{"listen", text, "\"127.0.0.1\"", "the address of the server"},
     RunKey{"port", whole, "1502", "its port, with `[tls]` by default 802; 0: any that is free", 0.0, 65535.0},
@@ -243,9 +252,9 @@ constexpr std::array address_keys{
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"},  RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},    RunKey{"modbus"},
-                               RunKey{"tls"},     RunKey{"roles"},    RunKey{"addresses"}};
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"}, RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},   RunKey{"history"},
+                               RunKey{"modbus"},  RunKey{"tls"},      RunKey{"roles"},   RunKey{"addresses"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -255,6 +264,7 @@ constexpr std::array tables{
     RunTable{"[devices.NAME]", "A Modbus device with inputs or outputs of the task.", device_keys},
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
+    RunTable{"[history]", "Chosen points, kept for days; without the table, none.", history_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
     RunTable{"[tls]", "Modbus/TCP Security instead of Modbus in the clear, with certificates on both sides.", tls_keys},
     RunTable{"[roles]", "A line for each role that the certificates of clients name.", role_keys},
@@ -297,6 +307,10 @@ std::string default_text(const RunKey& key) {
 }  // namespace
 
 std::string time_text(double nanoseconds) {
+  constexpr double day = 86'400.0 * s;
+  if (nanoseconds >= day && std::fmod(nanoseconds, day) == 0.0) {
+    return number_text(nanoseconds / day) + "d";
+  }
   constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
   const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
   return number_text(nanoseconds / unit->first) + unit->second;
@@ -324,8 +338,8 @@ std::string run_file_page() {
       "# The run file\n\n"
       "What `hysteron serve --config RUN.toml` reads, in [TOML](https://toml.io): how a diagram is run. Every key but "
       "the\n"
-      "safe values may be left out. A time is a text with one of `ns`, `us`, `ms`, `s`, as `\"5ms\"`. Names of inputs "
-      "and\n"
+      "safe values may be left out. A time is a text with one of `ns`, `us`, `ms`, `s`, `min`, `h`, `d`, as `\"5ms\"`. "
+      "Names of inputs and\n"
       "outputs are the diagram's, without regard to case. The page is printed from `runtime/config/run_keys.cpp`, by "
       "which\n"
       "the reader goes as well; `RunKeys.ThePageIsCurrent` in `test_runtime` holds it, and prints it anew.\n";

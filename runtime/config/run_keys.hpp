@@ -35,7 +35,7 @@ struct RunTable {
 /// By the name without brackets and NAME: task, outputs.
 [[nodiscard]] const RunTable& run_table(std::string_view name);
 
-/// A length of time in the largest unit that it fills: 50us, 1.5ms, 2s.
+/// A length of time in the largest unit that it fills, whole days but for that: 50us, 1.5ms, 2s, 30d.
 [[nodiscard]] std::string time_text(double nanoseconds);
 
 /// docs/reference/run-file.md.

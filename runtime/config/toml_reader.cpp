@@ -144,7 +144,7 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::in
   }
   const auto value = node->is_string() ? parse_duration(node->as_string()->get()) : std::nullopt;
   if (!value) {
-    return wrong_type(key, "a length of time in ns, us, ms or s", "\"5ms\"");
+    return wrong_type(key, "a length of time in ns, us, ms, s, min, h or d", "\"5ms\"");
   }
   if (*value < low || *value > high) {
     return out_of_range(key,

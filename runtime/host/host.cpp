@@ -10,6 +10,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -20,6 +21,7 @@
 #include "runtime/host/notices.hpp"
 #include "runtime/host/output_turn.hpp"
 #include "runtime/host/retained_state.hpp"
+#include "runtime/host/running_history.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
@@ -320,6 +322,13 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       inputs.push_back({.file = file, .named_by = "[retain] folder"});
     }
   }
+  if (config.history) {
+    for (const char* const ending : {"", "-wal", "-shm", ".lock"}) {
+      const std::string file = config.history->file + ending;
+      refuse_to_overwrite({.file = file, .mend = mend, .place = config.history->place}, inputs);
+      inputs.push_back({.file = file, .named_by = "[history] file"});
+    }
+  }
   if (config.trace) {
     // What stands there is moved to the next name.
     for (std::size_t number = 0; number < config.trace->files; ++number) {
@@ -366,6 +375,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   const auto retained = config.retain ? std::make_unique<RetainedState>(*config.retain, program) : nullptr;
   how += retained ? retained->told() : "";
   Task task(program, config.task);
+  const auto history =
+      config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
   // Read after the guard was forked: the guard needs no key.
   const auto tls =
       config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
@@ -386,11 +397,22 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     field = std::make_unique<DeviceField>(config, options.virtual_time,
                                           [&guard] { return guard == nullptr || guard->may_write(); });
   }
-  const TaskAttachments attachments{
-      .field = field.get(), .guard = guard.get(), .retainer = retainer.get(), .trace = trace.get()};
+  const TaskAttachments attachments{.field = field.get(),
+                                    .guard = guard.get(),
+                                    .retainer = retainer.get(),
+                                    .trace = trace.get(),
+                                    .history = history ? &history->counter() : nullptr};
   task.attach(attachments);
+  if (history) {
+    task.door().attach({&history->tap()});
+    history->start();
+  }
 
-  RunNotices notices(config, shape, task, attachments);
+  std::map<std::string, Remarks*> beside;
+  if (history) {
+    beside.emplace("History", &history->remarks());
+  }
+  RunNotices notices(config, shape, task, attachments, std::move(beside));
   CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
   {
@@ -406,6 +428,10 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (trace) {
     trace->finish();
   }
+  if (history) {
+    history->finish();
+  }
+  notices.look_beside();
   print(status_line(task, shape.name + ": " + std::string(name_of(end)), notices.at_the_end()));
   return (end == LoopEnd::stopped || end == LoopEnd::done) && task.fault() == Fault::stop && notices.all_is_written();
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstddef>
+#include <utility>
 
 namespace hysteron::runtime {
 namespace {
@@ -131,14 +132,16 @@ void tell_of_unused_devices(const RunConfig& config) {
 }
 
 RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task,
-                       const TaskAttachments& attachments)
+                       const TaskAttachments& attachments, std::map<std::string, Remarks*> beside)
     : task_(&task),
       guard_(attachments.guard),
+      beside_(std::move(beside)),
       writes_(attachments.retainer, attachments.trace),
       faults_(config, shape) {}
 
 void RunNotices::look() {
   writes_.look();
+  look_beside();
   FaultReport report = task_->faults();
   if (guard_ != nullptr && !guard_->may_write() && report.fault == Fault::none) {
     // A task that hangs cannot say so.
@@ -146,6 +149,14 @@ void RunNotices::look() {
   }
   if (const std::string line = faults_.line(report, FaultNotices::Clock::now()); !line.empty()) {
     tell("Fault", line);
+  }
+}
+
+void RunNotices::look_beside() {
+  for (const auto& [name, remarks] : beside_) {
+    for (const std::string& line : remarks->lines()) {
+      tell(name, line);
+    }
   }
 }
 
@@ -158,7 +169,14 @@ std::string RunNotices::at_the_end() const {
       guard_ == nullptr || !guard_->holds_on()
           ? ""
           : fmt::format("; its guard, process {}, goes on until the devices have their safe values", guard_->process());
-  return faults + left + writes_.at_the_end();
+  return faults + left + not_written();
+}
+
+std::string RunNotices::not_written() const {
+  const auto history = beside_.find("History");
+  const std::string problem = history == beside_.end() ? "" : history->second->problem();
+  return writes_.at_the_end() +
+         (problem.empty() ? "" : fmt::format("; the last rows of the history are lost: {}", problem));
 }
 
 }  // namespace hysteron::runtime

@@ -3,12 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/task/fault_log.hpp"
+#include "runtime/task/remarks.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/task.hpp"
 #include "runtime/task/trace.hpp"
@@ -64,17 +66,24 @@ void tell_of_what_is_left(const std::vector<std::string>& left);
 /// All that is said while a task runs.
 class RunNotices {
  public:
-  RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task, const TaskAttachments& attachments);
+  /// `beside`: what else has something to say, by the name that its lines begin with.
+  RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task, const TaskAttachments& attachments,
+             std::map<std::string, Remarks*> beside);
 
   /// To be called as time goes by, from a thread that is not the task's.
   void look();
-  /// For the status line at the end, each part beginning with a semicolon. Once trace and retained state are finished.
+  /// The part of look() that is about what runs beside the task; once more after its end.
+  void look_beside();
+  /// For the status line at the end, each part beginning with a semicolon. Once all that writes is finished.
   [[nodiscard]] std::string at_the_end() const;
-  [[nodiscard]] bool all_is_written() const { return writes_.at_the_end().empty(); }
+  [[nodiscard]] bool all_is_written() const { return not_written().empty(); }
 
  private:
+  [[nodiscard]] std::string not_written() const;
+
   const Task* task_;
   const Guard* guard_;
+  std::map<std::string, Remarks*> beside_;
   WriteNotices writes_;
   FaultNotices faults_;
 };

@@ -207,6 +207,7 @@ void Task::count_writes() noexcept {
     status_.dropped = attachments_.trace->dropped();
     status_.write_failures += attachments_.trace->is_cut() ? 1 : 0;
   }
+  status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
 }
 
 void Task::settle(Clock& clock, Fault fault) {

@@ -46,6 +46,7 @@ struct TaskAttachments {
   Guard* guard = nullptr;
   Retainer* retainer = nullptr;
   Trace* trace = nullptr;
+  const KeptCounter* history = nullptr;
 };
 
 class Task final : private CycleBody {

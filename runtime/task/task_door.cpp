@@ -7,9 +7,58 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::size_t status_count = 19;
 constexpr std::size_t command_count = 4;
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
+
+struct Status {
+  const char* name;
+  PointType type;
+  const char* unit;
+  const char* meaning;
+  bool counts = false;
+};
+
+constexpr Status count_of(const char* name, const char* meaning) {
+  return {name, PointType::uint64, "1", meaning, true};
+}
+
+constexpr const char* faults =
+    "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
+    "9 not safe, 10 lost guard";
+
+/// In the order in which publish() gives their values.
+constexpr std::array statuses{
+    Status{"task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped"},
+    Status{"task.fault", PointType::uint16, "1", faults},
+    count_of("task.cycles", "cycles that were run"),
+    count_of("task.skipped", "periods that passed without a cycle"),
+    count_of("task.elapsed", "periods by the clock: cycles + skipped"),
+    count_of("task.late_wake", "late cycles: the thread was woken late"),
+    count_of("task.late_cpu", "late cycles: the cycle computed for too long"),
+    count_of("task.late_preempted", "late cycles: the thread was not run"),
+    count_of("task.late_steal", "late cycles: the hypervisor had the processor"),
+    Status{"task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later"},
+    Status{"task.lateness_worst", PointType::int64, "ns", "the latest start"},
+    Status{"task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start"},
+    count_of("task.commits", "sets of parameters applied, and on the disk where they are retained"),
+    Status{"task.retained", PointType::uint64, "1", "sequence number of the newest retained state"},
+    count_of("task.trace_dropped", "steps that the trace had no room for"),
+    count_of("task.write_failures", "writes of the trace or of retained values that failed"),
+    count_of("task.not_taken", "values of devices beyond the limits of their input, or none"),
+    count_of("task.faults", "faults that began"),
+    Status{"task.last_fault", PointType::uint16, "1", faults},
+    count_of("task.history_rows", "rows of the history that are on the disk"),
+    count_of("task.history_lost", "rows of the history that are lost"),
+    Status{"task.history_fault", PointType::uint16, "1",
+           "0 none, 1 disk full, 2 cannot be reached, 3 damaged, 4 held by another program"},
+};
+constexpr std::size_t status_count = statuses.size();
+
+constexpr auto names_of_statuses = [] {
+  std::array<const char*, status_count> names{};
+  std::ranges::transform(statuses, names.begin(), &Status::name);
+  return names;
+}();
 
 std::size_t width_of(const ProgramShape& shape) {
   return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + command_count +
@@ -40,6 +89,10 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
 
 }  // namespace
 
+std::span<const char* const> status_names() {
+  return names_of_statuses;
+}
+
 TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety)
     : device_inputs_(std::move(device_inputs)),
       snapshots_(width_of(program.shape())),
@@ -61,28 +114,14 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   for (const ProgramSignal& parameter : shape.parameters) {
     add(point_of(parameter, PointKind::parameter, true));
   }
-  constexpr const char* faults =
-      "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
-      "9 not safe, 10 lost guard";
-  add_status("task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped");
-  add_status("task.fault", PointType::uint16, "1", faults);
-  add_count("task.cycles", "cycles that were run");
-  add_count("task.skipped", "periods that passed without a cycle");
-  add_count("task.elapsed", "periods by the clock: cycles + skipped");
-  add_count("task.late_wake", "late cycles: the thread was woken late");
-  add_count("task.late_cpu", "late cycles: the cycle computed for too long");
-  add_count("task.late_preempted", "late cycles: the thread was not run");
-  add_count("task.late_steal", "late cycles: the hypervisor had the processor");
-  add_status("task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later");
-  add_status("task.lateness_worst", PointType::int64, "ns", "the latest start");
-  add_status("task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start");
-  add_count("task.commits", "sets of parameters applied, and on the disk where they are retained");
-  add_status("task.retained", PointType::uint64, "1", "sequence number of the newest retained state");
-  add_count("task.trace_dropped", "steps that the trace had no room for");
-  add_count("task.write_failures", "writes of the trace or of retained values that failed");
-  add_count("task.not_taken", "values of devices beyond the limits of their input, or none");
-  add_count("task.faults", "faults that began");
-  add_status("task.last_fault", PointType::uint16, "1", faults);
+  for (const Status& status : statuses) {
+    add({.name = status.name,
+         .kind = PointKind::status,
+         .type = status.type,
+         .unit = status.unit,
+         .meaning = status.meaning,
+         .counts = status.counts});
+  }
   first_command_ = points_.size();
   add_command("task.commit", WriteRight::parameters,
               "any number but 0: the staged parameters count from the next step on");
@@ -93,15 +132,6 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
   for (const ProgramSignal& signal : shape.inner) {
     inner_.push_back(point_of(signal, PointKind::output, false));
   }
-}
-
-void TaskDoor::add_status(const char* name, PointType type, const char* unit, const char* meaning) {
-  add({.name = name, .kind = PointKind::status, .type = type, .unit = unit, .meaning = meaning});
-}
-
-void TaskDoor::add_count(const char* name, const char* meaning) {
-  add_status(name, PointType::uint64, "1", meaning);
-  points_.back().counts = true;
 }
 
 void TaskDoor::add_command(const char* name, WriteRight right, const char* meaning) {
@@ -230,12 +260,18 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.not_taken),
       static_cast<double>(status.faults),
       static_cast<double>(status.last_fault),
+      static_cast<double>(status.history.done),
+      static_cast<double>(status.history.lost),
+      static_cast<double>(status.history.fault),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);
   *at++ = status.heartbeat;
   program.inner_values(std::span(at, published_.end()));
   snapshots_.publish(statistics.run, published_);
+  for (SampleTap* const tap : taps_) {
+    tap->offer(statistics.run, statistics.elapsed, published_);
+  }
 }
 
 }  // namespace hysteron::runtime

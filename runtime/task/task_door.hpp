@@ -9,12 +9,14 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/point.hpp"
 #include "runtime/task/exchange.hpp"
 #include "runtime/task/lateness.hpp"
 #include "runtime/task/safe_outputs.hpp"
+#include "runtime/task/sample_tap.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "runtime/task/step_program.hpp"
 
@@ -43,8 +45,12 @@ struct TaskStatus {
   std::uint64_t not_taken = 0;       ///< values of devices
   std::uint64_t faults = 0;          ///< that began
   Fault last_fault = Fault::none;    ///< the newest, over or not
+  KeptCount history{};
   double heartbeat = 0.0;
 };
+
+/// The names of what a task says of itself: task.state, …
+[[nodiscard]] std::span<const char* const> status_names();
 
 class TaskDoor final : public PointDoor {
  public:
@@ -58,6 +64,9 @@ class TaskDoor final : public PointDoor {
   [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
   void read_live(LiveValues& into) override;
 
+  /// Before the task runs: every cycle published goes to these as well. They must outlive the run.
+  void attach(std::vector<SampleTap*> taps) { taps_ = std::move(taps); }
+
   // For the cyclic thread alone.
   [[nodiscard]] const TaskOrders* take_orders() noexcept { return orders_.take(); }
   void publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
@@ -67,8 +76,6 @@ class TaskDoor final : public PointDoor {
   enum class Command : std::uint8_t { commit, discard, reset, heartbeat };
 
   void add(Point point) { points_.push_back(std::move(point)); }
-  void add_status(const char* name, PointType type, const char* unit, const char* meaning);
-  void add_count(const char* name, const char* meaning);
   void add_command(const char* name, WriteRight right, const char* meaning);
 
   std::vector<Point> points_;
@@ -78,6 +85,7 @@ class TaskDoor final : public PointDoor {
   std::size_t first_command_ = 0;
   SnapshotRing snapshots_;
   std::vector<double> published_;  ///< of the cyclic thread
+  std::vector<SampleTap*> taps_{};
   std::int64_t high_lateness_ = 0;
 
   std::mutex servers_;  ///< between servers; the cyclic thread never takes it

@@ -80,6 +80,7 @@ std::string description_text(const Subject& subject, const PointDoor& door, bool
                   {"diagram", subject.diagram},
                   {"points", std::move(points)},
                   {"inner", std::move(inner)},
+                  {"history", subject.history_points},
                   {"writable", writable},
                   {"token_to_read", token_to_read}});
 }
@@ -93,6 +94,22 @@ std::string values_text(const LiveValues& live) {
   for (std::size_t i = 0; i < live.staged.size(); ++i) {
     fmt::format_to(std::back_inserter(text), "{}[{},", i == 0 ? "" : ",", live.staged[i].point);
     add_number(text, live.staged[i].value);
+    text += ']';
+  }
+  return text + "]}";
+}
+
+std::string trend_text(const Trend& trend) {
+  std::string text = fmt::format("{{\"unit\":{},\"rows\":{},\"looked_at\":{},\"set_back\":{},\"places\":[",
+                                 text_of(trend.unit), trend.rows, trend.looked_at, trend.set_back);
+  for (std::size_t i = 0; i < trend.places.size(); ++i) {
+    const TrendPlace& place = trend.places[i];
+    text += i == 0 ? "" : place.begins ? ",null," : ",";
+    fmt::format_to(std::back_inserter(text), "[{}", place.utc_ms);
+    for (const double value : {place.low, place.mean, place.high}) {
+      text += ',';
+      add_number(text, value);
+    }
     text += ']';
   }
   return text + "]}";

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include "runtime/history/history_trend.hpp"
 #include "runtime/point.hpp"
 
 namespace hysteron::runtime::web {
@@ -11,18 +14,25 @@ namespace hysteron::runtime::web {
 /// Of the program that is shown.
 struct Subject {
   std::string name{};
-  std::int64_t period = 0;  ///< of its steps, in nanoseconds
-  std::string diagram{};    ///< SVG; empty where there is none
+  std::int64_t period = 0;                    ///< of its steps, in nanoseconds
+  std::string diagram{};                      ///< SVG; empty where there is none
+  std::filesystem::path history{};            ///< the file of its history; empty where there is none
+  std::vector<std::string> history_points{};  ///< what is in it
 };
 
 /// {"name", "period" in seconds, "diagram", "points": [{"name", "kind", "type", "unit", "low", "high", "meaning"}],
-/// "inner": [{"name", "type", "unit"}], "writable", "token_to_read"}. Limits that are infinite are null.
+/// "inner": [{"name", "type", "unit"}], "history": [names of points], "writable", "token_to_read"}. Limits that are
+/// infinite are null.
 [[nodiscard]] std::string description_text(const Subject& subject, const PointDoor& door, bool writable,
                                            bool token_to_read);
 
 /// {"cycle", "values", "inner", "staged": [[point, value], …]}. What is not finite is null; all other numbers are read
 /// back to the same bits.
 [[nodiscard]] std::string values_text(const LiveValues& live);
+
+/// {"unit", "rows", "looked_at", "set_back" in seconds, "places": [[UTC in ms, low, mean, high], …]}; null stands
+/// between two places with a gap.
+[[nodiscard]] std::string trend_text(const Trend& trend);
 
 /// {"refusal": "…"}.
 [[nodiscard]] std::string refusal_text(const std::string& refusal);

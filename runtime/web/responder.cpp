@@ -5,14 +5,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "runtime/history/history_trend.hpp"
 #include "runtime/web/assets.hpp"
+#include "support/diagnostic.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::runtime::web {
 namespace {
+
+constexpr std::string_view history_target = "/api/history?";
+constexpr double usual_hours = 8.0;
+constexpr double most_hours = 876'000.0;  ///< a hundred years: what keep can be
 
 Answer refusal(unsigned status, const std::string& why) {
   return {.status = status, .body = refusal_text(why)};
@@ -55,6 +63,8 @@ const std::vector<Header>& common_headers() {
 Responder::Responder(PointDoor& door, const Subject& subject, Access access)
     : door_(door),
       access_(std::move(access)),
+      history_(subject.history),
+      history_points_(subject.history_points),
       description_(description_text(subject, door, access_.can_write(), access_.reading_needs_token())),
       metrics_(door.points()) {}
 
@@ -97,7 +107,8 @@ Answer Responder::read(const Request& request) {
   }
   const bool description = request.target == "/api/description";
   const bool metrics = request.target == metrics_target;
-  if (!description && !metrics && request.target != "/api/values") {
+  const bool history = request.target.starts_with(history_target);
+  if (!description && !metrics && !history && request.target != "/api/values") {
     return refusal(404, "There is nothing of this name.");
   }
   if (access_.reading_needs_token() && !is_authorized(access_, request.authorization)) {
@@ -106,11 +117,53 @@ Answer Responder::read(const Request& request) {
   if (description) {
     return {.body = description_};
   }
+  if (history) {
+    return read_history(request.target.substr(history_target.size()));
+  }
   door_.read_live(live_);
   if (metrics) {
     return {.type = metrics_type, .body = metrics_.text(live_.values)};
   }
   return {.body = values_text(live_)};
+}
+
+Answer Responder::read_history(std::string_view query) const {
+  if (history_.empty()) {
+    return refusal(404, "The task keeps no history: its run file has no table [history].");
+  }
+  HistoryQuestion question{.file = history_, .hours = usual_hours};
+  while (!query.empty()) {
+    const auto end = std::min(query.find('&'), query.size());
+    const std::string_view part = query.substr(0, end);
+    query.remove_prefix(std::min(end + 1, query.size()));
+    const auto equals = std::min(part.find('='), part.size());
+    const std::string_view value = part.substr(std::min(equals + 1, part.size()));
+    const auto hours = parse_number(value);
+    if (part.substr(0, equals) == "point") {
+      question.point = value;
+    } else if (part.substr(0, equals) != "hours") {
+      return refusal(400, "The history is asked by point=NAME and hours=NUMBER.");
+    } else if (hours.status != NumberStatus::Finite || !(hours.value > 0.0 && hours.value <= most_hours)) {
+      return refusal(400, fmt::format("hours must be a number above 0, and {} at most.", most_hours));
+    } else {
+      question.hours = hours.value;
+    }
+  }
+  if (std::ranges::find(history_points_, question.point) == history_points_.end()) {
+    return refusal(404, "There is no such point in the history; /api/description lists them.");
+  }
+  return {.later = std::move(question)};
+}
+
+Answer answer_of(const HistoryQuestion& question) {
+  try {
+    const auto span = static_cast<std::int64_t>(question.hours * 3.6e6);
+    return {.body = trend_text(trend_of(question.file, question.point, span))};
+  } catch (const InputError& refused) {
+    return refusal(503, "The history cannot be read now: " + refused.diagnostics().all().front().cause);
+  } catch (const std::exception& problem) {
+    return refusal(503, fmt::format("The history cannot be read now: {}.", problem.what()));
+  }
 }
 
 Answer Responder::write(const Request& request) {

@@ -1,10 +1,11 @@
 // The answer to an HTTP request, as a function of the request, the access and the values behind the door. No sockets,
 // no time.
 //
-//   GET  /, /page.js, /page.css, /dygraph.js, /dygraph.css    the page
+//   GET  /, /page.js, /history.js, /page.css, /dygraph.js, /dygraph.css    the page
 //   GET  /api/description    what there is to be seen
 //   GET  /api/values         the values of the newest cycle
 //   GET  /metrics            the same for a Prometheus server
+//   GET  /api/history?point=Y&hours=8    the last hours of a point, thinned for a picture
 //   GET  /api/stream         the values again and again, over a WebSocket
 //   POST /api/stage          {"HYST.C1": 1.5, …}: these wait for a commit
 //   POST /api/commit         all that wait count from the next step on, or none
@@ -13,6 +14,8 @@
 // Whoever posts, and beyond the loopback whoever reads values, sends Authorization: Bearer TOKEN.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,11 +36,22 @@ struct Request {
   std::string_view body{};
 };
 
+/// What is looked up in the history, which may take a while: by another thread than the one that answers.
+struct HistoryQuestion {
+  std::filesystem::path file{};
+  std::string point{};
+  double hours = 0.0;
+};
+
 struct Answer {
   unsigned status = 200;
   std::string_view type = "application/json";
   std::string body{};
+  std::optional<HistoryQuestion> later{};  ///< the body is the answer to this
 };
+
+/// From any thread, and in bounded time.
+[[nodiscard]] Answer answer_of(const HistoryQuestion& question);
 
 /// On every answer: nothing is loaded from another host, nothing is framed, nothing is kept.
 struct Header {
@@ -63,6 +77,7 @@ class Responder {
  private:
   [[nodiscard]] Answer refused_sender(const Request& request) const;
   [[nodiscard]] Answer read(const Request& request);
+  [[nodiscard]] Answer read_history(std::string_view query) const;
   [[nodiscard]] Answer write(const Request& request);
   [[nodiscard]] Answer stage(std::string_view body);
   [[nodiscard]] Answer give(std::string_view command);
@@ -70,6 +85,8 @@ class Responder {
 
   PointDoor& door_;
   Access access_;
+  std::filesystem::path history_;
+  std::vector<std::string> history_points_;
   std::string description_;
   Metrics metrics_;
   LiveValues live_{};

@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <exception>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +38,7 @@ using Text = std::shared_ptr<const std::string>;
 
 constexpr milliseconds accept_pause{100};
 constexpr std::size_t longest_message = 1024;  ///< a token, or a mistake
+constexpr std::size_t most_questions = 4;      ///< about the history, at once
 constexpr int socket_bytes = 64 * 1024;
 constexpr int niceness = 10;  ///< whatever runs the machine goes before the page
 
@@ -63,6 +67,8 @@ class Host {
   virtual Counters& counters() = 0;
   [[nodiscard]] virtual const Limits& limits() const = 0;
   [[nodiscard]] virtual bool has_room_for_a_stream() const = 0;
+  /// Looks it up beside this thread, and calls back in it. False where too many wait already.
+  virtual bool look_up(HistoryQuestion question, std::function<void(Answer)> done) = 0;
   /// The connection is over: forget it.
   virtual void ended(std::uint64_t number) = 0;
 };
@@ -149,13 +155,27 @@ class Connection : public std::enable_shared_from_this<Connection> {
                           .authorization = field(http::field::authorization),
                           .body = message.body()};
     if (!websocket::is_upgrade(message)) {
-      return answer(host_.responder().answer(request), message.keep_alive());
+      Answer now = host_.responder().answer(request);
+      return now.later ? look_up(std::move(*now.later), message.keep_alive())
+                       : answer(std::move(now), message.keep_alive());
     }
     Answer refused = host_.responder().upgrade(request);
     if (refused.status == 200 && !host_.has_room_for_a_stream()) {
       refused = {.status = 503, .body = refusal_text("As many pages are open as may be; close one.")};
     }
     return refused.status == 200 ? become_stream() : answer(std::move(refused), false);
+  }
+
+  void look_up(HistoryQuestion question, bool keep_alive) {
+    stream_->expires_never();
+    const auto done = [self = shared_from_this(), keep_alive](Answer found) {
+      if (!self->is_closed_) {
+        self->answer(std::move(found), keep_alive);
+      }
+    };
+    if (!host_.look_up(std::move(question), done)) {
+      answer({.status = 503, .body = refusal_text("The history is asked by too many at once; try again.")}, keep_alive);
+    }
   }
 
   void answer(Answer answer, bool keep_alive) {
@@ -292,6 +312,8 @@ class Server::Loop final : public Host {
   ~Loop() override {
     context_.stop();
     thread_.join();
+    reader_.stop();
+    reader_.join();
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -316,6 +338,20 @@ class Server::Loop final : public Host {
   [[nodiscard]] const Limits& limits() const override { return options_.limits; }
   [[nodiscard]] bool has_room_for_a_stream() const override {
     return counters_.streams.load(std::memory_order_relaxed) < options_.limits.streams;
+  }
+  bool look_up(HistoryQuestion question, std::function<void(Answer)> done) override {
+    if (looked_up_ >= most_questions) {
+      return false;
+    }
+    ++looked_up_;
+    asio::post(reader_, [this, question = std::move(question), done = std::move(done)]() mutable {
+      Answer found = answer_of(question);
+      asio::post(context_, [this, found = std::move(found), done = std::move(done)]() mutable {
+        --looked_up_;
+        done(std::move(found));
+      });
+    });
+    return true;
   }
   void ended(std::uint64_t number) override {
     connections_.erase(number);
@@ -410,6 +446,8 @@ class Server::Loop final : public Host {
   asio::steady_timer pause_{context_};
   std::optional<tcp::acceptor> acceptor_;
   Connections connections_;
+  std::size_t looked_up_ = 0;    ///< questions that wait for the history, or are answered
+  asio::thread_pool reader_{1};  ///< of the history
   std::thread thread_;
 };
 

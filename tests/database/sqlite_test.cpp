@@ -90,8 +90,9 @@ TEST_F(Sqlite, WhatIsNoDatabaseIsRefusedByItsName) {
   for (const Database::Mode mode : {Database::Mode::Read, Database::Mode::Write}) {
     EXPECT_EQ(refusal(file(), mode, false), file().string() + ": file is not a database");
   }
-  EXPECT_EQ(refusal(file().parent_path() / "none.sqlite", Database::Mode::Read, true),
-            (file().parent_path() / "none.sqlite").string() + ": unable to open database file");
+  EXPECT_EQ(
+      refusal(file().parent_path() / "none.sqlite", Database::Mode::Read, true),
+      (file().parent_path() / "none.sqlite").string() + ": unable to open database file (No such file or directory)");
 }
 
 TEST_F(Sqlite, AWrongStatementIsAnErrorAndNoCrash) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "runtime/task/task.hpp"
+#include "tests/runtime/history/history_kill.hpp"
 #include "tests/runtime/modbus/bad_device.hpp"
 #include "tests/runtime/modbus/exact_answers.hpp"
 #include "tests/runtime/task/dying_task.hpp"
@@ -106,6 +107,23 @@ Counted retain_kills(std::uint64_t count) {
   return {count, fmt::format("{} with a loss; {} states written", lost, last), lost == 0};
 }
 
+Counted history_kills(std::uint64_t count) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("hysteron-soak-history-{}", getpid());
+  std::filesystem::create_directories(folder);
+  std::mt19937_64 random(12);
+  std::uint64_t broken = 0;
+  std::int64_t rows = 0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const auto result =
+        rt::test::kill_history(folder / "history.sqlite", static_cast<int>(k), 1 + static_cast<int>(random() % 8),
+                               static_cast<useconds_t>(random() % 5000));
+    broken += result.is_whole ? 0 : 1;
+    rows += result.rows;
+  }
+  std::filesystem::remove_all(folder);
+  return {count, fmt::format("{} with a loss or a gap; {} rows written", broken, rows), broken == 0};
+}
+
 Counted retain_damage(std::uint64_t /*all*/) {
   rt::RetainedValues values{.sequence = 7, .layout = "9f3c", .parameters = {1.5, -0.0, 1e-300}};
   values.state.assign(2000, std::byte{0x5A});
@@ -202,6 +220,7 @@ std::vector<Row> rows() {
                     [i](std::uint64_t count) { return mishap(static_cast<rt::test::Mishap>(i), count); }});
   }
   list.insert(list.end(), {{"retain_kills", "SIGKILL while retaining", 1000, retain_kills},
+                           {"history_kills", "SIGKILL while a history is written", 1000, history_kills},
                            {"retain_damage", "every truncation and single-bit flip of a slot", 1, retain_damage},
                            {"linked_sets", "linked parameter sets against a running loop", 1'000'000, linked_sets},
                            {"exact_answers", "every function code × every PDU length", 1, exact_answers},

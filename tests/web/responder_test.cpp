@@ -9,7 +9,9 @@
 
 #include "runtime/task/task_door.hpp"
 #include "runtime/web/assets.hpp"
+#include "tests/runtime/history/history_bench.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/web/web_client.hpp"
 
 namespace hysteron::runtime::web {
@@ -207,7 +209,7 @@ TEST(WebResponder, NoOtherHostIsNamed) {
   EXPECT_EQ(common_headers()[0].name, "Content-Security-Policy");
   EXPECT_TRUE(common_headers()[0].value.starts_with("default-src 'self';"));
   EXPECT_EQ(common_headers()[0].value.find("unsafe"), std::string_view::npos);
-  ASSERT_EQ(assets().size(), 7U);
+  ASSERT_EQ(assets().size(), 8U);
   for (const Asset& asset : assets()) {
     EXPECT_GT(asset.text.size(), 100U) << asset.target;
     if (asset.target.starts_with("/dygraph") || asset.target == "/icon.svg") {
@@ -217,6 +219,43 @@ TEST(WebResponder, NoOtherHostIsNamed) {
     EXPECT_EQ(asset.text.find("http://"), std::string_view::npos) << asset.target;
     EXPECT_EQ(asset.text.find(" style="), std::string_view::npos) << asset.target << ": the policy would block it";
   }
+}
+
+TEST(WebResponder, AsksTheHistoryUnderTheRulesOfThePage) {
+  const hysteron::test::ScratchFolder folder;
+  test::HistoryBench history(folder / "history.sqlite");
+  history.start();
+  history.second();
+  history.stop();
+  test::Accumulator program;
+  TaskDoor door(program, {false}, {{}, {}});
+  const Subject subject{.name = "A", .history = history.file(), .history_points = {"U", "Y"}};
+  const auto ask = [&](Responder& responder, std::string_view target, std::string_view authorization = {}) {
+    Answer answer =
+        responder.answer({.method = "GET", .target = target, .host = "127.0.0.1:8080", .authorization = authorization});
+    return answer.later ? answer_of(*answer.later) : answer;
+  };
+  Responder open(door, subject, {});
+  EXPECT_EQ(json::parse(ask(open, "/api/description").body)["history"], json::parse(R"(["U", "Y"])"));
+  const Answer answer = ask(open, "/api/history?point=Y&hours=1");
+  EXPECT_EQ(answer.status, 200U) << answer.body;
+  const json trend = json::parse(answer.body);
+  EXPECT_EQ(trend["unit"], "um");
+  EXPECT_EQ(trend["rows"], 101);
+  EXPECT_EQ(trend["places"].size(), 101U);
+  EXPECT_EQ(trend["places"].back()[3], 500.0);
+  EXPECT_EQ(ask(open, "/api/history?point=NOTHING").status, 404U);
+  for (const char* const wrong :
+       {"point=Y&hours=-1", "point=Y&hours=x", "point=Y&hours=1e9", "column=Y", "point=Y&hours="}) {
+    EXPECT_EQ(ask(open, std::string("/api/history?") + wrong).status, 400U) << wrong;
+  }
+  Responder closed(door, subject, {.is_loopback = false, .token = test::token});
+  EXPECT_EQ(ask(closed, "/api/history?point=Y").status, 401U);
+  EXPECT_EQ(ask(closed, "/api/history?point=Y", bearer).status, 200U);
+  Responder none(door, {.name = "A"}, {});
+  EXPECT_EQ(ask(none, "/api/history?point=Y").status, 404U);
+  std::filesystem::remove(history.file());
+  EXPECT_EQ(ask(open, "/api/history?point=Y").status, 503U);
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "support/errors.hpp"
+#include "tests/runtime/history/history_bench.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 #include "tests/web/web_client.hpp"
 
@@ -148,6 +150,29 @@ TEST(WebServer, APortInUseIsAnErrorWithItsNumber) {
   } catch (const InputError& refused) {
     EXPECT_EQ(refused.diagnostics().all().front().number, error::open_web_page);
   }
+}
+
+TEST(WebServer, LooksUpTheHistoryBesideItsThread) {
+  const hysteron::test::ScratchFolder folder;
+  runtime::test::HistoryBench history(folder / "history.sqlite");
+  history.start();
+  history.second();
+  history.stop();
+  test::MemoryDoor door{{{.name = "U"}}};
+  const Server server(door, {.name = "A", .history = history.file(), .history_points = {"U"}},
+                      {.endpoint = {.port = 0}});
+  const WebClient client(server.port());
+  for (int time = 0; time < 20; ++time) {
+    const WebReply reply = client.ask("GET", "/api/history?point=U&hours=1");
+    EXPECT_EQ(reply.status, 200);
+    EXPECT_EQ(json::parse(reply.body)["rows"], 101);
+    EXPECT_EQ(client.ask("GET", "/api/values").status, 200) << "the connection goes on";
+  }
+  // Those who do not wait for their answer do no harm.
+  for (int time = 0; time < 20; ++time) {
+    EXPECT_TRUE(WebClient(server.port()).request("GET", "/api/history?point=U&hours=1"));
+  }
+  EXPECT_EQ(client.ask("GET", "/api/values").status, 200);
 }
 
 }  // namespace

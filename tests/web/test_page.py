@@ -59,8 +59,8 @@ def values_of(port):
         return json.load(answer)
 
 
-def served(*arguments):
-    return Served(DIAGRAM, RUN_FILE, *arguments)
+def served(*arguments, run_file=RUN_FILE):
+    return Served(DIAGRAM, run_file, *arguments)
 
 
 @unittest.skipUnless(Browser.is_there(), "chromium is not installed: scripts/install-dependencies test")
@@ -68,8 +68,8 @@ class LivePage(unittest.TestCase):
     def open(self, port):
         return self.enterContext(Browser(f"http://127.0.0.1:{port}/"))
 
-    def start(self, *arguments):
-        task = served(*arguments)
+    def start(self, *arguments, **options):
+        task = served(*arguments, **options)
         if "--web-token-file" in arguments:
             task.write("token", TOKEN + "\n")
         return self.enterContext(task)
@@ -165,6 +165,25 @@ class LivePage(unittest.TestCase):
         self.assertTrue(all(fault.get("source") == "network" for fault in browser.faults), browser.faults[:5])
         printed, _ = task.stop()
         self.assertNotIn(TOKEN, printed)
+
+    def test_the_last_hours_of_a_point_are_drawn(self):
+        history = RUN_FILE + '[history]\nfile = "history.sqlite"\nevery = "10ms"\npoints = ["Y", "LAG.T1"]\n'
+        port = self.start("--web", "127.0.0.1:0", run_file=history).web_port
+        browser = self.open(port)
+        browser.wait_for(LIVE)
+        self.assertFalse(browser.evaluate("document.getElementById('history-section').hidden"))
+        self.assertEqual(browser.evaluate("[...document.getElementById('history-point').options].map(o => o.value).join()"), "Y,LAG.T1")
+        browser.wait_for("Number(document.getElementById('history').dataset.places) > 20 || "
+                         "(document.querySelector('#history-form button').click(), false)")
+        self.assertGreater(browser.evaluate("document.querySelectorAll('#history canvas').length"), 0)
+        self.assertIn("Y [um]", browser.text("#history"))
+        self.assertRegex(browser.text("#history-note"), r"^\d+ rows\.")
+        self.assertTrue(all(fault.get("source") == "network" for fault in browser.faults), browser.faults[:5])
+
+    def test_without_a_history_its_section_is_hidden(self):
+        browser = self.open(self.start("--web", "127.0.0.1:0").web_port)
+        browser.wait_for(LIVE)
+        self.assertTrue(browser.evaluate("document.getElementById('history-section').hidden"))
 
     def test_a_lost_connection_is_said(self):
         task = self.start("--web", "127.0.0.1:0")

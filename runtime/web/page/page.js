@@ -8,6 +8,7 @@ const silence = 2000;  // milliseconds without values, after which those that ar
 let description = null;  // what there is to be seen
 let index = new Map();   // of points, by name
 let trends = null;
+let historyView = null;
 let parameters = [];  // {point, now, staged, input}
 let live = [];        // {element, of: "values" or "inner", at, type, unit}
 let statusRows = [];  // {cell, at}
@@ -131,7 +132,7 @@ function buildCycles() {
   description.points.forEach((point, at) => {
     if (point.kind !== "status") return;
     const row = add(body, "tr", {});
-    const isState = ["task.state", "task.fault", "task.last_fault"].includes(point.name);
+    const isState = ["task.state", "task.fault", "task.last_fault", "task.history_fault"].includes(point.name);
     add(row, "th", { textContent: isState ? point.name.slice(5).replace("_", " ") : point.meaning, scope: "row", title: point.name });
     const cell = add(row, "td", { className: "number" });
     cell.dataset.value = point.name;
@@ -148,6 +149,8 @@ function build() {
   buildTrends();
   buildParameters();
   buildCycles();
+  if (historyView === null) historyView = new HistoryView(target => get(target, readToken));
+  historyView.build(description.history);
 }
 
 // --- showing values ---

@@ -363,7 +363,10 @@ TEST(RunConfig, DurationsAreWholeNanoseconds) {
   EXPECT_EQ(parse_duration("5ms"), 5'000'000);
   EXPECT_EQ(parse_duration("0.25us"), 250);
   EXPECT_EQ(parse_duration("2s"), 2'000'000'000);
-  for (const char* const wrong : {"", "5", "ms", "5 ms", "-5ms", "0.5ns", "5min", "1e3ms", "99999999s"}) {
+  EXPECT_EQ(parse_duration("1.5min"), 90'000'000'000);
+  EXPECT_EQ(parse_duration("12h"), 43'200'000'000'000);
+  EXPECT_EQ(parse_duration("30d"), 2'592'000'000'000'000);
+  for (const char* const wrong : {"", "5", "ms", "5 ms", "-5ms", "0.5ns", "5m", "5D", "1e3ms", "99999999999s"}) {
     EXPECT_FALSE(parse_duration(wrong)) << wrong;
   }
 }
@@ -391,6 +394,33 @@ TEST_P(RunFilePages, FailAndMend) {
 
 INSTANTIATE_TEST_SUITE_P(Numbers, RunFilePages, testing::Range(801, 811));
 INSTANTIATE_TEST_SUITE_P(Tls, RunFilePages, testing::Values(error::no_role_may_anything, error::roles_without_tls));
+
+TEST(RunConfig, AHistoryNamesPointsInTheWordsOfTheDoor) {
+  const std::string safe = "[outputs.Y]\nsafe = 0.0\n";
+  const auto read = [&](const std::string& keys) {
+    return *parse_run_config("RUN.toml", safe + "[history]\nfile = \"a.sqlite\"\n" + keys, plant()).history;
+  };
+  const HistoryConfig usual = read("");
+  EXPECT_EQ(usual.points, (std::vector<std::string>{"X", "Z", "Y"}));
+  EXPECT_EQ(usual.step, 1000U);
+  EXPECT_EQ(usual.keep, 30 * 86'400'000'000'000);
+  EXPECT_EQ(usual.bytes, 1'000'000'000U);
+  const HistoryConfig own =
+      read("points = [\"y\", \"TASK.FAULT\", \"Y\"]\nevery = \"5ms\"\nkeep = \"12h\"\nmegabytes = 5\n");
+  EXPECT_EQ(own.points, (std::vector<std::string>{"Y", "task.fault"}));
+  EXPECT_EQ(own.step, 5U);
+  EXPECT_EQ(own.keep, 12 * 3'600'000'000'000);
+  EXPECT_EQ(own.bytes, 5'000'000U);
+  const auto errors = [&](const std::string& keys) { return errors_of(safe + "[history]\n" + keys); };
+  EXPECT_EQ(errors("keep = \"1d\"\n"), "804@3:1 ");
+  const std::string file = "file = \"a\"\n";
+  EXPECT_EQ(errors(file + "every = \"1500us\"\n"), "804@5:9 ");
+  EXPECT_EQ(errors(file + "every = \"100us\"\n"), "804@5:9 ");
+  EXPECT_EQ(errors(file + "points = [\"W\"]\n"), "807@5:10 ");
+  EXPECT_EQ(errors(file + "points = []\n"), "805@5:10 ");
+  EXPECT_EQ(errors(file + "keep = \"1s\"\n"), "805@5:8 ");
+  EXPECT_EQ(errors(file + "megabytes = 0\n"), "805@5:13 ");
+}
 
 }  // namespace
 }  // namespace hysteron::runtime

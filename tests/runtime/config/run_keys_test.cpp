@@ -48,6 +48,9 @@ std::string before(const RunTable& table, std::string_view key) {
     return others + "[trace]\n" + (key == "file" ? "" : "file = \"run.trace\"\n") +
            (key == "before" || key == "after" ? "trigger = \"fault\"\n" : "");
   }
+  if (name == "[history]") {
+    return others + "[history]\n" + (key == "file" ? "" : "file = \"history.sqlite\"\n");
+  }
   if (name == "[tls]" || name == "[roles]") {
     std::string text = others + "[modbus]\n" + (name == "[tls]" ? "[roles]\nR = [\"read\"]\n" : "") + "[tls]\n";
     for (const char* const file : {"certificate", "key", "clients"}) {
@@ -100,6 +103,9 @@ std::string described(const RunConfig& c) {
     if (c.trace->trigger) {
       put(c.trace->trigger->before, c.trace->trigger->after);
     }
+  }
+  if (c.history) {
+    put(c.history->file, c.history->points.size(), c.history->step, c.history->keep, c.history->bytes);
   }
   if (c.modbus) {
     put(c.modbus->listen, c.modbus->port, c.modbus->allow.size(), c.modbus->connections, c.modbus->read_only,

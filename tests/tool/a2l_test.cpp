@@ -202,7 +202,7 @@ const std::vector<std::string> parameters_of_axis{"MODE",   "GAIN",   "PART.LAG.
 
 /// The parameters of `calibrated`, in this order, as their elements.
 std::vector<double> elements_of_axis() {
-  std::vector<double> values{1.0, 2.5, 0.25, 0.0};
+  std::vector<double> values{1.0, 2.5, 0.25, 1.0};
   std::vector<double> x(32);
   std::vector<double> y(32);
   x[1] = 1.5;

@@ -18,7 +18,7 @@
 namespace hysteron::tool {
 namespace {
 
-[[noreturn]] void refuse(std::string cause, std::string mend) {
+[[noreturn]] void refuse_choice(std::string cause, std::string mend) {
   throw InputError(error::bad_usage, {}, std::move(cause), std::move(mend));
 }
 
@@ -56,12 +56,12 @@ NamedObjects named_objects(const CalibrationOptions& options) {
     Named* const named = found == c_structure_names.end() ? nullptr : &objects[found - c_structure_names.begin()];
     if (equal == std::string::npos || named == nullptr ||
         !read_symbol(std::string_view(one).substr(equal + 1), *named)) {
-      refuse(fmt::format("{} does not name a structure of the step and its symbol.", one),
-             fmt::format("write --symbol params=NAME or --symbol params=NAME+OFFSET; the structures are {}.",
-                         fmt::join(c_structure_names, ", ")));
+      refuse_choice(fmt::format("{} does not name a structure of the step and its symbol.", one),
+                    fmt::format("write --symbol params=NAME or --symbol params=NAME+OFFSET; the structures are {}.",
+                                fmt::join(c_structure_names, ", ")));
     }
     if (std::exchange(named->by_user, true)) {
-      refuse(fmt::format("The symbol of {} is given twice.", *found), "keep one of the two.");
+      refuse_choice(fmt::format("The symbol of {} is given twice.", *found), "keep one of the two.");
     }
   }
   return objects;
@@ -150,8 +150,8 @@ class Linked {
 
 void check_calibration(const CalibrationOptions& options) {
   if (!options.wanted && (!options.elf.empty() || !options.symbols.empty())) {
-    refuse("A linked program and its symbols are for an A2L file, and none is asked for.",
-           "write --a2l, or leave out --elf and --symbol.");
+    refuse_choice("A linked program and its symbols are for an A2L file, and none is asked for.",
+                  "write --a2l, or leave out --elf and --symbol.");
   }
   (void)named_objects(options);
 }

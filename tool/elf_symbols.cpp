@@ -12,7 +12,7 @@
 namespace hysteron::tool {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, std::string cause, std::string mend) {
+[[noreturn]] void refuse_program(const std::string& path, std::string cause, std::string mend) {
   throw InputError(error::unfit_elf, {.file = path}, std::move(cause), std::move(mend));
 }
 
@@ -44,12 +44,12 @@ ElfSymbols read_elf_symbols(const std::string& path) {
   const std::unique_ptr<Elf, int (*)(Elf*)> elf(elf_memory(bytes.data(), bytes.size()), elf_end);
   GElf_Ehdr head;
   if (elf == nullptr || elf_kind(elf.get()) != ELF_K_ELF || gelf_getehdr(elf.get(), &head) == nullptr) {
-    refuse(path, fmt::format("{} is no ELF file.", path),
-           "give the file that the linker writes before objcopy makes a .bin or .hex of it.");
+    refuse_program(path, fmt::format("{} is no ELF file.", path),
+                   "give the file that the linker writes before objcopy makes a .bin or .hex of it.");
   }
   if (head.e_type == ET_REL) {
-    refuse(path, fmt::format("{} is an object file: its variables have no addresses yet.", path),
-           "give the program that the linker makes of it.");
+    refuse_program(path, fmt::format("{} is an object file: its variables have no addresses yet.", path),
+                   "give the program that the linker makes of it.");
   }
   ElfSymbols found{.variables = {}, .big_endian = head.e_ident[EI_DATA] == ELFDATA2MSB};
   for (Elf_Scn* section = elf_nextscn(elf.get(), nullptr); section != nullptr;
@@ -60,8 +60,8 @@ ElfSymbols read_elf_symbols(const std::string& path) {
     }
   }
   if (found.variables.empty()) {
-    refuse(path, fmt::format("{} has no table of symbols.", path),
-           "link it without -s, and give the file before strip.");
+    refuse_program(path, fmt::format("{} has no table of symbols.", path),
+                   "link it without -s, and give the file before strip.");
   }
   return found;
 }

@@ -25,14 +25,14 @@ Json hash_of_file(const std::string& path) {
 
 Json schedule_of(const Program& program) {
   Json list = Json::array();
-  for (const Action& action : program.schedule.actions) {
+  for (const hysteron::Action& action : program.schedule.actions) {
     const Node& node = program.graph.nodes[action.node];
     if (node.block != nullptr) {
       list.push_back({{"block", node.path},
                       {"type", node.block->about.name},
-                      {"action", action.kind == Action::Kind::Output   ? "output"
-                                 : action.kind == Action::Kind::Update ? "update"
-                                                                       : "step"},
+                      {"action", action.kind == hysteron::Action::Kind::Output   ? "output"
+                                 : action.kind == hysteron::Action::Kind::Update ? "update"
+                                                                                 : "step"},
                       {"every", node.rate.every},
                       {"phase", node.rate.phase}});
     }

@@ -21,7 +21,7 @@ namespace hysteron {
 namespace {
 
 /// Text in quotes: ASCII, since tools differ in the encoding that they expect.
-std::string quoted(std::string_view text) {
+std::string a2l_quoted(std::string_view text) {
   std::string result = "\"";
   for (const char letter : st_comment(text)) {
     if (letter == '"' || letter == '\\') {
@@ -33,7 +33,7 @@ std::string quoted(std::string_view text) {
 }
 
 /// One entry: a parameter, a state, an input or an output.
-struct Entry {
+struct A2lRow {
   CStructure structure = CStructure::Params;
   std::size_t offset = 0;
   std::string path{};
@@ -46,7 +46,7 @@ struct Entry {
   bool above_minimum = false;
 };
 
-Entry entry_of(CStructure structure, std::size_t offset, std::string path, const Field& field) {
+A2lRow a2l_row(CStructure structure, std::size_t offset, std::string path, const Field& field) {
   return {.structure = structure,
           .offset = offset,
           .path = std::move(path),
@@ -59,7 +59,7 @@ Entry entry_of(CStructure structure, std::size_t offset, std::string path, const
           .above_minimum = field.above_minimum};
 }
 
-Entry entry_of(CStructure structure, std::size_t offset, const Port& port) {
+A2lRow a2l_row(CStructure structure, std::size_t offset, const Port& port) {
   return {.structure = structure,
           .offset = offset,
           .path = port.name,
@@ -70,7 +70,7 @@ Entry entry_of(CStructure structure, std::size_t offset, const Port& port) {
           .maximum = port.maximum};
 }
 
-std::string joined(std::string_view instance, std::string_view name) {
+std::string a2l_path(std::string_view instance, std::string_view name) {
   return instance.empty() ? std::string(name) : fmt::format("{}.{}", instance, name);
 }
 
@@ -84,26 +84,26 @@ class A2lText {
     };
     for (std::size_t i = 0; i < graph_.parameters.size(); ++i) {
       const Parameter& one = graph_.parameters[i];
-      entries_.push_back(entry_of(CStructure::Params, offset(CStructure::Params, i), one.path, one.field));
+      entries_.push_back(a2l_row(CStructure::Params, offset(CStructure::Params, i), one.path, one.field));
     }
     for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
-      entries_.push_back(entry_of(CStructure::In, offset(CStructure::In, i), graph_.inputs[i]));
+      entries_.push_back(a2l_row(CStructure::In, offset(CStructure::In, i), graph_.inputs[i]));
     }
     for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
-      entries_.push_back(entry_of(CStructure::Out, offset(CStructure::Out, i), graph_.outputs[i]));
+      entries_.push_back(a2l_row(CStructure::Out, offset(CStructure::Out, i), graph_.outputs[i]));
     }
     for (std::size_t i = 0; i < routine_.cells.size(); ++i) {
       const CellInfo& cell = routine_.cells[i];
-      entries_.push_back(entry_of(CStructure::State, offset(CStructure::State, i),
-                                  joined(cell.instance, cell.field.name), cell.field));
+      entries_.push_back(a2l_row(CStructure::State, offset(CStructure::State, i),
+                                 a2l_path(cell.instance, cell.field.name), cell.field));
     }
-    std::erase_if(entries_, [&](const Entry& one) { return !object(one).there; });
+    std::erase_if(entries_, [&](const A2lRow& one) { return !object(one).there; });
   }
 
   std::string run() {
     std::string entries;
     std::array<std::string, c_structure_names.size()> members;
-    for (const Entry& one : entries_) {
+    for (const A2lRow& one : entries_) {
       const std::string name = name_of(one);
       append(members[static_cast<std::size_t>(one.structure)], "        ", name, "\n");
       append_entry(one, name, entries);
@@ -120,7 +120,7 @@ class A2lText {
         graph_.name, number_text(graph_.sample_time()), program_hash(program_),
         has_addresses() ? "The addresses are those of one linked program: write it anew after each link."
                         : "The program is not linked yet: addresses are 0, and found by SYMBOL_LINK.",
-        module, quoted(graph_.name), module, quoted("the step of " + graph_.name),
+        module, a2l_quoted(graph_.name), module, a2l_quoted("the step of " + graph_.name),
         options_.big_endian ? "MSB_FIRST" : "MSB_LAST");
     append(text, layouts_, methods_, entries);
     constexpr std::array titles{"parameters", "states", "inputs", "outputs"};
@@ -139,7 +139,7 @@ class A2lText {
   }
 
  private:
-  [[nodiscard]] const A2lObject& object(const Entry& one) const {
+  [[nodiscard]] const A2lObject& object(const A2lRow& one) const {
     return options_.objects[static_cast<std::size_t>(one.structure)];
   }
   [[nodiscard]] bool has_addresses() const {
@@ -166,7 +166,7 @@ class A2lText {
   }
 
   /// A state may have the name of a parameter of the same block.
-  std::string name_of(const Entry& one) { return own_name(one.path); }
+  std::string name_of(const A2lRow& one) { return own_name(one.path); }
 
   [[nodiscard]] std::string_view data_type(Type type) const {
     switch (type) {
@@ -200,7 +200,7 @@ class A2lText {
 
   /// Limits belong to the range: of one that is open, the next number above it. Above 0 that is the smallest normal
   /// number, since a tool may not read smaller ones.
-  [[nodiscard]] std::string limits(const Entry& one) const {
+  [[nodiscard]] std::string limits(const A2lRow& one) const {
     auto [low, high] = range_of(one.type);
     if (one.minimum > low) {
       low = one.minimum;
@@ -235,7 +235,7 @@ class A2lText {
                          name, table, table));
     } else {
       append(methods_, fmt::format("    /begin COMPU_METHOD {} \"\" IDENTICAL \"{}\" {}\n    /end COMPU_METHOD\n", name,
-                                   type == Type::Real ? "%16.9" : "%11.0", quoted(text)));
+                                   type == Type::Real ? "%16.9" : "%11.0", a2l_quoted(text)));
     }
     return name;
   }
@@ -251,12 +251,12 @@ class A2lText {
     return found->second;
   }
 
-  void append_entry(const Entry& one, const std::string& name, std::string& text) {
+  void append_entry(const A2lRow& one, const std::string& name, std::string& text) {
     const A2lObject& at = object(one);
     const bool parameter = one.structure == CStructure::Params;
     const std::uint64_t address = at.address ? *at.address + one.offset : 0;
     const std::string_view kind = parameter ? "CHARACTERISTIC" : "MEASUREMENT";
-    append(text, fmt::format("    /begin {} {} {}\n", kind, name, quoted(one.meaning)));
+    append(text, fmt::format("    /begin {} {} {}\n", kind, name, a2l_quoted(one.meaning)));
     if (parameter) {
       append(text, fmt::format("      {} 0x{:X} {} 0 {} {}\n", one.length > 1 ? "VAL_BLK" : "VALUE", address,
                                layout(one.type), method(one.type, one.unit), limits(one)));
@@ -268,14 +268,14 @@ class A2lText {
       append(text, fmt::format("      MATRIX_DIM {} 1 1\n", one.length));
     }
     append(text,
-           fmt::format("      SYMBOL_LINK {} {}\n    /end {}\n", quoted(at.symbol), at.offset + one.offset, kind));
+           fmt::format("      SYMBOL_LINK {} {}\n    /end {}\n", a2l_quoted(at.symbol), at.offset + one.offset, kind));
   }
 
   const Program& program_;
   const Graph& graph_;
   const A2lOptions& options_;
   Routine routine_;
-  std::vector<Entry> entries_;
+  std::vector<A2lRow> entries_;
   NameTable names_;
   std::map<std::pair<Type, std::string>, std::string> method_names_;
   std::map<Type, std::string> layout_names_;

@@ -20,7 +20,7 @@ namespace {
 /// A signal that changes no more often than this is written as a CASE over the steps, else as an array.
 constexpr std::size_t most_changes_in_a_case = 16;
 
-std::uint32_t length(std::size_t numbered_from_one) {
+std::uint32_t array_length(std::size_t numbered_from_one) {
   return static_cast<std::uint32_t>(numbered_from_one + 1);
 }
 
@@ -289,9 +289,9 @@ class BenchText {
   // --- the declaration ---
 
   [[nodiscard]] std::vector<StSection> sections() {
-    const std::uint32_t tests = length(bench_.cases.size());
-    const std::uint32_t slots = length(last_slot() + most_outputs_);
-    const std::uint32_t outputs = length(std::max<std::size_t>(most_outputs_, 1));
+    const std::uint32_t tests = array_length(bench_.cases.size());
+    const std::uint32_t slots = array_length(last_slot() + most_outputs_);
+    const std::uint32_t outputs = array_length(std::max<std::size_t>(most_outputs_, 1));
     StSection input{
         .keyword = "VAR_INPUT",
         .variables = {

@@ -29,7 +29,7 @@ bool same_arrays(const Graph& a, const Graph& b) {
   });
 }
 
-bool fits(const BenchBlock& block, const StBenchCase& one, const Program* diagram) {
+bool suits(const BenchBlock& block, const StBenchCase& one, const Program* diagram) {
   const Graph& graph = one.program->graph;
   return one.diagram == diagram && one.float32 == block.float32 && same_states(block.program.graph, graph) &&
          same_arrays(block.program.graph, graph) && block.program.graph.sample_time_ns == graph.sample_time_ns;
@@ -116,7 +116,7 @@ std::vector<BenchBlock> blocks_under_test(const StBench& bench, const StDialect&
   for (std::size_t i = 0; i < bench.cases.size(); ++i) {
     const StBenchCase& one = bench.cases[i];
     std::size_t b = 0;
-    while (b < blocks.size() && !fits(blocks[b], one, diagrams[b])) {
+    while (b < blocks.size() && !suits(blocks[b], one, diagrams[b])) {
       ++b;
     }
     if (b == blocks.size()) {

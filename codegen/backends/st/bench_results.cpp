@@ -9,7 +9,7 @@
 namespace hysteron {
 namespace {
 
-constexpr std::array results{
+constexpr std::array bench_result_list{
     BenchResult{"DONE", "BOOL", "all tests have run"},
     BenchResult{"PASSED", "BOOL", "all tests have run, and none failed"},
     BenchResult{"TESTS_FAILED", "DINT", "how many tests have failed"},
@@ -28,12 +28,12 @@ constexpr std::array results{
 }  // namespace
 
 std::span<const BenchResult> bench_results() {
-  return results;
+  return bench_result_list;
 }
 
 std::vector<StVariable> bench_result_variables() {
   std::vector<StVariable> list;
-  for (const BenchResult& one : results) {
+  for (const BenchResult& one : bench_result_list) {
     list.push_back({.name = std::string(one.name), .type = std::string(one.type), .remark = std::string(one.meaning)});
   }
   return list;
@@ -103,7 +103,7 @@ StPou bench_caller(const StPou& tests, Identifiers& names) {
   const std::string instance(names.make({tests.name, "1"}));
   StSection section{.keyword = "VAR", .variables = {{.name = instance, .type = tests.name}}};
   program.body = fmt::format("  {}(RESTART := FALSE);\n", instance);
-  for (const BenchResult& one : results) {
+  for (const BenchResult& one : bench_result_list) {
     section.variables.push_back(
         {.name = std::string(one.name), .type = std::string(one.type), .remark = std::string(one.meaning)});
     append(program.body, fmt::format("  {0} := {1}.{0};\n", one.name, instance));

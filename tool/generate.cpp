@@ -29,6 +29,7 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --target cpp --out generated
   hysteron generate feedforward.st --target cpp --out generated --params tuned.toml --float32
   hysteron generate feedforward.st --target c --out generated
+  hysteron generate feedforward.st --target c --a2l --elf app.elf --symbol params=axis_params --out generated
   hysteron generate feedforward.st --target st --dialect codesys --out plc
   hysteron generate feedforward.st --target st --structured --out plc
   hysteron generate feedforward.st --target plcopen --body fbd --out plc
@@ -38,6 +39,7 @@ constexpr std::string_view generate_examples = R"(Examples:
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
+--a2l: NAME.a2l too, for tools of calibration; with --elf it has the addresses of the linked program.
 The dialects of st: portable, codesys, twincat, siemens-scl. --structured: the diagram as calls of its blocks, and the
 blocks of the library that it calls, as FUNCTION_BLOCKs.
 plcopen: NAME.xml, a project in PLCopen TC6 XML. --body st holds the step as text, --body fbd the diagram as a network,
@@ -68,9 +70,10 @@ void check_usage(const GenerateOptions& options) {
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
   }
   if (!target.target.empty() || !target.dialect.empty() || !target.body.empty() || !target.fmi.empty() ||
-      target.structured) {
+      target.structured || target.calibration.wanted) {
     check_target_options(target);
   }
+  check_calibration(target.calibration);
   if (options.proof && options.host) {
     throw InputError(error::bad_usage, {}, "A host has no proof sheet.", "write --target cpp, or leave out --proof.");
   }
@@ -114,6 +117,7 @@ int generate(const GenerateOptions& options, Console& console) {
   const bool float32 = options.diagram.float32;
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
+  inputs.push_back({.file = options.target.calibration.elf, .named_by = "--elf"});
   const bool all = equal_ignoring_case(options.target.target, all_targets);
   TargetOptions target = options.target;
   target.float32 = float32;
@@ -181,6 +185,13 @@ Action add_generate(CLI::App& app) {
   app.add_option("--dialect", options->target.dialect,
                  "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");
+  app.add_flag("--a2l", options->target.calibration.wanted,
+               "Of C: an A2L file too, with parameters, states, inputs and outputs for a tool of calibration.");
+  app.add_option("--elf", options->target.calibration.elf, "The linked program, whose addresses the A2L file gets.")
+      ->option_text("APP.elf");
+  app.add_option("--symbol", options->target.calibration.symbols,
+                 "The variable that holds params, state, in or out, where it has another name; may be repeated.")
+      ->option_text("params=NAME");
   app.add_flag("--structured", options->target.structured,
                "Of Structured Text: the blocks stay blocks, and stand beside the diagram.");
   app.add_option("--body", options->target.body, "Of PLCopen XML: the step as text, or the diagram as a network.")

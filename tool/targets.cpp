@@ -24,8 +24,12 @@ constexpr std::array list{
              return generate_cpp(program, {.float32 = options.float32});
            }},
     Target{"c", "C99",
-           [](const Program& program, const TargetOptions& options, Diagnostics& /*warnings*/) {
-             return generate_c(program, {.float32 = options.float32});
+           [](const Program& program, const TargetOptions& options, Diagnostics& warnings) {
+             std::vector<GeneratedFile> files = generate_c(program, {.float32 = options.float32});
+             if (options.calibration.wanted) {
+               files.push_back(calibration_file(program, options.calibration, options.float32, warnings));
+             }
+             return files;
            }},
     Target{"st", "Structured Text",
            [](const Program& program, const TargetOptions& options, Diagnostics& /*warnings*/) {
@@ -101,6 +105,10 @@ void check_target_options(const TargetOptions& options) {
   if (options.structured && !equal_ignoring_case(options.target, "st")) {
     refuse("A structured text is one of Structured Text.", "write --target st, or leave out --structured.");
   }
+  if (options.calibration.wanted && !equal_ignoring_case(options.target, "c")) {
+    refuse("An A2L file describes the structures of C.", "write --target c, or leave out --a2l.");
+  }
+  check_calibration(options.calibration);
   if (!options.fmi.empty() && !equal_ignoring_case(options.target, "fmu")) {
     refuse("A version of FMI is one of an FMU.", "write --target fmu, or leave out --fmi.");
   }

@@ -9,6 +9,7 @@
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/compile.hpp"
 #include "support/diagnostic.hpp"
+#include "tool/calibration.hpp"
 
 namespace hysteron::tool {
 
@@ -19,7 +20,8 @@ struct TargetOptions {
   std::string body{};     ///< of plcopen
   std::string fmi{};      ///< of fmu
   bool float32 = false;
-  bool structured = false;  ///< of st: the blocks stay blocks
+  bool structured = false;           ///< of st: the blocks stay blocks
+  CalibrationOptions calibration{};  ///< of c
 };
 
 struct Target {

@@ -22,9 +22,11 @@
 #include "tool/compiled.hpp"
 #include "tool/diagram.hpp"
 #include "tool/picture_file.hpp"
+#include "tool/test_bench.hpp"
 #include "tool/test_judge.hpp"
 #include "tool/test_plan.hpp"
 #include "tool/test_report.hpp"
+#include "tool/writable.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -37,6 +39,7 @@ constexpr std::string_view test_examples = R"(Examples:
   hysteron test feedforward.st --filter dwell --no-generated
   hysteron test feedforward.st --plot cases.html
   hysteron test feedforward.st --update     writes the golden records that cases name
+  hysteron test feedforward.st --bench plc  writes the tests in Structured Text, for the PLC
 
 A test file:
   [[case]]
@@ -48,6 +51,9 @@ A test file:
   abs = 1e-12                               |got - expected| <= abs + rel*|expected|
   rel = 1e-9
 Other keys: block = "NAME", csv = "log.csv" for inputs, golden = "NAME.csv", float32 = true, doc = "why".
+
+--bench: one text with the block, a block NAME_TEST that runs one step of a test in each cycle, and a program that shows
+test, step, output, expected and got of what failed first. Its dialects: portable, codesys, twincat, siemens-scl.
 
 Each case is run by the interpreter and as generated C++ (compiler: CXX, else c++); their bits must be equal.
 Exit codes: 0 all cases passed; 1 some failed; 2 a diagram or test file has errors, or there is nothing to run.
@@ -61,6 +67,8 @@ struct TestOptions {
   bool update = false;
   bool no_generated = false;
   std::string plot;
+  std::string bench;
+  std::string dialect;
 };
 
 std::string test_file_of(const std::string& diagram) {
@@ -216,9 +224,37 @@ std::vector<InputFile> inputs_of(const TestOptions& options) {
   return inputs;
 }
 
+StDialect bench_dialect(const TestOptions& options) {
+  const std::string& name = options.dialect.empty() ? std::string("portable") : options.dialect;
+  const auto dialect = st_dialect(name);
+  if (!dialect) {
+    throw InputError(error::bad_usage, {}, fmt::format("There is no dialect {}.", name),
+                     fmt::format("the dialects are: {}.", st_dialect_names()));
+  }
+  return *dialect;
+}
+
+/// The bench of one file, to be written with those of the others.
+void add_bench(const std::string& diagram, const std::vector<InputFile>& inputs, const std::vector<PlannedCase>& cases,
+               const TestOptions& options, std::vector<OutputFile>& files) {
+  for (const GeneratedFile& file : bench_files(diagram, cases, bench_dialect(options))) {
+    OutputFile made{.path = fs::path(options.bench) / file.name, .contents = file.text};
+    hysteron::refuse_to_overwrite({.file = made.path.string(), .mend = "give another folder for --bench."}, inputs);
+    refuse_foreign_file(made.path, made.contents, "choose another folder with --bench.");
+    const auto same = std::ranges::find(files, made.path, &OutputFile::path);
+    if (same != files.end() && same->contents != made.contents) {
+      throw InputError(error::bad_usage, {}, fmt::format("Two diagrams would both write {}.", made.path.string()),
+                       "write their benches one by one, into a folder each.");
+    }
+    if (same == files.end()) {
+      files.push_back(std::move(made));
+    }
+  }
+}
+
 /// The cases of one file that the filter selects.
 FileResult run_file(const std::string& diagram, const std::string& tests, const TestOptions& options,
-                    Console& console) {
+                    std::vector<OutputFile>& bench, Console& console) {
   FileResult result{.file = tests, .cases = {}};
   TestFile file = read_test_file(tests);
   TestPlanner planner(diagram, fs::path(tests).parent_path());
@@ -246,6 +282,9 @@ FileResult run_file(const std::string& diagram, const std::string& tests, const 
     progress.update(static_cast<double>(i) / static_cast<double>(cases.size()), cases[i].test.name);
     result.cases.push_back(
         run_case(i, cases[i], generated ? &*generated : nullptr, options.update, !options.plot.empty()));
+  }
+  if (!options.bench.empty() && !cases.empty()) {
+    add_bench(diagram, inputs_of(diagram, tests, file, true), cases, options, bench);
   }
   return result;
 }
@@ -288,12 +327,21 @@ int run_tests(const TestOptions& options, Console& console) {
     inputs.push_back({.file = options.junit, .named_by = "--junit"});
     refuse_unfit_picture(options.plot, "--plot", inputs);
   }
+  if (options.bench.empty() && !options.dialect.empty()) {
+    throw InputError(error::bad_usage, {}, "A dialect is one of the bench, and none is asked for.",
+                     "write --bench DIR, or leave out --dialect.");
+  }
+  if (!options.bench.empty()) {
+    (void)bench_dialect(options);
+    refuse_unwritable_folder(options.bench);
+  }
   Diagnostics refused;
   std::vector<FileResult> results;
+  std::vector<OutputFile> bench;
   std::size_t cases = 0;
   for (const std::string& diagram : options.diagrams) {
     try {
-      results.push_back(run_file(diagram, existing_test_file(diagram, options), options, console));
+      results.push_back(run_file(diagram, existing_test_file(diagram, options), options, bench, console));
       cases += results.back().cases.size();
       if (!results.back().cases.empty()) {
         console.print(report_text(results.back(), Console::colour()));
@@ -309,6 +357,10 @@ int run_tests(const TestOptions& options, Console& console) {
   }
   if (!options.plot.empty() && cases > 0) {
     write_file_atomically(options.plot, picture_bytes(options.plot, "Tests", figures_of(results)));
+  }
+  write_files_atomically(bench);
+  for (const OutputFile& file : bench) {
+    console.print(file.path.string() + "\n");
   }
   if (cases > 0) {
     console.print(closing_line(results));
@@ -336,6 +388,9 @@ Action add_test(CLI::App& app) {
       ->option_text("FILE.xml");
   app.add_option("--plot", options->plot, "Draws what each case expects and gets: .svg, .png, .html.")
       ->option_text("FILE");
+  app.add_option("--bench", options->bench, "Writes the tests in Structured Text into a folder, to be run on the PLC.")
+      ->option_text("DIR");
+  app.add_option("--dialect", options->dialect, "Of the bench; portable where none is given.")->option_text("DIALECT");
   app.add_flag("--no-generated", options->no_generated, "Runs the interpreter alone; needs no compiler.");
   app.add_option("--filter", options->filter, "Runs only cases with this in their names.")->option_text("TEXT");
   app.footer(std::string(test_examples));

@@ -93,6 +93,14 @@ std::vector<Failure> judge_bits(const PlannedCase& planned, const std::vector<Si
   return failures;
 }
 
+ValuesByStep golden_values(const records::Column& column) {
+  ValuesByStep values;
+  for (std::size_t k = 0; k < column.values.size(); ++k) {
+    values.emplace_hint(values.end(), k, column.values[k]);
+  }
+  return values;
+}
+
 std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs) {
   const auto name = planned.golden.string();
   const auto failure = [](std::string cause) { return std::vector{Failure{.cause = std::move(cause), .plot = {}}}; };
@@ -115,11 +123,7 @@ std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<
                           .plot = {}});
       continue;
     }
-    ValuesByStep expected;
-    for (std::size_t k = 0; k < column->values.size(); ++k) {
-      expected.emplace_hint(expected.end(), k, column->values[k]);
-    }
-    if (auto one = compare(planned, i, expected, outputs[i], "golden")) {
+    if (auto one = compare(planned, i, golden_values(*column), outputs[i], "golden")) {
       failures.push_back(std::move(*one));
     }
   }

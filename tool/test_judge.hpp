@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "records/record.hpp"
 #include "tool/test_plan.hpp"
 
 namespace hysteron::tool {
@@ -23,6 +24,9 @@ struct Failure {
 
 /// Outputs against the golden record.
 [[nodiscard]] std::vector<Failure> judge_golden(const PlannedCase& planned, const std::vector<Signal>& outputs);
+
+/// What a column of a golden record says of an output.
+[[nodiscard]] ValuesByStep golden_values(const records::Column& column);
 
 /// The golden record that these outputs make.
 [[nodiscard]] std::string golden_text(const PlannedCase& planned, const std::vector<Signal>& outputs);

@@ -72,7 +72,13 @@ auto read_named(const TestText& name, const std::filesystem::path& folder, Read 
 class CasePlan {
  public:
   CasePlan(const TestCase& test, const Program& program, const std::filesystem::path& folder, Diagnostics& diagnostics)
-      : planned_{.test = test, .program = program, .drive = {}, .time = {}, .expected = {}, .golden = {}},
+      : planned_{.test = test,
+                 .diagram = &program,
+                 .program = program,
+                 .drive = {},
+                 .time = {},
+                 .expected = {},
+                 .golden = {}},
         folder_(folder),
         diagnostics_(diagnostics) {}
 
@@ -253,7 +259,7 @@ class CasePlan {
     if (port < 0 || !fits(signal)) {
       return;
     }
-    ExpectedOutput expected{.output = static_cast<std::size_t>(port), .values = {}};
+    ExpectedOutput expected{.output = static_cast<std::size_t>(port), .values = {}, .place = signal.value_place};
     if (const auto* const by_step = std::get_if<ValuesByStep>(&signal.values)) {
       expected.values = *by_step;
     } else {

@@ -16,10 +16,12 @@ namespace hysteron::tool {
 struct ExpectedOutput {
   std::size_t output = 0;
   ValuesByStep values{};
+  Place place{};  ///< of the values in the test file
 };
 
 struct PlannedCase {
   TestCase test{};
+  const Program* diagram = nullptr;  ///< without the parameters of the case; it lives as long as the planner
   Program program{};
   Drive drive{};
   std::vector<double> time{};

@@ -18,8 +18,24 @@ namespace {
 
 constexpr std::size_t widest_line = 110;
 
+/// The elements of a long array stand in lines of their own: some editors cut a line that is too long.
 std::string value_text(const StVariable& variable) {
-  return variable.length == 1 ? variable.values.front() : fmt::format("[{}]", fmt::join(variable.values, ", "));
+  if (variable.length == 1) {
+    return variable.values.front();
+  }
+  std::string text = "[";
+  std::size_t line = 0;  // where the present one begins
+  for (std::size_t i = 0; i < variable.values.size(); ++i) {
+    text += i == 0 ? "" : ",";
+    if (text.size() - line + variable.values[i].size() > widest_line) {
+      line = text.size() + 1;
+      text += "\n      ";
+    } else {
+      text += i == 0 ? "" : " ";
+    }
+    text += variable.values[i];
+  }
+  return text + "]";
 }
 
 class StBlock {
@@ -44,6 +60,7 @@ class StBlock {
     made.block.body = write_body();
     made.block.head = head();
     made.block.sections = sections();
+    made.interface = interface();
     made.caller = caller();
     return made;
   }
@@ -308,6 +325,17 @@ class StBlock {
   }
 
   // --- what calls it ---
+
+  [[nodiscard]] StInterface interface() const {
+    const Layout& layout = names_.layout();
+    StInterface made{.inputs = {layout.inputs.begin(), layout.inputs.end()},
+                     .outputs = {layout.outputs.begin(), layout.outputs.end()},
+                     .reset = std::string(names_.reset())};
+    for (const Member& parameter : layout.parameters) {
+      made.parameters.emplace_back(parameter.name);
+    }
+    return made;
+  }
 
   [[nodiscard]] StPou caller() {
     const std::string instance(names_.identifiers().make({graph_.name, "1"}));

@@ -36,7 +36,7 @@ struct StOptions {
 struct StVariable {
   std::string name{};
   std::string type{};                 ///< of an element, where it is an array
-  std::uint16_t length = 1;           ///< above 1: ARRAY[0..length - 1]
+  std::uint32_t length = 1;           ///< above 1: ARRAY[0..length - 1]
   std::string array_type{};           ///< the name of its array type, where it has one
   std::vector<std::string> values{};  ///< the initial value: none, one, or those of the elements
   std::string remark{};               ///< unit, range and meaning, not yet a comment
@@ -56,9 +56,18 @@ struct StPou {
   std::string body{};
 };
 
+/// What a caller of the block names, by index.
+struct StInterface {
+  std::vector<std::string> inputs{};
+  std::vector<std::string> outputs{};
+  std::vector<std::string> parameters{};  ///< inputs, too
+  std::string reset{};                    ///< an input: the memory begins anew
+};
+
 /// A program, and what is called around it.
 struct StBlockAndCaller {
   StPou block{};
+  StInterface interface {};
   StPou caller{};  ///< a PROGRAM that calls one instance in each cycle
 };
 

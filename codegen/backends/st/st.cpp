@@ -8,50 +8,11 @@
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/printer.hpp"
+#include "codegen/backends/st/shape.hpp"
 #include "codegen/graph/fmu_block.hpp"
-#include "support/sha256.hpp"
 
 namespace hysteron {
 namespace {
-
-/// A GUID that is the same for the same name: a project then knows the object that it has.
-std::string identity(std::string_view name) {
-  const std::string digits = sha256(fmt::format("hysteron {}", name));
-  return fmt::format("{}-{}-4{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4), digits.substr(12, 3),
-                     digits.substr(15, 3), digits.substr(18, 12));
-}
-
-/// `mark` stands behind the name.
-std::string in_shape(const StPou& block, StDialect::Shape shape, std::string_view mark = "") {
-  const bool siemens = shape == StDialect::Shape::Source;
-  const std::string declaration =
-      block.head +
-      (siemens ? fmt::format("FUNCTION_BLOCK \"{}\"\n{{ S7_Optimized_Access := 'TRUE' }}\nVERSION : 0.1\n", block.name)
-               : fmt::format("FUNCTION_BLOCK {}{}\n", block.name, mark)) +
-      st_declarations(block.sections);
-  switch (shape) {
-    case StDialect::Shape::OneFile:
-      return declaration + "\n" + block.body + "END_FUNCTION_BLOCK\n";
-    case StDialect::Shape::TwoPanes:
-      return declaration + "\n(* ---- above: the declaration; below: the body ---- *)\n\n" + block.body;
-    case StDialect::Shape::Source:
-      return declaration + "BEGIN\n" + block.body + "END_FUNCTION_BLOCK\n";
-    case StDialect::Shape::Object:
-      return fmt::format(
-          R"(<?xml version="1.0" encoding="utf-8"?>
-<TcPlcObject Version="1.1.0.1">
-  <POU Name="{}" Id="{{{}}}" SpecialFunc="None">
-    <Declaration><![CDATA[{}]]></Declaration>
-    <Implementation>
-      <ST><![CDATA[{}]]></ST>
-    </Implementation>
-  </POU>
-</TcPlcObject>
-)",
-          block.name, identity(block.name), declaration, block.body);
-  }
-  return "";
-}
 
 /// The types of arrays that blocks are handed, in front of them.
 std::string array_types(const LibraryText& library, bool float32) {
@@ -77,11 +38,11 @@ constexpr std::string_view mark_of_bodies = "  (* @body *)";
 std::vector<GeneratedFile> together(const LibraryText& library, const StPou* top, const StOptions& options,
                                     const std::string& name, const std::string& mark_of_top) {
   const StDialect& dialect = options.dialect;
-  const bool one_file = dialect.shape == StDialect::Shape::OneFile || dialect.shape == StDialect::Shape::Source;
+  const bool one_file = holds_several_blocks(dialect.shape);
   std::vector<GeneratedFile> files;
   std::string text = dialect.shape == StDialect::Shape::OneFile ? array_types(library, options.float32) : "";
   for (const LibraryBlock* one : library.list()) {
-    std::string block = in_shape(one->pou, dialect.shape, mark_of_bodies);
+    std::string block = st_text(one->pou, dialect.shape, mark_of_bodies);
     if (one_file) {
       append(text, block, "\n");
     } else {
@@ -89,7 +50,7 @@ std::vector<GeneratedFile> together(const LibraryText& library, const StPou* top
     }
   }
   if (top != nullptr) {
-    text += in_shape(*top, dialect.shape, mark_of_top);
+    text += st_text(*top, dialect.shape, mark_of_top);
   }
   if (one_file || top != nullptr) {
     files.insert(files.begin(), {name, std::move(text)});
@@ -103,11 +64,9 @@ std::vector<GeneratedFile> generate_st(const Program& program, const StOptions& 
   const StBlockAndCaller made = make_st_pou(program, options);
   const StDialect& dialect = options.dialect;
   const std::string stem = identifier_text({program.graph.name}, LetterCase::Lower);
-  std::vector<GeneratedFile> files{{stem + std::string(dialect.extension), in_shape(made.block, dialect.shape)}};
+  std::vector<GeneratedFile> files{{stem + std::string(dialect.extension), st_text(made.block, dialect.shape)}};
   if (dialect.shape == StDialect::Shape::OneFile) {
-    files.push_back(
-        {stem + "_program.st", fmt::format("{}PROGRAM {}\n{}\n{}END_PROGRAM\n", made.caller.head, made.caller.name,
-                                           st_declarations(made.caller.sections), made.caller.body)});
+    files.push_back({stem + "_program.st", st_program_text(made.caller)});
   }
   return files;
 }

@@ -16,7 +16,7 @@ std::span<const Command> commands() {
       Command{"run", "Runs a diagram over a record.", add_run},
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},
-      Command{"fleet", "Diagnoses the machines of a manifest, a record at a time.", add_fleet},
+      Command{"fleet", "Diagnoses or tunes the machines of a manifest, a record at a time.", add_fleet},
       Command{"generate", "Generates code from a diagram.", add_generate},
       Command{"library", "Writes the blocks of the library for a PLC, in Structured Text.", add_library},
       Command{"import", "Reads a diagram that was drawn elsewhere, in PLCopen XML.", add_import},

@@ -17,6 +17,7 @@ std::span<const Command> commands() {
       Command{"tune", "Fits parameters of a diagram to measured records.", add_tune},
       Command{"diagnose", "Explains the gap between a diagram and the machine.", add_diagnose},
       Command{"fleet", "Diagnoses or tunes the machines of a manifest, a record at a time.", add_fleet},
+      Command{"fleet-report", "Says which machines of a fleet drift or stand out.", add_fleet_report},
       Command{"generate", "Generates code from a diagram.", add_generate},
       Command{"library", "Writes the blocks of the library for a PLC, in Structured Text.", add_library},
       Command{"import", "Reads a diagram that was drawn elsewhere, in PLCopen XML.", add_import},

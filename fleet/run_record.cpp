@@ -85,7 +85,9 @@ std::vector<Run> read_runs(const fs::path& output) {
   for (const auto& entry : fs::directory_iterator(output / "runs", none)) {
     try {
       const Json json = Json::parse(read_text_file(entry.path().string()));
-      if (json.at("schema").get<std::string>() == schema) {
+      // A writer that was killed leaves its temporary beside the file.
+      if (json.at("schema").get<std::string>() == schema &&
+          entry.path().filename() == json.at("id").get<std::string>() + ".json") {
         runs.push_back(run_of(json));
       }
     } catch (const InputError&) {                 // gone in between

@@ -43,7 +43,10 @@ Line fitted(const std::vector<double>& h, const std::vector<double>& y, const st
   double mean_h = 0.0;
   double mean_y = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
-    const double weight = i == without ? 0.0 : 1.0 / (sigma[i] * sigma[i]);
+    if (i == without) {
+      continue;
+    }
+    const double weight = 1.0 / (sigma[i] * sigma[i]);
     w += weight;
     mean_h += weight * (h[i] - mean_h) / w;
     mean_y += weight * (y[i] - mean_y) / w;

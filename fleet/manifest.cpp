@@ -105,9 +105,8 @@ std::vector<const Column*> header_of(const std::vector<std::string>& cells, Comm
     }
     header.push_back(known ? one : nullptr);
   }
-  const bool has_commands = std::ranges::any_of(header, [](const Column* one) {
-    return one != nullptr && one->name == "command";
-  });
+  const bool has_commands =
+      std::ranges::any_of(header, [](const Column* one) { return one != nullptr && one->name == "command"; });
   for (const Column& one : columns) {
     const bool needed =
         one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(otherwise) && !has_commands);
@@ -148,11 +147,11 @@ Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Colu
   }
   read_command(line, otherwise, place, found);
   for (const Column& one : columns) {
-    const bool needed = one.needed == Needed::Always ||
-                        (one.needed == Needed::ByRecords && needs_record(line.unit.command));
+    const bool needed =
+        one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(line.unit.command));
     if (needed && one.cell(line).empty()) {
-      found.error(error::bad_usage, place, fmt::format("{} needs a cell {}, and it is empty.",
-                                                       name_of(line.unit.command), one.name),
+      found.error(error::bad_usage, place,
+                  fmt::format("{} needs a cell {}, and it is empty.", name_of(line.unit.command), one.name),
                   "write it, or remove the line.");
     }
   }

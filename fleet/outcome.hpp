@@ -16,7 +16,7 @@ struct FoundEffect {
   std::string edge{};
   double probability = not_a_number;
   double share = not_a_number;  ///< of the gap that calibration leaves
-  bool named = false;           ///< in the verdict; else the likeliest member of a family that was weighed and not named
+  bool named = false;  ///< in the verdict; else the likeliest member of a family that was weighed and not named
 };
 
 struct FoundParameter {

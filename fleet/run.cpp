@@ -177,7 +177,8 @@ class Pool {
   void finish(Running& one) {
     one.child.kill();  // what it has started goes with it
     const int code = one.child.wait();
-    write_result(one.folder, units_[one.unit], options_.version, result_of(one, units_[one.unit].command, code, options_));
+    write_result(one.folder, units_[one.unit], options_.version,
+                 result_of(one, units_[one.unit].command, code, options_));
     const fs::path place = folder_of(options_.output, keys_[one.unit]);
     const fs::path before = work() / fmt::format("{}.before", keys_[one.unit]);
     if (fs::exists(place)) {
@@ -205,10 +206,10 @@ std::vector<std::string> keys_of(const std::vector<Unit>& units, const std::stri
     keys.push_back(known.of(unit));
     const auto [first, is_new] = lines.emplace(keys.back(), unit.line);
     if (!is_new) {
-      found.error(
-          error::bad_usage, {.file = manifest, .line = unit.line},
-          fmt::format("the line says the same as line {}: command, machine, when, diagram, params and log.", first->second),
-          "remove one of them, or correct what is different.");
+      found.error(error::bad_usage, {.file = manifest, .line = unit.line},
+                  fmt::format("the line says the same as line {}: command, machine, when, diagram, params and log.",
+                              first->second),
+                  "remove one of them, or correct what is different.");
     }
   }
   if (found.has_errors()) {

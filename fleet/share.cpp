@@ -80,9 +80,10 @@ std::optional<Share> task_of_array(const Variable& variable) {
   }
   const std::size_t place = *id >= first ? (*id - first) / step : *count;
   if (place >= *count || (*id - first) % step != 0) {
-    contradict(fmt::format("SLURM_ARRAY_TASK_ID is {}, which is none of the {} tasks from {} in steps of {}. An array with "
-                           "gaps has no shares.",
-                           *id, *count, first, step));
+    contradict(
+        fmt::format("SLURM_ARRAY_TASK_ID is {}, which is none of the {} tasks from {} in steps of {}. An array with "
+                    "gaps has no shares.",
+                    *id, *count, first, step));
   }
   return Share{.part = place + 1, .parts = *count, .from = fmt::format("SLURM_ARRAY_TASK_ID {} of {}", *id, *count)};
 }

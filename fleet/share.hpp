@@ -20,11 +20,11 @@ struct Share {
 /// A variable of the environment; null where it is not set.
 using Variable = std::function<const char*(const char* name)>;
 
-/// The share by the place among the processes that Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), another MPI (PMI_RANK, PMI_SIZE)
-/// or Slurm's srun (SLURM_PROCID, SLURM_NTASKS) started, the innermost first, within the task of a job array
-/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP). An array of 10 tasks with 4 processes each has 40 shares. The variables of
-/// srun count in a step alone: a batch script by itself has them, too, and is one command. Nothing where none is set.
-/// Throws InputError HY730 where they contradict each other.
+/// The share by the place among the processes that Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), another MPI (PMI_RANK,
+/// PMI_SIZE) or Slurm's srun (SLURM_PROCID, SLURM_NTASKS) started, the innermost first, within the task of a job array
+/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP). An array of 10 tasks with 4 processes each has 40 shares. The variables
+/// of srun count in a step alone: a batch script by itself has them, too, and is one command. Nothing where none is
+/// set. Throws InputError HY730 where they contradict each other.
 [[nodiscard]] std::optional<Share> share_from(const Variable& variable);
 
 }  // namespace hysteron::fleet

@@ -47,8 +47,8 @@ class Writer {
  public:
   explicit Writer(Database& database)
       : run_(database.prepared("INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?)")),
-        unit_(database.prepared(
-            "INSERT INTO units VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        unit_(
+            database.prepared("INSERT INTO units VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         member_(database.prepared("INSERT INTO run_units VALUES (?, ?, ?)")),
         effect_(database.prepared("INSERT INTO effects VALUES (?, ?, ?, ?, ?, ?, ?)")),
         parameter_(database.prepared("INSERT INTO parameters VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}

@@ -31,8 +31,9 @@ void read_product(Row& row, const fs::path& folder) {
   } catch (const InputError& problem) {
     row.result = {.status = Status::Failed, .reason = problem.what()};
   } catch (const nlohmann::json::exception&) {
-    row.result = {.status = Status::Failed,
-                  .reason = fmt::format("its {} was changed; run it again with --retry.", product_of(row.unit.command))};
+    row.result = {
+        .status = Status::Failed,
+        .reason = fmt::format("its {} was changed; run it again with --retry.", product_of(row.unit.command))};
   }
 }
 
@@ -70,7 +71,8 @@ std::string table_csv(const std::vector<Row>& rows) {
                         csv_cell(row.unit.group), name_of(row.unit.command), name_of(row.result.status),
                         csv_cell(row.outcome.verdict), csv_cell(effects_text(row.outcome)),
                         number_cell(row.outcome.confidence), number_cell(row.outcome.nominal_rms),
-                        number_cell(row.outcome.improved_rms), csv_cell(row.outcome.unit_of_gap), csv_cell(row.result.reason), folder_of("", row.key).string());
+                        number_cell(row.outcome.improved_rms), csv_cell(row.outcome.unit_of_gap),
+                        csv_cell(row.result.reason), folder_of("", row.key).string());
   }
   return text;
 }

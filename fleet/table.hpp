@@ -34,8 +34,8 @@ struct Row {
 /// The same as JSON, with counts; its schema is in docs/reference/schemas/fleet.json.
 [[nodiscard]] std::string table_json(const std::vector<Row>& rows, const std::string& version);
 
-/// Writes results.csv and fleet.sqlite of what lies there now. Of several commands on one folder, none puts an older table over a newer
-/// one. Throws InputError HY700. Gives back the rows.
+/// Writes results.csv and fleet.sqlite of what lies there now. Of several commands on one folder, none puts an older
+/// table over a newer one. Throws InputError HY700. Gives back the rows.
 std::vector<Row> write_table(const std::vector<Unit>& units, const std::vector<std::string>& keys,
                              const std::filesystem::path& output);
 

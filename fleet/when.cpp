@@ -30,7 +30,8 @@ std::optional<double> seconds_of(std::string_view text) {
   using records::CellKind;
   const records::CellValue cell = records::cell_value(text);
   const double seconds = static_cast<double>(cell.stamp.whole) + cell.stamp.fraction;
-  if (cell.kind == CellKind::Number && !cell.has_comma && cell.unit.empty() && seconds >= earliest && seconds < latest) {
+  if (cell.kind == CellKind::Number && !cell.has_comma && cell.unit.empty() && seconds >= earliest &&
+      seconds < latest) {
     return seconds;
   }
   if ((cell.kind == CellKind::Date || cell.kind == CellKind::DateTime) && begins_with_year(text)) {

@@ -95,9 +95,10 @@ std::string page_text(const Page& page) {
       "<title>{}</title>\n<style>\n{}{}</style></head>\n<body><main>\n<h1>{}</h1>\n{}"
       "{}</main>\n{}</body></html>\n",
       content_policy, escaped(page.title), style(), page.style, escaped(page.title),
-      page.script.empty() ? ""
-                          : "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need "
-                            "JavaScript; text and tables do not.</p></noscript>\n",
+      page.script.empty()
+          ? ""
+          : "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need "
+            "JavaScript; text and tables do not.</p></noscript>\n",
       page.body, drawing);
 }
 

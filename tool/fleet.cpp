@@ -157,7 +157,8 @@ Action add_fleet(CLI::App& app) {
   app.add_option("--material", options->material, "As of `hysteron diagnose`.")
       ->check(number_from_zero())
       ->option_text("SIZE");
-  app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone; else MPI or Slurm say it.")->option_text("K/N");
+  app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone; else MPI or Slurm say it.")
+      ->option_text("K/N");
   app.add_flag("--retry", options->run.retry, "Does records that had failed again, as after a larger limit.");
   app.add_flag("--json", options->json, "Prints the results as JSON.");
   app.footer(std::string(fleet_examples));

@@ -94,7 +94,8 @@ Action add_fleet_report(CLI::App& app) {
   app.add_option("DIR", options->folder, "The folder of `hysteron fleet`.")->required()->option_text("DIR");
   app.add_option("--out", options->output, "The report as a page.")->option_text("REPORT.html");
   app.add_option("--csv", options->csv, "A line for each parameter of each machine.")->option_text("FILE.csv");
-  app.add_option("--false-share", options->false_share, "How many of the findings may be false on average, 0.05 without it.")
+  app.add_option("--false-share", options->false_share,
+                 "How many of the findings may be false on average, 0.05 without it.")
       ->check(CLI::Range(1e-6, 0.5))
       ->option_text("SHARE");
   app.add_flag("--json", options->json, "Prints the report as JSON.");

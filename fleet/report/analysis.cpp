@@ -35,9 +35,8 @@ std::vector<std::size_t> by_time(const std::vector<Row>& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     order[i] = i;
   }
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) {
-    return std::isnan(rows[i].unit.time) ? -infinity : rows[i].unit.time;
-  });
+  std::ranges::stable_sort(
+      order, {}, [&](std::size_t i) { return std::isnan(rows[i].unit.time) ? -infinity : rows[i].unit.time; });
   return order;
 }
 
@@ -55,8 +54,7 @@ void collect_tracks(Analysis& all, const std::vector<Row>& rows) {
       if (is_new) {
         all.parameters.push_back({.kind = kind, .name = one.name, .unit = one.unit});
       }
-      const auto [place, is_first] =
-          tracks.try_emplace({parameter->second, rows[i].unit.machine}, all.tracks.size());
+      const auto [place, is_first] = tracks.try_emplace({parameter->second, rows[i].unit.machine}, all.tracks.size());
       if (is_first) {
         all.parameters[parameter->second].tracks.push_back(all.tracks.size());
         all.tracks.push_back({.machine = rows[i].unit.machine, .parameter = parameter->second});
@@ -111,9 +109,10 @@ void ask_parameter(Analysis& all, Parameter& parameter) {
     if (track.has_siblings) {
       const double distance = track.level - parameter.median;
       const double sigma = std::max(parameter.deviation, error_of_level(track, parameter.scatter));
-      track.sibling_p = distance == 0.0 ? 1.0
-                                        : student_both_tails(distance / sigma, efficiency_of_mad *
-                                                                                   static_cast<double>(levels.size() - 1));
+      track.sibling_p =
+          distance == 0.0
+              ? 1.0
+              : student_both_tails(distance / sigma, efficiency_of_mad * static_cast<double>(levels.size() - 1));
     }
   }
 }
@@ -227,9 +226,8 @@ void choose_findings(Analysis& all) {
     }
   }
   all.machines_found = surest.size();
-  std::ranges::stable_sort(all.findings, {}, [&](const Finding& one) {
-    return std::tuple(surest.at(one.machine), one.machine, one.p);
-  });
+  std::ranges::stable_sort(all.findings, {},
+                           [&](const Finding& one) { return std::tuple(surest.at(one.machine), one.machine, one.p); });
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ struct Presence {
   std::string effect{};  ///< `backlash at Y`
   std::size_t named = 0;
   std::size_t records = 0;
-  double since = not_a_number;   ///< the record from which on it is named; not a number where it always was
-  double sibling_share = 0.0;    ///< of the siblings' records that name it
-  double p = 1.0;                ///< of being named so often at the siblings' share
+  double since = not_a_number;  ///< the record from which on it is named; not a number where it always was
+  double sibling_share = 0.0;   ///< of the siblings' records that name it
+  double p = 1.0;               ///< of being named so often at the siblings' share
   bool has_siblings = false;
   bool stands_out = false;
 };
@@ -82,11 +82,11 @@ struct Analysis {
   std::size_t machines_found = 0;       ///< that drift or stand out
 };
 
-/// Asks every machine and parameter: a change by trend_of; a distance from the siblings' median over the larger of their
-/// robust deviation and the machine's own error, by Student's distribution with 0.37·(machines − 1) degrees of freedom
-/// (0.37 is the efficiency of the MAD, Rousseeuw and Croux 1993); and every effect that is named, by the binomial
-/// distribution at its siblings' share. Findings are chosen over all of these by Benjamini and Hochberg, so that on
-/// average at most `false_share` of them are false.
+/// Asks every machine and parameter: a change by trend_of; a distance from the siblings' median over the larger of
+/// their robust deviation and the machine's own error, by Student's distribution with 0.37·(machines − 1) degrees of
+/// freedom (0.37 is the efficiency of the MAD, Rousseeuw and Croux 1993); and every effect that is named, by the
+/// binomial distribution at its siblings' share. Findings are chosen over all of these by Benjamini and Hochberg, so
+/// that on average at most `false_share` of them are false.
 [[nodiscard]] Analysis analysed(const std::vector<Row>& rows, double false_share);
 
 }  // namespace hysteron::fleet

@@ -70,13 +70,13 @@ std::string report_json(const Analysis& all, const std::vector<Row>& rows, std::
             {"p_limit", all.findings.empty() ? Json(nullptr) : Json(all.threshold)}};
   json["findings"] = Json::array();
   for (const Finding& finding : all.findings) {
-    json["findings"].push_back({{"machine", finding.machine},
-                                {"what", whats.at(static_cast<std::size_t>(finding.what))},
-                                {"name", finding.what == Finding::What::Effect
-                                             ? all.presences[finding.index].effect
-                                             : all.parameters[all.tracks[finding.index].parameter].name},
-                                {"p", finding.p},
-                                {"text", sentence(all, finding)}});
+    json["findings"].push_back(
+        {{"machine", finding.machine},
+         {"what", whats.at(static_cast<std::size_t>(finding.what))},
+         {"name", finding.what == Finding::What::Effect ? all.presences[finding.index].effect
+                                                        : all.parameters[all.tracks[finding.index].parameter].name},
+         {"p", finding.p},
+         {"text", sentence(all, finding)}});
   }
   json["parameters"] = Json::array();
   for (const Track& track : all.tracks) {
@@ -108,17 +108,19 @@ std::string report_json(const Analysis& all, const std::vector<Row>& rows, std::
 
 std::string report_csv(const Analysis& all) {
   std::string text =
-      "machine,group,command,name,unit,records,level,sibling_median,sibling_deviation,sibling_p,stands_out,slope_per_day,form,"
+      "machine,group,command,name,unit,records,level,sibling_median,sibling_deviation,sibling_p,stands_out,slope_per_"
+      "day,form,"
       "since,from,to,change_p,changes\n";
   for (const Track& track : all.tracks) {
     const Parameter& parameter = all.parameters[track.parameter];
     const Trend& trend = track.trend;
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(track.machine), csv_cell(parameter.kind.group),
-        name_of(parameter.kind.command), csv_cell(parameter.name), csv_cell(parameter.unit), track.value.size(),
-        cell(track.level), cell(parameter.median), cell(parameter.deviation), track.has_siblings ? cell(track.sibling_p) : "",
-        track.stands_out ? 1 : 0, cell(trend.slope * seconds_a_day), track.has_trend ? name_of(trend.change) : "",
-        date_text(trend.since), cell(trend.from), cell(trend.to), track.has_trend ? cell(trend.p) : "", track.changes ? 1 : 0);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(track.machine),
+                        csv_cell(parameter.kind.group), name_of(parameter.kind.command), csv_cell(parameter.name),
+                        csv_cell(parameter.unit), track.value.size(), cell(track.level), cell(parameter.median),
+                        cell(parameter.deviation), track.has_siblings ? cell(track.sibling_p) : "",
+                        track.stands_out ? 1 : 0, cell(trend.slope * seconds_a_day),
+                        track.has_trend ? name_of(trend.change) : "", date_text(trend.since), cell(trend.from),
+                        cell(trend.to), track.has_trend ? cell(trend.p) : "", track.changes ? 1 : 0);
   }
   return text;
 }

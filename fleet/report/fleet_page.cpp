@@ -90,7 +90,8 @@ class FleetPage {
     }
     html += "</ul>\n";
     if (found_.size() > most_at_the_top) {
-      html += fmt::format("<p class=\"note\">These are the {} surest; all {} follow.</p>\n", most_at_the_top, found_.size());
+      html += fmt::format("<p class=\"note\">These are the {} surest; all {} follow.</p>\n", most_at_the_top,
+                          found_.size());
     }
     return html + "</section>\n";
   }
@@ -112,14 +113,16 @@ class FleetPage {
       return "";
     }
     std::string html =
-        "<section><h2>What drifts or stands out</h2>\n<p class=\"note\">The shaded band is that of the siblings: median ± 3 "
+        "<section><h2>What drifts or stands out</h2>\n<p class=\"note\">The shaded band is that of the siblings: "
+        "median ± 3 "
         "standard deviations. Bars are intervals of 95 %. A dot leads to the report of its record.</p>\n";
     for (const auto& of_machine : found_) {
       const std::string& machine = of_machine.front()->machine;
       html += fmt::format("<article class=\"found\"><h3>{}</h3>\n", escaped(machine));
       std::vector<std::size_t> shown;
       for (const Finding* finding : of_machine) {
-        html += fmt::format("<p>{} <span class=\"note\">p = {:.1g}</span></p>\n", escaped(sentence(all_, *finding)), finding->p);
+        html += fmt::format("<p>{} <span class=\"note\">p = {:.1g}</span></p>\n", escaped(sentence(all_, *finding)),
+                            finding->p);
         if (finding->what != Finding::What::Effect && std::ranges::find(shown, finding->index) == shown.end()) {
           shown.push_back(finding->index);
         }
@@ -158,7 +161,8 @@ class FleetPage {
       return "";
     }
     std::string html =
-        "<section><h2>Parameters of the fleet</h2>\n<p class=\"note\">A dot is a machine, by the median of its records; "
+        "<section><h2>Parameters of the fleet</h2>\n<p class=\"note\">A dot is a machine, by the median of its "
+        "records; "
         "orange ones have a finding.</p>\n<div class=\"plots\">\n";
     for (const Parameter& one : all_.parameters) {
       html += fmt::format(
@@ -181,13 +185,15 @@ class FleetPage {
         const Track& track = all_.tracks[i];
         const Parameter& parameter = all_.parameters[track.parameter];
         marked = marked || track.changes || track.stands_out;
-        lines += fmt::format("<div class=\"spark\">{}<span>{} {}</span></div>\n", small_plot(track, parameter, 110, 28),
-                             escaped(parameter.name), escaped(quantity(fmt::format("{:.4g}", track.level), parameter.unit)));
+        lines +=
+            fmt::format("<div class=\"spark\">{}<span>{} {}</span></div>\n", small_plot(track, parameter, 110, 28),
+                        escaped(parameter.name), escaped(quantity(fmt::format("{:.4g}", track.level), parameter.unit)));
       }
-      html += fmt::format("<div class=\"machine{}\"><h3>{}</h3>{}<details><summary class=\"records\">{} record{}</summary>"
-                          "<p class=\"records\">{}</p></details></div>\n",
-                          marked ? " marked" : "", escaped(machine), lines, records_.at(machine).size(),
-                          records_.at(machine).size() == 1 ? "" : "s", records_of(machine));
+      html += fmt::format(
+          "<div class=\"machine{}\"><h3>{}</h3>{}<details><summary class=\"records\">{} record{}</summary>"
+          "<p class=\"records\">{}</p></details></div>\n",
+          marked ? " marked" : "", escaped(machine), lines, records_.at(machine).size(),
+          records_.at(machine).size() == 1 ? "" : "s", records_of(machine));
     }
     return html + "</div></details></section>\n";
   }

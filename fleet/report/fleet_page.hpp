@@ -10,6 +10,7 @@
 namespace hysteron::fleet {
 
 /// `folder` is where the results lie, as seen from the page: links begin with it.
-[[nodiscard]] std::string fleet_page(const Analysis& all, const std::vector<Row>& rows, const std::filesystem::path& folder);
+[[nodiscard]] std::string fleet_page(const Analysis& all, const std::vector<Row>& rows,
+                                     const std::filesystem::path& folder);
 
 }  // namespace hysteron::fleet

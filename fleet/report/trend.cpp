@@ -162,7 +162,8 @@ Trend trend_of(const Series& series, const Scatter& scatter) {
       best = form;
     }
   }
-  sigma = deviations_of(series, std::max(std::isfinite(scatter.deviation) ? scatter.deviation : 0.0, own_scatter(series, best)));
+  sigma = deviations_of(
+      series, std::max(std::isfinite(scatter.deviation) ? scatter.deviation : 0.0, own_scatter(series, best)));
   const auto h = shape_of(series, best.change, best.place);
   best.line = fitted(h, series.value, sigma, none);
   double least = std::abs(best.line.t);

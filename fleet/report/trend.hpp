@@ -22,7 +22,7 @@ enum class Change {
 };
 
 struct Trend {
-  double slope = not_a_number;  ///< of Theil and Sen, over all records, a second
+  double slope = not_a_number;   ///< of Theil and Sen, over all records, a second
   Change change = Change::None;  ///< the form that fits better; None where it cannot be asked
   double since = not_a_number;   ///< the last record before a ramp, the first one behind a step
   double from = not_a_number;    ///< fitted value before
@@ -39,14 +39,14 @@ struct Scatter {
   double freedom = 0.0;  ///< degrees of it
 };
 
-/// 1.4826 times the median distance from each machine's line of Theil and Sen, widened for the two numbers that each line
-/// takes: √(n/(n − 2m)) of n values of m machines. Series of fewer than `least_records` say nothing.
+/// 1.4826 times the median distance from each machine's line of Theil and Sen, widened for the two numbers that each
+/// line takes: √(n/(n − 2m)) of n values of m machines. Series of fewer than `least_records` say nothing.
 [[nodiscard]] Scatter scatter_of(const std::vector<Series>& machines);
 
 /// Tries a ramp from each record and a step at each record, by weighted least squares. A record's standard deviation is
-/// the largest of its own, that of the fleet's scatter, and that of the machine about the form. The form with the largest
-/// |t| is taken; its p is that of the least |t| with any one record left out, times the number of forms tried (Bonferroni).
-/// So no single record makes a change.
+/// the largest of its own, that of the fleet's scatter, and that of the machine about the form. The form with the
+/// largest |t| is taken; its p is that of the least |t| with any one record left out, times the number of forms tried
+/// (Bonferroni). So no single record makes a change.
 [[nodiscard]] Trend trend_of(const Series& series, const Scatter& scatter);
 
 }  // namespace hysteron::fleet

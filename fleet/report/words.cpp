@@ -16,10 +16,14 @@ std::string of_change(const Track& track, const Parameter& parameter) {
   const bool up = trend.to > trend.from;
   const std::string values = quantity(fmt::format("{} to {}", from, to), parameter.unit);
   if (trend.change == Change::Step) {
-    return fmt::format("{} {} on {}, from {}.", parameter.name, up ? "jumps up" : "drops", date_text(trend.since), values);
+    return fmt::format("{} {} on {}, from {}.", parameter.name, up ? "jumps up" : "drops", date_text(trend.since),
+                       values);
   }
   return fmt::format("{} {} since {}, from {}.", parameter.name,
-                     !up ? "falls" : trend.from >= 0.0 ? "grows" : "rises", date_text(trend.since), values);
+                     !up                 ? "falls"
+                     : trend.from >= 0.0 ? "grows"
+                                         : "rises",
+                     date_text(trend.since), values);
 }
 
 std::string of_level(const Track& track, const Parameter& parameter) {
@@ -30,8 +34,8 @@ std::string of_level(const Track& track, const Parameter& parameter) {
 }
 
 std::string of_effect(const Presence& one) {
-  return fmt::format("{} is named in {} of {} records{}; of its siblings' records {:.2g} % name it.", one.effect, one.named,
-                     one.records, std::isnan(one.since) ? "" : ", since " + date_text(one.since),
+  return fmt::format("{} is named in {} of {} records{}; of its siblings' records {:.2g} % name it.", one.effect,
+                     one.named, one.records, std::isnan(one.since) ? "" : ", since " + date_text(one.since),
                      100.0 * one.sibling_share);
 }
 
@@ -45,13 +49,15 @@ std::vector<std::string> headline(const Analysis& all, const std::vector<Row>& r
   std::vector<std::string> text;
   const std::size_t n = all.machines.size();
   if (all.tests == 0) {
-    text.push_back(fmt::format(
-        "Nothing can be said of {} machine{} yet: a change needs {} records at different times, a comparison {} machines.", n,
-        n == 1 ? "" : "s", least_records, least_siblings));
+    text.push_back(
+        fmt::format("Nothing can be said of {} machine{} yet: a change needs {} records at different times, a "
+                    "comparison {} machines.",
+                    n, n == 1 ? "" : "s", least_records, least_siblings));
   } else if (all.machines_found == 0) {
     text.push_back(fmt::format("None of {} machines drifts or stands out.", n));
   } else {
-    text.push_back(fmt::format("{} of {} machines {} out.", all.machines_found, n, all.machines_found == 1 ? "stands" : "stand"));
+    text.push_back(
+        fmt::format("{} of {} machines {} out.", all.machines_found, n, all.machines_found == 1 ? "stands" : "stand"));
   }
   if (!all.failures.empty()) {
     text.push_back(fmt::format("{} of {} records {} no result.", all.failures.size(), rows.size(),
@@ -71,20 +77,25 @@ std::string sentence(const Analysis& all, const Finding& finding) {
 
 std::vector<std::string> method(const Analysis& all) {
   return {
-      fmt::format("{} tests were made. On average at most {:g} % of the findings are false: they are chosen over all tests by "
-                  "Benjamini and Hochberg (1995). The share is --false-share.",
-                  all.tests, 100.0 * all.false_share),
-      fmt::format("A change is a ramp or a step that a parameter shows in {} records or more, at different times. Each record "
-                  "weighs by the largest of three standard deviations: that of its fit, that of the records of all siblings "
-                  "about their lines of Theil and Sen, and that of the machine about the form. The change must stay without "
-                  "any one of the records. So four is the least: three are left.",
-                  least_records),
-      fmt::format("A machine stands out by its distance from the median of {} siblings or more, itself among them. Its scale is "
-                  "1.4826 times their median absolute deviation, or the error of the machine's own median where that is "
-                  "larger. Student's distribution has 0.37 degrees of freedom a machine, the efficiency of that scale "
-                  "(Rousseeuw and Croux 1993). With fewer than five machines, two could hide each other.",
-                  least_siblings),
-      "An effect stands out where it is named more often than at the share of its siblings' records (binomial distribution)."};
+      fmt::format(
+          "{} tests were made. On average at most {:g} % of the findings are false: they are chosen over all tests by "
+          "Benjamini and Hochberg (1995). The share is --false-share.",
+          all.tests, 100.0 * all.false_share),
+      fmt::format(
+          "A change is a ramp or a step that a parameter shows in {} records or more, at different times. Each record "
+          "weighs by the largest of three standard deviations: that of its fit, that of the records of all siblings "
+          "about their lines of Theil and Sen, and that of the machine about the form. The change must stay without "
+          "any one of the records. So four is the least: three are left.",
+          least_records),
+      fmt::format(
+          "A machine stands out by its distance from the median of {} siblings or more, itself among them. Its scale "
+          "is "
+          "1.4826 times their median absolute deviation, or the error of the machine's own median where that is "
+          "larger. Student's distribution has 0.37 degrees of freedom a machine, the efficiency of that scale "
+          "(Rousseeuw and Croux 1993). With fewer than five machines, two could hide each other.",
+          least_siblings),
+      "An effect stands out where it is named more often than at the share of its siblings' records (binomial "
+      "distribution)."};
 }
 
 }  // namespace hysteron::fleet

@@ -87,8 +87,9 @@ TEST_F(Manifest, ATimeIsADateOrSecondsSince1970) {
   EXPECT_EQ(time_of("2026-01-02T06:30:00+02:00"), 1767312000.0 + 16200.0);
   EXPECT_EQ(time_of("1767312000"), 1767312000.0);
   EXPECT_EQ(time_of("1767312000.25"), 1767312000.25);
-  for (const char* const when : {"2026", "20260102", "1767312000000", "02.01.2026", "1/2/2026", "2026-13-01", "2026-02-30",
-                                 "Monday", "06:30", "2026-01-02T25:00", "-1767312000", "1767312000 s", "1,767e9"}) {
+  for (const char* const when :
+       {"2026", "20260102", "1767312000000", "02.01.2026", "1/2/2026", "2026-13-01", "2026-02-30", "Monday", "06:30",
+        "2026-01-02T25:00", "-1767312000", "1767312000 s", "1,767e9"}) {
     EXPECT_EQ(errors("machine,diagram,params,log,when\nA,a.st,p.toml,x.csv,\"" + std::string(when) + "\"\n"),
               (std::vector<std::pair<int, std::uint32_t>>{{error::no_date, 2}}))
         << when;
@@ -99,8 +100,9 @@ TEST_F(Manifest, ATimeIsADateOrSecondsSince1970) {
 }
 
 TEST_F(Manifest, ALineMayNameItsCommand) {
-  const auto units = read("machine,command,diagram,params,log\nA,tune,a.st,p.toml,x.csv\nA,,a.st,p.toml,x.csv\n"
-                          "A,check,a.st,,\n");
+  const auto units = read(
+      "machine,command,diagram,params,log\nA,tune,a.st,p.toml,x.csv\nA,,a.st,p.toml,x.csv\n"
+      "A,check,a.st,,\n");
   ASSERT_EQ(units.size(), 3U);
   EXPECT_EQ(units[0].command, Command::Tune);
   EXPECT_EQ(units[1].command, Command::Diagnose);

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Called as the tool is: diagnose DIAGRAM --log LOG --params P --out DIR, tune DIAGRAM --log LOG --params P --out TUNED
+/// Called as the tool is: diagnose DIAGRAM --log LOG --params P --out DIR, tune DIAGRAM --log LOG --params P --out
+/// TUNED
 /// --report DIR, check DIAGRAM --json. The record is a line of the shell. Each run
 /// that gets to its end leaves a letter in the file `ran`.
 constexpr std::string_view program = R"(#!/bin/sh

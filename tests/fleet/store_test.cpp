@@ -29,19 +29,21 @@ class FleetStore : public ::testing::Test {
     Unit unit{.machine = machine, .when = when, .group = "axes", .diagram = "a.st", .line = 2};
     const std::string key = std::string(60, 'a') + std::to_string(1000 + units_.size());
     write_result(folder_of(output_, key), unit, "1", {.status = Status::Done, .seconds = 0.5});
-    write_file_atomically(folder_of(output_, key) / "verdict.json",
-                          R"({"verdict": "named", "confidence": 0.8, "effects": [{"id": "lag", "edge": "U", "share": 0.5,
+    write_file_atomically(
+        folder_of(output_, key) / "verdict.json",
+        R"({"verdict": "named", "confidence": 0.8, "effects": [{"id": "lag", "edge": "U", "share": 0.5,
       "parameters": {"T1": {"value": 2, "low": 1, "high": 3, "unit": "s"}}}], "families": [
       {"family": "delay", "effect": "lag", "edge": "U", "effect_probability": 0.9},
       {"family": "friction", "effect": "stiction", "edge": "X", "effect_probability": 0.1}],
       "gap": {"nominal_rms": 2, "improved_rms": 1, "unit": "um"}, "calibration": {"AMP.K": {"value": )" +
-                              std::to_string(k) + R"(, "low": null, "high": null, "unit": "um/V"}}})");
+            std::to_string(k) + R"(, "low": null, "high": null, "unit": "um/V"}}})");
     units_.push_back(unit);
     keys_.push_back(key);
   }
   void record() {
     fs::create_directories(output_ / "claims");
-    write_run(output_, {.manifest = "fleet.csv", .version = "1", .options = {"--effort", "1"}, .units = units_, .keys = keys_});
+    write_run(output_,
+              {.manifest = "fleet.csv", .version = "1", .options = {"--effort", "1"}, .units = units_, .keys = keys_});
   }
   [[nodiscard]] fs::path file() const { return output_ / "fleet.sqlite"; }
 
@@ -101,6 +103,19 @@ TEST_F(FleetStore, KeepsWhatEarlierManifestsNamed) {
   EXPECT_EQ(ask("SELECT count(*) FROM units"), 2.0);
   EXPECT_EQ(ask("SELECT count(*) FROM current_units"), 1.0);
   EXPECT_EQ(ask("SELECT count(*) FROM current_units WHERE machine = 'Axis 2'"), 1.0);
+}
+
+TEST_F(FleetStore, WhatAKilledWriterOfARunLeftIsNoRun) {
+  add("Axis 1", "2026-05-01", 4.0);
+  record();
+  const auto runs = read_runs(output_);
+  ASSERT_EQ(runs.size(), 1U);
+  fs::copy_file(output_ / "runs" / (runs[0].id + ".json"), output_ / "runs" / (runs[0].id + ".json.x1y2z3"));
+  write_file_atomically(output_ / "runs" / "notes.json", "{}");
+  EXPECT_EQ(read_runs(output_).size(), 1U);
+  record();
+  EXPECT_EQ(read_runs(output_).size(), 1U) << "the same units are the same run";
+  EXPECT_GT(read_runs(output_)[0].last, runs[0].last);
 }
 
 TEST_F(FleetStore, AWriterThatIsKilledAtAnyMomentLosesNothing) {

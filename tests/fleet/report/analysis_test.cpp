@@ -130,7 +130,9 @@ TEST(FleetAnalysis, NoSingleRecordMakesAChange) {
 
 TEST(FleetAnalysis, WhatItsIntervalsExplainIsNoChange) {
   MadeFleet fleet(30, 6, 7);
-  fleet.change = [](std::size_t machine, std::size_t record) { return machine == 2 ? 0.8 * static_cast<double>(record) : 0.0; };
+  fleet.change = [](std::size_t machine, std::size_t record) {
+    return machine == 2 ? 0.8 * static_cast<double>(record) : 0.0;
+  };
   auto rows = fleet.rows();
   EXPECT_TRUE(found_in(analysed(rows, 0.05)).contains("Axis 3"));
   for (Row& row : rows) {
@@ -170,12 +172,15 @@ TEST(FleetAnalysis, AnEffectThatSiblingsDoNotHaveStandsOut) {
   }
   const auto all = analysed(rows, 0.05);
   ASSERT_EQ(found_in(all), std::set<std::string>{"M7"}) << "what all have, nobody stands out by; nor by one record";
-  EXPECT_THAT(sentence(all, all.findings.front()), HasSubstr("backlash at Y is named in 4 of 6 records, since 2026-01-03"));
+  EXPECT_THAT(sentence(all, all.findings.front()),
+              HasSubstr("backlash at Y is named in 4 of 6 records, since 2026-01-03"));
 }
 
 TEST(FleetAnalysis, ThePageEscapesNamesAndLeadsToEachRecord) {
   MadeFleet fleet(30, 12, 2);
-  fleet.change = [](std::size_t machine, std::size_t record) { return machine == 3 ? static_cast<double>(record) : 0.0; };
+  fleet.change = [](std::size_t machine, std::size_t record) {
+    return machine == 3 ? static_cast<double>(record) : 0.0;
+  };
   auto rows = fleet.rows();
   for (Row& row : rows) {
     row.unit.machine = row.unit.machine == "Axis 4" ? "<b>&\"4" : row.unit.machine;

@@ -91,7 +91,7 @@ int report_fleet(const FleetReportOptions& options, Console& console) {
 
 Action add_fleet_report(CLI::App& app) {
   const auto options = std::make_shared<FleetReportOptions>();
-  app.add_option("DIR", options->folder, "The folder of `hysteron fleet`.")->required()->option_text("DIR");
+  app.add_option("DIR", options->folder, "The folder of `hysteron fleet`.")->required()->option_text(" ");
   app.add_option("--out", options->output, "The report as a page.")->option_text("REPORT.html");
   app.add_option("--csv", options->csv, "A line for each parameter of each machine.")->option_text("FILE.csv");
   app.add_option("--false-share", options->false_share,

@@ -39,6 +39,9 @@ ul.summary b { font-weight: 600; } ul.summary li { margin: .15rem 0; }
 /// Of more machines than this the top names the surest; the section below has all.
 constexpr std::size_t most_at_the_top = 10;
 
+/// A smaller one is a number of the formula, not a chance that anyone knows.
+constexpr double least_p = 1e-9;
+
 class FleetPage {
  public:
   FleetPage(const Analysis& all, const std::vector<Row>& rows, const fs::path& folder)
@@ -121,8 +124,8 @@ class FleetPage {
       html += fmt::format("<article class=\"found\"><h3>{}</h3>\n", escaped(machine));
       std::vector<std::size_t> shown;
       for (const Finding* finding : of_machine) {
-        html += fmt::format("<p>{} <span class=\"note\">p = {:.1g}</span></p>\n", escaped(sentence(all_, *finding)),
-                            finding->p);
+        html += fmt::format("<p>{} <span class=\"note\">p {}</span></p>\n", escaped(sentence(all_, *finding)),
+                            finding->p < least_p ? std::string("&lt; 1e-9") : fmt::format("= {:.1g}", finding->p));
         if (finding->what != Finding::What::Effect && std::ranges::find(shown, finding->index) == shown.end()) {
           shown.push_back(finding->index);
         }

@@ -154,12 +154,13 @@ class Schemas(unittest.TestCase):
         months = "".join(f"A,2026-0{k}-01,tune,plant.st,p.toml,log.csv\n" for k in range(1, 5))
         (self.folder / "machines.csv").write_text(header + months + "A,,,plant.st,p.toml,log.csv\nB,,,plant.st,p.toml,broken.csv\n")
         self.printed("fleet", "machines.csv", "--out", "machines", "--effort", "0.01", codes=(1,))
-        # An effect that siblings lack, and a step: what the diagnosis of one small record does not give.
+        # Four fits of the same record do not differ: a ramp is written into them.
         units = json.loads(self.printed("fleet", "machines.csv", "--out", "machines", "--effort", "0.01", "--json", codes=(1,)))
         for k, unit in enumerate(units["units"][:4]):
             path = self.folder / "machines" / unit["folder"] / "report.json"
             report = json.loads(path.read_text(encoding="utf-8"))
-            report["parameters"][0]["value"] += 1.0 if k > 1 else 0.001 * k
+            report["parameters"][0]["value"] += k
+            report["parameters"][0]["standard_error"] = 0.001
             path.write_text(json.dumps(report), encoding="utf-8")
         self.holds("fleet-report", self.printed("fleet-report", "machines", "--json"))
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A line as written. A command is not known before its cells are read.
-struct Line {
+struct ManifestLine {
   Unit unit{};
   std::string command{};
 };
@@ -32,17 +32,17 @@ enum class Needed : std::uint8_t { Always, ByRecords, Never };
 
 struct Column {
   std::string_view name;
-  std::string& (*cell)(Line&);
+  std::string& (*cell)(ManifestLine&);
   Needed needed;
 };
 constexpr std::array<Column, 7> columns{
-    {{"machine", [](Line& line) -> std::string& { return line.unit.machine; }, Needed::Always},
-     {"diagram", [](Line& line) -> std::string& { return line.unit.diagram; }, Needed::Always},
-     {"params", [](Line& line) -> std::string& { return line.unit.parameters; }, Needed::ByRecords},
-     {"log", [](Line& line) -> std::string& { return line.unit.log; }, Needed::ByRecords},
-     {"when", [](Line& line) -> std::string& { return line.unit.when; }, Needed::Never},
-     {"group", [](Line& line) -> std::string& { return line.unit.group; }, Needed::Never},
-     {"command", [](Line& line) -> std::string& { return line.command; }, Needed::Never}}};
+    {{"machine", [](ManifestLine& line) -> std::string& { return line.unit.machine; }, Needed::Always},
+     {"diagram", [](ManifestLine& line) -> std::string& { return line.unit.diagram; }, Needed::Always},
+     {"params", [](ManifestLine& line) -> std::string& { return line.unit.parameters; }, Needed::ByRecords},
+     {"log", [](ManifestLine& line) -> std::string& { return line.unit.log; }, Needed::ByRecords},
+     {"when", [](ManifestLine& line) -> std::string& { return line.unit.when; }, Needed::Never},
+     {"group", [](ManifestLine& line) -> std::string& { return line.unit.group; }, Needed::Never},
+     {"command", [](ManifestLine& line) -> std::string& { return line.command; }, Needed::Never}}};
 
 /// The cells of a line; nothing where a quotation mark is not closed, or text follows one that is.
 std::optional<std::vector<std::string>> cells_of(std::string_view line) {
@@ -118,7 +118,7 @@ std::vector<const Column*> header_of(const std::vector<std::string>& cells, Comm
   return header;
 }
 
-void read_command(Line& line, Command otherwise, const Place& place, Diagnostics& found) {
+void read_command(ManifestLine& line, Command otherwise, const Place& place, Diagnostics& found) {
   const auto named = line.command.empty() ? otherwise : command_named(line.command);
   if (!named) {
     found.error(error::bad_usage, place, fmt::format("the command \"{}\" is none of a fleet.", line.command),
@@ -141,7 +141,7 @@ void read_time(Unit& unit, const Place& place, Diagnostics& found) {
 
 Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Column*>& header, Command otherwise,
              const Place& place, Diagnostics& found) {
-  Line line{.unit = {.line = place.line}};
+  ManifestLine line{.unit = {.line = place.line}};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     header[i]->cell(line) = cells[i];
   }

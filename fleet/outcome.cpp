@@ -11,16 +11,15 @@
 namespace hysteron::fleet {
 namespace {
 
-using Json = nlohmann::json;
-
 // Half of the 95 % interval of a normal distribution over its standard deviation.
 constexpr double half_of_95 = 1.959964;
 
-double number_of(const Json& value) {
+double number_of(const nlohmann::json& value) {
   return value.is_number() ? value.get<double>() : not_a_number;
 }
 
-void add_intervals(Outcome& outcome, const std::string& source, const std::string& before, const Json& parameters) {
+void add_intervals(Outcome& outcome, const std::string& source, const std::string& before,
+                   const nlohmann::json& parameters) {
   for (const auto& [name, one] : parameters.items()) {
     FoundParameter found{.source = source,
                          .name = before + name,
@@ -33,8 +32,8 @@ void add_intervals(Outcome& outcome, const std::string& source, const std::strin
   }
 }
 
-void add_fitted(Outcome& outcome, const std::string& source, const Json& parameters) {
-  for (const Json& one : parameters) {
+void add_fitted(Outcome& outcome, const std::string& source, const nlohmann::json& parameters) {
+  for (const nlohmann::json& one : parameters) {
     FoundParameter found{.source = source,
                          .name = one.at("name"),
                          .value = number_of(one.at("value")),
@@ -47,15 +46,15 @@ void add_fitted(Outcome& outcome, const std::string& source, const Json& paramet
   }
 }
 
-Outcome diagnosis_of(const Json& json) {
+Outcome diagnosis_of(const nlohmann::json& json) {
   Outcome outcome{.verdict = json.at("verdict")};
-  for (const Json& one : json.at("effects")) {
+  for (const nlohmann::json& one : json.at("effects")) {
     outcome.effects.push_back(
         {.effect = one.at("id"), .edge = one.at("edge"), .share = number_of(one.at("share")), .named = true});
     const FoundEffect& effect = outcome.effects.back();
     add_intervals(outcome, "effect", fmt::format("{} at {}: ", effect.effect, effect.edge), one.at("parameters"));
   }
-  for (const Json& family : json.at("families")) {
+  for (const nlohmann::json& family : json.at("families")) {
     const std::string id = family.at("effect");
     const auto known = std::ranges::find(outcome.effects, id, &FoundEffect::effect);
     FoundEffect& effect = known != outcome.effects.end() ? *known : outcome.effects.emplace_back();
@@ -74,12 +73,12 @@ Outcome diagnosis_of(const Json& json) {
   return outcome;
 }
 
-Outcome fit_of(const Json& json) {
+Outcome fit_of(const nlohmann::json& json) {
   Outcome outcome{.verdict = json.at("status")};
   add_fitted(outcome, "fit", json.at("parameters"));
   add_fitted(outcome, "initial state", json.at("initial_states"));
   if (!json.at("outputs").empty()) {
-    const Json& first = json.at("outputs").front();
+    const nlohmann::json& first = json.at("outputs").front();
     outcome.nominal_rms = number_of(first.at("rmse_before"));
     outcome.improved_rms = number_of(first.at("rmse_train"));
     outcome.unit_of_gap = first.at("unit");
@@ -98,7 +97,7 @@ std::string effects_text(const Outcome& outcome) {
 }
 
 Outcome read_outcome(Command command, const std::filesystem::path& folder) {
-  const auto json = Json::parse(read_text_file((folder / product_of(command)).string()));
+  const auto json = nlohmann::json::parse(read_text_file((folder / product_of(command)).string()));
   switch (command) {
     case Command::Diagnose:
       return diagnosis_of(json);

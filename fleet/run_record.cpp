@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::string_view schema = "hysteron-fleet-run/1";
+constexpr std::string_view run_schema = "hysteron-fleet-run/1";
 
 std::string now() {
   const auto since = std::chrono::system_clock::now().time_since_epoch();
@@ -60,7 +60,7 @@ Run run_of(const Json& json) {
 }  // namespace
 
 void write_run(const fs::path& output, Run run) {
-  Json json{{"schema", schema}, {"manifest", run.manifest}, {"version", run.version}, {"options", run.options}};
+  Json json{{"schema", run_schema}, {"manifest", run.manifest}, {"version", run.version}, {"options", run.options}};
   json["units"] = Json::array();
   for (std::size_t i = 0; i < run.units.size(); ++i) {
     const Unit& unit = run.units[i];
@@ -82,12 +82,12 @@ void write_run(const fs::path& output, Run run) {
 
 std::vector<Run> read_runs(const fs::path& output) {
   std::vector<Run> runs;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(output / "runs", none)) {
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(output / "runs", missing)) {
     try {
       const Json json = Json::parse(read_text_file(entry.path().string()));
       // A writer that was killed leaves its temporary beside the file.
-      if (json.at("schema").get<std::string>() == schema &&
+      if (json.at("schema").get<std::string>() == run_schema &&
           entry.path().filename() == json.at("id").get<std::string>() + ".json") {
         runs.push_back(run_of(json));
       }

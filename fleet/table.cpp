@@ -37,12 +37,11 @@ void read_product(Row& row, const fs::path& folder) {
   }
 }
 
-/// Empty where there is none.
+}  // namespace
+
 std::string number_cell(double value) {
   return std::isfinite(value) ? number_text(value) : "";
 }
-
-}  // namespace
 
 std::vector<Row> rows_of(const std::vector<Unit>& units, const std::vector<std::string>& keys, const fs::path& output) {
   std::vector<Row> rows;

@@ -25,6 +25,9 @@ struct Row {
 [[nodiscard]] std::vector<Row> rows_of(const std::vector<Unit>& units, const std::vector<std::string>& keys,
                                        const std::filesystem::path& output);
 
+/// A number in CSV; empty where it is not finite.
+[[nodiscard]] std::string number_cell(double value);
+
 /// How many rows have each status, in the order of Status.
 [[nodiscard]] std::array<std::size_t, 4> counts_of(const std::vector<Row>& rows);
 

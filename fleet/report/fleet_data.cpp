@@ -52,10 +52,6 @@ Json track_json(const Analysis& all, const Track& track) {
   return json;
 }
 
-std::string cell(double value) {
-  return std::isfinite(value) ? number_text(value) : "";
-}
-
 }  // namespace
 
 std::string report_json(const Analysis& all, const std::vector<Row>& rows, std::string_view version) {
@@ -116,11 +112,12 @@ std::string report_csv(const Analysis& all) {
     const Trend& trend = track.trend;
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(track.machine),
                         csv_cell(parameter.kind.group), name_of(parameter.kind.command), csv_cell(parameter.name),
-                        csv_cell(parameter.unit), track.value.size(), cell(track.level), cell(parameter.median),
-                        cell(parameter.deviation), track.has_siblings ? cell(track.sibling_p) : "",
-                        track.stands_out ? 1 : 0, cell(trend.slope * seconds_a_day),
-                        track.has_trend ? name_of(trend.change) : "", date_text(trend.since), cell(trend.from),
-                        cell(trend.to), track.has_trend ? cell(trend.p) : "", track.changes ? 1 : 0);
+                        csv_cell(parameter.unit), track.value.size(), number_cell(track.level),
+                        number_cell(parameter.median), number_cell(parameter.deviation),
+                        track.has_siblings ? number_cell(track.sibling_p) : "", track.stands_out ? 1 : 0,
+                        number_cell(trend.slope * seconds_a_day), track.has_trend ? name_of(trend.change) : "",
+                        date_text(trend.since), number_cell(trend.from), number_cell(trend.to),
+                        track.has_trend ? number_cell(trend.p) : "", track.changes ? 1 : 0);
   }
   return text;
 }

@@ -64,7 +64,8 @@ Line fitted(const std::vector<double>& h, const std::vector<double>& y, const st
   return {.a = mean_y - hy / hh * mean_h, .b = hy / hh, .t = hy / std::sqrt(hh)};
 }
 
-constexpr std::size_t none = static_cast<std::size_t>(-1);
+/// No record is left out.
+constexpr std::size_t no_record = static_cast<std::size_t>(-1);
 
 struct Form {
   Change change = Change::None;
@@ -157,7 +158,7 @@ Trend trend_of(const Series& series, const Scatter& scatter) {
   std::vector<double> sigma = deviations_of(series, scatter.deviation);
   Form best;
   for (Form form : forms) {
-    form.line = fitted(shape_of(series, form.change, form.place), series.value, sigma, none);
+    form.line = fitted(shape_of(series, form.change, form.place), series.value, sigma, no_record);
     if (best.change == Change::None || std::abs(form.line.t) > std::abs(best.line.t)) {
       best = form;
     }
@@ -165,7 +166,7 @@ Trend trend_of(const Series& series, const Scatter& scatter) {
   sigma = deviations_of(
       series, std::max(std::isfinite(scatter.deviation) ? scatter.deviation : 0.0, own_scatter(series, best)));
   const auto h = shape_of(series, best.change, best.place);
-  best.line = fitted(h, series.value, sigma, none);
+  best.line = fitted(h, series.value, sigma, no_record);
   double least = std::abs(best.line.t);
   for (std::size_t without = 0; without < h.size(); ++without) {
     const Line left = fitted(h, series.value, sigma, without);

@@ -23,7 +23,7 @@ std::string_view name_of(Change change) {
   return changes.at(static_cast<std::size_t>(change));
 }
 
-constexpr double seconds_a_day = 86400.0;
+constexpr double a_day_in_seconds = 86400.0;
 
 Json track_json(const Analysis& all, const Track& track) {
   const Parameter& parameter = all.parameters[track.parameter];
@@ -38,7 +38,7 @@ Json track_json(const Analysis& all, const Track& track) {
             {"sibling_deviation", number_or_null<Json>(parameter.deviation)},
             {"sibling_p", track.has_siblings ? Json(track.sibling_p) : Json(nullptr)},
             {"stands_out", track.stands_out},
-            {"slope_per_day", number_or_null<Json>(track.trend.slope * seconds_a_day)}};
+            {"slope_per_day", number_or_null<Json>(track.trend.slope * a_day_in_seconds)}};
   Json trend = nullptr;
   if (track.has_trend) {
     trend = {{"form", name_of(track.trend.change)},
@@ -115,7 +115,7 @@ std::string report_csv(const Analysis& all) {
                         csv_cell(parameter.unit), track.value.size(), number_cell(track.level),
                         number_cell(parameter.median), number_cell(parameter.deviation),
                         track.has_siblings ? number_cell(track.sibling_p) : "", track.stands_out ? 1 : 0,
-                        number_cell(trend.slope * seconds_a_day), track.has_trend ? name_of(trend.change) : "",
+                        number_cell(trend.slope * a_day_in_seconds), track.has_trend ? name_of(trend.change) : "",
                         date_text(trend.since), number_cell(trend.from), number_cell(trend.to),
                         track.has_trend ? number_cell(trend.p) : "", track.changes ? 1 : 0);
   }

@@ -20,7 +20,7 @@ namespace {
 constexpr int cannot_start = 127;
 
 /// Between fork and exec: only what may be called there.
-[[noreturn]] void become(char* const* arguments, int errors, int nowhere, pid_t parent, rlim_t bytes) {
+[[noreturn]] void become(char* const* arguments, int nowhere, int output, int errors, pid_t parent, rlim_t bytes) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) {
@@ -32,7 +32,7 @@ constexpr int cannot_start = 127;
     ::signal(signal, SIG_DFL);
   }
   if (setrlimit(RLIMIT_AS, &memory) == 0 && setrlimit(RLIMIT_CORE, &no_core) == 0 && dup2(nowhere, STDIN_FILENO) >= 0 &&
-      dup2(nowhere, STDOUT_FILENO) >= 0 && dup2(errors, STDERR_FILENO) >= 0) {
+      dup2(output, STDOUT_FILENO) >= 0 && dup2(errors, STDERR_FILENO) >= 0) {
     execv(arguments[0], arguments);
   }
   _exit(cannot_start);
@@ -40,22 +40,25 @@ constexpr int cannot_start = 127;
 
 }  // namespace
 
-Child::Child(const std::vector<std::string>& command, const std::filesystem::path& errors, std::uint64_t megabytes) {
+Child::Child(const std::vector<std::string>& command, const std::filesystem::path& output,
+             const std::filesystem::path& errors, std::uint64_t megabytes) {
   auto words = command;
   std::vector<char*> arguments;
   for (std::string& word : words) {
     arguments.push_back(word.data());
   }
   arguments.push_back(nullptr);
-  const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+  const int nowhere = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int results = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   const int complaints = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) {
-    become(arguments.data(), complaints, nowhere, parent, static_cast<rlim_t>(megabytes) << 20U);
+    become(arguments.data(), nowhere, results, complaints, parent, static_cast<rlim_t>(megabytes) << 20U);
   }
   const int problem = errno;
   close(nowhere);
+  close(results);
   close(complaints);
   if (pid_ < 0) {
     throw std::system_error(problem, std::generic_category(), "no further process");

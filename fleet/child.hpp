@@ -18,9 +18,10 @@ class Child {
  public:
   static constexpr int killed = 128;  ///< and the number of the signal, as shells say
 
-  /// Starts a program whose outputs go to /dev/null and to `errors`. `megabytes` bounds its address space. Throws
+  /// Starts a program whose two outputs go to these files. `megabytes` bounds its address space. Throws
   /// std::system_error where there is no further process.
-  Child(const std::vector<std::string>& command, const std::filesystem::path& errors, std::uint64_t megabytes);
+  Child(const std::vector<std::string>& command, const std::filesystem::path& output,
+        const std::filesystem::path& errors, std::uint64_t megabytes);
   ~Child();  ///< kills what still runs
   Child(Child&& other) noexcept;
   Child& operator=(Child&& other) noexcept;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "fleet/when.hpp"
 #include "support/byte_order_mark.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
@@ -21,17 +22,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A line as written. A command is not known before its cells are read.
+struct ManifestLine {
+  Unit unit{};
+  std::string command{};
+};
+
+enum class Needed : std::uint8_t { Always, ByRecords, Never };
+
 struct Column {
   std::string_view name;
-  std::string Unit::*member;
-  bool required;
+  std::string& (*cell)(ManifestLine&);
+  Needed needed;
 };
-constexpr std::array<Column, 6> columns{{{"machine", &Unit::machine, true},
-                                         {"diagram", &Unit::diagram, true},
-                                         {"params", &Unit::parameters, true},
-                                         {"log", &Unit::log, true},
-                                         {"when", &Unit::when, false},
-                                         {"group", &Unit::group, false}}};
+constexpr std::array<Column, 7> columns{
+    {{"machine", [](ManifestLine& line) -> std::string& { return line.unit.machine; }, Needed::Always},
+     {"diagram", [](ManifestLine& line) -> std::string& { return line.unit.diagram; }, Needed::Always},
+     {"params", [](ManifestLine& line) -> std::string& { return line.unit.parameters; }, Needed::ByRecords},
+     {"log", [](ManifestLine& line) -> std::string& { return line.unit.log; }, Needed::ByRecords},
+     {"when", [](ManifestLine& line) -> std::string& { return line.unit.when; }, Needed::Never},
+     {"group", [](ManifestLine& line) -> std::string& { return line.unit.group; }, Needed::Never},
+     {"command", [](ManifestLine& line) -> std::string& { return line.command; }, Needed::Never}}};
 
 /// The cells of a line; nothing where a quotation mark is not closed, or text follows one that is.
 std::optional<std::vector<std::string>> cells_of(std::string_view line) {
@@ -77,21 +88,29 @@ std::vector<std::string> names_of_columns() {
   return names;
 }
 
-/// Which member each cell is; a null one where its name is wrong, which is reported.
-std::vector<const Column*> header_of(const std::vector<std::string>& cells, const Place& place, Diagnostics& found) {
+/// Which column each cell is; a null one where its name is wrong, which is reported.
+std::vector<const Column*> header_of(const std::vector<std::string>& cells, Command otherwise, const Place& place,
+                                     Diagnostics& found) {
   std::vector<const Column*> header;
   for (const std::string& cell : cells) {
     const auto* const one = std::ranges::find(columns, std::string_view(cell), &Column::name);
     const bool known = one != columns.end();
-    if (!known || std::ranges::find(header, one) != header.end()) {
-      found.error(error::duplicate_column, place,
-                  fmt::format("column \"{}\" of the manifest is {}.", cell, known ? "there twice" : "unknown"),
-                  fmt::format("remove it; columns are {}.", fmt::join(names_of_columns(), ", ")));
+    if (!known) {
+      found.error(error::unknown_manifest_column, place,
+                  fmt::format("the manifest has a column \"{}\", which means nothing.", cell),
+                  fmt::format("remove it, or correct its name; columns are {}.", fmt::join(names_of_columns(), ", ")));
+    } else if (std::ranges::find(header, one) != header.end()) {
+      found.error(error::duplicate_column, place, fmt::format("column \"{}\" of the manifest is there twice.", cell),
+                  "remove one of them.");
     }
     header.push_back(known ? one : nullptr);
   }
+  const bool has_commands =
+      std::ranges::any_of(header, [](const Column* one) { return one != nullptr && one->name == "command"; });
   for (const Column& one : columns) {
-    if (one.required && std::ranges::find(header, &one) == header.end()) {
+    const bool needed =
+        one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(otherwise) && !has_commands);
+    if (needed && std::ranges::find(header, &one) == header.end()) {
       found.error(error::missing_column, place, fmt::format("the manifest has no column {}.", one.name),
                   "add it; the first line names the columns, as machine,diagram,params,log,when.");
     }
@@ -99,16 +118,45 @@ std::vector<const Column*> header_of(const std::vector<std::string>& cells, cons
   return header;
 }
 
-Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Column*>& header, const Place& place,
-             Diagnostics& found) {
-  Unit unit{.line = place.line};
+void read_command(ManifestLine& line, Command otherwise, const Place& place, Diagnostics& found) {
+  const auto named = line.command.empty() ? otherwise : command_named(line.command);
+  if (!named) {
+    found.error(error::bad_usage, place, fmt::format("the command \"{}\" is none of a fleet.", line.command),
+                "write diagnose, tune or check, or leave the cell empty.");
+  }
+  line.unit.command = named.value_or(otherwise);
+}
+
+void read_time(Unit& unit, const Place& place, Diagnostics& found) {
+  if (unit.when.empty()) {
+    return;
+  }
+  const auto seconds = seconds_of(unit.when);
+  if (!seconds) {
+    found.error(error::no_date, place, fmt::format("the time \"{}\" of {} is no date.", unit.when, unit.machine),
+                "write it as 2026-05-02, 2026-05-02T06:30 or 2026-05-02T06:30+02:00, or as seconds since 1970.");
+  }
+  unit.time = seconds.value_or(not_a_number);
+}
+
+Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Column*>& header, Command otherwise,
+             const Place& place, Diagnostics& found) {
+  ManifestLine line{.unit = {.line = place.line}};
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (header[i]->required && cells[i].empty()) {
-      found.error(error::bad_usage, place, fmt::format("the cell of {} is empty.", header[i]->name),
+    header[i]->cell(line) = cells[i];
+  }
+  read_command(line, otherwise, place, found);
+  for (const Column& one : columns) {
+    const bool needed =
+        one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(line.unit.command));
+    if (needed && one.cell(line).empty()) {
+      found.error(error::bad_usage, place,
+                  fmt::format("{} needs a cell {}, and it is empty.", name_of(line.unit.command), one.name),
                   "write it, or remove the line.");
     }
-    unit.*(header[i]->member) = cells[i];
   }
+  Unit& unit = line.unit;
+  read_time(unit, place, found);
   const fs::path folder = fs::path(place.file).parent_path();
   for (std::string* const file : {&unit.diagram, &unit.parameters, &unit.log}) {
     std::error_code unknown;
@@ -125,7 +173,7 @@ Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Colu
 
 }  // namespace
 
-std::vector<Unit> read_manifest(const std::string& path) {
+std::vector<Unit> read_manifest(const std::string& path, Command otherwise) {
   const std::string text = read_text_file(path);
   std::string_view rest = text;
   if (rest.starts_with(byte_order_mark)) {
@@ -152,12 +200,12 @@ std::vector<Unit> read_manifest(const std::string& path) {
         break;
       }
     } else if (header.empty()) {
-      header = header_of(*cells, place, found);
+      header = header_of(*cells, otherwise, place, found);
       if (found.has_errors()) {
         break;  // what the lines mean is not known
       }
     } else {
-      units.push_back(unit_of(*cells, header, place, found));
+      units.push_back(unit_of(*cells, header, otherwise, place, found));
     }
   }
   if (!found.has_errors() && units.empty()) {

@@ -14,16 +14,18 @@
 namespace hysteron::fleet {
 namespace {
 
-constexpr std::string_view schema = "hysteron-fleet-unit/1";
+constexpr std::string_view schema = "hysteron-fleet-unit/2";
 constexpr std::array<std::string_view, 4> names{"open", "done", "refused", "failed"};
 
-std::string content_or_name(const std::string& file) {
-  try {
-    return "content " + read_text_file(file);
-  } catch (const InputError&) {
-    return "name " + file;
-  }
-}
+/// Parts with their lengths: what ends one and begins the next is not open.
+class Parts {
+ public:
+  void add(std::string_view part) { text_ += fmt::format("{}:{}\n", part.size(), part); }
+  [[nodiscard]] std::string digest() const { return sha256(text_); }
+
+ private:
+  std::string text_;
+};
 
 }  // namespace
 
@@ -31,21 +33,48 @@ std::string_view name_of(Status status) {
   return names.at(static_cast<std::size_t>(status));
 }
 
-std::string key_of(const Unit& unit, std::string_view version, const std::vector<std::string>& options) {
-  std::string text;
-  // With their lengths: what ends one and begins the next is not open.
-  const auto add = [&](std::string_view part) { text += fmt::format("{}:{}\n", part.size(), part); };
-  add(schema);
-  add(version);
-  add(unit.machine);
-  add(unit.when);
-  add(read_text_file(unit.diagram));
-  add(read_text_file(unit.parameters));
-  add(content_or_name(unit.log));
-  for (const std::string& option : options) {
-    add(option);
+const std::string& Keys::digest(const std::string& file) {
+  const auto [place, is_new] = digests_.emplace(file, "");
+  if (is_new) {
+    try {
+      place->second = "content " + sha256(read_text_file(file));
+    } catch (const InputError&) {
+      place->second = "name " + file;
+    }
   }
-  return sha256(text);
+  return place->second;
+}
+
+const std::string& Keys::digest_of_diagram(const std::string& file) {
+  const auto [place, is_new] = diagrams_.emplace(file, "");
+  if (is_new) {
+    Parts parts;
+    parts.add(digest(file));
+    for (const std::string& other : named_ ? named_(file) : std::vector<std::string>()) {
+      parts.add(digest(other));
+    }
+    place->second = parts.digest();
+  }
+  return place->second;
+}
+
+std::string Keys::of(const Unit& unit) {
+  Parts parts;
+  for (const std::string_view part :
+       {schema, std::string_view(version_), name_of(unit.command), std::string_view(unit.machine),
+        std::string_view(unit.when), std::string_view(digest_of_diagram(unit.diagram))}) {
+    parts.add(part);
+  }
+  if (needs_record(unit.command)) {
+    parts.add(digest(unit.parameters));
+    parts.add(digest(unit.log));
+  }
+  if (unit.command == Command::Diagnose) {
+    for (const std::string& option : options_) {
+      parts.add(option);
+    }
+  }
+  return parts.digest();
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& output, const std::string& key) {
@@ -58,6 +87,7 @@ void write_result(const std::filesystem::path& folder, const Unit& unit, std::st
                                     {"version", version},
                                     {"machine", unit.machine},
                                     {"when", unit.when},
+                                    {"command", name_of(unit.command)},
                                     {"status", name_of(result.status)},
                                     {"exit_code", result.exit_code},
                                     {"reason", result.reason},

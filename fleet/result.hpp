@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "fleet/manifest.hpp"
@@ -27,9 +29,31 @@ struct Result {
   double seconds = 0.0;  ///< that the process took
 };
 
-/// 64 hexadecimal digits: of the version, the options, the machine and its time, and the bytes of diagram, parameters
-/// and record. A record that cannot be read counts by its name, until it can be.
-[[nodiscard]] std::string key_of(const Unit& unit, std::string_view version, const std::vector<std::string>& options);
+/// The names of the files that a diagram names and its result depends on, such as FMUs.
+using NamedFiles = std::function<std::vector<std::string>(const std::string& diagram)>;
+
+/// Keys of units. A file that several units name is read once.
+class Keys {
+ public:
+  /// `options` are those of `diagnose`. Without `named`, diagrams name no files.
+  Keys(std::string version, std::vector<std::string> options, NamedFiles named = {})
+      : version_(std::move(version)), options_(std::move(options)), named_(std::move(named)) {}
+
+  /// 64 hexadecimal digits: of the version, the command and its options, the machine and its time, and the bytes of
+  /// diagram, of the files that it names, of parameters and record. A record or a named file that cannot be read counts
+  /// by its name, until it can be.
+  [[nodiscard]] std::string of(const Unit& unit);
+
+ private:
+  const std::string& digest(const std::string& file);
+  const std::string& digest_of_diagram(const std::string& file);
+
+  std::string version_;
+  std::vector<std::string> options_;
+  NamedFiles named_;
+  std::map<std::string, std::string> digests_;
+  std::map<std::string, std::string> diagrams_;
+};
 
 /// Where the result of a key lies.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& output, const std::string& key);

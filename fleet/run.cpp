@@ -13,6 +13,7 @@
 
 #include "fleet/child.hpp"
 #include "fleet/claim.hpp"
+#include "fleet/run_record.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "support/text_file.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int exit_verdict = 0;
+constexpr int exit_found = 0;
 constexpr int exit_refused = 1;
 constexpr double look_again = 0.2;  ///< s, at units that others work on
 
@@ -45,16 +46,17 @@ std::string first_line(const fs::path& messages) {
   }
 }
 
-Result result_of(const Running& one, int code, const RunOptions& options) {
+Result result_of(const Running& one, Command command, int code, const RunOptions& options) {
   Result result{.exit_code = code, .seconds = one.child.seconds()};
   std::error_code unknown;
-  const bool verdict = fs::is_regular_file(one.folder / "verdict.json", unknown);
+  const auto bytes = fs::file_size(one.folder / product_of(command), unknown);
+  const bool found = !unknown && bytes > 0;
   if (one.out_of_time) {
     result.status = Status::Failed;
     result.reason = fmt::format("it took longer than {:g} s (--time-limit).", options.time_limit);
-  } else if (verdict && (code == exit_verdict || code == exit_refused)) {
-    result.status = code == exit_verdict ? Status::Done : Status::Refused;
-    result.reason = code == exit_verdict ? "" : "the record cannot be diagnosed, verdict.json says why.";
+  } else if (found && (code == exit_found || code == exit_refused)) {
+    result.status = code == exit_found ? Status::Done : Status::Refused;
+    result.reason = code == exit_found ? "" : refusal_of(command);
   } else {
     result.status = Status::Failed;
     result.reason = first_line(one.folder / "messages.txt");
@@ -116,10 +118,11 @@ class Pool {
     const fs::path folder = work() / fmt::format("{}.{}", keys_[unit], getpid());
     fs::create_directories(folder);
     const Unit& one = units_[unit];
-    std::vector<std::string> command{options_.program, "diagnose",     one.diagram, "--log",        one.log,
-                                     "--params",       one.parameters, "--out",     folder.string()};
-    command.insert(command.end(), options_.options.begin(), options_.options.end());
-    Child child(command, folder / "messages.txt", options_.megabytes);
+    std::vector<std::string> command = arguments_of(one, folder, options_.options);
+    command.insert(command.begin(), options_.program);
+    // A check prints what it finds; the others write it.
+    const fs::path printed = one.command == Command::Check ? folder / product_of(one.command) : "/dev/null";
+    Child child(command, printed, folder / "messages.txt", options_.megabytes);
     running_.push_back({.unit = unit, .claim = std::move(*claim), .folder = folder, .child = std::move(child)});
     return true;
   }
@@ -174,7 +177,8 @@ class Pool {
   void finish(Running& one) {
     one.child.kill();  // what it has started goes with it
     const int code = one.child.wait();
-    write_result(one.folder, units_[one.unit], options_.version, result_of(one, code, options_));
+    write_result(one.folder, units_[one.unit], options_.version,
+                 result_of(one, units_[one.unit].command, code, options_));
     const fs::path place = folder_of(options_.output, keys_[one.unit]);
     const fs::path before = work() / fmt::format("{}.before", keys_[one.unit]);
     if (fs::exists(place)) {
@@ -197,14 +201,15 @@ std::vector<std::string> keys_of(const std::vector<Unit>& units, const std::stri
   std::vector<std::string> keys;
   std::map<std::string, std::uint32_t> lines;
   Diagnostics found;
+  Keys known(options.version, options.options, options.named_files);
   for (const Unit& unit : units) {
-    keys.push_back(key_of(unit, options.version, options.options));
+    keys.push_back(known.of(unit));
     const auto [first, is_new] = lines.emplace(keys.back(), unit.line);
     if (!is_new) {
-      found.error(
-          error::bad_usage, {.file = manifest, .line = unit.line},
-          fmt::format("the line says the same as line {}: machine, when, diagram, params and log.", first->second),
-          "remove one of them, or correct what is different.");
+      found.error(error::bad_usage, {.file = manifest, .line = unit.line},
+                  fmt::format("the line says the same as line {}: command, machine, when, diagram, params and log.",
+                              first->second),
+                  "remove one of them, or correct what is different.");
     }
   }
   if (found.has_errors()) {
@@ -218,9 +223,14 @@ std::vector<std::string> keys_of(const std::vector<Unit>& units, const std::stri
 Worked work_off(const std::vector<Unit>& units, const std::string& manifest, const RunOptions& options) {
   Worked worked{.keys = keys_of(units, manifest, options)};
   try {
-    for (const char* const folder : {"units", "claims", "work"}) {
+    for (const char* const folder : {"units", "claims", "work", "runs"}) {
       fs::create_directories(options.output / folder);
     }
+    write_run(options.output, {.manifest = manifest,
+                               .version = options.version,
+                               .options = options.options,
+                               .units = units,
+                               .keys = worked.keys});
     Pool(units, worked.keys, options).work(worked);
   } catch (const std::system_error& problem) {  // those of the file system, too
     throw InputError(error::unwritable_file, {.file = options.output.string()},

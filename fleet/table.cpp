@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fleet/claim.hpp"
+#include "fleet/store.hpp"
 #include "support/atomic_file.hpp"
 #include "support/csv_cell.hpp"
 #include "support/diagnostic.hpp"
@@ -21,46 +22,33 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-double number_of(const nlohmann::json& value) {
-  return value.is_number() ? value.get<double>() : not_a_number;
-}
-
-void read_verdict(Row& row, const fs::path& file) {
-  row.confidence = row.nominal_rms = row.improved_rms = not_a_number;
+void read_product(Row& row, const fs::path& folder) {
   if (row.result.status != Status::Done) {
     return;
   }
   try {
-    const auto json = nlohmann::json::parse(read_text_file(file.string()));
-    row.verdict = json.at("verdict").get<std::string>();
-    for (const auto& effect : json.at("effects")) {
-      row.effects += fmt::format("{}{} at {}", row.effects.empty() ? "" : " + ", effect.at("id").get<std::string>(),
-                                 effect.at("edge").get<std::string>());
-    }
-    row.confidence = number_of(json.at("confidence"));
-    row.nominal_rms = number_of(json.at("gap").at("nominal_rms"));
-    row.improved_rms = number_of(json.at("gap").at("improved_rms"));
-    row.unit_of_gap = json.at("gap").at("unit").get<std::string>();
+    row.outcome = read_outcome(row.unit.command, folder);
   } catch (const InputError& problem) {
     row.result = {.status = Status::Failed, .reason = problem.what()};
   } catch (const nlohmann::json::exception&) {
-    row.result = {.status = Status::Failed, .reason = "its verdict.json was changed; run it again with --retry."};
+    row.result = {
+        .status = Status::Failed,
+        .reason = fmt::format("its {} was changed; run it again with --retry.", product_of(row.unit.command))};
   }
 }
 
-/// Empty where there is none.
+}  // namespace
+
 std::string number_cell(double value) {
   return std::isfinite(value) ? number_text(value) : "";
 }
-
-}  // namespace
 
 std::vector<Row> rows_of(const std::vector<Unit>& units, const std::vector<std::string>& keys, const fs::path& output) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < units.size(); ++i) {
     const fs::path folder = folder_of(output, keys[i]);
     Row row{.unit = units[i], .key = keys[i], .result = read_result(folder)};
-    read_verdict(row, folder / "verdict.json");
+    read_product(row, folder);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -76,12 +64,14 @@ std::array<std::size_t, 4> counts_of(const std::vector<Row>& rows) {
 
 std::string table_csv(const std::vector<Row>& rows) {
   std::string text =
-      "machine,when,group,status,verdict,effects,confidence,nominal_rms,improved_rms,unit,reason,folder\n";
+      "machine,when,group,command,status,verdict,effects,confidence,nominal_rms,improved_rms,unit,reason,folder\n";
   for (const Row& row : rows) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.unit.machine), csv_cell(row.unit.when),
-                        csv_cell(row.unit.group), name_of(row.result.status), row.verdict, csv_cell(row.effects),
-                        number_cell(row.confidence), number_cell(row.nominal_rms), number_cell(row.improved_rms),
-                        csv_cell(row.unit_of_gap), csv_cell(row.result.reason), folder_of("", row.key).string());
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.unit.machine), csv_cell(row.unit.when),
+                        csv_cell(row.unit.group), name_of(row.unit.command), name_of(row.result.status),
+                        csv_cell(row.outcome.verdict), csv_cell(effects_text(row.outcome)),
+                        number_cell(row.outcome.confidence), number_cell(row.outcome.nominal_rms),
+                        number_cell(row.outcome.improved_rms), csv_cell(row.outcome.unit_of_gap),
+                        csv_cell(row.result.reason), folder_of("", row.key).string());
   }
   return text;
 }
@@ -97,13 +87,14 @@ std::string table_json(const std::vector<Row>& rows, const std::string& version)
     json["units"].push_back({{"machine", row.unit.machine},
                              {"when", row.unit.when},
                              {"group", row.unit.group},
+                             {"command", name_of(row.unit.command)},
                              {"status", name_of(row.result.status)},
-                             {"verdict", row.verdict},
-                             {"effects", row.effects},
-                             {"confidence", number_or_null<ordered_json>(row.confidence)},
-                             {"nominal_rms", number_or_null<ordered_json>(row.nominal_rms)},
-                             {"improved_rms", number_or_null<ordered_json>(row.improved_rms)},
-                             {"unit", row.unit_of_gap},
+                             {"verdict", row.outcome.verdict},
+                             {"effects", effects_text(row.outcome)},
+                             {"confidence", number_or_null<ordered_json>(row.outcome.confidence)},
+                             {"nominal_rms", number_or_null<ordered_json>(row.outcome.nominal_rms)},
+                             {"improved_rms", number_or_null<ordered_json>(row.outcome.improved_rms)},
+                             {"unit", row.outcome.unit_of_gap},
                              {"reason", row.result.reason},
                              {"seconds", number_or_null<ordered_json>(row.result.seconds)},
                              {"folder", folder_of("", row.key).string()}});
@@ -116,6 +107,7 @@ std::vector<Row> write_table(const std::vector<Unit>& units, const std::vector<s
   const Claim alone = Claim::waited_for(output / "claims" / "results");
   auto rows = rows_of(units, keys, output);
   write_file_atomically(output / "results.csv", table_csv(rows));
+  write_store(output, rows);
   return rows;
 }
 

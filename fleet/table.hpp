@@ -8,26 +8,25 @@
 #include <vector>
 
 #include "fleet/manifest.hpp"
+#include "fleet/outcome.hpp"
 #include "fleet/result.hpp"
 
 namespace hysteron::fleet {
 
-/// A line of the table: a unit, and what its verdict.json says.
+/// A line of the table: a unit, and what came of it.
 struct Row {
   Unit unit{};
   std::string key{};
   Result result{};
-  std::string verdict{};     ///< empty where there is none
-  std::string effects{};     ///< `hysteresis-ro at U + lag at Y`; empty where none is named
-  double confidence = 0.0;   ///< not a number where there is no verdict; so are those below
-  double nominal_rms = 0.0;  ///< of the gap, in `unit_of_gap`
-  double improved_rms = 0.0;
-  std::string unit_of_gap{};
+  Outcome outcome{};  ///< empty where there is none
 };
 
 /// In the order of the manifest.
 [[nodiscard]] std::vector<Row> rows_of(const std::vector<Unit>& units, const std::vector<std::string>& keys,
                                        const std::filesystem::path& output);
+
+/// A number in CSV; empty where it is not finite.
+[[nodiscard]] std::string number_cell(double value);
 
 /// How many rows have each status, in the order of Status.
 [[nodiscard]] std::array<std::size_t, 4> counts_of(const std::vector<Row>& rows);
@@ -38,8 +37,8 @@ struct Row {
 /// The same as JSON, with counts; its schema is in docs/reference/schemas/fleet.json.
 [[nodiscard]] std::string table_json(const std::vector<Row>& rows, const std::string& version);
 
-/// Writes results.csv of what lies there now. Of several commands on one folder, none puts an older table over a newer
-/// one. Throws InputError HY700. Gives back the rows.
+/// Writes results.csv and fleet.sqlite of what lies there now. Of several commands on one folder, none puts an older
+/// table over a newer one. Throws InputError HY700. Gives back the rows.
 std::vector<Row> write_table(const std::vector<Unit>& units, const std::vector<std::string>& keys,
                              const std::filesystem::path& output);
 

@@ -84,16 +84,22 @@ std::string figure_json(const Figure& figure) {
 }  // namespace
 
 std::string page_text(const Page& page) {
+  const std::string drawing =
+      page.script.empty() ? std::string()
+                          : fmt::format("<svg id=\"pen\" hidden=\"hidden\"></svg>\n{}<script>\n{}{}{}</script>\n",
+                                        page.data, plot_script(), zoom_script(), page.script);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-      "<title>{}</title>\n<style>\n{}{}</style></head>\n<body><main>\n<h1>{}</h1>\n"
-      "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need JavaScript; text "
-      "and tables do not.</p></noscript>\n{}</main>\n<svg id=\"pen\" hidden=\"hidden\"></svg>\n{}"
-      "<script>\n{}{}{}</script>\n</body></html>\n",
-      content_policy, escaped(page.title), style(), page.style, escaped(page.title), page.body, page.data,
-      plot_script(), zoom_script(), page.script);
+      "<title>{}</title>\n<style>\n{}{}</style></head>\n<body><main>\n<h1>{}</h1>\n{}"
+      "{}</main>\n{}</body></html>\n",
+      content_policy, escaped(page.title), style(), page.style, escaped(page.title),
+      page.script.empty()
+          ? ""
+          : "<p id=\"fault\" hidden=\"hidden\"></p>\n<noscript><p class=\"box warnings\">The plots need "
+            "JavaScript; text and tables do not.</p></noscript>\n",
+      page.body, drawing);
 }
 
 std::string FigurePage::place(const Figure& figure) {

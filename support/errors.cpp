@@ -114,6 +114,8 @@ constexpr std::array titles{
     ErrorTitle{error::bad_usage, "Command line that is not understood"},
     ErrorTitle{error::foreign_file, "File that Hysteron did not write"},
     ErrorTitle{error::name_too_long, "Name too long for the target"},
+    ErrorTitle{error::unknown_manifest_column, "Unknown column of a manifest"},
+    ErrorTitle{error::no_date, "Time of a record that is none"},
     ErrorTitle{error::no_graphviz, "A program that draws is missing"},
     ErrorTitle{error::graphviz_failed, "A program cannot draw"},
     ErrorTitle{error::no_network, "Diagram that single calls of its blocks cannot hold"},

@@ -45,6 +45,7 @@ Action add_import(CLI::App& app);
 Action add_tune(CLI::App& app);
 Action add_diagnose(CLI::App& app);
 Action add_fleet(CLI::App& app);
+Action add_fleet_report(CLI::App& app);
 Action add_lsp(CLI::App& app);
 Action add_test(CLI::App& app);
 Action add_serve(CLI::App& app);

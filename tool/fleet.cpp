@@ -2,17 +2,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "codegen/graph/fmu_block.hpp"
+#include "codegen/language/syntax.hpp"
 #include "fleet/manifest.hpp"
 #include "fleet/run.hpp"
+#include "fleet/share.hpp"
 #include "fleet/table.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
@@ -29,18 +32,22 @@ namespace {
 constexpr std::string_view fleet_examples = R"(Examples:
   hysteron fleet fleet.csv --out fleet
   hysteron fleet fleet.csv --out fleet --workers 8 --time-limit 120 --retry
+  hysteron fleet fleet.csv --out fleet --command tune
   hysteron fleet fleet.csv --out fleet --share 1/2
 
-MANIFEST is CSV with a line for each record. Its columns are machine,diagram,params,log and, if wanted, when,group; names of
-files are relative to it. Each record is diagnosed by a process of its own, with limits of time and memory.
-DIR gets results.csv, and a folder for each record with what `hysteron diagnose` writes, result.json and messages.txt.
-A second run does what has changed: machine, time, diagram, parameters, record, options or version. It may be killed at any
-moment; the same command goes on. Several commands may work in one folder at once, each on its share or all on the whole.
-Exit codes: 0 each record of the share has a verdict; 1 some have none, results.csv says why; 2 an error in manifest or command line.
+MANIFEST is CSV with a line for each record. Its columns are machine,diagram,params,log and, if wanted, when,group,command;
+names of files are relative to it. Each record is diagnosed, tuned or checked by a process of its own, with limits of time and
+memory. DIR gets results.csv, fleet.sqlite, and a folder for each record with what its command writes, result.json and
+messages.txt. `hysteron fleet-report DIR` says which machines drift or stand out.
+A second run does what has changed: machine, time, diagram and FMUs, parameters, record, command, options or version. It may be
+killed at any moment; the same command goes on. Several commands may work in one folder at once, each on its share or all on
+the whole. Under mpirun, srun and in a job array of Slurm each takes its share by itself.
+Exit codes: 0 each record of the share has a result; 1 some have none, results.csv says why; 2 an error in manifest or command line.
 )";
 
 struct FleetOptions {
   std::string manifest;
+  std::string command = "diagnose";
   std::string output;
   std::string share;
   double effort = 1.0;
@@ -49,15 +56,34 @@ struct FleetOptions {
   bool json = false;
 };
 
-/// `K/N`, both whole numbers from 1, K at most N.
-void read_share(const std::string& text, fleet::RunOptions& run) {
-  const char* const end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, run.share);
-  const bool divided = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
-  const auto second = divided ? std::from_chars(first.ptr + 1, end, run.shares) : first;
-  if (!divided || second.ec != std::errc() || second.ptr != end || run.share < 1 || run.share > run.shares) {
-    throw InputError(error::bad_usage, {}, fmt::format("--share is \"{}\", which is no share.", text),
-                     "write K/N with K from 1 to N, as 1/4.");
+/// The files that a diagram names (`@file`), which decide what comes of it.
+std::vector<std::string> files_named_in(const std::string& diagram) {
+  Diagnostics unused;  // the command of the unit says what is wrong with it
+  const auto source = language::parse_file(diagram, unused);
+  std::vector<std::string> files;
+  for (const auto& block : source.blocks) {
+    for (const auto& variable : block.variables) {
+      for (const auto& annotation : variable.annotations) {
+        if (annotation.key == "file") {
+          files.push_back(fmu_path(source, annotation.value));
+        }
+      }
+    }
+  }
+  return files;
+}
+
+/// The share that is asked for, or that MPI or Slurm gives.
+void choose_share(FleetOptions& options) {
+  const auto share = options.share.empty() ? fleet::share_from([](const char* name) { return std::getenv(name); })
+                                           : std::optional(fleet::share_of(options.share));
+  if (!share) {
+    return;
+  }
+  options.run.share = share->part;
+  options.run.shares = share->parts;
+  if (options.share.empty()) {
+    Console::note(options.manifest, fmt::format("works share {}/{} by {}", share->part, share->parts, share->from));
   }
 }
 
@@ -65,10 +91,8 @@ int run_fleet(FleetOptions options, Console& console) {
   refuse_unwritable_folder(options.output);
   refuse_to_overwrite({.file = options.output + "/results.csv", .mend = "give another folder for --out."},
                       {{.file = options.manifest}});
-  if (!options.share.empty()) {
-    read_share(options.share, options.run);
-  }
-  const auto units = fleet::read_manifest(options.manifest);
+  choose_share(options);
+  const auto units = fleet::read_manifest(options.manifest, *fleet::command_named(options.command));
   // One thread each: the workers are what runs at once.
   options.run.options = {"--threads", "1", "--effort", number_text(options.effort)};
   if (options.material > 0.0) {
@@ -77,7 +101,8 @@ int run_fleet(FleetOptions options, Console& console) {
   options.run.program = std::filesystem::read_symlink("/proc/self/exe").string();
   options.run.version = version;
   options.run.output = options.output;
-  Progress line("Diagnosing");
+  options.run.named_files = files_named_in;
+  Progress line("Working");
   options.run.progress = [&](std::size_t done, std::size_t all, const fleet::Unit& last) {
     line.update(static_cast<double>(done) / static_cast<double>(all),
                 fmt::format("{} of {}, {}", done, all, last.machine));
@@ -89,7 +114,7 @@ int run_fleet(FleetOptions options, Console& console) {
   if (options.json) {
     console.print(fleet::table_json(rows, options.run.version));
   } else {
-    console.print(fmt::format("{} of {} records have a verdict, {} refused, {} failed, {} open; {} diagnosed now\n",
+    console.print(fmt::format("{} of {} records have a result, {} refused, {} failed, {} open; {} worked now\n",
                               counts[1], rows.size(), counts[2], counts[3], counts[0], worked.ran));
     for (const fleet::Row& row : rows) {
       if (!row.result.reason.empty()) {
@@ -97,7 +122,7 @@ int run_fleet(FleetOptions options, Console& console) {
                                   row.unit.when, name_of(row.result.status), row.result.reason));
       }
     }
-    console.print(options.output + "/results.csv\n");
+    console.print(fmt::format("{0}/results.csv\n{0}/fleet.sqlite\n", options.output));
   }
   for (std::size_t i = options.run.share - 1; i < rows.size(); i += options.run.shares) {
     if (rows[i].result.status != fleet::Status::Done) {
@@ -114,6 +139,9 @@ Action add_fleet(CLI::App& app) {
   options->run.workers = std::max(1U, std::thread::hardware_concurrency());
   app.add_option("MANIFEST", options->manifest, "The manifest, CSV.")->required()->option_text("MANIFEST.csv");
   app.add_option("--out", options->output, "A folder for the results.")->required()->option_text("DIR");
+  app.add_option("--command", options->command, "For lines that name none: diagnose (the default), tune or check.")
+      ->check(CLI::IsMember({"diagnose", "tune", "check"}))
+      ->option_text("COMMAND");
   app.add_option("--workers", options->run.workers, "How many processes at once; as many as cores without it.")
       ->check(CLI::Range(1, 1024))
       ->option_text("N");
@@ -129,7 +157,8 @@ Action add_fleet(CLI::App& app) {
   app.add_option("--material", options->material, "As of `hysteron diagnose`.")
       ->check(number_from_zero())
       ->option_text("SIZE");
-  app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone.")->option_text("K/N");
+  app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone; else MPI or Slurm say it.")
+      ->option_text("K/N");
   app.add_flag("--retry", options->run.retry, "Does records that had failed again, as after a larger limit.");
   app.add_flag("--json", options->json, "Prints the results as JSON.");
   app.footer(std::string(fleet_examples));

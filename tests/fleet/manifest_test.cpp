@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "fleet/when.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -61,7 +65,7 @@ TEST_F(Manifest, ErrorsAreOfTheirLinesAndAllAreTold) {
   EXPECT_EQ(errors(header), (Errors{{error::bad_usage, 0}}));
   EXPECT_EQ(errors("machine,diagram,log\nA,a.st,x.csv\n"), (Errors{{error::missing_column, 1}}));
   EXPECT_EQ(errors("machine,diagram,params,log,log\n"), (Errors{{error::duplicate_column, 1}}));
-  EXPECT_EQ(errors("machine,diagram,params,log,colour\n"), (Errors{{error::duplicate_column, 1}}));
+  EXPECT_EQ(errors("machine,diagram,params,log,colour\n"), (Errors{{error::unknown_manifest_column, 1}}));
   EXPECT_EQ(errors("\"machine,diagram,params,log\n"), (Errors{{error::ragged_row, 1}}));
   EXPECT_EQ(errors(header + "A,a.st,p.toml\n,a.st,p.toml,x.csv\nA,none.st,p.toml,x.csv\n\"A,a.st,p.toml,x.csv\n"
                             "\"A\" B,a.st,p.toml,x.csv\nA,a.st,p.toml,x.csv\n"),
@@ -70,6 +74,44 @@ TEST_F(Manifest, ErrorsAreOfTheirLinesAndAllAreTold) {
                     {error::unreadable_file, 4},
                     {error::ragged_row, 5},
                     {error::ragged_row, 6}}));
+}
+
+TEST_F(Manifest, ATimeIsADateOrSecondsSince1970) {
+  const auto time_of = [&](const std::string& when) {
+    return read("machine,diagram,params,log,when\nA,a.st,p.toml,x.csv,\"" + when + "\"\n").at(0).time;
+  };
+  EXPECT_TRUE(std::isnan(time_of("")));
+  EXPECT_EQ(time_of("2026-01-02"), 1767312000.0);
+  EXPECT_EQ(time_of("2026-01-02T06:30"), 1767312000.0 + 23400.0);
+  EXPECT_EQ(time_of("2026-01-02 06:30:00.5Z"), 1767312000.0 + 23400.5);
+  EXPECT_EQ(time_of("2026-01-02T06:30:00+02:00"), 1767312000.0 + 16200.0);
+  EXPECT_EQ(time_of("1767312000"), 1767312000.0);
+  EXPECT_EQ(time_of("1767312000.25"), 1767312000.25);
+  for (const char* const when :
+       {"2026", "20260102", "1767312000000", "02.01.2026", "1/2/2026", "2026-13-01", "2026-02-30", "Monday", "06:30",
+        "2026-01-02T25:00", "-1767312000", "1767312000 s", "1,767e9"}) {
+    EXPECT_EQ(errors("machine,diagram,params,log,when\nA,a.st,p.toml,x.csv,\"" + std::string(when) + "\"\n"),
+              (std::vector<std::pair<int, std::uint32_t>>{{error::no_date, 2}}))
+        << when;
+  }
+  EXPECT_EQ(date_text(1767312000.0), "2026-01-02");
+  EXPECT_EQ(date_text(1767312000.0 + 23400.5), "2026-01-02 06:30");
+  EXPECT_EQ(date_text(-60.0), "1969-12-31 23:59");
+}
+
+TEST_F(Manifest, ALineMayNameItsCommand) {
+  const auto units = read(
+      "machine,command,diagram,params,log\nA,tune,a.st,p.toml,x.csv\nA,,a.st,p.toml,x.csv\n"
+      "A,check,a.st,,\n");
+  ASSERT_EQ(units.size(), 3U);
+  EXPECT_EQ(units[0].command, Command::Tune);
+  EXPECT_EQ(units[1].command, Command::Diagnose);
+  EXPECT_EQ(units[2].command, Command::Check);
+  EXPECT_EQ(errors("machine,command,diagram,params,log\nA,draw,a.st,p.toml,x.csv\nA,tune,a.st,,x.csv\n"),
+            (std::vector<std::pair<int, std::uint32_t>>{{error::bad_usage, 2}, {error::bad_usage, 3}}));
+  const std::string bare = folder_.write("bare.csv", "machine,diagram\nA,a.st\n");
+  EXPECT_EQ(read_manifest(bare, Command::Check).at(0).command, Command::Check);
+  EXPECT_THROW((void)read_manifest(bare, Command::Tune), InputError);
 }
 
 TEST_F(Manifest, ARecordThatIsNotThereIsNoErrorOfTheManifest) {

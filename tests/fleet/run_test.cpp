@@ -24,15 +24,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Called as the tool is: diagnose DIAGRAM --log LOG --params P --out DIR. The record is a line of the shell. Each run
+/// Called as the tool is: diagnose DIAGRAM --log LOG --params P --out DIR, tune DIAGRAM --log LOG --params P --out
+/// TUNED
+/// --report DIR, check DIAGRAM --json. The record is a line of the shell. Each run
 /// that gets to its end leaves a letter in the file `ran`.
 constexpr std::string_view program = R"(#!/bin/sh
 out=$8
-verdict() {
-  printf '{"verdict": "%s", "effects": [{"id": "lag", "edge": "U"}, {"id": "creep", "edge": "Y"}], "confidence": 0.75,
-    "gap": {"nominal_rms": 2.5, "improved_rms": null, "unit": "um"}}' "$1" > "$out/verdict.json"
+[ "$1" = tune ] && out=${10}
+fit() {
+  printf '{"status": "%s", "parameters": [{"name": "AMP.K", "value": 2, "standard_error": 0.5, "unit": "um/V",
+    "at_bound": ""}], "initial_states": [], "outputs": [{"rmse_before": 3, "rmse_train": 1, "unit": "um"}]}' "$1" \
+    > "$out/report.json"
 }
-. "$4"
+verdict() {
+  printf '{"verdict": "%s", "effects": [
+      {"id": "lag", "edge": "U", "share": 0.5, "parameters": {"T1": {"value": 2, "low": 1, "high": 3, "unit": "s"}}},
+      {"id": "creep", "edge": "Y", "share": null, "parameters": {}}], "confidence": 0.75,
+    "families": [{"family": "delay", "effect": "lag", "edge": "U", "effect_probability": 0.9},
+      {"family": "friction", "effect": "stiction", "edge": "X", "effect_probability": 0.1}],
+    "calibration": {"AMP.K": {"value": 4, "low": null, "high": null, "unit": "um/V"}}, "gap": {"nominal_rms": 2.5, "improved_rms": null, "unit": "um"}}' "$1" > "$out/verdict.json"
+}
+if [ "$1" = check ]; then . "$2"; else . "$4"; fi
 printf x >> "$(dirname "$0")/ran"
 exit "${code:-0}"
 )";
@@ -99,6 +111,12 @@ TEST_F(Fleet, WorksEachUnitOnceAndASecondRunDoesWhatChanged) {
   EXPECT_EQ(work().ran, 7U);
   folder_.write("p.toml", "[fit]");
   EXPECT_EQ(work().ran, 7U);
+  const std::string fmu = folder_.write("motor.fmu", "an FMU");
+  options_.named_files = [&](const std::string&) { return std::vector{fmu}; };
+  EXPECT_EQ(work().ran, 7U);
+  EXPECT_EQ(work().ran, 0U);
+  folder_.write("motor.fmu", "another");
+  EXPECT_EQ(work().ran, 7U) << "what a diagram names decides, too";
   options_.options = {"--effort", "2"};
   EXPECT_EQ(work().ran, 7U);
   options_.version = "2";
@@ -153,9 +171,9 @@ TEST_F(Fleet, TheTableSaysWhatTheFoldersSay) {
   add("c", "echo 'no \"good\"' >&2; code=2\n");
   const auto all = rows();
   const std::string csv =
-      "machine,when,group,status,verdict,effects,confidence,nominal_rms,improved_rms,unit,reason,folder\n"
-      "\"a,b\",,,done,named,lag at U + creep at Y,0.75,2.5,,um,,units/" +
-      all[0].key + "\nc,,,failed,,,,,,,\"no \"\"good\"\"\",units/" + all[1].key + "\n";
+      "machine,when,group,command,status,verdict,effects,confidence,nominal_rms,improved_rms,unit,reason,folder\n"
+      "\"a,b\",,,diagnose,done,named,lag at U + creep at Y,0.75,2.5,,um,,units/" +
+      all[0].key + "\nc,,,diagnose,failed,,,,,,,\"no \"\"good\"\"\",units/" + all[1].key + "\n";
   EXPECT_EQ(test::contents_of(folder_ / "out/results.csv"), csv);
   fs::remove(folder_ / "out/results.csv");
   (void)rows();
@@ -164,6 +182,34 @@ TEST_F(Fleet, TheTableSaysWhatTheFoldersSay) {
 
   folder_.write("out/units/" + all[0].key + "/verdict.json", "{}");
   EXPECT_EQ(rows()[0].result.status, Status::Failed) << "a verdict that someone changed";
+}
+
+TEST_F(Fleet, OneManifestMayDiagnoseTuneAndCheck) {
+  add("diagnosed", "verdict named\n");
+  for (const char* const record : {"fit converged\n", "fit stalled; code=1\n", "code=1\n"}) {
+    add("tuned" + std::to_string(units_.size()), record);
+    units_.back().command = Command::Tune;
+  }
+  for (const char* const diagram : {"echo '[]'\n", "echo '[1]'; code=1\n", "code=1\n"}) {
+    units_.push_back({.machine = "checked",
+                      .command = Command::Check,
+                      .diagram = folder_.write(std::to_string(units_.size()) + ".st", diagram)});
+  }
+  const auto all = rows();
+  std::vector<Status> found;
+  for (const Row& row : all) {
+    found.push_back(row.result.status);
+  }
+  EXPECT_EQ(found, (std::vector{Status::Done, Status::Done, Status::Refused, Status::Failed, Status::Done,
+                                Status::Refused, Status::Failed}));
+  EXPECT_EQ(all[1].outcome.verdict, "converged");
+  EXPECT_EQ(all[1].outcome.parameters.at(0).name, "AMP.K");
+  EXPECT_NEAR(all[1].outcome.parameters.at(0).high, 2.98, 0.001);
+  EXPECT_EQ(all[2].result.reason, "the fit did not converge, report.json says why.");
+  EXPECT_EQ(all[5].result.reason, "the diagram has errors, diagnostics.json says which.");
+  EXPECT_EQ(work().ran, 0U);
+  units_[0].command = Command::Tune;
+  EXPECT_EQ(work().ran, 1U) << "another command is another unit";
 }
 
 TEST_F(Fleet, SharesAreDisjointAndComplete) {
@@ -197,7 +243,7 @@ TEST_F(Fleet, TwoLinesOfTheSameUnitAreRefused) {
 
 TEST_F(Fleet, AUnitThatAnotherWorksOnIsWaitedFor) {
   add("M", "verdict named\n");
-  const std::string key = key_of(units_[0], options_.version, options_.options);
+  const std::string key = Keys(options_.version, options_.options).of(units_[0]);
   fs::create_directories(options_.output / "claims");
   auto claim = Claim::on(options_.output / "claims" / key);
   ASSERT_TRUE(claim);

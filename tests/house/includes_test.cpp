@@ -32,7 +32,7 @@ const Arrows& allowed() {
       {"tuning", {"blocks", "codegen", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records", "plots"}},
       {"bindings", {"blocks", "codegen", "tuning", "diagnosis", "support", "records", "plots"}},
-      {"fleet", {"support", "database"}},
+      {"fleet", {"support", "database", "records", "plots"}},
       {"tool",
        {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "support", "records", "plots",
         "database"}},

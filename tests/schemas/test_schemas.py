@@ -142,11 +142,27 @@ class Schemas(unittest.TestCase):
 
     def test_fleet(self):
         (self.folder / "broken.csv").write_text("no record")
-        (self.folder / "fleet.csv").write_text("machine,when,diagram,params,log\nA,2026,plant.st,p.toml,log.csv\n"
+        (self.folder / "fleet.csv").write_text("machine,when,diagram,params,log\nA,2026-05-02,plant.st,p.toml,log.csv\n"
                                                "B,,plant.st,p.toml,broken.csv\n")
         self.holds("fleet", self.printed("fleet", "fleet.csv", "--out", "fleet", "--effort", "0.01", "--share", "2/2", "--json",
                                          codes=(1,)),
                    self.printed("fleet", "fleet.csv", "--out", "fleet", "--effort", "0.01", "--json", codes=(1,)))
+
+    def test_fleet_report(self):
+        header = "machine,when,command,diagram,params,log\n"
+        (self.folder / "broken.csv").write_text("no record")
+        months = "".join(f"A,2026-0{k}-01,tune,plant.st,p.toml,log.csv\n" for k in range(1, 5))
+        (self.folder / "machines.csv").write_text(header + months + "A,,,plant.st,p.toml,log.csv\nB,,,plant.st,p.toml,broken.csv\n")
+        self.printed("fleet", "machines.csv", "--out", "machines", "--effort", "0.01", codes=(1,))
+        # Four fits of the same record do not differ: a ramp is written into them.
+        units = json.loads(self.printed("fleet", "machines.csv", "--out", "machines", "--effort", "0.01", "--json", codes=(1,)))
+        for k, unit in enumerate(units["units"][:4]):
+            path = self.folder / "machines" / unit["folder"] / "report.json"
+            report = json.loads(path.read_text(encoding="utf-8"))
+            report["parameters"][0]["value"] += k
+            report["parameters"][0]["standard_error"] = 0.001
+            path.write_text(json.dumps(report), encoding="utf-8")
+        self.holds("fleet-report", self.printed("fleet-report", "machines", "--json"))
 
     def test_verdict(self):
         (self.folder / "still.csv").write_text("t,U,Y\n" + "".join(f"{k * 0.001:.3f},0,0\n" for k in range(100)))

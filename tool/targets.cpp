@@ -108,7 +108,6 @@ void check_target_options(const TargetOptions& options) {
   if (options.calibration.wanted && !equal_ignoring_case(options.target, "c")) {
     refuse("An A2L file describes the structures of C.", "write --target c, or leave out --a2l.");
   }
-  check_calibration(options.calibration);
   if (!options.fmi.empty() && !equal_ignoring_case(options.target, "fmu")) {
     refuse("A version of FMI is one of an FMU.", "write --target fmu, or leave out --fmi.");
   }

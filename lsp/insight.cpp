@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "codegen/graph/names.hpp"
-#include "codegen/language/lexer.hpp"
+#include "lsp/words.hpp"
 
 namespace hysteron::lsp {
 namespace {
@@ -20,32 +20,6 @@ using nlohmann::json;
 constexpr int kind_field = 5;
 constexpr int kind_variable = 6;
 constexpr int kind_class = 7;
-
-struct Tokens {
-  std::vector<Token> list;
-  std::vector<language::Comment> comments;
-};
-
-/// The tokens of a text that may be broken; what the lexer refuses is left out.
-Tokens tokens_of(std::string_view text) {
-  language::Reporter refused;
-  language::Lexer lexer(text, language::Comments::All, &refused);
-  Tokens tokens;
-  for (Token one = lexer.next(); one.symbol != Symbol::End; one = lexer.next()) {
-    tokens.list.push_back(one);
-  }
-  tokens.comments = lexer.comments();
-  return tokens;
-}
-
-std::string_view word(std::string_view text, const Token& token) {
-  return text.substr(token.offset, token.length);
-}
-
-/// Whether an offset lies in a stretch of the text, or at one of its ends.
-bool touches(const language::Span& span, std::size_t offset) {
-  return span.offset <= offset && offset <= span.offset + span.length;
-}
 
 /// The variable of a name that is nearest to an offset: of the block around it, else of any block of the file.
 const language::Variable* variable_in(const language::SourceFile& tree, std::string_view name, std::size_t offset) {
@@ -69,6 +43,46 @@ const language::Variable* variable_of(const Insight& insight, std::string_view n
 const BlockType* type_of(const Insight& insight, std::string_view instance, std::size_t offset) {
   const auto* const variable = variable_of(insight, instance, offset);
   return variable == nullptr ? nullptr : find_block_type(variable->type.text);
+}
+
+/// The block of the file of a name; where the text is broken, of the last text that was not.
+const language::FunctionBlock* own_block(const Insight& insight, std::string_view name) {
+  for (const auto* const tree : {&insight.tree, insight.known}) {
+    if (tree != nullptr) {
+      for (const auto& block : tree->blocks) {
+        if (language::same_name(block.name.text, name)) {
+          return &block;
+        }
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// The block of the file that is called: of an instance, or the type itself.
+const language::FunctionBlock* own_type(const Insight& insight, std::string_view name, std::size_t offset) {
+  const auto* const variable = variable_of(insight, name, offset);
+  return own_block(insight, variable == nullptr ? name : variable->type.text);
+}
+
+/// A variable as it was declared, with what its annotations say.
+std::string declaration_text(const language::Variable& variable) {
+  auto text = fmt::format("{} : {}\n", variable.name.text, variable.type.text);
+  for (const auto& one : variable.annotations) {
+    text += fmt::format("@{} {}\n", one.key, one.value);
+  }
+  return text;
+}
+
+std::string own_pin_text(const language::FunctionBlock* block, std::string_view name) {
+  if (block != nullptr) {
+    for (const auto& one : block->variables) {
+      if (language::same_name(one.name.text, name)) {
+        return fmt::format("{}.{}", block->name.text, declaration_text(one));
+      }
+    }
+  }
+  return {};
 }
 
 std::string signature(const Field& field, std::string_view direction) {
@@ -100,23 +114,6 @@ std::string pin_text(const BlockType& block, std::string_view name) {
   return text;
 }
 
-/// The call or the declaration within whose parentheses a token stands: the name before them, none where there is none.
-std::string_view called_name(std::string_view text, const std::vector<Token>& tokens, std::size_t before) {
-  int depth = 0;
-  for (std::size_t i = before; i-- > 0;) {
-    const auto symbol = tokens[i].symbol;
-    if (symbol == Symbol::Semicolon) {
-      return {};
-    }
-    depth += symbol == Symbol::RightParenthesis ? 1 : symbol == Symbol::LeftParenthesis ? -1 : 0;
-    if (depth < 0) {
-      const auto name = i > 1 && tokens[i - 1].symbol == Symbol::Assign ? i - 2 : i - 1;
-      return i > 0 && tokens[name].symbol == Symbol::Identifier ? word(text, tokens[name]) : std::string_view();
-    }
-  }
-  return {};
-}
-
 /// The block of what is called: of an instance, or the type itself in `X : HY_LAG := (…)`.
 const BlockType* called_type(const Insight& insight, std::string_view name, std::size_t offset) {
   const auto* const own = find_block_type(name);
@@ -135,22 +132,23 @@ std::string hover(const Insight& insight, std::size_t offset, const Card& card) 
     const auto name = word(insight.text, token);
     if (i > 1 && tokens[i - 1].symbol == Symbol::Dot) {
       const auto* const block = type_of(insight, word(insight.text, tokens[i - 2]), offset);
-      return block == nullptr ? std::string() : pin_text(*block, name);
+      return block != nullptr ? pin_text(*block, name)
+                              : own_pin_text(own_type(insight, word(insight.text, tokens[i - 2]), offset), name);
     }
     if (i + 1 < tokens.size() && tokens[i + 1].symbol == Symbol::Assign) {
-      if (const auto* const block = called_type(insight, called_name(insight.text, tokens, i), offset)) {
+      const auto called = called_name(insight.text, tokens, i);
+      if (const auto* const block = called_type(insight, called, offset)) {
         return pin_text(*block, name);
+      }
+      if (const auto* const own = called.empty() ? nullptr : own_type(insight, called, offset)) {
+        return own_pin_text(own, name);
       }
     }
     if (const auto* const block = called_type(insight, name, offset)) {
       return card(*block);
     }
     if (const auto* const variable = variable_of(insight, name, offset)) {
-      auto text = fmt::format("{} : {}\n", variable->name.text, variable->type.text);
-      for (const auto& one : variable->annotations) {
-        text += fmt::format("@{} {}\n", one.key, one.value);
-      }
-      return text;
+      return declaration_text(*variable);
     }
     return {};
   }
@@ -161,6 +159,15 @@ json completion(const Insight& insight, std::size_t offset) {
   auto items = json::array();
   const auto add = [&](std::string_view label, int kind, const std::string& detail) {
     items.push_back({{"label", label}, {"kind", kind}, {"detail", detail}});
+  };
+  const auto add_own = [&](const language::FunctionBlock* block, language::Section section) {
+    if (block != nullptr) {
+      for (const auto& one : block->variables) {
+        if (one.section == section) {
+          add(one.name.text, kind_field, std::string(one.type.text));
+        }
+      }
+    }
   };
   const auto tokens = tokens_of(insight.text);
   for (const auto& comment : tokens.comments) {
@@ -182,6 +189,8 @@ json completion(const Insight& insight, std::size_t offset) {
       for (const Field& field : block->outputs) {
         add(field.name, kind_field, signature(field, "output"));
       }
+    } else if (before > 1) {
+      add_own(own_type(insight, word(insight.text, tokens.list[before - 2]), offset), language::Section::Output);
     }
     return items;
   }
@@ -203,6 +212,10 @@ json completion(const Insight& insight, std::size_t offset) {
           add(field.name, kind_field, signature(field, direction));
         }
       });
+      return items;
+    }
+    if (const auto* const own = name.empty() ? nullptr : own_type(insight, name, offset)) {
+      add_own(own, language::Section::Input);
       return items;
     }
   }

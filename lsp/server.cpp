@@ -6,6 +6,9 @@
 #include <stdexcept>
 
 #include "codegen/compile.hpp"
+#include "codegen/graph/names.hpp"
+#include "lsp/symbols.hpp"
+#include "lsp/words.hpp"
 
 namespace hysteron::lsp {
 namespace {
@@ -65,6 +68,10 @@ json Server::initialize(const json& params) {
            {{"positionEncoding", encoding_ == Encoding::Utf8 ? "utf-8" : "utf-16"},
             {"textDocumentSync", {{"openClose", true}, {"change", 2}}},
             {"hoverProvider", true},
+            {"definitionProvider", true},
+            {"referencesProvider", true},
+            {"renameProvider", {{"prepareProvider", true}}},
+            {"documentSymbolProvider", true},
             {"completionProvider", {{"triggerCharacters", {".", "(", ":"}}}},
             {"documentFormattingProvider", true}}}};
 }
@@ -85,6 +92,81 @@ json Server::format(const json& params) {
   return edits;
 }
 
+json Server::named(const std::string& method, const json& params) const {
+  const auto& open = document(params);
+  const auto uri = params.at("textDocument").at("uri").get<std::string>();
+  const language::SourceFile& tree = *open.tree;
+  const auto offset = offset_of(open.text, position_in(params.at("position")), encoding_);
+  const Declared what = declared_at(tree, offset);
+  const auto range_of = [&](const language::Span& span) {
+    return range(open.text, span.offset, span.offset + span.length);
+  };
+  if (method == "textDocument/definition") {
+    return what.block == nullptr ? json(nullptr) : json{{"uri", uri}, {"range", range_of(what.name().span)}};
+  }
+  const std::vector<language::Span> places = places_of(tree, what);
+  if (method == "textDocument/references") {
+    const bool with_declaration = params.value("/context/includeDeclaration"_json_pointer, true);
+    auto list = json::array();
+    for (const language::Span& place : places) {
+      if (with_declaration || place.offset != what.name().span.offset) {
+        list.push_back({{"uri", uri}, {"range", range_of(place)}});
+      }
+    }
+    return list;
+  }
+  if (method == "textDocument/prepareRename") {
+    const auto here = std::ranges::find_if(places, [&](const language::Span& place) { return touches(place, offset); });
+    return here == places.end() ? json(nullptr) : range_of(*here);
+  }
+  if (!tree.valid) {
+    throw ProtocolError(request_failed, "The text has a syntax error. Mend it before something gets another name.");
+  }
+  const auto new_name = params.at("newName").get<std::string>();
+  if (const std::string reason = refused_name(tree, what, new_name); !reason.empty()) {
+    throw ProtocolError(request_failed, reason);
+  }
+  auto edits = json::array();
+  for (const language::Span& place : places) {
+    edits.push_back({{"range", range_of(place)}, {"newText", new_name}});
+  }
+  return {{"changes", {{uri, edits}}}};
+}
+
+json Server::outline(const Document& open) const {
+  // SymbolKind of LSP 3.17.
+  constexpr int kind_class = 5;
+  constexpr int kind_field = 8;
+  constexpr int kind_variable = 13;
+  constexpr int kind_constant = 14;
+  constexpr int kind_object = 19;
+  const auto symbol = [&](const language::Name& name, const std::string& detail, int kind,
+                          const language::Span& whole) {
+    return json{{"name", name.text},
+                {"detail", detail},
+                {"kind", kind},
+                {"range", range(open.text, whole.offset, whole.offset + whole.length)},
+                {"selectionRange", range(open.text, name.span.offset, name.span.offset + name.span.length)}};
+  };
+  auto list = json::array();
+  for (const language::FunctionBlock& block : open.tree->blocks) {
+    auto one = symbol(block.name, "FUNCTION_BLOCK", kind_class, block.span);
+    auto children = json::array();
+    for (const language::Variable& variable : block.variables) {
+      using language::Section;
+      Type type{};
+      const int kind = variable.section == Section::Constant       ? kind_constant
+                       : variable.section != Section::Local        ? kind_field
+                       : elementary_type(variable.type.text, type) ? kind_variable
+                                                                   : kind_object;
+      children.push_back(symbol(variable.name, std::string(variable.type.text), kind, variable.name.span));
+    }
+    one["children"] = std::move(children);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 json Server::request(const std::string& method, const json& params) {
   if (method == "initialize") {
     return initialize(params);
@@ -101,6 +183,13 @@ json Server::request(const std::string& method, const json& params) {
   }
   if (method == "textDocument/formatting") {
     return format(params);
+  }
+  if (method == "textDocument/documentSymbol") {
+    return outline(document(params));
+  }
+  if (method == "textDocument/definition" || method == "textDocument/references" ||
+      method == "textDocument/prepareRename" || method == "textDocument/rename") {
+    return named(method, params);
   }
   if (method == "textDocument/hover" || method == "textDocument/completion") {
     const auto& open = document(params);

@@ -35,6 +35,9 @@ class Server {
   std::vector<nlohmann::json> notification(const std::string& method, const nlohmann::json& params);
   nlohmann::json initialize(const nlohmann::json& params);
   nlohmann::json format(const nlohmann::json& params);
+  /// Definition, references, rename: what the word at a position names, and its places.
+  [[nodiscard]] nlohmann::json named(const std::string& method, const nlohmann::json& params) const;
+  [[nodiscard]] nlohmann::json outline(const Document& open) const;
   void change(Document& document, const nlohmann::json& change) const;
   nlohmann::json published(const std::string& uri, Document& document) const;
   [[nodiscard]] const Document& document(const nlohmann::json& params) const;

@@ -159,9 +159,11 @@ std::optional<GapBudget> gap_budget(const Task& task, const Space& space, const 
     }
     KindFinding finding{
         .kind = std::string(gap_kinds[kind].name), .alone = closed(alone[kind]), .only = together - others};
-    const double half = uncertainty(alone[kind], bare);
-    finding.low = std::max(0.0, finding.alone - half);
-    finding.high = std::min(1.0, finding.alone + half);
+    if (finding.alone > 0.0) {  // else it errs by more than it tells, and has no share that an interval were about
+      const double half = uncertainty(alone[kind], bare);
+      finding.low = std::max(0.0, finding.alone - half);
+      finding.high = std::min(1.0, finding.alone + half);
+    }
     finding.share = 0.5 * (finding.alone + finding.only);
     sum += finding.share;
     result.kinds.push_back(std::move(finding));

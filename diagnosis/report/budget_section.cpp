@@ -29,7 +29,7 @@ std::string budget_section(const Diagnosis& diagnosis) {
                                                              percent(std::min(open, budget.noise)))
                                                : std::string();
   return fmt::format(
-      "<section class=\"budget\"><h2>Of which kind the gap is</h2>\n"
+      "<section class=\"budget\"><h2>The gap by kind of function</h2>\n"
       "<p>Functions of the measured signals close <strong>{}</strong> of the gap at {} on stretches that their fit did "
       "not see. No name of an effect was needed for that. {} stays open, whatever the kind.{}</p>\n"
       "<table><thead><tr><th>kind</th><th>its part</th><th class=\"number\">closes alone</th>"

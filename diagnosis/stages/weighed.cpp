@@ -23,8 +23,9 @@ bool leaves_a_cause(const Judged& judged, const Answer& answer, Rules& rules) {
 
 /// Tells of the sets that the search fitted, where these predict better than the set of laws as it was fitted.
 void hold_against_fits(Judged& judged, const Explanation& of_laws, const DiagnosisOptions& options, Rules& rules) {
-  std::optional<FittedEvidence> fits = fitted_evidence(judged.record.task, judged.searched->search, of_laws,
-                                                       {.threads = options.threads, .seed = options.seed}, rules);
+  std::optional<FittedEvidence> fits =
+      fitted_evidence(judged.record.task, judged.searched->search, of_laws,
+                      {.top = judged.record.top, .threads = options.threads, .seed = options.seed}, rules);
   if (!fits) {
     return;
   }

@@ -12,6 +12,7 @@
 
 #include "diagnosis/effects/effects.hpp"
 #include "diagnosis/evidence/output_space.hpp"
+#include "diagnosis/evidence/roles.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/policy.hpp"
 #include "diagnosis/verdict/held_out.hpp"
@@ -46,24 +47,48 @@ double log_square(const Contender& one) {
   return log_square(one, std::vector<double>(one.left.front().squares.size(), 1.0));
 }
 
-std::map<std::string, std::string> families_by_effect(const Explanation& calibrated) {
+std::map<std::string, EffectKind> kinds_by_effect(const Explanation& calibrated) {
   Diagnostics none;  // the text compiled before
   const auto source =
       std::make_shared<const language::SourceFile>(language::parse("text", calibrated.variant.text, none));
-  std::map<std::string, std::string> result;
-  for (const EffectKind& kind : effect_kinds(define(source, none))) {
-    result[kind.id] = kind.family;
+  std::map<std::string, EffectKind> result;
+  for (EffectKind& kind : effect_kinds(define(source, none))) {
+    result.emplace(kind.id, std::move(kind));
   }
   return result;
 }
 
-/// The best of each combination of effects that leaves less than a given cost.
-std::vector<const Explanation*> better_than(const Search& search, double cost) {
+/// Whether each effect of a set is in a place that makes sense for it, and one of them is no law.
+class Sensible {
+ public:
+  Sensible(const std::map<std::string, EffectKind>& kinds, const std::vector<Space::Place>& places)
+      : kinds_(kinds), places_(places) {}
+
+  bool operator()(const Explanation& set) const {
+    const std::vector<Applied>& effects = set.variant.effects;
+    return std::ranges::all_of(effects, [&](const Applied& one) { return may_be(one, effects); }) &&
+           std::ranges::any_of(effects, [&](const Applied& one) { return !is_law(kinds_.at(one.effect)); });
+  }
+
+ private:
+  [[nodiscard]] bool may_be(const Applied& effect, const std::vector<Applied>& effects) const {
+    const std::string edge = in_the_diagram(effect.edge, effects);
+    const auto place = std::ranges::find_if(places_, [&](const Space::Place& one) { return one.edge.name == edge; });
+    return kinds_.contains(effect.effect) && place != places_.end() && may_act_on(kinds_.at(effect.effect), *place);
+  }
+
+  const std::map<std::string, EffectKind>& kinds_;
+  const std::vector<Space::Place>& places_;
+};
+
+/// The best of each combination of effects that leaves less than a given cost and is sensible.
+std::vector<const Explanation*> better_than(const Search& search, double cost, const Sensible& is_sensible) {
   std::vector<const Explanation*> result;
   for (const Explanation& one : search.explanations) {  // best first
     const bool is_known =
         std::ranges::any_of(result, [&](const Explanation* other) { return other->names() == one.names(); });
-    if (one.fit.cost < cost && !is_known && result.size() < static_cast<std::size_t>(policy::runs.value)) {
+    if (one.fit.cost < cost && !is_known && is_sensible(one) &&
+        result.size() < static_cast<std::size_t>(policy::runs.value)) {
       result.push_back(&one);
     }
   }
@@ -111,14 +136,14 @@ double cost_without(const Search& search, const Explanation& set, const std::str
 }
 
 SetFinding described(const Contender& one, const Search& search, double bare,
-                     const std::map<std::string, std::string>& families) {
+                     const std::map<std::string, EffectKind>& kinds) {
   SetFinding result{.space = std::string(OutputSpace::title),
                     .probability = one.probability,
                     .closed = std::clamp(1.0 - std::exp(log_square(one) - bare), 0.0, 1.0)};
   double sum = 0.0;
   for (const Applied& effect : one.set->variant.effects) {
     LawFinding law{.effect = effect.effect,
-                   .family = families.contains(effect.effect) ? families.at(effect.effect) : effect.effect,
+                   .family = kinds.at(effect.effect).family,
                    .edge = in_the_diagram(effect.edge, one.set->variant.effects)};
     for (const auto& [pin, wire] : effect.wires) {
       law.drivers.push_back(wire);
@@ -171,11 +196,18 @@ std::vector<FamilyFinding> families_of(const std::vector<SetFinding>& sets) {
 
 std::optional<FittedEvidence> fitted_evidence(const Task& task, const Search& search, const Explanation& of_laws,
                                               const FittedEvidenceOptions& options, const Rules& rules) {
-  const std::vector<const Explanation*> better = better_than(search, of_laws.fit.cost);
+  const bool any_is_better =
+      std::ranges::any_of(search.explanations, [&](const Explanation& one) { return one.fit.cost < of_laws.fit.cost; });
+  if (!any_is_better) {
+    return std::nullopt;  // and no diagram has to be run for its places
+  }
+  const std::map<std::string, EffectKind> kinds = kinds_by_effect(search.calibrated);
+  const OutputSpace outputs(task, options.top, search.calibrated, {}, options.threads);
+  const std::vector<const Explanation*> better =
+      better_than(search, of_laws.fit.cost, Sensible(kinds, outputs.places()));
   if (better.empty()) {
     return std::nullopt;
   }
-  const std::map<std::string, std::string> families = families_by_effect(search.calibrated);
   std::vector<Contender> contenders{{.set = &of_laws}};
   for (const Explanation* one : better) {
     contenders.push_back({.set = one});
@@ -183,7 +215,7 @@ std::optional<FittedEvidence> fitted_evidence(const Task& task, const Search& se
   in_parallel(contenders.size(), options.threads, [&](std::size_t i) {
     Contender& one = contenders[i];
     for (const Applied& effect : one.set->variant.effects) {
-      one.families.insert(families.contains(effect.effect) ? families.at(effect.effect) : effect.effect);
+      one.families.insert(kinds.at(effect.effect).family);
     }
     one.left = by_blocks(task, held_out(task, *one.set));
   });
@@ -197,11 +229,14 @@ std::optional<FittedEvidence> fitted_evidence(const Task& task, const Search& se
   FittedEvidence result;
   for (const Contender& one : contenders) {
     if (one.probability > 0.0) {
-      result.evidence.sets.push_back(described(one, search, log_square(bare), families));
+      result.evidence.sets.push_back(described(one, search, log_square(bare), kinds));
     }
   }
   result.evidence.families = families_of(result.evidence.sets);
   const std::string& family = result.evidence.families.front().family;
+  if (is_law(kinds.at(result.evidence.families.front().effect))) {
+    return std::nullopt;
+  }
   const auto first =
       std::ranges::find_if(contenders, [&](const Contender& one) { return one.families.contains(family); });
   result.chosen = first->set;

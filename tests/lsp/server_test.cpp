@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "codegen/compile.hpp"
+#include "codegen/language/token.hpp"
+#include "lsp/symbols.hpp"
 #include "support/text_file.hpp"
 
 namespace hysteron {
@@ -121,6 +123,129 @@ TEST_F(LspServer, CompletesInABrokenText) {
   EXPECT_EQ(ask_at("completion", with("@unit V", "@un~it V")), json::array());
 }
 
+/// Two blocks, the outer with an instance of the inner one; X and Y are names in both.
+const std::string nested = R"(FUNCTION_BLOCK INNER
+VAR_INPUT
+    X : LREAL;  (* @unit V *)
+END_VAR
+VAR_OUTPUT
+    Y : LREAL;
+END_VAR
+Y := 2.0 * X;
+END_FUNCTION_BLOCK
+
+FUNCTION_BLOCK OUTER
+VAR_INPUT
+    X : LREAL;
+END_VAR
+VAR_OUTPUT
+    Y : LREAL;
+END_VAR
+VAR
+    PART : INNER;
+END_VAR
+PART(X := x);
+Y := PART.Y + X;  (* X stays in a comment *)
+END_FUNCTION_BLOCK
+)";
+
+std::string marked_in(const std::string& text, const std::string& part, const std::string& other) {
+  auto result = text;
+  return result.replace(result.find(part), part.size(), other);
+}
+
+/// The text of the lines and characters of a range.
+std::string text_of(const std::string& text, const json& range) {
+  const auto offset = [&](const json& at) {
+    return lsp::offset_of(text, {at["line"].get<std::uint64_t>(), at["character"].get<std::uint64_t>()},
+                          lsp::Encoding::Utf16);
+  };
+  return text.substr(offset(range["start"]), offset(range["end"]) - offset(range["start"]));
+}
+
+TEST_F(LspServer, APinOfAnOwnBlockIsAVariableOfThatBlock) {
+  const auto pin = ask_at("definition", marked_in(nested, "PART.Y", "PART.Y~"));
+  EXPECT_EQ(pin["range"]["start"]["line"], 5);
+  EXPECT_EQ(ask_at("definition", marked_in(nested, "PART(X", "PART(~X"))["range"]["start"]["line"], 2);
+  EXPECT_EQ(ask_at("definition", marked_in(nested, ":= x)", ":= ~x)"))["range"]["start"]["line"], 12);
+  EXPECT_EQ(ask_at("definition", marked_in(nested, "PART : INNER", "PART : IN~NER"))["range"]["start"]["line"], 0);
+  EXPECT_TRUE(ask_at("definition", marked_in(nested, "@unit V", "@unit V~")).is_null());
+  EXPECT_TRUE(ask_at("definition", with("HY_LAG", "HY_~LAG")).is_null());
+  EXPECT_EQ(ask_at("references", marked_in(nested, "PART.Y", "PART.~Y")).size(), 3U);
+  EXPECT_THAT(ask_at("hover", marked_in(nested, "PART(X", "PART(~X"))["contents"]["value"].get<std::string>(),
+              HasSubstr("INNER.X : LREAL\n@unit V"));
+  open(nested);
+  EXPECT_THAT(labels(ask_at("completion", marked_in(nested, "PART.Y", "PART.~"))), ::testing::ElementsAre("Y"));
+  EXPECT_THAT(labels(ask_at("completion", marked_in(nested, "PART(X := x", "PART(~"))), ::testing::ElementsAre("X"));
+}
+
+TEST_F(LspServer, RenamesEveryPlaceAndNoOther) {
+  open(nested);
+  const auto at = lsp::position_of(nested, nested.find("PART.Y") + 5, lsp::Encoding::Utf16);
+  json params = {{"textDocument", {{"uri", uri}}},
+                 {"position", {{"line", at.line}, {"character", at.character}}},
+                 {"newName", "DOUBLED"}};
+  const auto edits = ask("textDocument/rename", params)["result"]["changes"][uri];
+  ASSERT_EQ(edits.size(), 3U);
+  for (const auto& edit : edits) {
+    EXPECT_EQ(text_of(nested, edit["range"]), "Y");
+    EXPECT_EQ(edit["newText"], "DOUBLED");
+  }
+  EXPECT_EQ(text_of(nested, ask("textDocument/prepareRename", params)["result"]), "Y");
+  for (const std::string wrong : {"X", "IF", "2Y", "", "A B", "A;", "LREAL", "A__B"}) {
+    params["newName"] = wrong;
+    EXPECT_EQ(ask("textDocument/rename", params)["error"]["code"], -32803) << wrong;
+  }
+  open(with("FILTER(XIN", "FILTER((XIN"));
+  params["newName"] = "OTHER";
+  EXPECT_EQ(ask("textDocument/rename", params)["error"]["code"], -32803);
+}
+
+TEST_F(LspServer, OutlinesBlocksAndVariables) {
+  open(nested);
+  const auto outline = ask("textDocument/documentSymbol", {{"textDocument", {{"uri", uri}}}})["result"];
+  ASSERT_EQ(outline.size(), 2U);
+  EXPECT_EQ(outline[1]["name"], "OUTER");
+  ASSERT_EQ(outline[1]["children"].size(), 3U);
+  EXPECT_EQ(outline[1]["children"][2]["detail"], "INNER");
+  EXPECT_EQ(text_of(nested, outline[1]["children"][2]["selectionRange"]), "PART");
+}
+
+/// A name that is given to everything in turn: the text stays right, and the name before brings the text back.
+TEST_F(LspServer, EveryNameOfTheExamplesIsRenamedAndBack) {
+  std::size_t renamings = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(HYSTERON_SOURCE_DIR "/examples")) {
+    if (entry.path().extension() != ".st") {
+      continue;
+    }
+    Diagnostics none;
+    const auto text = read_text_file(entry.path().string());
+    const auto tree = language::parse(entry.path().string(), text, none);
+    if (!tree.valid || none.has_errors()) {
+      continue;
+    }
+    for (const auto& block : tree.blocks) {
+      for (const auto& variable : block.variables) {
+        const lsp::Declared what{.block = &block, .variable = &variable};
+        if (!lsp::refused_name(tree, what, "ANOTHER_NAME").empty()) {
+          continue;  // what a file beside it names, as an input of a record
+        }
+        ++renamings;
+        const auto places = lsp::places_of(tree, what);
+        ASSERT_FALSE(places.empty()) << variable.name.text;
+        const auto other = lsp::renamed(text, places, "ANOTHER_NAME");
+        const auto other_tree = language::parse(entry.path().string(), other, none);
+        ASSERT_TRUE(other_tree.valid);
+        const auto back = lsp::places_of(other_tree, lsp::declared_at(other_tree, places.front().offset));
+        ASSERT_EQ(back.size(), places.size()) << entry.path() << " " << variable.name.text;
+        // Names are the same without regard to case: the text comes back as it was, but for that.
+        EXPECT_EQ(language::upper(lsp::renamed(other, back, variable.name.text)), language::upper(text));
+      }
+    }
+  }
+  EXPECT_GT(renamings, 50U);
+}
+
 TEST_F(LspServer, FormatsAsFmtDoesAndRefusesAsFmtDoes) {
   const auto text = with("    FILTER : HY_LAG", "FILTER:HY_LAG");
   open(text);
@@ -164,6 +289,29 @@ TEST_F(LspServer, RandomEditsOfTheExamplesNeverEndIt) {
     }
   }
   EXPECT_GT(tried, 0U);
+}
+
+/// What the extension colours as a word of the language is one.
+TEST(VsCodeExtension, ItsGrammarKnowsTheWordsOfTheLanguage) {
+  const std::string folder = HYSTERON_SOURCE_DIR "/editors/vscode/";
+  for (const char* file : {"package.json", "language-configuration.json"}) {
+    EXPECT_TRUE(json::accept(read_text_file(folder + file))) << file;
+  }
+  const auto grammar = json::parse(read_text_file(folder + "syntaxes/hysteron-st.tmLanguage.json"));
+  std::size_t words = 0;
+  for (const auto& pattern : grammar["patterns"]) {
+    const std::string match = pattern.value("match", "");
+    const std::string begin = "(?i)\\b(";
+    const std::string end = ")\\b";
+    if (!match.starts_with(begin) || !match.ends_with(end) || match.find('[') != std::string::npos) {
+      continue;
+    }
+    std::istringstream list(match.substr(begin.size(), match.size() - begin.size() - end.size()));
+    for (std::string one; std::getline(list, one, '|'); ++words) {
+      EXPECT_TRUE(language::keyword_of(one) != language::Keyword::None || language::is_elementary_type(one)) << one;
+    }
+  }
+  EXPECT_GT(words, 40U);
 }
 
 std::string framed(const std::string& text) {

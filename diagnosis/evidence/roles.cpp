@@ -42,7 +42,7 @@ Quantity quantity_of(std::string_view text) {
 }
 
 bool may_act_on(const EffectKind& kind, const Space::Place& place) {
-  if ((kind.of_record || kind.family == name_of(Family::Logging)) && !place.is_port) {
+  if (kind.of_record && !place.is_port) {
     return false;
   }
   const auto family = std::ranges::find(family_texts, kind.family, &FamilyText::name);

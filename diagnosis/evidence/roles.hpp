@@ -21,8 +21,7 @@ struct Quantity {
 
 /// A friction is a force: on no position, velocity, temperature, and on no number such as a share of power. What
 /// repeats over a position acts on a position or on a force. A balance is no signal that a part passes on: what has
-/// play, bends or is limited is one of its summands. Converters, clocks and loggers stand at the ports: within the
-/// diagram a quantiser would be a sign function by another name.
+/// play, bends or is limited is one of its summands.
 [[nodiscard]] bool may_act_on(const EffectKind& kind, const Space::Place& place);
 
 /// Whether an effect adds something to its edge that a regression can find: no gain, which is a matter of calibration;

@@ -7,7 +7,6 @@
 #include "diagnosis/evidence/explained.hpp"
 #include "diagnosis/evidence/gap_budget.hpp"
 #include "diagnosis/evidence/output_space.hpp"
-#include "diagnosis/verdict/fitted_evidence.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
@@ -19,22 +18,6 @@ bool leaves_a_cause(const Judged& judged, const Answer& answer, Rules& rules) {
   const double gap = std::max(judged.calibrated().fit.cost - floor, left);
   return judged.is_related && (answer.verdict == Verdict::Partial || answer.verdict == Verdict::Unknown) &&
          rules.is_above(policy::unexplained, left / gap);
-}
-
-/// Tells of the sets that the search fitted, where these predict better than the set of laws as it was fitted.
-void hold_against_fits(Judged& judged, const Explanation& of_laws, const DiagnosisOptions& options, Rules& rules) {
-  std::optional<FittedEvidence> fits =
-      fitted_evidence(judged.record.task, judged.searched->search, of_laws,
-                      {.top = judged.record.top, .threads = options.threads, .seed = options.seed}, rules);
-  if (!fits) {
-    return;
-  }
-  fits->evidence.tried = judged.evidence.tried;
-  fits->evidence.is_told = is_worth_telling(fits->evidence, rules);
-  if (fits->evidence.is_told) {
-    judged.choose(*fits->chosen);
-    judged.evidence = std::move(fits->evidence);
-  }
 }
 
 }  // namespace
@@ -70,9 +53,6 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
       judged.choose(fitted.explanation ? *fitted.explanation : calibrated);
       judged.unrepeatable.reset();
       judged.evidence = std::move(evidence);
-      if (fitted.explanation) {
-        hold_against_fits(judged, *fitted.explanation, options, rules);
-      }
       break;
     }
     weighing.strike_out_first();

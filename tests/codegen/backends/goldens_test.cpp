@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "codegen/backends/batch/batch.hpp"
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/st/st.hpp"
@@ -66,6 +67,7 @@ TEST(Goldens, OfEveryTargetAreKeptToTheByte) {
   }
   hold_against_golden(generate_c(program, {.float32 = true}).back(), "c_float");
   hold_against_golden(generate_cpp_header(program), "cpp");
+  hold_against_golden(generate_batch(program), "batch");
 }
 
 }  // namespace

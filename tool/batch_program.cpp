@@ -281,7 +281,7 @@ Program with_values(const Program& program, const std::vector<double>& values) {
 
 BatchResult run_compiled_batch(const BatchRequest& request) {
   const Program& program = *request.program;
-  ProgramSources sources{.headers = {generate_batch(program)}, .flags = {"-std=c++17", "-pthread"}};
+  ProgramSources sources{.headers = {generate_batch(program)}, .flags = {"-std=c++17", "-pthread"}, .without = "write --engine interpreter"};
   sources.main = main_text(program, sources.headers.front().name, request.measured);
   for (const std::string& flag : words_of(batch_flags)) {
     sources.flags.push_back(flag);

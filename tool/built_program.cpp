@@ -43,13 +43,13 @@ void compile_sources(const ProgramSources& sources, std::vector<std::string> com
     throw InputError(error::generated_code_fails, {},
                      fmt::format("The compiler {} refuses the generated code (exit code {}):{}", command.front(), code,
                                  first_lines(errors)),
-                     "set CXX to a compiler for C++20, or leave generated code out with --no-generated.");
+                     fmt::format("set CXX to a compiler for C++20, or {}.", sources.without));
   }
 }
 
 }  // namespace
 
-std::vector<std::string> compiler_command() {
+std::vector<std::string> compiler_command(std::string_view without) {
   if (auto command = find_compiler("CXX", {"c++", "g++", "clang++"})) {
     return *command;
   }
@@ -58,11 +58,11 @@ std::vector<std::string> compiler_command() {
                      "set CXX to a C++ compiler, or unset it.");
   }
   throw InputError(error::no_compiler, {}, "There is no C++ compiler (c++, g++ or clang++) on the path.",
-                   "install one (Debian: apt install g++), set CXX, or leave generated code out with --no-generated.");
+                   fmt::format("install one (Debian: apt install g++), set CXX, or {}.", without));
 }
 
 fs::path built_program(BuildCache& cache, const ProgramSources& sources) {
-  const auto compiler = compiler_command();
+  const auto compiler = compiler_command(sources.without);
   std::string everything = sources.main;
   for (const GeneratedFile& header : sources.headers) {
     everything += header.text;

@@ -26,6 +26,7 @@ constexpr std::string_view host_head = R"(#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 

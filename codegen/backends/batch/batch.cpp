@@ -86,7 +86,8 @@ constexpr std::string_view head = R"(#if !defined({0}) && !defined(HYSTERON_LANE
 #error "compile without -ffast-math: it changes what a step computes"
 #endif
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__clang__)  // Clang has no pragma for functions of a wider processor
+#define HYSTERON_WIDE
 #include <immintrin.h>
 #endif
 
@@ -135,24 +136,24 @@ __attribute__((noinline)) Real c_library(const Real& x, const Real& y, Function 
 
 /// The code is compiled for each width of registers, and the processor that it runs on chooses. {0}: the guard.
 constexpr std::string_view passes = R"(// The code below, for each width of registers.
-#if defined(__x86_64__)
+#ifdef HYSTERON_WIDE
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")
 #define HYSTERON_LANES 8
-#include __FILE__
+#include "{0}.hpp"
 #undef HYSTERON_LANES
 #undef HYSTERON_PARTS
 #pragma GCC pop_options
 #pragma GCC push_options
 #pragma GCC target("avx2")
 #define HYSTERON_LANES 4
-#include __FILE__
+#include "{0}.hpp"
 #undef HYSTERON_LANES
 #undef HYSTERON_PARTS
 #pragma GCC pop_options
 #endif
 #define HYSTERON_LANES 2
-#include __FILE__
+#include "{0}.hpp"
 #undef HYSTERON_LANES
 #undef HYSTERON_PARTS
 
@@ -160,7 +161,7 @@ namespace {0} {{
 
 /// How many lanes a register of this processor takes: 8 with AVX-512, 4 with AVX2, else 2.
 inline int lanes_of_processor() {{
-#if defined(__x86_64__)
+#ifdef HYSTERON_WIDE
   static const int lanes = __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? 8
                            : __builtin_cpu_supports("avx2")                                       ? 4
                                                                                                   : 2;
@@ -176,7 +177,7 @@ inline void reset(std::size_t packs, const Params* params, State* state) {{ by_2
 /// One step of packs: outputs from inputs and states, and the states moved on. The width is stated for comparisons.
 inline void step(std::size_t packs, const Params* params, State* state, const In* in, Out* out,
                  int lanes = lanes_of_processor()) {{
-#if defined(__x86_64__)
+#ifdef HYSTERON_WIDE
   if (lanes == 8) {{
     return by_8::step(packs, params, state, in, out);
   }}
@@ -195,6 +196,7 @@ inline void step(std::size_t packs, const Params* params, State* state, const In
 #undef HYSTERON_ALL
 #undef HYSTERON_MEMORY
 #undef HYSTERON_LIBMVEC
+#undef HYSTERON_WIDE
 
 #elif defined(HYSTERON_LANES)
 
@@ -264,7 +266,7 @@ class BatchHeader {
                "// Eight instances at a time, in the lanes of a vector: instance i is lane i % 8 of pack i / 8.\n"
                "// Sample time {} s. State: {} bytes an instance. Operations a step: {}.\n"
                "// Hash of diagram and parameters: {}.\n"
-               "// C++17 with the vectors of GCC and Clang. Compile with {}:\n"
+               "// C++17 with the vectors of GCC; Clang takes the narrowest registers. Compile with\n// {}:\n"
                "// then each lane has the bits that `hysteron run` shows. With -DHYSTERON_BATCH_FAST and -lmvec, exp,\n"
                "// log, pow and the like are libmvec's, within 4 units in the last place.\n//\n",
                graph_.name, number_text(graph_.sample_time()), state_bytes(routine_, false), routine_.operations,

@@ -123,11 +123,11 @@ HYSTERON_INLINE bool any(const Int& x) {
 #endif
 }
 
-HYSTERON_INLINE Real select(const Int& which, const Real& yes, const Real& no) {
-  return HYSTERON_PARTS(Real, which.part[i] ? yes.part[i] : no.part[i]);
+HYSTERON_INLINE Real select(const Int& which, const Real& yes, const Real& otherwise) {
+  return HYSTERON_PARTS(Real, which.part[i] ? yes.part[i] : otherwise.part[i]);
 }
-HYSTERON_INLINE Int select(const Int& which, const Int& yes, const Int& no) {
-  return HYSTERON_PARTS(Int, which.part[i] ? yes.part[i] : no.part[i]);
+HYSTERON_INLINE Int select(const Int& which, const Int& yes, const Int& otherwise) {
+  return HYSTERON_PARTS(Int, which.part[i] ? yes.part[i] : otherwise.part[i]);
 }
 HYSTERON_INLINE Real min(const Real& a, const Real& b) { return select(b < a, b, a); }
 HYSTERON_INLINE Real max(const Real& a, const Real& b) { return select(a < b, b, a); }

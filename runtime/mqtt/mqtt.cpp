@@ -88,7 +88,6 @@ void MqttSender::lose(std::uint64_t rows) {
     return;
   }
   counter_->add_lost(rows);
-  maker_.forget();
   if (!std::exchange(is_losing_, true)) {
     remarks_.say(
         fmt::format("the oldest of the rows that wait for {} are lost from now on: they are too many, or too "
@@ -135,7 +134,6 @@ void MqttSender::greet() {
   greeted_at_ = birth_at_;
   progress_ = birth_at_;
   first_live_ = outbox_.next_number() + outbox_.size();
-  is_losing_ = false;
   maker_.forget();
   counter_->set_connected(true);
   counter_->set_fault(static_cast<std::uint16_t>(MqttFault::None));
@@ -192,6 +190,10 @@ void MqttSender::confirm() {
     }
     counter_->add_done(done);
     progress_ = now;
+  }
+  if (is_losing_ && outbox_.size() == 0) {
+    is_losing_ = false;
+    maker_.forget();  // what is lost may have been a change
   }
   const std::int64_t patience = std::chrono::nanoseconds(settings_.link.patience).count();
   if (outbox_.on_the_way() > 0 && now - progress_ > patience) {

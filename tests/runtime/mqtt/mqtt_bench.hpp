@@ -1,6 +1,8 @@
 // What is published, without a task: clocks that the test sets, rows that it gives, and a broker that is real.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +16,15 @@
 #include "tests/runtime/mqtt/broker.hpp"
 
 namespace hysteron::runtime::test {
+
+class WithBroker : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_broker()) {
+      GTEST_SKIP() << "no broker is installed: apt install mosquitto mosquitto-clients";
+    }
+  }
+};
 
 /// A task of 1 ms with the points U, the number of the cycle, and Y, its half; a row every tenth cycle.
 class MqttBench {

@@ -384,11 +384,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   Task task(program, config.task);
   const auto history =
       config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
+  const auto mqtt = config.mqtt ? std::make_unique<RunningMqtt>(config, shape, task) : nullptr;
   // On a clock of its own, a trial would tell others of values that no machine has.
-  const auto mqtt = config.mqtt && !options.virtual_time ? std::make_unique<RunningMqtt>(config, shape, task) : nullptr;
-  how += mqtt          ? fmt::format("; MQTT to {}:{}", config.mqtt->broker, config.mqtt->port)
-         : config.mqtt ? "; nothing is published to MQTT"
-                       : "";
+  const bool publishes = mqtt && !options.virtual_time;
+  how += publishes ? fmt::format("; MQTT to {}:{}", config.mqtt->broker, config.mqtt->port)
+         : mqtt    ? "; nothing is published to MQTT"
+                   : "";
   // Read after the guard was forked: the guard needs no key.
   const auto tls =
       config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
@@ -414,7 +415,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),
                                     .history = history ? &history->counter() : nullptr,
-                                    .mqtt = mqtt ? &mqtt->counter() : nullptr};
+                                    .mqtt = publishes ? &mqtt->counter() : nullptr};
   task.attach(attachments);
   std::vector<SampleTap*> taps;
   std::map<std::string, Remarks*> beside;
@@ -423,7 +424,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     history->start();
     beside.emplace("History", &history->remarks());
   }
-  if (mqtt) {
+  if (publishes) {
     taps.push_back(&mqtt->tap());
     mqtt->start();
     beside.emplace("MQTT", &mqtt->remarks());
@@ -448,7 +449,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (history) {
     history->finish();
   }
-  if (mqtt) {
+  if (publishes) {
     mqtt->finish();
   }
   notices.look_beside();

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -34,7 +35,14 @@ inline std::string mosquitto_program() {
 }
 
 inline bool has_broker() {
-  return !mosquitto_program().empty() && std::system("mosquitto_sub --help > /dev/null 2>&1") != 127 * 256;
+  return !mosquitto_program().empty() && std::system("command -v mosquitto_sub mosquitto_pub > /dev/null") == 0;
+}
+
+/// Of a test, from its SetUp.
+inline void skip_without_broker() {
+  if (!has_broker()) {
+    GTEST_SKIP() << "mosquitto is not installed: scripts/install-dependencies test";
+  }
 }
 
 /// A program in a process of its own, its output in a file.

@@ -19,11 +19,7 @@ namespace hysteron::runtime::test {
 
 class WithBroker : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!has_broker()) {
-      GTEST_SKIP() << "no broker is installed: apt install mosquitto mosquitto-clients";
-    }
-  }
+  void SetUp() override { skip_without_broker(); }
 };
 
 /// A task of 1 ms with the points U, the number of the cycle, and Y, its half; a row every tenth cycle.

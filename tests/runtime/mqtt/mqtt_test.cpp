@@ -26,6 +26,14 @@ using testing::HasSubstr;
 
 class Publishing : public test::WithBroker {};
 
+class PublishingSparkplug : public test::WithBroker {
+ protected:
+  void SetUp() override {
+    test::WithBroker::SetUp();
+    test::skip_without_protoc();
+  }
+};
+
 /// What somebody makes of rows that may come twice: those that are newer than all before.
 std::vector<std::int64_t> without_repetitions(const std::vector<std::int64_t>& numbers) {
   std::vector<std::int64_t> list;
@@ -260,10 +268,7 @@ TEST_F(Publishing, AfterALossTheNextRowOfChangesIsWhole) {
   }
 }
 
-TEST_F(Publishing, SparkplugIsBornAgainWhenItIsAskedAndDiesOfACrash) {
-  if (!test::has_protoc()) {
-    GTEST_SKIP() << "no protoc is installed: apt install protobuf-compiler";
-  }
+TEST_F(PublishingSparkplug, IsBornAgainWhenItIsAskedAndDiesOfACrash) {
   Broker broker;
   ASSERT_TRUE(broker.start());
   const Subscriber subscriber(broker);

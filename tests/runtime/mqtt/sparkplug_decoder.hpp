@@ -1,6 +1,8 @@
 // Payloads of Sparkplug B to text and back, by protoc. The message is that of the specification, as far as it is used.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <string>
 
@@ -55,6 +57,13 @@ message Payload {
 
 inline bool has_protoc() {
   return std::system("protoc --version > /dev/null 2>&1") == 0;
+}
+
+/// Of a test, from its SetUp.
+inline void skip_without_protoc() {
+  if (!has_protoc()) {
+    GTEST_SKIP() << "protoc is not installed: scripts/install-dependencies test";
+  }
 }
 
 /// What protoc makes of some bytes: "ERROR" where it refuses them.

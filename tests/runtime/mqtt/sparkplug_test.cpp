@@ -42,11 +42,7 @@ MqttRow sparkplug_row() {
 
 class Sparkplug : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!test::has_protoc()) {
-      GTEST_SKIP() << "no protoc is installed: apt install protobuf-compiler";
-    }
-  }
+  void SetUp() override { test::skip_without_protoc(); }
   SparkplugNode node{"plant", "stage", sparkplug_points()};
 };
 

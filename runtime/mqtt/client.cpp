@@ -45,6 +45,14 @@ int no_password(char* /*buffer*/, int /*size*/, int /*writes*/, void* /*user*/) 
   return 0;
 }
 
+/// The library ends its texts with a full stop.
+std::string without_stop(std::string text) {
+  while (text.ends_with('.')) {
+    text.pop_back();
+  }
+  return text;
+}
+
 MqttFault mqtt_fault(int result, MqttFault otherwise) {
   return result == MOSQ_ERR_TLS || result == MOSQ_ERR_TLS_HANDSHAKE ? MqttFault::Tls : otherwise;
 }
@@ -146,8 +154,7 @@ std::string MqttClient::Connection::reason(int code, int cause) const {
   if (code == MOSQ_ERR_KEEPALIVE) {
     return "it has not said a word for long";  // the library has no text for that
   }
-  const std::string text = ::mosquitto_strerror(code);
-  return last_error.empty() ? text : last_error;
+  return without_stop(last_error.empty() ? ::mosquitto_strerror(code) : last_error);
 }
 
 MqttClient::MqttClient(const MqttLink& link, const MqttMessage& will)
@@ -210,7 +217,7 @@ void MqttClient::turn(milliseconds wait, int wake) {
   if ((ends[0].revents & (POLLIN | POLLERR | POLLHUP)) != 0) {
     const int result = ::mosquitto_loop_read(c.handle, 100);
     if (c.refusal != 0) {
-      throw MqttError(MqttFault::Refused, ::mosquitto_connack_string(c.refusal));
+      throw MqttError(MqttFault::Refused, without_stop(::mosquitto_connack_string(c.refusal)));
     }
     check(result, fault);
   }

@@ -22,6 +22,7 @@
 #include "runtime/host/output_turn.hpp"
 #include "runtime/host/retained_state.hpp"
 #include "runtime/host/running_history.hpp"
+#include "runtime/host/running_mqtt.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
@@ -306,6 +307,12 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       inputs.push_back({.file = file, .named_by = "[tls]"});
     }
   }
+  if (config.mqtt) {
+    for (const std::string& file :
+         {config.mqtt->ca, config.mqtt->certificate, config.mqtt->key, config.mqtt->password_file}) {
+      inputs.push_back({.file = file, .named_by = "[mqtt]"});
+    }
+  }
   const std::string mend = "name another file in the run file.";
   // Each is read by the next start, so what is written after it must not take its place either.
   if (config.modbus) {
@@ -377,6 +384,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   Task task(program, config.task);
   const auto history =
       config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
+  const auto mqtt = config.mqtt ? std::make_unique<RunningMqtt>(config, shape, task) : nullptr;
+  // On a clock of its own, a trial would tell others of values that no machine has.
+  const bool publishes = mqtt && !options.virtual_time;
+  how += publishes ? fmt::format("; MQTT to {}:{}", config.mqtt->broker, config.mqtt->port)
+         : mqtt    ? "; nothing is published to MQTT"
+                   : "";
   // Read after the guard was forked: the guard needs no key.
   const auto tls =
       config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
@@ -401,17 +414,22 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                                     .guard = guard.get(),
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),
-                                    .history = history ? &history->counter() : nullptr};
+                                    .history = history ? &history->counter() : nullptr,
+                                    .mqtt = publishes ? &mqtt->counter() : nullptr};
   task.attach(attachments);
-  if (history) {
-    task.door().attach({&history->tap()});
-    history->start();
-  }
-
+  std::vector<SampleTap*> taps;
   std::map<std::string, Remarks*> beside;
   if (history) {
+    taps.push_back(&history->tap());
+    history->start();
     beside.emplace("History", &history->remarks());
   }
+  if (publishes) {
+    taps.push_back(&mqtt->tap());
+    mqtt->start();
+    beside.emplace("MQTT", &mqtt->remarks());
+  }
+  task.door().attach(std::move(taps));
   RunNotices notices(config, shape, task, attachments, std::move(beside));
   CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
@@ -430,6 +448,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   if (history) {
     history->finish();
+  }
+  if (publishes) {
+    mqtt->finish();
   }
   notices.look_beside();
   print(status_line(task, shape.name + ": " + std::string(name_of(end)), notices.at_the_end()));

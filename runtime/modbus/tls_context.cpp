@@ -10,6 +10,7 @@
 #include <openssl/x509v3.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -52,19 +53,6 @@ int no_password(char* /*buffer*/, int /*size*/, int /*writes*/, void* /*user*/) 
   return -1;
 }
 
-/// The file that is named, or what systemd hands over instead.
-std::string credential_path(const std::string& path, const char* credential) {
-  const char* const folder = std::getenv("CREDENTIALS_DIRECTORY");
-  if (folder != nullptr) {
-    const auto given = std::filesystem::path(folder) / credential;
-    std::error_code ignored;
-    if (std::filesystem::exists(given, ignored)) {
-      return given.string();
-    }
-  }
-  return path;
-}
-
 FilePointer open(const std::string& path, const std::string& what, const Place& place) {
   FilePointer file(BIO_new_file(path.c_str(), "r"));
   if (file == nullptr) {
@@ -96,10 +84,7 @@ std::vector<CertificatePointer> read_certificates(const std::string& path, const
 }
 
 KeyPointer read_key(const std::string& path, const Place& place) {
-  struct stat status {};
-  const bool is_there = ::stat(path.c_str(), &status) == 0;
-  // Its group may read it: Debian's ssl-cert is for that.
-  if (is_there && (status.st_mode & (S_IRWXO | S_IWGRP | S_IXGRP)) != 0) {
+  if (is_open_to_others(path)) {
     throw InputError(error::key_open_to_others, place,
                      fmt::format("Others than its owner may read or change the private key {}.", path),
                      fmt::format("chmod 600 {}; if anybody could have read it, make a new key and certificate.", path));
@@ -142,19 +127,31 @@ void require_now(const X509& certificate, const std::string& path, const Place& 
   }
 }
 
-/// Gives back when it ends.
-std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) {
-  const std::string path = credential_path(options.certificate, certificate_credential);
-  auto chain = read_certificates(path, "certificate", options.certificate_place);
-  require_now(*chain.front(), path, options.certificate_place);
-  const std::string key_path = credential_path(options.key, key_credential);
-  const KeyPointer key = read_key(key_path, options.key_place);
-  if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
+struct OwnCertificate {
+  std::vector<CertificatePointer> chain{};
+  KeyPointer key{};
+};
+
+/// A certificate that counts today, with those behind it and its key.
+OwnCertificate read_own_certificate(const std::string& path, const Place& place, const std::string& key_path,
+                                    const Place& key_place) {
+  OwnCertificate own{.chain = read_certificates(path, "certificate", place)};
+  require_now(*own.chain.front(), path, place);
+  own.key = read_key(key_path, key_place);
+  if (X509_check_private_key(own.chain.front().get(), own.key.get()) != 1) {
     ERR_clear_error();
-    throw InputError(error::key_of_another_certificate, options.key_place,
+    throw InputError(error::key_of_another_certificate, key_place,
                      fmt::format("The private key {} is not that of the certificate {}.", key_path, path),
                      "name the key that the certificate was asked for with.");
   }
+  return own;
+}
+
+/// Gives back when it ends.
+std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) {
+  const std::string path = credential_path(options.certificate, certificate_credential);
+  const auto [chain, key] = read_own_certificate(path, options.certificate_place,
+                                                 credential_path(options.key, key_credential), options.key_place);
   bool taken =
       SSL_CTX_use_certificate(&context, chain.front().get()) == 1 && SSL_CTX_use_PrivateKey(&context, key.get()) == 1;
   for (std::size_t i = 1; taken && i < chain.size(); ++i) {
@@ -208,6 +205,35 @@ std::optional<std::string> role_of(const X509& certificate, bool& is_one) {
 }
 
 }  // namespace
+
+std::string credential_path(const std::string& path, const char* credential) {
+  const char* const folder = std::getenv("CREDENTIALS_DIRECTORY");
+  if (folder != nullptr) {
+    const auto given = std::filesystem::path(folder) / credential;
+    std::error_code ignored;
+    if (std::filesystem::exists(given, ignored)) {
+      return given.string();
+    }
+  }
+  return path;
+}
+
+bool is_open_to_others(const std::string& path) {
+  struct stat status {};
+  // Its group may read it: Debian's ssl-cert is for that.
+  return ::stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IRWXO | S_IWGRP | S_IXGRP)) != 0;
+}
+
+void check_client_files(const TlsClientFiles& files) {
+  const auto authorities =
+      read_certificates(files.authority, "file of those who sign the broker's certificate", files.authority_place);
+  if (std::ranges::none_of(authorities, [](const CertificatePointer& one) { return counts_now(*one); })) {
+    require_now(*authorities.front(), files.authority, files.authority_place);
+  }
+  if (!files.certificate.empty()) {
+    (void)read_own_certificate(files.certificate, files.certificate_place, files.key, files.key_place);
+  }
+}
 
 std::vector<std::string> files_of(const TlsOptions& options) {
   return {credential_path(options.certificate, certificate_credential), credential_path(options.key, key_credential),

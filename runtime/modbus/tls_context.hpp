@@ -1,6 +1,7 @@
 // What every connection through TLS has in common: the server's certificate and key, who signs clients' certificates,
 // and what each role may do. Modbus/TCP Security: certificates on both sides, TLS 1.2 or newer, and the client's role
-// in an extension of its certificate. Only the .cpp files of TLS see OpenSSL.
+// in an extension of its certificate. The files of a client, MQTT's, are held to the same. Only the .cpp files of TLS
+// see OpenSSL.
 #pragma once
 
 #include <ctime>
@@ -58,10 +59,33 @@ class TlsContext {
   std::time_t ends_ = 0;
 };
 
+/// Of a client of TLS, each by the path that counts.
+struct TlsClientFiles {
+  std::string authority{};    ///< certificates in PEM that sign the other side's
+  std::string certificate{};  ///< its own, with its key; both empty where it shows none
+  std::string key{};
+  Place authority_place{};  ///< for errors
+  Place certificate_place{};
+  Place key_place{};
+};
+
+/// Throws InputError HY831 to HY834 where a client cannot use the files.
+void check_client_files(const TlsClientFiles& files);
+
+/// Others than the owner of a file may read it, or others than its owner change it. Its group may read it.
+[[nodiscard]] bool is_open_to_others(const std::string& path);
+
+/// The file that is named, or what the service manager hands over instead under the name of a credential.
+[[nodiscard]] std::string credential_path(const std::string& path, const char* credential);
+
 /// The names under which a service manager hands over the files, because it may read what the service's user may not.
 /// A file that it hands over counts instead of the one that is named.
 inline constexpr const char* certificate_credential = "tls-certificate";
 inline constexpr const char* key_credential = "tls-key";
 inline constexpr const char* clients_credential = "tls-clients";
+inline constexpr const char* mqtt_ca_credential = "mqtt-ca";
+inline constexpr const char* mqtt_certificate_credential = "mqtt-certificate";
+inline constexpr const char* mqtt_key_credential = "mqtt-key";
+inline constexpr const char* mqtt_password_credential = "mqtt-password";
 
 }  // namespace hysteron::runtime::modbus

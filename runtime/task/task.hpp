@@ -47,6 +47,7 @@ struct TaskAttachments {
   Retainer* retainer = nullptr;
   Trace* trace = nullptr;
   const KeptCounter* history = nullptr;
+  const KeptCounter* mqtt = nullptr;
 };
 
 class Task final : private CycleBody {

@@ -1,8 +1,11 @@
 """Every output in JSON is what its schema says, no key more and none less; and every key of a schema occurs."""
 import json
 import os
+import shutil
+import socket
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -171,6 +174,43 @@ class Schemas(unittest.TestCase):
                    (self.folder / "found/verdict.json").read_text(encoding="utf-8"),
                    self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",
                                 codes=(1,)))
+
+    def test_mqtt(self):
+        broker = shutil.which("mosquitto", path=os.environ["PATH"] + ":/usr/sbin")
+        listener = shutil.which("mosquitto_sub")
+        if broker is None or listener is None:
+            self.skipTest("no broker is installed: apt install mosquitto mosquitto-clients")
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        (self.folder / "broker.conf").write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+        (self.folder / "mqtt.toml").write_text(
+            "[task]\nscheduling = \"other\"\nlock_memory = false\n[outputs.Y]\nsafe = 0.0\n"
+            f"[mqtt]\nbroker = \"127.0.0.1\"\nport = {port}\nevery = \"10ms\"\ntopic = \"plant\"\n")
+        quiet = {"cwd": self.folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with subprocess.Popen([broker, "-c", "broker.conf"], **quiet) as serving:
+            try:
+                for _ in range(1000):
+                    with socket.socket() as client:
+                        if client.connect_ex(("127.0.0.1", port)) == 0:
+                            break
+                    time.sleep(0.01)
+                heard = subprocess.Popen([listener, "-h", "127.0.0.1", "-p", str(port), "-t", "plant/#", "-F", "%t %p", "-W", "20"],
+                                         cwd=self.folder, stdout=subprocess.PIPE, text=True)
+                self.printed("serve", "plant.st", "--config", "mqtt.toml", "--cycles", "300")
+                messages = {"plant/data": [], "plant/state": ['{"online":false}']}  # the last is the broker's, of a crash
+                for line in heard.stdout:
+                    topic, text = line.split(" ", 1)
+                    messages[topic].append(text)
+                    if topic == "plant/state" and not json.loads(text)["online"]:
+                        break
+                heard.kill()
+                heard.communicate()
+            finally:
+                serving.kill()
+        self.assertGreater(len(messages["plant/data"]), 5)
+        self.holds("mqtt-data", *messages["plant/data"])
+        self.holds("mqtt-state", *messages["plant/state"])
 
     def test_diagram(self):
         try:

@@ -68,10 +68,13 @@ TEST(WebResponder, DescribesWhatThereIsToBeSeen) {
   ASSERT_EQ(about["points"].size(), bench.door.points().size());
   EXPECT_EQ(about["points"][0]["name"], "X");
   EXPECT_EQ(about["points"][0]["kind"], "input");
+  EXPECT_EQ(about["points"][0]["type"], "real");
+  EXPECT_EQ(about["points"][0]["data_type"], "real64");
   EXPECT_EQ(about["points"][0]["unit"], "V");
   EXPECT_EQ(about["points"][0]["low"], nullptr);
   EXPECT_EQ(about["points"][3]["high"], 1e9);
-  EXPECT_EQ(about["inner"], json::parse(R"([{"name": "SUM.XOUT", "type": "real", "unit": "um"}])"));
+  EXPECT_EQ(about["inner"],
+            json::parse(R"([{"name": "SUM.XOUT", "type": "real", "data_type": "real64", "unit": "um"}])"));
 }
 
 TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {

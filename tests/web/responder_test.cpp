@@ -179,6 +179,29 @@ TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
   EXPECT_EQ(bench.get("/").status, 200U) << "the page itself holds no values";
 }
 
+TEST(WebResponder, ATokenForReadingChangesNothing) {
+  PageBench bench({.is_loopback = false, .token = test::token, .read_token = "a-token-to-read-with"});
+  const std::string_view reader = "Bearer a-token-to-read-with";
+  for (const char* const target : {"/api/description", "/api/values", "/metrics"}) {
+    EXPECT_EQ(bench.get(target, reader).status, 200U);
+    EXPECT_EQ(bench.get(target, bearer).status, 200U);
+    EXPECT_EQ(bench.get(target, "Bearer a-token-to-read-wit").status, 401U);
+  }
+  for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
+    const Answer refused = bench.post(target, R"({"G.A": 2})", reader);
+    EXPECT_EQ(refused.status, 403U);
+    EXPECT_NE(refused.body.find("for reading"), std::string::npos);
+    EXPECT_EQ(refused.body.find("a-token-to-read-with"), std::string::npos);
+  }
+  EXPECT_TRUE(bench.staged().empty());
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2})").status, 200U);
+
+  PageBench without({.is_loopback = false, .read_token = "a-token-to-read-with"});
+  EXPECT_EQ(without.get("/api/values", reader).status, 200U);
+  EXPECT_EQ(without.post("/api/stage", R"({"G.A": 2})", reader).status, 403U) << "nobody writes";
+  EXPECT_EQ(json::parse(without.get("/api/description", reader).body)["writable"], false);
+}
+
 TEST(WebResponder, PagesOfOthersMayNotAsk) {
   PageBench bench({.token = test::token});
   for (const char* const target : {"/", "/api/values", "/api/description", "/metrics"}) {

@@ -3,11 +3,14 @@
 // live page; docs/how-to/opc-ua.md says how it is set up.
 
 import { readFileSync } from "node:fs";
+import { setPriority } from "node:os";
 import { text } from "node:stream/consumers";
 
 import { parseOptions, USAGE } from "./options.js";
 import { TaskLink } from "./task_link.js";
 import { addUser, InputError, Users } from "./users.js";
+
+const NICENESS = 10; // whatever runs the machine goes before it, as before the live page
 
 const { version } = JSON.parse(readFileSync(new URL("package.json", import.meta.url), "utf8"));
 
@@ -17,6 +20,7 @@ function tell(line) {
 }
 
 async function serve(options) {
+  setPriority(NICENESS);
   const users = options.users ? new Users(options.users, tell) : null;
   // The library is loaded last: a mistake on the command line is told at once.
   const [{ makeServer }, { TaskSpace }] = await Promise.all([import("./server.js"), import("./address_space.js")]);

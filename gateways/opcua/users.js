@@ -10,6 +10,7 @@ const COST = { N: 16384, r: 8, p: 1 }; // 16 MiB and some 50 ms a try
 const BYTES = 32;
 const MOST_AT_ONCE = 4; // tries; each takes memory and a thread
 const PENALTY = 500; // ms, after a wrong password
+const LOOK_EVERY = 500; // ms: rights are asked for with each value that is read
 export const SHORTEST_PASSWORD = 8;
 const RIGHTS = ["read", "write"];
 
@@ -95,11 +96,14 @@ export class Users {
   #users;
   #version = "";
   #trying = 0;
+  #lookEvery;
+  #next = 0;
 
   /** Throws InputError where the file cannot be used. @param {string} file @param {(line: string) => void} tell */
-  constructor(file, tell) {
+  constructor(file, tell, lookEvery = LOOK_EVERY) {
     this.#file = file;
     this.#tell = tell;
+    this.#lookEvery = lookEvery;
     this.#users = parsed(file);
     this.#version = this.#versionNow();
     if (Object.keys(this.#users).length === 0) {
@@ -114,6 +118,9 @@ export class Users {
 
   /** Who cannot be read lets nobody in: what the file said before may be what was to be taken back. */
   #current() {
+    const now = performance.now();
+    if (now < this.#next) return this.#users;
+    this.#next = now + this.#lookEvery;
     const version = this.#versionNow();
     if (version !== this.#version) {
       this.#version = version;

@@ -51,6 +51,8 @@ constexpr std::array statuses{
     count_of("task.history_lost", "rows of the history that are lost"),
     Status{"task.history_fault", PointType::uint16, "1",
            "0 none, 1 disk full, 2 cannot be reached, 3 damaged, 4 held by another program"},
+    Status{"task.tls_fault", PointType::uint16, "1",
+           "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
 };
 constexpr std::size_t status_count = statuses.size();
 
@@ -263,6 +265,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.history.done),
       static_cast<double>(status.history.lost),
       static_cast<double>(status.history.fault),
+      static_cast<double>(status.tls_fault),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

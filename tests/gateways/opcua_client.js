@@ -9,8 +9,8 @@ const { createInterface } = require("node:readline");
 const path = require("node:path");
 
 const opcua = createRequire(path.join(path.resolve(process.argv[2]), "package.json"))("node-opcua");
-const { AttributeIds, DataType, MessageSecurityMode, OPCUACertificateManager, OPCUAClient, SecurityPolicy, TimestampsToReturn,
-  UserTokenType } = opcua;
+const { AttributeIds, constructEventFilter, DataType, MessageSecurityMode, OPCUACertificateManager, OPCUAClient, ofType,
+  SecurityPolicy, TimestampsToReturn, UserTokenType } = opcua;
 opcua.setWarningLogger(() => {});
 opcua.setErrorLogger(() => {});
 
@@ -102,6 +102,26 @@ const commands = {
     const revised = await watch(session, nodes, interval, (node, dataValue) => (seen[node] ??= []).push(told(dataValue)));
     return revised;
   },
+  /** From now on, events of this type are seen as "events". */
+  async events({ type }) {
+    const subscription = await subscribed(session, 50);
+    const filter = constructEventFilter(["EventType", "Changes"], ofType(type));
+    const item = await subscription.monitor({ nodeId: "ns=0;i=2253", attributeId: AttributeIds.EventNotifier },
+      { samplingInterval: 0, queueSize: 100, discardOldest: true, filter }, TimestampsToReturn.Both);
+    item.on("changed", ([, changes]) => (seen.events ??= []).push(changes.value.map((one) => one.affected.toString())));
+    return item.result.statusCode.name;
+  },
+  async property({ node, name }) {
+    const { references } = await session.browse({ nodeId: prefix + node, referenceTypeId: "HasProperty", resultMask: 63 });
+    const found = references.find((one) => one.browseName.name === name);
+    return told(await session.read({ nodeId: found.nodeId, attributeId: AttributeIds.Value }));
+  },
+  async namespace_version() {
+    const inServer = async (nodeId, name) => (await session.browse({ nodeId, resultMask: 63 })).references
+      .find((one) => one.browseName.name === name).nodeId;
+    const metadata = await inServer("ns=0;i=11715", NAMESPACE);
+    return told(await session.read({ nodeId: await inServer(metadata, "NamespaceVersion"), attributeId: AttributeIds.Value }));
+  },
   async seen({ node }) {
     return seen[node] ?? [];
   },
@@ -111,11 +131,15 @@ const commands = {
   },
 };
 
-async function watch(on, nodes, interval, give) {
-  const subscription = await on.createSubscription2({
+function subscribed(on, interval) {
+  return on.createSubscription2({
     requestedPublishingInterval: interval, requestedLifetimeCount: 600, requestedMaxKeepAliveCount: 20, publishingEnabled: true,
     maxNotificationsPerPublish: 0,
   });
+}
+
+async function watch(on, nodes, interval, give) {
+  const subscription = await subscribed(on, interval);
   const revised = [];
   for (const node of nodes) {
     const item = await subscription.monitor({ nodeId: prefix + node, attributeId: AttributeIds.Value },

@@ -86,7 +86,7 @@ test("a password lets in its user alone, and a damaged file nobody", async (t) =
   await addUser(file, "anna", "password-of-anna", "write");
   await addUser(file, "ben", "password-of-anna", "read");
   const said = [];
-  const users = new Users(file, (line) => said.push(line));
+  const users = new Users(file, (line) => said.push(line), 0);
   assert.equal(await users.isPassword("anna", "password-of-anna"), true);
   assert.equal(await users.isPassword("anna", "password-of-ann"), false);
   assert.equal(await users.isPassword("constructor", "password-of-anna"), false);

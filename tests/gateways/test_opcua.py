@@ -220,6 +220,9 @@ class OfATask(unittest.TestCase):
         self.connect(client)
         layout = client.read(node="Task.Layout")["value"]
         client.watch(nodes=["Outputs/Y", "Outputs/U", "Outputs/COUNT"], interval=50)
+        self.assertEqual(client.events(type="GeneralModelChangeEventType"), "Good")
+        versions = {name: client.property(node=name, name="NodeVersion")["value"] for name in ("Inputs", "Outputs")}
+        self.assertEqual(client.namespace_version()["value"], layout[:16])
         self.task.stop()
         self.task.process.stdout.close()
         self.task.process.stderr.close()
@@ -236,6 +239,12 @@ class OfATask(unittest.TestCase):
                            known + 3, "who watched a node that stayed goes on")
         gone = eventually(lambda: client.seen(node="Outputs/COUNT")[-1]["status"], lambda status: status.startswith("BadNodeId"))
         self.assertEqual(gone, "BadNodeIdInvalid", "who watched a node that went is told")
+        events = eventually(lambda: client.seen(node="events"), lambda seen: seen)
+        self.assertEqual(len(events), 1, "one event for all that changed")
+        self.assertIn("Outputs", " ".join(events[0]))
+        self.assertEqual(client.namespace_version()["value"], client.read(node="Task.Layout")["value"][:16])
+        self.assertEqual(client.property(node="Inputs", name="NodeVersion")["value"], versions["Inputs"])
+        self.assertGreater(int(client.property(node="Outputs", name="NodeVersion")["value"]), int(versions["Outputs"]))
 
     def test_the_task_may_come_after_the_gateway(self):
         port = free_port()

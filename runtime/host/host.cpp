@@ -227,9 +227,9 @@ void watch_over(Guard& guard, Task& task) {
 /// The certificate of the server in the course of years. Nothing to do where the server speaks in the clear.
 class CertificateCare {
  public:
-  CertificateCare(modbus::Server* server, const modbus::TlsOptions* options,
+  CertificateCare(modbus::Server* server, Task& task, const modbus::TlsOptions* options,
                   const std::shared_ptr<const modbus::TlsContext>& serving)
-      : server_(server) {
+      : server_(server), task_(&task) {
     if (serving != nullptr) {
       renewal_.emplace(*options, serving, modbus::TlsRenewal::Clock::now());
     }
@@ -244,6 +244,9 @@ class CertificateCare {
     if (found.renewed) {
       server_->renew(found.renewed);
     }
+    if (found.fault) {
+      task_->tls_fault(static_cast<std::uint8_t>(*found.fault));
+    }
     for (const std::string& line : found.lines) {
       tell("TLS", line);
     }
@@ -251,6 +254,7 @@ class CertificateCare {
 
  private:
   modbus::Server* server_;
+  Task* task_;
   std::optional<modbus::TlsRenewal> renewal_;
 };
 
@@ -391,11 +395,13 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
          : mqtt    ? "; nothing is published to MQTT"
                    : "";
   // Read after the guard was forked: the guard needs no key.
-  const auto tls =
-      config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
+  const auto tls = config.modbus && config.modbus->tls
+                       ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls, modbus::OutOfDate::taken)
+                       : nullptr;
   const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
   how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
+  how += tls && tls->fault_at(std::time(nullptr)) != modbus::TlsFault::none ? " (no client comes in)" : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
@@ -431,7 +437,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   task.door().attach(std::move(taps));
   RunNotices notices(config, shape, task, attachments, std::move(beside));
-  CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls);
+  CertificateCare certificate(server.get(), task, tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);

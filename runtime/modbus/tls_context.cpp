@@ -127,16 +127,23 @@ void require_now(const X509& certificate, const std::string& path, const Place& 
   }
 }
 
+Validity validity_of(const X509& certificate) {
+  return {.begins = seconds_of(*X509_get0_notBefore(&certificate)),
+          .ends = seconds_of(*X509_get0_notAfter(&certificate))};
+}
+
 struct OwnCertificate {
   std::vector<CertificatePointer> chain{};
   KeyPointer key{};
 };
 
-/// A certificate that counts today, with those behind it and its key.
+/// A certificate, with those behind it and its key.
 OwnCertificate read_own_certificate(const std::string& path, const Place& place, const std::string& key_path,
-                                    const Place& key_place) {
+                                    const Place& key_place, OutOfDate out_of_date) {
   OwnCertificate own{.chain = read_certificates(path, "certificate", place)};
-  require_now(*own.chain.front(), path, place);
+  if (out_of_date == OutOfDate::refused) {
+    require_now(*own.chain.front(), path, place);
+  }
   own.key = read_key(key_path, key_place);
   if (X509_check_private_key(own.chain.front().get(), own.key.get()) != 1) {
     ERR_clear_error();
@@ -147,11 +154,12 @@ OwnCertificate read_own_certificate(const std::string& path, const Place& place,
   return own;
 }
 
-/// Gives back when it ends.
-std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) {
+/// Gives back when it counts.
+Validity use_server_certificate(SSL_CTX& context, const TlsOptions& options, OutOfDate out_of_date) {
   const std::string path = credential_path(options.certificate, certificate_credential);
-  const auto [chain, key] = read_own_certificate(path, options.certificate_place,
-                                                 credential_path(options.key, key_credential), options.key_place);
+  const auto [chain, key] =
+      read_own_certificate(path, options.certificate_place, credential_path(options.key, key_credential),
+                           options.key_place, out_of_date);
   bool taken =
       SSL_CTX_use_certificate(&context, chain.front().get()) == 1 && SSL_CTX_use_PrivateKey(&context, key.get()) == 1;
   for (std::size_t i = 1; taken && i < chain.size(); ++i) {
@@ -162,21 +170,25 @@ std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) 
                      fmt::format("The certificate {} does not serve: {}.", path, library_reason()),
                      "have one signed for a key of today's strength: RSA of 2048 bits, or an elliptic curve.");
   }
-  return seconds_of(*X509_get0_notAfter(chain.front().get()));
+  return validity_of(*chain.front());
 }
 
-void trust_clients_of(SSL_CTX& context, const TlsOptions& options) {
+/// Gives back when each of those who sign counts.
+std::vector<Validity> trust_clients_of(SSL_CTX& context, const TlsOptions& options, OutOfDate out_of_date) {
   const std::string path = credential_path(options.clients, clients_credential);
   const auto list = read_certificates(path, "file of those who sign clients' certificates", options.clients_place);
   bool any = false;
+  std::vector<Validity> signers;
   for (const CertificatePointer& one : list) {
     any = any || counts_now(*one);
+    signers.push_back(validity_of(*one));
     X509_STORE_add_cert(SSL_CTX_get_cert_store(&context), one.get());
     SSL_CTX_add_client_CA(&context, one.get());
   }
-  if (!any) {
+  if (!any && out_of_date == OutOfDate::refused) {
     require_now(*list.front(), path, options.clients_place);
   }
+  return signers;
 }
 
 /// One role; nothing where the certificate has none. `is_one` is false where the extension is there and is no role.
@@ -231,7 +243,8 @@ void check_client_files(const TlsClientFiles& files) {
     require_now(*authorities.front(), files.authority, files.authority_place);
   }
   if (!files.certificate.empty()) {
-    (void)read_own_certificate(files.certificate, files.certificate_place, files.key, files.key_place);
+    (void)read_own_certificate(files.certificate, files.certificate_place, files.key, files.key_place,
+                               OutOfDate::refused);
   }
 }
 
@@ -244,7 +257,7 @@ void TlsContext::Free::operator()(ssl_ctx_st* context) const {
   SSL_CTX_free(context);
 }
 
-TlsContext::TlsContext(const TlsOptions& options)
+TlsContext::TlsContext(const TlsOptions& options, OutOfDate out_of_date)
     : context_(SSL_CTX_new(TLS_server_method())), roles_(options.roles), without_role_(options.without_role) {
   if (context_ == nullptr) {
     throw std::runtime_error("TLS: " + library_reason());
@@ -262,12 +275,20 @@ TlsContext::TlsContext(const TlsOptions& options)
   SSL_CTX_set_verify(&context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_verify_depth(&context, longest_chain);
   SSL_CTX_set_max_cert_list(&context, longest_chain_bytes);
-  ends_ = use_server_certificate(context, options);
-  trust_clients_of(context, options);
+  validity_ = use_server_certificate(context, options, out_of_date);
+  signers_ = trust_clients_of(context, options, out_of_date);
+}
+
+TlsFault TlsContext::fault_at(std::time_t now) const {
+  const auto counts = [now](const Validity& one) { return one.begins <= now && now < one.ends; };
+  return now >= validity_.ends                    ? TlsFault::ended
+         : now < validity_.begins                 ? TlsFault::not_begun
+         : !std::ranges::any_of(signers_, counts) ? TlsFault::signers
+                                                  : TlsFault::none;
 }
 
 std::string TlsContext::valid_until() const {
-  return date_text(ends_);
+  return date_text(validity_.ends);
 }
 
 Rights TlsContext::rights_of(const x509_st& certificate) const {

@@ -4,6 +4,7 @@
 // see OpenSSL.
 #pragma once
 
+#include <cstdint>
 #include <ctime>
 #include <map>
 #include <memory>
@@ -36,17 +37,35 @@ struct TlsOptions {
 /// The files that are read, each by its path: the certificate, its key, who signs those of clients.
 [[nodiscard]] std::vector<std::string> files_of(const TlsOptions& options);
 
+/// From when to when a certificate counts, in seconds since 1970.
+struct Validity {
+  std::time_t begins = 0;
+  std::time_t ends = 0;
+};
+
+/// Why no client comes in, whatever it shows; task.tls_fault says it.
+enum class TlsFault : std::uint8_t {
+  none,
+  ended,      ///< the server's certificate: clients refuse it
+  not_begun,  ///< it, by the clock of this machine, to which a client's certificate does not count yet either
+  signers,    ///< of those who sign clients' certificates, none counts
+};
+
+/// What becomes of certificates that do not count today. Where nothing serves yet, a control must not wait for them.
+enum class OutOfDate : std::uint8_t { refused, taken };
+
 class TlsContext {
  public:
-  /// Throws InputError HY831 to HY834.
-  explicit TlsContext(const TlsOptions& options);
+  /// Throws InputError HY831 to HY834; the last one where out of date is refused.
+  explicit TlsContext(const TlsOptions& options, OutOfDate out_of_date = OutOfDate::refused);
 
   /// What the owner of a certificate may do. A role that is not listed, or an extension that is not one role, may
   /// nothing.
   [[nodiscard]] Rights rights_of(const x509_st& certificate) const;
   /// Until when the server's certificate counts: 2027-05-01.
   [[nodiscard]] std::string valid_until() const;
-  [[nodiscard]] std::time_t ends() const { return ends_; }
+  [[nodiscard]] std::time_t ends() const { return validity_.ends; }
+  [[nodiscard]] TlsFault fault_at(std::time_t now) const;
   [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
 
  private:
@@ -56,7 +75,8 @@ class TlsContext {
   std::unique_ptr<ssl_ctx_st, Free> context_;
   std::map<std::string, Rights, std::less<>> roles_;
   Rights without_role_;
-  std::time_t ends_ = 0;
+  Validity validity_{};              ///< of the server's certificate
+  std::vector<Validity> signers_{};  ///< of those who sign clients'
 };
 
 /// Of a client of TLS, each by the path that counts.

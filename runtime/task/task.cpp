@@ -209,6 +209,7 @@ void Task::count_writes() noexcept {
   }
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
   status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();
+  status_.tls_fault = tls_fault_.load(std::memory_order_relaxed);
 }
 
 void Task::settle(Clock& clock, Fault fault) {

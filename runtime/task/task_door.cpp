@@ -57,6 +57,8 @@ constexpr std::array statuses{
     count_of("task.mqtt_lost", "rows for MQTT that are lost"),
     Status{"task.mqtt_fault", PointType::uint16, "1",
            "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost"},
+    Status{"task.tls_fault", PointType::uint16, "1",
+           "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
 };
 constexpr std::size_t status_count = statuses.size();
 
@@ -274,6 +276,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.mqtt.waiting),
       static_cast<double>(status.mqtt.lost),
       static_cast<double>(status.mqtt.fault),
+      static_cast<double>(status.tls_fault),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

@@ -47,6 +47,7 @@ struct TaskStatus {
   Fault last_fault = Fault::none;    ///< the newest, over or not
   KeptCount history{};
   KeptCount mqtt{};
+  std::uint8_t tls_fault = 0;
   double heartbeat = 0.0;
 };
 

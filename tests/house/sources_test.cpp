@@ -46,9 +46,9 @@ constexpr std::array<Allowed, 9> allowed_words{{
 }};
 
 std::vector<SourceText> all_sources() {
-  return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "fleet", "plots",
-                       "records", "runtime", "support", "tests", "tool", "trials", "tuning"},
-                      {".hpp", ".cpp", ".py"});
+  return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "fleet", "gateways",
+                       "plots", "records", "runtime", "support", "tests", "tool", "trials", "tuning"},
+                      {".hpp", ".cpp", ".py", ".js"});
 }
 
 TEST(Sources, AreShortEnoughToBeRead) {

@@ -43,8 +43,9 @@ initial_states = ["LAG.RATE1"]
 """
 FAULTY = "FUNCTION_BLOCK A\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR G : HY_GAIN; H : HY_GAIN; END_VAR\n  G(XIN := H.XOUT);\n" \
          "  H(XIN := G.XOUT);\n  Y := H.XOUT;\n  Y := 2.0;\nEND_FUNCTION_BLOCK\n"
-# What the replay of a runtime's trace, a measured inner signal and an FMU say; tests of their own have them.
-RARE = {"fit": {"instance", "file", "derivatives", "relative_step", "instances", "steps"},
+# A wall clock that was set, what the replay of a runtime's trace, a measured inner signal and an FMU say; tests of their own have them.
+RARE = {"history": {"before", "seconds"},
+        "fit": {"instance", "file", "derivatives", "relative_step", "instances", "steps"},
         "verdict": {"agrees", "controller", "same_bits", "different", "first_different", "dropped", "outputs", "difference_rms",
                     "limited_rms"}}
 
@@ -134,6 +135,11 @@ class Schemas(unittest.TestCase):
 
     def test_record(self):
         self.holds("record", self.printed("record", "log.csv", "--json"))
+
+    def test_history(self):
+        (self.folder / "run.toml").write_text('[outputs.Y]\nsafe = 0.0\n[history]\nfile = "history.sqlite"\nevery = "1ms"\n')
+        self.printed("serve", "plant.st", "--config", "run.toml", "--virtual", "--engine", "interpreter", "--cycles", "1500")
+        self.holds("history", self.printed("history", "history.sqlite", "--json"))
 
     def test_fit(self):
         self.holds("fit", self.printed("tune", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "tuned.toml",

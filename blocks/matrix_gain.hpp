@@ -18,6 +18,10 @@ struct MatrixGain {
           "3 and gives one of 2. A row is added from the left. Up to 32 rows and 32 columns; a side of one element is "
           "one value."};
 
+  /// An instance for its page.
+  static constexpr std::string_view example = "K := [1.0, 0.5, 0.25, 0.0, 1.0, -2.0], ROWS := 2";
+  static constexpr Sizes example_sizes{.m = 3, .p = 2};
+
   static constexpr std::array inputs{vector_pin("XIN", Size::M, "vector")};
   static constexpr std::array params{matrix_parameter("K", Size::P, Size::M, "matrix, row by row")};
   static constexpr std::array outputs{vector_pin("XOUT", Size::P, "K·XIN")};

@@ -20,6 +20,10 @@ struct StateSpace {
           "on memory alone but for R1: a loop may be closed where R1 is not wired to it.",
       .source = "K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., section 2.3"};
 
+  /// An instance for its page.
+  static constexpr std::string_view example = "A := [0.9, 0.1, 0.0, 0.8], B := [0.0, 1.0], C := [1.0, 0.0], D := [0.0]";
+  static constexpr Sizes example_sizes{.n = 2, .m = 1, .p = 1, .direct = true};
+
   static constexpr std::array inputs{vector_pin("U", Size::M, "inputs"), flag_pin("R1", "reset, dominant: loads X0")};
   static constexpr std::array params{matrix_parameter("A", Size::N, Size::N, "from state to state, row by row"),
                                      matrix_parameter("B", Size::N, Size::M, "from inputs to the state"),

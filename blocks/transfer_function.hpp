@@ -43,6 +43,9 @@ struct TransferFunction : TransferFunctionPins {
           "depends on memory alone but for R1, so that a loop may be closed. Up to 16 poles. Coefficients of a low "
           "cut-off lose digits: for the slow parts of a loop HY_TRANSFER_FUNCTION_S or HY_STATE_SPACE is more exact.",
       .source = "A. V. Oppenheim and R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., section 6.3"};
+  /// An instance for its page.
+  static constexpr std::string_view example = "NUM := [1.0, 0.2], DEN := [1.0, -0.7]";
+  static constexpr Sizes example_sizes{.n = 1, .m = 2, .p = 2, .direct = true};
   static constexpr std::array states{vector_pin("S", Size::N, "memory")};
 
   /// NUM of z^(n − i) times XIN, added to `sum`; nothing where the numerator does not reach so high.

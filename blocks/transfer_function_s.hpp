@@ -21,6 +21,9 @@ struct TransferFunctionS : TransferFunctionPins {
       .source =
           "A. Tustin, J. IEE 94 (1947) 130; K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., "
           "section 8.3"};
+  /// An instance for its page.
+  static constexpr std::string_view example = "NUM := [1.0], DEN := [0.0001, 0.01, 1.0]";
+  static constexpr Sizes example_sizes{.n = 2, .m = 1, .p = 3};
   static constexpr std::array states{vector_pin("S", Size::N, "integrators before the present input")};
 
   // With w the signal whose n-th derivative is v, and z_k its k-th: DEN_0·v = XIN − Σ DEN_(n−k)·z_k. The trapezoidal

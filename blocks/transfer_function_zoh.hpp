@@ -33,6 +33,9 @@ struct TransferFunctionZoh {
       matrix_parameter("C", Size::N, Size::One, "from the state to the output"),
       direct_parameter("D", Size::One, Size::One, "from the input to the output at once")};
   static constexpr auto outputs = TransferFunctionPins::outputs;
+  /// An instance for its page.
+  static constexpr std::string_view example = "NUM := [1.0], DEN := [0.0001, 0.01, 1.0]";
+  static constexpr Sizes example_sizes{.n = 2, .m = 1, .p = 3};
   static constexpr std::array states{vector_pin("X", Size::N, "state of the next step")};
 
   template <class View>

@@ -469,8 +469,8 @@ std::string Reader::nearest_block(std::string_view name) const {
     return std::string(block);
   }
   std::vector<std::string_view> candidates;
-  for (const BlockType& type : block_types()) {
-    candidates.push_back(type.about.name);
+  for (const BlockType* const type : documented_blocks()) {
+    candidates.push_back(type->about.name);
   }
   for (const Definition& definition : definitions_.list) {
     candidates.push_back(definition.block->name.text);

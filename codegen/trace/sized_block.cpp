@@ -234,7 +234,13 @@ std::variant<Sizes, SizeProblem> transfer_function_sizes(const SizedKind& kind, 
 
 template <class B>
 SizedKind sized_kind_of() {
-  return {.about = B::about, .inputs = B::inputs, .params = B::params, .outputs = B::outputs, .states = B::states};
+  return {.about = B::about,
+          .inputs = B::inputs,
+          .params = B::params,
+          .outputs = B::outputs,
+          .states = B::states,
+          .example = B::example,
+          .example_sizes = B::example_sizes};
 }
 
 }  // namespace
@@ -289,6 +295,22 @@ const BlockType& sized_block(const SizedKind& kind, const Sizes& sizes) {
     });
   }
   return block->type;
+}
+
+std::vector<const BlockType*> documented_blocks() {
+  std::vector<const BlockType*> list;
+  for (const BlockType& block : block_types()) {
+    list.push_back(&block);
+  }
+  for (const SizedKind& kind : sized_kinds()) {
+    list.push_back(&sized_block(kind, kind.example_sizes));
+  }
+  return list;
+}
+
+const BlockType* find_documented_block(std::string_view name) {
+  const SizedKind* const kind = find_sized_kind(name);
+  return kind != nullptr ? &sized_block(*kind, kind->example_sizes) : find_block_type(name);
 }
 
 std::string sized_type_text(const SizedKind& kind, const Sizes& sizes) {

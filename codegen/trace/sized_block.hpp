@@ -22,6 +22,8 @@ struct SizedKind {
   std::span<const SizedField> params{};
   std::span<const SizedField> outputs{};
   std::span<const SizedField> states{};
+  std::string_view example{};  ///< the settings of an instance
+  Sizes example_sizes{};
   /// What an instance says beside its parameters: ROWS, or the coefficients that become them.
   std::vector<std::string_view> settings{};
 };
@@ -47,6 +49,12 @@ struct SizedBlock {
 
 /// The block of a kind for its sizes. It lives as long as the process.
 const BlockType& sized_block(const SizedKind& kind, const Sizes& sizes);
+
+/// All blocks of the library, those with sizes as the instance of their example.
+std::vector<const BlockType*> documented_blocks();
+
+/// The block of a name, of one with sizes the instance of its example; null where there is none.
+const BlockType* find_documented_block(std::string_view name);
 
 /// As a type of the text: HY_STATE_SPACE[2,1,1]. Null for any other text.
 std::string sized_type_text(const SizedKind& kind, const Sizes& sizes);

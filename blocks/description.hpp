@@ -43,6 +43,7 @@ struct Field {
   Type type = Type::Real;
   bool required = false;       ///< an input that has no default: it must be connected
   bool above_minimum = false;  ///< the minimum itself is out of range
+  bool filled = false;         ///< an array of just so many numbers: fewer would mean something else
   bool open = false;           ///< a choice of the machine's past, which a record does not show
   FieldRole role = FieldRole::Number;
   std::string_view shapes{};  ///< the parameter of the same block whose effect it shapes; empty for none

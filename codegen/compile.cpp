@@ -11,10 +11,53 @@
 #include "codegen/graph/portability.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "codegen/graph/units.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {
 namespace {
+
+/// A cause without the indexes of elements: a fault of a vector is one fault.
+std::string without_indexes(const std::string& cause) {
+  std::string text;
+  for (std::size_t i = 0; i < cause.size(); ++i) {
+    const std::size_t end = cause[i] == '[' ? cause.find_first_not_of("0123456789", i + 1) : std::string::npos;
+    if (end != std::string::npos && end > i + 1 && cause[end] == ']') {
+      i = end;
+    } else {
+      text += cause[i];
+    }
+  }
+  return text;
+}
+
+/// Keeps of neighbours that differ by an index the first, which says how many there are.
+void join_elements(std::vector<Diagnostic>& list) {
+  std::vector<Diagnostic> kept;
+  std::size_t more = 0;
+  const auto finish = [&] {
+    if (more > 0) {
+      kept.back().cause += fmt::format(" (and {} more element{})", more, more == 1 ? "" : "s");
+    }
+    more = 0;
+  };
+  for (Diagnostic& one : list) {
+    const bool element = !kept.empty() && kept.back().number == one.number && kept.back().cause != one.cause &&
+                         kept.back().place.file == one.place.file && kept.back().place.line == one.place.line &&
+                         kept.back().place.column == one.place.column &&
+                         without_indexes(kept.back().cause) == without_indexes(one.cause);
+    if (element) {
+      ++more;
+      continue;
+    }
+    finish();
+    kept.push_back(std::move(one));
+  }
+  if (!kept.empty()) {
+    finish();
+  }
+  list = std::move(kept);
+}
 
 /// Sorted by place, each once: a block that is instantiated twice has its faults once.
 void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics) {
@@ -25,6 +68,7 @@ void tidy_up(const Diagnostics& found, bool any_order, Diagnostics& diagnostics)
   std::ranges::stable_sort(list, [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
   const auto same = [&](const Diagnostic& a, const Diagnostic& b) { return key(a) == key(b); };
   list.erase(std::unique(list.begin(), list.end(), same), list.end());
+  join_elements(list);
   for (Diagnostic& one : list) {
     if (any_order && one.number == error::hidden_delay) {
       one.severity = Severity::Warning;
@@ -143,6 +187,19 @@ void warn_of_time(const Definitions& definitions, std::size_t top, Diagnostics& 
   }
 }
 
+/// Matrices of a held input belong to one sample time.
+void require_held_time(const Graph& graph, Diagnostics& diagnostics) {
+  for (const Node& node : graph.nodes) {
+    if (graph.sample_time_ns <= 0 && node.block != nullptr && node.block->sized != nullptr &&
+        !node.block->sized->kind->settings.empty() && !node.block->states.empty()) {
+      diagnostics.error(
+          error::missing_sample_time, graph.place(node.span),
+          fmt::format("'{}' is discretised at the sample time, and '{}' states none", node.path, graph.name),
+          "Write it behind the name of the block: (* @ts 1ms *).");
+    }
+  }
+}
+
 /// The block to be run: the named one, or the only one that no other contains.
 std::int64_t find_top(const Definitions& definitions, const std::string& wanted, Diagnostics& diagnostics) {
   const auto& source = *definitions.source;
@@ -183,6 +240,7 @@ void check(std::shared_ptr<const language::SourceFile> source, Diagnostics& diag
       check_portability(checked.definitions, static_cast<std::uint32_t>(i), found);
     }
     if (!contained[i]) {
+      require_held_time(checked.programs[i].graph, found);
       warn_of_time(checked.definitions, i, found);
     }
   }
@@ -195,6 +253,7 @@ Program compile(std::shared_ptr<const language::SourceFile> source, const Compil
   Checked checked = check_all(std::move(source), options, found);
   const std::int64_t top = find_top(checked.definitions, options.top, found);
   if (top >= 0) {
+    require_held_time(checked.programs[static_cast<std::size_t>(top)].graph, found);
     warn_of_time(checked.definitions, static_cast<std::size_t>(top), found);
   }
   tidy_up(found, options.any_order, diagnostics);
@@ -248,6 +307,23 @@ void report_order(const Diagnostics& found, bool any_order, Diagnostics& diagnos
   tidy_up(order, any_order, diagnostics);
 }
 
+/// An order of statements whose vectors have become their elements, as one of the statements of the text: each stands
+/// where its last element does.
+std::vector<std::uint32_t> of_the_text(const language::FunctionBlock& block, std::vector<std::uint32_t> order) {
+  if (block.origins.empty()) {
+    return order;
+  }
+  std::vector<std::uint32_t> written;
+  for (std::size_t i = order.size(); i-- > 0;) {
+    const std::uint32_t origin = block.origins[order[i]];
+    if (std::ranges::find(written, origin) == written.end()) {
+      written.push_back(origin);
+    }
+  }
+  std::ranges::reverse(written);
+  return written;
+}
+
 }  // namespace
 
 std::string format_text(std::string path, std::string text, Diagnostics& diagnostics, const FormatOptions& options) {
@@ -267,7 +343,9 @@ std::string format_text(std::string path, std::string text, Diagnostics& diagnos
   language::StatementOrders orders(source->blocks.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (options.any_order && !blocks_work(found)) {
-      orders[i] = statement_order(checked.definitions, static_cast<std::uint32_t>(i), checked.programs[i].graph);
+      orders[i] =
+          of_the_text(checked.definitions.source->blocks[i],
+                      statement_order(checked.definitions, static_cast<std::uint32_t>(i), checked.programs[i].graph));
     }
   }
   return language::format(*source, orders);

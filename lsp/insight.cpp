@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "lsp/words.hpp"
 
 namespace hysteron::lsp {
@@ -42,7 +44,7 @@ const language::Variable* variable_of(const Insight& insight, std::string_view n
 
 const BlockType* type_of(const Insight& insight, std::string_view instance, std::size_t offset) {
   const auto* const variable = variable_of(insight, instance, offset);
-  return variable == nullptr ? nullptr : find_block_type(variable->type.text);
+  return variable == nullptr ? nullptr : find_documented_block(variable->type.text);
 }
 
 /// The block of the file of a name; where the text is broken, of the last text that was not.
@@ -67,7 +69,8 @@ const language::FunctionBlock* own_type(const Insight& insight, std::string_view
 
 /// A variable as it was declared, with what its annotations say.
 std::string declaration_text(const language::Variable& variable) {
-  auto text = fmt::format("{} : {}\n", variable.name.text, variable.type.text);
+  auto text =
+      fmt::format("{} : {}{}\n", variable.name.text, variable.is_vector() ? "ARRAY OF " : "", variable.type.text);
   for (const auto& one : variable.annotations) {
     text += fmt::format("@{} {}\n", one.key, one.value);
   }
@@ -91,11 +94,17 @@ std::string signature(const Field& field, std::string_view direction) {
                      field.unit);
 }
 
-/// All pins of a block with their direction.
+/// All pins of a block with their direction; a vector, which has a pin for each element, once.
 template <class Visit>
 void each_pin(const BlockType& block, Visit visit) {
   const auto visit_all = [&](std::span<const Field> fields, std::string_view direction) {
-    for (const Field& field : fields) {
+    for (Field field : fields) {
+      if (const auto element = element_of(field.name)) {
+        if (element->index > 0) {
+          continue;
+        }
+        field.name = element->vector;
+      }
       visit(field, direction);
     }
   };
@@ -116,7 +125,7 @@ std::string pin_text(const BlockType& block, std::string_view name) {
 
 /// The block of what is called: of an instance, or the type itself in `X : HY_LAG := (…)`.
 const BlockType* called_type(const Insight& insight, std::string_view name, std::size_t offset) {
-  const auto* const own = find_block_type(name);
+  const auto* const own = find_documented_block(name);
   return own != nullptr || name.empty() ? own : type_of(insight, name, offset);
 }
 
@@ -195,8 +204,8 @@ json completion(const Insight& insight, std::size_t offset) {
     return items;
   }
   if (symbol == Symbol::Colon) {
-    for (const BlockType& block : block_types()) {
-      add(block.about.name, kind_class, std::string(block.about.title));
+    for (const BlockType* const block : documented_blocks()) {
+      add(block->about.name, kind_class, std::string(block->about.title));
     }
     for (const auto& block : insight.tree.blocks) {
       add(block.name.text, kind_class, "FUNCTION_BLOCK of this file");

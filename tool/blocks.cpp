@@ -12,6 +12,7 @@
 #include "codegen/backends/reference/block_page.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/graph/other_names.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "tool/block_card.hpp"
@@ -47,7 +48,7 @@ const BlockType* named_block(const std::string& name) {
     return &fmu_block(name);
   }
   for (const auto& candidate : {name, "HY_" + name, std::string(block_of_other_name(name))}) {
-    if (const BlockType* const block = find_block_type(candidate)) {
+    if (const BlockType* const block = find_documented_block(candidate)) {
       return block;
     }
   }
@@ -60,11 +61,11 @@ std::vector<const BlockType*> blocks_that_tell_of(const std::string& word) {
   const auto has = [&](std::string_view text) { return in_capitals(text).find(wanted) != std::string::npos; };
   std::vector<const BlockType*> named;
   std::vector<const BlockType*> others;
-  for (const BlockType& block : block_types()) {
-    if (has(block.about.name) || has(block.about.title)) {
-      named.push_back(&block);
-    } else if (has(block.about.meaning)) {
-      others.push_back(&block);
+  for (const BlockType* const block : documented_blocks()) {
+    if (has(block->about.name) || has(block->about.title)) {
+      named.push_back(block);
+    } else if (has(block->about.meaning)) {
+      others.push_back(block);
     }
   }
   named.insert(named.end(), others.begin(), others.end());
@@ -73,8 +74,8 @@ std::vector<const BlockType*> blocks_that_tell_of(const std::string& word) {
 
 [[noreturn]] void refuse_unknown(const std::string& name) {
   std::vector<std::string_view> known;
-  for (const BlockType& block : block_types()) {
-    known.push_back(block.about.name);
+  for (const BlockType* const block : documented_blocks()) {
+    known.push_back(block->about.name);
   }
   auto near = nearest_name(name, known);
   near = near.empty() ? nearest_name("HY_" + name, known) : near;
@@ -83,12 +84,8 @@ std::vector<const BlockType*> blocks_that_tell_of(const std::string& word) {
 }
 
 std::vector<const BlockType*> blocks_of(Group group) {
-  std::vector<const BlockType*> list;
-  for (const BlockType& block : block_types()) {
-    if (block.about.group == group) {
-      list.push_back(&block);
-    }
-  }
+  std::vector<const BlockType*> list = documented_blocks();
+  std::erase_if(list, [&](const BlockType* block) { return block->about.group != group; });
   std::sort(list.begin(), list.end(),
             [](const BlockType* a, const BlockType* b) { return a->about.name < b->about.name; });
   return list;
@@ -96,8 +93,8 @@ std::vector<const BlockType*> blocks_of(Group group) {
 
 std::size_t widest_name() {
   std::size_t width = 0;
-  for (const BlockType& block : block_types()) {
-    width = std::max(width, block.about.name.size());
+  for (const BlockType* const block : documented_blocks()) {
+    width = std::max(width, block->about.name.size());
   }
   return width;
 }
@@ -154,8 +151,8 @@ int show_blocks(const BlocksOptions& options, Console& console) {
                                      : card_text(*block));
   } else if (options.json) {
     auto list = nlohmann::json::array();
-    for (const BlockType& block : block_types()) {
-      list.push_back(card_json(block));
+    for (const BlockType* const block : documented_blocks()) {
+      list.push_back(card_json(*block));
     }
     console.print(list.dump(2) + "\n");
   } else {

@@ -9,6 +9,7 @@
 
 #include "codegen/graph/units.hpp"
 #include "codegen/parameters/apply.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -91,7 +92,8 @@ class Builder {
                          "leave the start out and give the list under [parameters].");
       return;
     }
-    for (std::size_t element = 0; element < elements_of(fit, parameter); ++element) {
+    for (std::size_t element = first_free(static_cast<std::uint32_t>(found)); element < elements_of(fit, parameter);
+         ++element) {
       FreeParameter free{.parameter = static_cast<std::size_t>(found),
                          .element = element,
                          .name = field.length > 1 ? fmt::format("{}[{}]", parameter.path, element) : parameter.path,
@@ -101,6 +103,20 @@ class Builder {
       set_bounds(free, fit, field);
       add_for_records(std::move(free), fit);
     }
+  }
+
+  /// The first number that a record can tell: those before it only scale the others.
+  [[nodiscard]] std::size_t first_free(std::uint32_t parameter) const {
+    for (const Node& node : graph().nodes) {
+      for (std::size_t pin = node.block == nullptr ? 0 : node.block->inputs.size();
+           node.block != nullptr && pin < node.wire_count; ++pin) {
+        const Wire& wire = graph().wire(node, pin);
+        if (wire.from == Wire::From::Parameter && wire.index == parameter) {
+          return scaling_numbers(*node.block, pin - node.block->inputs.size());
+        }
+      }
+    }
+    return 0;
   }
 
   /// Once, or once for each record.

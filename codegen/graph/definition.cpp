@@ -14,7 +14,9 @@
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/other_names.hpp"
 #include "codegen/graph/units.hpp"
+#include "codegen/graph/vectors.hpp"
 #include "codegen/language/annotation.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -42,7 +44,8 @@ std::string known_keys(Keys keys) {
 }
 
 bool is_of_library(std::string_view name) {
-  return find_block_type(name) != nullptr || language::same_name(name, fmu_type_name);
+  return find_block_type(name) != nullptr || find_sized_kind(name) != nullptr ||
+         language::same_name(name, fmu_type_name);
 }
 
 bool number_of(std::string_view text, double& value) {
@@ -149,7 +152,9 @@ class Reader {
       const Variable& variable = definition.block->variables[port.declaration];
       add_variable(definition, variable, port.name, [&] { return declare_border(variable, port, false); });
       if (port.role == language::body::Role::InOut && port.assigned) {
-        const auto& name = definitions_.names.emplace_back(std::string(port.name) + "_OUT");
+        const auto element = element_of(port.name);
+        const auto& name = definitions_.names.emplace_back(
+            element ? element_name(std::string(element->vector) + "_OUT", element->index) : port.name + "_OUT");
         add_variable(definition, variable, name, [&] { return declare_border(variable, port, true); });
         definition.variables.back().field.name = name;
       }
@@ -159,7 +164,7 @@ class Reader {
   Declared declare_border(const Variable& variable, const bodies::BorderPort& port, bool output) {
     Declared declared;
     declared.variable = &variable;
-    declared.field.name = variable.name.text;
+    declared.field.name = element_of(port.name) ? definitions_.names.emplace_back(port.name) : variable.name.text;
     declared.field.type = bodies::info(port.type).carrier;
     declared.field.preset = port.initial;
     declared.has_preset = true;  // IEC 61131-3: what is not connected has its initial value
@@ -246,6 +251,11 @@ class Reader {
     } else if (const BlockType* block = find_block_type(variable.type.text)) {
       declared.kind = Declared::Kind::LibraryBlock;
       declared.block = block;
+    } else if (const BlockType* sized = find_sized_block(variable.type.text)) {
+      declared.kind = Declared::Kind::LibraryBlock;
+      declared.block = sized;
+    } else if (find_sized_kind(variable.type.text) != nullptr) {
+      declared.kind = Declared::Kind::Unknown;  // its sizes do not agree, which has been told
     } else if (language::same_name(variable.type.text, fmu_type_name)) {
       declare_fmu(variable, declared);
     } else if (const auto found = definitions_.by_name.find(upper(variable.type.text));
@@ -459,8 +469,8 @@ std::string Reader::nearest_block(std::string_view name) const {
     return std::string(block);
   }
   std::vector<std::string_view> candidates;
-  for (const BlockType& type : block_types()) {
-    candidates.push_back(type.about.name);
+  for (const BlockType* const type : documented_blocks()) {
+    candidates.push_back(type->about.name);
   }
   for (const Definition& definition : definitions_.list) {
     candidates.push_back(definition.block->name.text);
@@ -472,8 +482,15 @@ std::string Reader::nearest_block(std::string_view name) const {
 
 Definitions define(std::shared_ptr<const language::SourceFile> source, Diagnostics& diagnostics) {
   Definitions definitions;
-  definitions.source = std::move(source);
+  Diagnostics of_vectors;
+  definitions.source = expand_vectors(std::move(source), of_vectors);
   Reader(definitions, diagnostics).read_all();
+  if (of_vectors.has_errors()) {  // what could not become elements is missing in the text
+    std::ranges::for_each(definitions.list, [](Definition& one) { one.usable = false; });
+  }
+  for (const Diagnostic& one : of_vectors.all()) {
+    diagnostics.add(one);
+  }
   return definitions;
 }
 

@@ -194,6 +194,7 @@ void Elaborator::instantiate(const Instance& instance, std::size_t variable, Par
     case Declared::Kind::LibraryBlock:
       part.node = builder_.block(*declared.block, path, rate, declared.variable->name.span);
       apply_settings(instance, declared, part);
+      discretise(instance, declared, part, rate);
       break;
     case Declared::Kind::UserBlock: {
       const Definition& inner = definitions_.list[declared.definition];
@@ -250,7 +251,8 @@ void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& par
     const bool array = std::holds_alternative<language::ArrayLiteral>(source_.expressions[argument.value].node);
     if (array || (pin.parameter && constant_value(source_, argument.value, value, type))) {
       std::vector<double> values;
-      if (claim(declared, part, pin, argument) && constant_array(argument.value, pin.field, values)) {
+      if (claim(declared, part, pin, argument) &&
+          constant_array(argument.value, pin.field, values, is_sized(declared))) {
         set_constant(instance, declared, part, pin, values, argument);
       }
       continue;

@@ -5,6 +5,7 @@
 
 #include "codegen/graph/body/body.hpp"
 #include "codegen/graph/elaborator.hpp"
+#include "codegen/graph/vectors.hpp"
 
 namespace hysteron {
 
@@ -46,7 +47,9 @@ void Elaborator::elaborate_body(const Instance& instance) {
     Slot& slot = slots_[instance.first_slot + i];
     if (declared.kind == Declared::Kind::Output) {
       // The output of a VAR_IN_OUT has a name of its own, behind that of the variable.
-      const auto found = results.find(upper(declared.variable->name.text));
+      const auto element = element_of(declared.field.name);
+      const auto name = declared.variable->name.text;
+      const auto found = results.find(upper(element ? element_name(name, element->index) : std::string(name)));
       slot.driven = true;
       slot.span = declared.variable->name.span;
       slot.level = instance.level;

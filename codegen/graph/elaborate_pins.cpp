@@ -8,29 +8,40 @@
 
 #include "codegen/graph/elaborator.hpp"
 #include "codegen/graph/relations.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/names.hpp"
 
 namespace hysteron {
 
 void Elaborator::apply_settings(const Instance& instance, const Declared& declared, Part& part) {
   for (const language::Argument& setting : declared.variable->settings) {
+    if (is_size_setting(declared, setting.pin.text)) {
+      continue;
+    }
     const Pin pin = find_pin(declared, setting.pin);
     if (!pin.found || !claim(declared, part, pin, setting)) {
       continue;
     }
     std::vector<double> values;
-    if (constant_array(setting.value, pin.field, values)) {
+    if (constant_array(setting.value, pin.field, values, is_sized(declared))) {
       set_constant(instance, declared, part, pin, values, setting);
     }
   }
 }
 
-bool Elaborator::constant_array(ExpressionId id, const Field& field, std::vector<double>& values) {
+bool Elaborator::is_size_setting(const Declared& declared, std::string_view name) {
+  return declared.kind == Declared::Kind::LibraryBlock && declared.block->sized != nullptr &&
+         std::ranges::any_of(declared.block->sized->kind->settings,
+                             [&](std::string_view one) { return language::same_name(one, name); });
+}
+
+bool Elaborator::constant_array(ExpressionId id, const Field& field, std::vector<double>& values, bool sized) {
   std::vector<ExpressionId> elements{id};
   const Span span = source_.expressions[id].span;
   if (const auto* array = std::get_if<language::ArrayLiteral>(&source_.expressions[id].node)) {
     elements = array->elements;
-    if (elements.size() > field.length || field.length == 1) {
+    const bool one_of_one = field.length == 1 && elements.size() == 1 && sized;
+    if (elements.size() > field.length || (field.length == 1 && !one_of_one)) {
       error(error::type_mismatch, span,
             fmt::format("{} takes {} value{}, here are {}", field.name, field.length,
                         field.length == 1 ? "" : "s at most", elements.size()),

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -76,7 +77,15 @@ class Elaborator {
   void instantiate(const Instance& instance, std::size_t variable, Part& part);
   // `INV : HY_M_INVERSE := (C1 := 0.05)`: constants, given once.
   void apply_settings(const Instance& instance, const Declared& declared, Part& part);
-  bool constant_array(ExpressionId id, const Field& field, std::vector<double>& values);
+  /// `sized`: of a block whose sizes the lists say, where a list of one number is one number.
+  bool constant_array(ExpressionId id, const Field& field, std::vector<double>& values, bool sized);
+  static bool is_sized(const Declared& declared) {
+    return declared.kind == Declared::Kind::LibraryBlock && declared.block->sized != nullptr;
+  }
+  /// What says a size, or becomes parameters, and is no pin.
+  static bool is_size_setting(const Declared& declared, std::string_view name);
+  /// Coefficients in s become the matrices of a block that holds its input.
+  void discretise(const Instance& instance, const Declared& declared, Part& part, Rate rate);
   Pin find_pin(const Declared& declared, const language::Name& name);
   std::vector<std::string> pin_names(const Declared& declared, bool inputs);
   Wire& pin_wire(const Declared& declared, const Part& part, const Pin& pin);

@@ -59,7 +59,7 @@ const Relations& known_relations(const BlockType& block) {
     return map;
   }();
   static const Relations none{};  // an FMU says nothing of what its parameters are to each other
-  return block.fmu != nullptr ? none : all.at(&block);
+  return block.fmu != nullptr || block.sized != nullptr ? none : all.at(&block);
 }
 
 }  // namespace
@@ -70,6 +70,14 @@ std::vector<Contradiction> contradictions(const BlockType& block, std::string_vi
   std::vector<Contradiction> found;
   const auto is_given = [&](std::optional<std::size_t> param) { return param && !values[*param].empty(); };
   const auto name = [&](std::size_t param) { return fmt::format("{}.{}", instance, block.params[param].name); };
+
+  for (std::size_t param = 0; param < values.size(); ++param) {
+    if (block.sized != nullptr && block.params[param].name == "DEN" && !values[param].empty() &&
+        values[param].front() == 0.0) {
+      found.push_back({param, fmt::format("{} begins with 0, which the others are divided by", name(param)),
+                       "Its first number belongs to the highest power: give one that is not 0."});
+    }
+  }
 
   if (is_given(relations.low) && is_given(relations.high)) {
     const double low = values[*relations.low].front();

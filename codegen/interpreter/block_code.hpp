@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "blocks/catalogue.hpp"
+#include "codegen/trace/block_type.hpp"
 
 namespace hysteron {
 
@@ -23,6 +24,7 @@ struct Instruction {
   void* state = nullptr;
   void* out = nullptr;
   const S* ts = nullptr;
+  const BlockType* block = nullptr;  ///< null: an operation
 };
 
 /// A block for the scalar S: sizes of its structures, offsets of their members, and its functions.

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -112,8 +113,9 @@ class Machine {
   std::vector<std::pair<std::uint32_t, std::unique_ptr<S>>> sample_times_;  ///< by `every`
   std::vector<Instruction<S>> resets_;
   std::vector<Instruction<S>> instructions_;
-  std::vector<Timed> timed_;                       ///< instead of instructions_, where there are several rates
-  std::vector<std::unique_ptr<FmuNode<S>>> fmus_;  ///< by node; null for all others
+  std::vector<Timed> timed_;                        ///< instead of instructions_, where there are several rates
+  std::vector<std::unique_ptr<FmuNode<S>>> fmus_;   ///< by node; null for all others
+  std::map<const BlockType*, BlockCode<S>> sized_;  ///< of blocks whose pins are vectors
   std::unique_ptr<Directions> directions_ = std::make_unique<Directions>();  ///< since the last reset
   Directions next_directions_{};
   std::uint64_t longest_period_ = 1;

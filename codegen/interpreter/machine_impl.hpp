@@ -8,6 +8,7 @@
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/interpreter/fmu_node.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/interpreter/sized_code.hpp"
 #include "codegen/trace/evaluate.hpp"
 
 namespace hysteron {
@@ -113,7 +114,9 @@ const BlockCode<S>& Machine<S>::code_of(std::uint32_t node) const {
   if (fmus_[node] != nullptr) {
     return fmus_[node]->code();
   }
-  return block_codes<S>()[static_cast<std::size_t>(program_->graph.nodes[node].block - block_types().data())];
+  const BlockType* const block = program_->graph.nodes[node].block;
+  return block->sized != nullptr ? sized_.at(block)
+                                 : block_codes<S>()[static_cast<std::size_t>(block - block_types().data())];
 }
 
 template <class S>
@@ -134,6 +137,9 @@ void Machine<S>::lay_out() {
     if (node.block != nullptr) {
       if (node.block->fmu != nullptr) {
         fmus_[index] = std::make_unique<FmuNode<S>>(*node.block, node.path, *directions_);
+      }
+      if (node.block->sized != nullptr && !sized_.contains(node.block)) {
+        sized_.emplace(node.block, detail::sized_code<S>(*node.block->sized));
       }
       const auto& code = code_of(index);
       placed.state = reserve(code.state_size, code.alignment);
@@ -226,7 +232,8 @@ Instruction<S> Machine<S>::instruction_of(std::uint32_t index) {
           .pins = pins_.data() + placed_[index].first_pin,
           .state = fmus_[index] != nullptr ? static_cast<void*>(fmus_[index].get()) : state,
           .out = memory_.get() + placed_[index].out,
-          .ts = ts_of(node)};
+          .ts = ts_of(node),
+          .block = node.block};
 }
 
 template <class S>

@@ -11,8 +11,8 @@
 namespace hysteron::language {
 namespace {
 
-constexpr std::array<std::string_view, 10> types_of_bodies{"SINT", "INT",   "USINT", "UINT", "UDINT",
-                                                           "BYTE", "DWORD", "REAL",  "TIME", "ARRAY"};
+constexpr std::array<std::string_view, 9> types_of_bodies{"SINT", "INT",   "USINT", "UINT", "UDINT",
+                                                          "BYTE", "DWORD", "REAL",  "TIME"};
 
 class Scan {
  public:
@@ -100,7 +100,24 @@ class Scan {
   }
 
   [[nodiscard]] bool is_type() const {
-    return std::ranges::any_of(types_of_bodies, [&](std::string_view type) { return same_name(type, word()); });
+    return same_name(word(), "ARRAY")
+               ? !is_vector()
+               : std::ranges::any_of(types_of_bodies, [&](std::string_view type) { return same_name(type, word()); });
+  }
+  /// ARRAY[0..3] OF LREAL, which a diagram has, too: one dimension that begins at 0, of one of its four types.
+  [[nodiscard]] bool is_vector() const {
+    Lexer lexer = lexer_;
+    const auto text = [&](const Token& token) { return text_.substr(token.offset, token.length); };
+    if (lexer.next().symbol != Symbol::LeftBracket || text(lexer.next()) != "0") {
+      return false;
+    }
+    Token one = lexer.next();
+    while (one.symbol != Symbol::RightBracket && one.symbol != Symbol::Comma && one.symbol != Symbol::Semicolon &&
+           one.symbol != Symbol::End) {
+      one = lexer.next();
+    }
+    return one.symbol == Symbol::RightBracket && same_name(text(lexer.next()), "OF") &&
+           is_elementary_type(text(lexer.next()));
   }
   [[nodiscard]] bool is_time() const {
     const auto type = word().substr(0, word().find('#'));

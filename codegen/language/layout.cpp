@@ -60,7 +60,9 @@ std::vector<Element> elements_of(std::string_view text) {
     const bool value_before = !is_operator(before) && !is_opening(before) && before.symbol != Symbol::Assign &&
                               before.symbol != Symbol::Comma;
     element.is_unary = element.keyword == Keyword::Not || (is_operator(element) && !value_before);
-    element.is_type = before.symbol == Symbol::Colon && element.symbol == Symbol::Identifier &&
+    const bool behind_of =
+        before.keyword == Keyword::Control && same_name(text.substr(before.span.offset, before.span.length), "OF");
+    element.is_type = (before.symbol == Symbol::Colon || behind_of) && element.symbol == Symbol::Identifier &&
                       is_elementary_type(text.substr(token.offset, token.length));
     element.breaks_after = element.symbol == Symbol::Comma || (is_operator(element) && !element.is_unary);
     elements.push_back(element);
@@ -82,6 +84,9 @@ bool is_spaced(const Element& before, const Element& element) {
     if (!before.is_comment) {
       if (before.symbol == Symbol::Dot || (before.is_unary && before.keyword != Keyword::Not)) {
         return false;
+      }
+      if (element.symbol == Symbol::LeftBracket) {  // an index, the bounds of a vector; else a list of values
+        return before.symbol != Symbol::Identifier && before.keyword != Keyword::Derived;
       }
       return element.symbol != Symbol::LeftParenthesis || before.symbol != Symbol::Identifier;
     }

@@ -122,9 +122,7 @@ ExpressionId Parser::primary(bool behind_minus) {
     case Symbol::LeftParenthesis:
       return parenthesized();
     case Symbol::LeftBracket:
-      error(error::array_in_expression, span_of(now()), "An array is no value to compute with.",
-            "Give arrays in the declaration of an instance only: T : HY_TABLE := (X := [0.0, 1.0], …);");
-      return no_expression;
+      return array();
     case Symbol::Identifier:
       return ahead(1).symbol == Symbol::LeftParenthesis ? function_call() : reference();
     default:
@@ -182,15 +180,33 @@ ExpressionId Parser::reference() {
   if (accept(Symbol::Dot) && !expect_name(reference.pin, "the name of a pin")) {
     return no_expression;
   }
+  if (!index(reference.index)) {
+    return no_expression;
+  }
   if (is(Symbol::Dot) || is(Symbol::LeftBracket)) {
     error(error::refused_access, span_of(now()),
           is(Symbol::Dot) ? "Only the pins of an instance can be read, not what is inside of it."
-                          : "A diagram has no elements of arrays.",
-          is(Symbol::Dot) ? "Give the inner block a VAR_OUTPUT for the value."
-                          : "Use one variable for each element, or HY_TABLE for a curve.");
+                          : "A vector has one index: its elements are single values.",
+          is(Symbol::Dot) ? "Give the inner block a VAR_OUTPUT for the value." : "Write one index, X[2].");
     return no_expression;
   }
-  return make({.node = reference, .span = since(begin)}, 1);
+  const auto height = reference.index == no_expression ? 1U : 1U + heights_[reference.index];
+  return make({.node = reference, .span = since(begin)}, height);
+}
+
+bool Parser::index(ExpressionId& index) {
+  if (!is(Symbol::LeftBracket)) {
+    return true;
+  }
+  file_.has_vectors = true;
+  if (too_deep(depth_ + 1, span_of(now()))) {
+    return false;
+  }
+  advance();
+  ++depth_;
+  index = expression();
+  --depth_;
+  return index != no_expression && expect(Symbol::RightBracket, "`]`");
 }
 
 ExpressionId Parser::function_call() {
@@ -248,16 +264,29 @@ bool Parser::function_argument(std::vector<FunctionArgument>& list) {
 ExpressionId Parser::array() {
   const auto begin = now().offset;
   ArrayLiteral array;
+  if (too_deep(depth_ + 1, span_of(now()))) {
+    return no_expression;
+  }
+  file_.has_vectors = true;
   advance();
+  ++depth_;
   std::uint32_t height = 1;
   do {
+    if (is(Symbol::LeftBracket)) {
+      error(error::list_in_list, span_of(now()), "A list holds single values, and no list.",
+            "Write a matrix row by row, in one list: [1.0, 2.0, 3.0, 4.0].");
+      --depth_;
+      return no_expression;
+    }
     const ExpressionId element = expression();
     if (element == no_expression) {
+      --depth_;
       return no_expression;
     }
     array.elements.push_back(element);
     height = std::max(height, 1U + heights_[element]);
   } while (accept(Symbol::Comma));
+  --depth_;
   if (!expect(Symbol::RightBracket, "`,` or `]`")) {
     return no_expression;
   }

@@ -49,10 +49,7 @@ bool Parser::named_statement(FunctionBlock& block) {
     case Symbol::Dot:
       return pin_assignment();
     case Symbol::LeftBracket:
-      advance();
-      error(error::refused_access, span_of(now()), "A diagram has no elements of arrays.",
-            "Use one variable for each element, or HY_TABLE for a curve.");
-      return false;
+      return element_assignment(block);
     case Symbol::Equal:
       advance();
       unexpected("`:=`", "Write := to assign; = compares.");
@@ -75,7 +72,7 @@ bool Parser::call(FunctionBlock& block) {
   Call call{.instance = name_of(now())};
   advance();
   advance();
-  if (!accept(Symbol::RightParenthesis) && !arguments(call.arguments, false)) {
+  if (!accept(Symbol::RightParenthesis) && !arguments(call.arguments)) {
     return false;
   }
   if (!expect_semicolon()) {
@@ -91,6 +88,18 @@ bool Parser::assignment(FunctionBlock& block) {
   Assignment assignment{.target = name_of(now())};
   advance();
   advance();
+  return assigned_value(block, assignment, begin);
+}
+
+/// `Y[2] := value;`
+bool Parser::element_assignment(FunctionBlock& block) {
+  const auto begin = now().offset;
+  Assignment assignment{.target = name_of(now())};
+  advance();
+  return index(assignment.index) && expect(Symbol::Assign, "`:=`") && assigned_value(block, assignment, begin);
+}
+
+bool Parser::assigned_value(FunctionBlock& block, Assignment assignment, std::uint32_t begin) {
   assignment.value = expression();
   if (assignment.value == no_expression || !expect_semicolon()) {
     return false;
@@ -118,7 +127,7 @@ bool Parser::pin_assignment() {
 }
 
 /// The arguments behind an opening parenthesis, which stands before now(), up to the closing one.
-bool Parser::arguments(std::vector<Argument>& list, bool arrays) {
+bool Parser::arguments(std::vector<Argument>& list) {
   do {
     const auto second = ahead(1).symbol;
     if (is(Symbol::Identifier) && second == Symbol::Arrow) {
@@ -148,7 +157,7 @@ bool Parser::arguments(std::vector<Argument>& list, bool arrays) {
     if (!expect_name(argument.pin, "the name of a pin") || !expect(Symbol::Assign, "`:=`")) {
       return false;
     }
-    argument.value = arrays && is(Symbol::LeftBracket) ? array() : expression();
+    argument.value = expression();
     if (argument.value == no_expression) {
       return false;
     }

@@ -177,7 +177,7 @@ void Parser::declaration(FunctionBlock& block, Section section) {
   const auto begin = now().offset;
   const auto first = block.variables.size();
   Variable variable{.section = section};
-  const bool understood = declared_names() && expect(Symbol::Colon, "`:` and a type") && declared_type(variable.type) &&
+  const bool understood = declared_names() && expect(Symbol::Colon, "`:` and a type") && declared_type(variable) &&
                           (!accept(Symbol::Assign) || initial_value(variable.initial, variable.settings)) &&
                           expect_semicolon();
   if (understood) {
@@ -212,15 +212,56 @@ bool Parser::declared_names() {
   return true;
 }
 
-bool Parser::declared_type(Name& type) {
+bool Parser::declared_type(Variable& variable) {
+  if (is(Keyword::Derived) && same_name(text_of(span_of(now())), "ARRAY")) {
+    return vector_type(variable);
+  }
   if (is(Keyword::Derived) || (is(Symbol::Identifier) && is_refused_type(text_of(span_of(now()))))) {
     error(error::refused_type, span_of(now()), fmt::format("A diagram has no {}.", described(now())),
-          is(Keyword::Derived)
-              ? "Declare LREAL, BOOL, DINT, WORD or a block; arrays are values of a block's parameters only."
-              : "Write LREAL for numbers and times in seconds, BOOL, DINT or WORD.");
+          is(Keyword::Derived) ? "Declare LREAL, BOOL, DINT, WORD, a vector of these, ARRAY[0..3] OF LREAL, or a block."
+                               : "Write LREAL for numbers and times in seconds, BOOL, DINT or WORD.");
     return false;
   }
-  return expect_name(type, "a type: LREAL, BOOL, DINT, WORD or the name of a block");
+  return expect_name(variable.type, "a type: LREAL, BOOL, DINT, WORD or the name of a block");
+}
+
+/// ARRAY[0..N - 1] OF LREAL: the bounds are checked where the names in them are known.
+bool Parser::vector_type(Variable& variable) {
+  file_.has_vectors = true;
+  advance();
+  if (!expect(Symbol::LeftBracket, "`[`") || (variable.first = expression()) == no_expression ||
+      !expect(Symbol::Dot, "`..` between the bounds")) {
+    return false;
+  }
+  if (is(Symbol::Number) && text_of(span_of(now())).front() == '.') {
+    ++window_[0].offset;  // the second point of 0..3 was taken for that of a number
+    --window_[0].length;
+  } else if (!expect(Symbol::Dot, "`..` between the bounds")) {
+    return false;
+  }
+  variable.last = expression();
+  if (variable.last == no_expression) {
+    return false;
+  }
+  if (is(Symbol::Comma)) {
+    error(error::refused_type, span_of(now()), "A diagram has vectors, and no arrays of several dimensions.",
+          "Declare one vector for each row; a matrix is a parameter of HY_MATRIX_GAIN or HY_STATE_SPACE.");
+    return false;
+  }
+  if (!expect(Symbol::RightBracket, "`]`")) {
+    return false;
+  }
+  if (!same_name(text_of(span_of(now())), "OF")) {
+    unexpected("`OF`", "Write ARRAY[0..3] OF LREAL.");
+    return false;
+  }
+  advance();
+  if (!is(Symbol::Identifier) || !is_elementary_type(text_of(span_of(now())))) {
+    error(error::refused_type, span_of(now()), fmt::format("A diagram has no vector of {}.", described(now())),
+          "Write ARRAY[0..3] OF LREAL, BOOL, DINT or WORD; declare an instance for each use of a block.");
+    return false;
+  }
+  return expect_name(variable.type, "the type of the elements");
 }
 
 bool Parser::initial_value(ExpressionId& initial, std::vector<Argument>& settings) {
@@ -228,9 +269,9 @@ bool Parser::initial_value(ExpressionId& initial, std::vector<Argument>& setting
       is(Symbol::LeftParenthesis) && ahead(1).symbol == Symbol::Identifier && ahead(2).symbol == Symbol::Assign;
   if (is_settings) {
     advance();
-    return arguments(settings, true);
+    return arguments(settings);
   }
-  initial = is(Symbol::LeftBracket) ? array() : expression();
+  initial = expression();
   return initial != no_expression;
 }
 

@@ -37,7 +37,8 @@ class Parser {
   void section(FunctionBlock& block);
   void declaration(FunctionBlock& block, Section section);
   bool declared_names();
-  bool declared_type(Name& type);
+  bool declared_type(Variable& variable);
+  bool vector_type(Variable& variable);
   bool initial_value(ExpressionId& initial, std::vector<Argument>& settings);
 
   // Statements: parse_statement.cpp.
@@ -45,9 +46,11 @@ class Parser {
   bool named_statement(FunctionBlock& block);
   bool call(FunctionBlock& block);
   bool assignment(FunctionBlock& block);
+  bool element_assignment(FunctionBlock& block);
+  bool assigned_value(FunctionBlock& block, Assignment assignment, std::uint32_t begin);
   bool pin_assignment();
   void control();
-  bool arguments(std::vector<Argument>& list, bool arrays);
+  bool arguments(std::vector<Argument>& list);
 
   // Expressions: parse_expression.cpp. no_expression says that an error was reported and the rest has no meaning.
   ExpressionId expression() { return binary(0); }
@@ -57,6 +60,8 @@ class Parser {
   ExpressionId primary(bool behind_minus);
   ExpressionId parenthesized();
   ExpressionId reference();
+  /// `[2]` behind a name; no_expression where there is none. False where an error was reported.
+  bool index(ExpressionId& index);
   ExpressionId function_call();
   ExpressionId literal(bool behind_minus);
   ExpressionId array();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <string>
@@ -69,10 +70,11 @@ struct IntLiteral {
 struct BoolLiteral {
   bool value = false;
 };
-/// `X` (pin empty) or `INSTANCE.PIN`.
+/// `X` (pin empty) or `INSTANCE.PIN`; `X[2]` and `INSTANCE.PIN[2]` have an index.
 struct Reference {
   Name name{};
   Name pin{};
+  ExpressionId index = no_expression;
 };
 struct Unary {
   Operator op{};
@@ -92,7 +94,7 @@ struct FunctionCall {
   Name function{};
   std::vector<FunctionArgument> arguments{};
 };
-/// `[0.0, 1.0, 2.0]`, in an initial value only.
+/// `[0.0, 1.0, 2.0]`: a vector, or the values of a parameter that is an array.
 struct ArrayLiteral {
   std::vector<ExpressionId> elements{};
 };
@@ -115,9 +117,10 @@ struct Call {
   Span span{};
 };
 
-/// `U := SUM.XOUT;`
+/// `U := SUM.XOUT;`, `U[0] := SUM.XOUT;`
 struct Assignment {
   Name target{};
+  ExpressionId index = no_expression;
   ExpressionId value = no_expression;
   Span span{};
 };
@@ -129,11 +132,14 @@ enum class Section : std::uint8_t { Input, Output, Local, Constant };
 /// One declared name. `X, Y : LREAL;` makes two variables, which share the expressions of their initial value.
 struct Variable {
   Name name{};
-  Name type{};  ///< LREAL, BOOL, DINT, WORD, or the name of a block
+  Name type{};  ///< LREAL, BOOL, DINT, WORD, or the name of a block; of a vector, that of its elements
+  ExpressionId first = no_expression;  ///< ARRAY[first..last] OF type
+  ExpressionId last = no_expression;
   Section section = Section::Local;
   ExpressionId initial = no_expression;  ///< `:= 1.0` of an elementary variable
   std::vector<Argument> settings{};      ///< `:= (C1 := 0.05, C2 := 1.3)` of an instance
   std::vector<Annotation> annotations{};
+  [[nodiscard]] bool is_vector() const { return first != no_expression; }
 };
 
 namespace body {
@@ -147,6 +153,8 @@ struct FunctionBlock {
   std::vector<Variable> variables{};
   std::vector<Statement> statements{};
   Span span{};
+  /// Of a text whose vectors have become their elements: by statement, which one of the text it was.
+  std::vector<std::uint32_t> origins{};
   std::uint32_t body = no_body;  ///< which unit of SourceFile::bodies its text is, too
   bool sequential = false;       ///< it is that unit: it has no statements of a diagram
 };
@@ -157,8 +165,10 @@ struct SourceFile {
   std::vector<FunctionBlock> blocks{};
   std::shared_ptr<const body::Library> bodies{};  ///< null where no block of the file is sequential
   std::vector<Expression> expressions{};
-  std::vector<std::uint32_t> line_starts{};  ///< the offset at which each line begins
-  bool valid = false;                        ///< read without a syntax error
+  std::vector<std::uint32_t> line_starts{};          ///< the offset at which each line begins
+  bool valid = false;                                ///< read without a syntax error
+  bool has_vectors = false;                          ///< a diagram in it declares a vector, or writes one
+  std::shared_ptr<std::deque<std::string>> names{};  ///< that the text does not have: of elements, Y[2]
 
   /// The place of a span: file, line and column.
   [[nodiscard]] Place place(Span span) const;

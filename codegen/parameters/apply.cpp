@@ -124,11 +124,11 @@ bool set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnos
                       fmt::format("write it as in {}.", example_of(field)));
     return false;
   }
-  if (numbers->size() > field.length) {
-    diagnostics.error(
-        error::wrong_value_type, given.value_place,
-        fmt::format("{} takes at most {} numbers, here are {}.", parameter.path, field.length, numbers->size()),
-        "leave some out.");
+  if (numbers->size() > field.length || (field.filled && numbers->size() < field.length)) {
+    diagnostics.error(error::wrong_value_type, given.value_place,
+                      fmt::format("{} takes {}{} numbers, here are {}.", parameter.path, field.filled ? "" : "at most ",
+                                  field.length, numbers->size()),
+                      numbers->size() > field.length ? "leave some out." : "give all of them, row by row.");
     return false;
   }
   for (const double number : *numbers) {

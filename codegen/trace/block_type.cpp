@@ -119,21 +119,7 @@ BlockTrace trace_block() {
     result.stores = stores_of(state);
   }
 
-  const auto reached = reached_pins(result.tape);
-  for (const ValueId output : result.outputs) {
-    result.feedthrough.push_back(reached[output]);
-  }
-  for (const ValueId next : result.next) {
-    if (next != no_value) {
-      result.update_pins |= reached[next];
-    }
-  }
-  for (const Store& one : result.stores) {
-    result.update_pins |= reached[one.value];
-    if (one.index != no_value) {
-      result.update_pins |= reached[one.index];
-    }
-  }
+  derive_reach(result);
   return result;
 }
 
@@ -149,6 +135,24 @@ BlockType describe_block() {
 }
 
 }  // namespace
+
+void derive_reach(BlockTrace& trace) {
+  const auto reached = reached_pins(trace.tape);
+  for (const ValueId output : trace.outputs) {
+    trace.feedthrough.push_back(reached[output]);
+  }
+  for (const ValueId next : trace.next) {
+    if (next != no_value) {
+      trace.update_pins |= reached[next];
+    }
+  }
+  for (const Store& one : trace.stores) {
+    trace.update_pins |= reached[one.value];
+    if (one.index != no_value) {
+      trace.update_pins |= reached[one.index];
+    }
+  }
+}
 
 std::span<const BlockType> block_types() {
   static const std::vector<BlockType> types = [] {

@@ -14,9 +14,10 @@ namespace hysteron {
 namespace cosimulation {
 class Fmu;
 }
+struct SizedBlock;
 
-/// A set of a block's pins: its inputs in their order, then its parameters. No block of the library has more than 64; of
-/// an FMU, the pins from the 64th on are parameters that no signal drives, and in no set.
+/// A set of a block's pins: its inputs in their order, then its parameters. No block of the library has more than 64;
+/// of an FMU, the pins from the 64th on are parameters that no signal drives, and in no set.
 class PinSet {
  public:
   static constexpr std::size_t most = 64;
@@ -54,12 +55,16 @@ struct BlockType {
   std::span<const Field> states;
   BlockTrace trace;
   const cosimulation::Fmu* fmu = nullptr;  ///< the block is an FMU; null: one of the library
+  const SizedBlock* sized = nullptr;       ///< one of the library whose pins are vectors, with its sizes
 
   [[nodiscard]] std::size_t pin_count() const { return inputs.size() + params.size(); }
   [[nodiscard]] const Field& pin(std::size_t index) const {
     return index < inputs.size() ? inputs[index] : params[index - inputs.size()];
   }
 };
+
+/// Fills in feedthrough and update_pins from the rest of a trace.
+void derive_reach(BlockTrace& trace);
 
 /// The type of an instance that is an FMU: `PLANT : HY_FMU;  (* @file motor.fmu *)`. Its block is found by the file.
 inline constexpr std::string_view fmu_type_name = "HY_FMU";

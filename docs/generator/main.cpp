@@ -8,6 +8,7 @@
 
 #include "codegen/backends/reference/block_picture.hpp"
 #include "codegen/backends/reference/reference_pages.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/atomic_file.hpp"
 #include "support/diagnostic.hpp"
 #include "support/text_file.hpp"
@@ -23,9 +24,11 @@ int main(int argc, char** argv) {
     std::vector<hysteron::OutputFile> files;
     const fs::path index = reference / "README.md";
     files.push_back({index, hysteron::with_block_index(hysteron::read_text_file(index.string()))});
-    for (const hysteron::BlockType& block : hysteron::block_types()) {
-      files.push_back({reference / hysteron::reference_page_path(block), hysteron::reference_page(block)});
-      files.push_back({reference / hysteron::reference_picture_path(block), hysteron::block_picture(block)});
+    for (const hysteron::BlockType* const block : hysteron::documented_blocks()) {
+      files.push_back({reference / hysteron::reference_page_path(*block), hysteron::reference_page(*block)});
+      if (block->sized == nullptr) {
+        files.push_back({reference / hysteron::reference_picture_path(*block), hysteron::block_picture(*block)});
+      }
     }
     hysteron::write_files_atomically(files);
   } catch (const std::exception& problem) {

@@ -20,6 +20,7 @@ struct RandomWords {
   bool rates = false;      ///< parts that run in every n-th step, between HY_SAMPLE and HY_HOLD
   bool types = false;      ///< an input W1 and an output W of WORD, and DINT at the ends of its range
   bool functions = false;  ///< all functions of the language
+  bool vectors = false;    ///< vectors, and blocks whose pins are vectors
 };
 
 class RandomDiagram {
@@ -209,6 +210,100 @@ class RandomDiagram {
     }
   }
 
+  /// A vector of a length: a list, one that is there, or an operation.
+  std::string vector(std::size_t length, int depth = 0) {
+    const auto& known = vectors_[length];
+    if (depth < 2 && pick(2) == 0) {
+      const auto other = [&] { return vector(length, depth + 1); };
+      const auto one = [&] { return source(Type::Real, 2); };
+      const std::vector<std::string> forms{fmt::format("({} + {})", other(), other()),
+                                           fmt::format("({} - {} * {})", other(), one(), other()),
+                                           fmt::format("({} / {})", other(), one()),
+                                           fmt::format("(-({}))", other()),
+                                           fmt::format("ABS({})", other()),
+                                           fmt::format("MAX({}, {})", one(), other()),
+                                           fmt::format("SEL({}, {}, {})", source(Type::Bool, 2), other(), other()),
+                                           fmt::format("({} * {})", other(), other())};
+      return forms[pick(forms.size())];
+    }
+    if (!known.empty() && pick(3) != 0) {
+      return known[pick(known.size())];
+    }
+    std::vector<std::string> elements;
+    for (std::size_t i = 0; i < length; ++i) {
+      elements.push_back(source(Type::Real, 2));
+    }
+    return fmt::format("[{}]", fmt::join(elements, ", "));
+  }
+
+  std::string numbers(std::size_t count, double size) {
+    std::vector<std::string> list;
+    for (std::size_t i = 0; i < count; ++i) {
+      list.push_back(fmt::format("{:.6f}", size * (2.0 * unit() - 1.0)));
+    }
+    return fmt::format("[{}]", fmt::join(list, ", "));
+  }
+
+  /// What a vector offers to others: itself, its elements, its sums.
+  void offer(const std::string& name, std::size_t length) {
+    auto& reals = sources_[static_cast<std::size_t>(Type::Real)];
+    if (length == 1) {
+      reals.push_back(name);
+      return;
+    }
+    vectors_[length].push_back(name);
+    reals.push_back(fmt::format("{}[{}]", name, pick(length)));
+    reals.push_back(fmt::format("SUM({})", name));
+    reals.push_back(fmt::format("DOT({}, {})", name, vector(length)));
+    reals.push_back(fmt::format("NORM({})", name));
+  }
+
+  void write_vectors(std::string& declarations, std::string& statements) {
+    for (std::size_t i = 0; i < 1 + pick(3); ++i) {
+      const std::size_t length = 2 + pick(3);
+      declarations += fmt::format("    V{} : ARRAY[0..{}] OF LREAL;\n", i, length - 1);
+      statements += fmt::format("  V{} := {};\n", i, vector(length));
+      offer(fmt::format("V{}", i), length);
+    }
+    for (std::size_t i = 0; i < pick(4); ++i) {
+      write_sized(fmt::format("G{}", i), declarations, statements);
+    }
+  }
+
+  void write_sized(const std::string& name, std::string& declarations, std::string& statements) {
+    const std::size_t n = 1 + pick(3);
+    const std::size_t m = 1 + pick(3);
+    const std::size_t p = 1 + pick(3);
+    const auto input = [&](std::size_t length) { return length == 1 ? source(Type::Real) : vector(length); };
+    const std::string reset = pick(2) == 0 ? fmt::format(", R1 := {}", source(Type::Bool)) : "";
+    switch (pick(5)) {
+      case 0:
+        declarations +=
+            fmt::format("    {} : HY_MATRIX_GAIN := (K := {}, ROWS := {});\n", name, numbers(p * m, 2.0), p);
+        statements += fmt::format("  {}(XIN := {});\n", name, input(m));
+        return offer(name + ".XOUT", p);
+      case 1:
+        declarations +=
+            fmt::format("    {} : HY_STATE_SPACE := (A := {}, B := {}, C := {}{}{});\n", name, numbers(n * n, 0.5),
+                        numbers(n * m, 1.0), numbers(p * n, 1.0), pick(2) == 0 ? ", D := " + numbers(p * m, 1.0) : "",
+                        pick(2) == 0 ? ", X0 := " + numbers(n, 1.0) : "");
+        statements += fmt::format("  {}(U := {}{});\n", name, input(m), reset);
+        offer(name + ".X", n);
+        return offer(name + ".Y", p);
+      default: {
+        const std::string_view kind = std::vector{"", "_S", "_ZOH"}[pick(3)];
+        std::string den = "[1.0";
+        for (std::size_t i = 0; i < n; ++i) {
+          den += fmt::format(", {:.6f}", kind.empty() ? 0.5 * unit() - 0.25 : 10.0 * unit());
+        }
+        declarations += fmt::format("    {} : HY_TRANSFER_FUNCTION{} := (NUM := {}, DEN := {}]);\n", name, kind,
+                                    numbers(1 + pick(n + 1), 2.0), den);
+        statements += fmt::format("  {}(XIN := {}{});\n", name, source(Type::Real), reset);
+        return offer(name + ".XOUT", 1);
+      }
+    }
+  }
+
   void write(int instances) {
     const auto types = block_types();
     std::string declarations;
@@ -244,6 +339,9 @@ class RandomDiagram {
         }
       }
     }
+    if (words_.vectors) {
+      write_vectors(declarations, statements);
+    }
     for (int i = 0; i < 3; ++i) {
       // Bounded, so that feedback does not run away to infinity at once.
       late += fmt::format("  Z{}(XIN := LIMIT(-10.0, {}, 10.0));\n", i, source(Type::Real));
@@ -268,6 +366,7 @@ class RandomDiagram {
   RandomWords words_;
   std::string text_;
   std::array<std::vector<std::string>, 4> sources_;
+  std::array<std::vector<std::string>, 5> vectors_;  ///< by length
 };
 
 }  // namespace hysteron::testing

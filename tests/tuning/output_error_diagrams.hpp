@@ -66,6 +66,25 @@ inline constexpr std::string_view servo_start =
     "[parameters]\nLOAD = 0.0\n[parameters.MOTOR]\nK = 20.0\nT = 0.015\nZETA = 1.0\n"
     "[fit]\nLOAD = {}\n[fit.MOTOR]\nK = {}\nT = {}\nZETA = {}\n";
 
+/// A resonance by its coefficients in s, and a discrete filter behind it.
+inline constexpr std::string_view resonance = R"(FUNCTION_BLOCK RESONANCE (* @ts 1ms *)
+  VAR_INPUT U : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; Z : LREAL; END_VAR
+  VAR
+    G : HY_TRANSFER_FUNCTION_S := (NUM := [1.0], DEN := [0.0002, 0.01, 1.0]);
+    F : HY_TRANSFER_FUNCTION := (NUM := [0.3, 0.0], DEN := [1.0, -0.5, 0.0]);
+  END_VAR
+  G(XIN := U);
+  F(XIN := U);
+  Y := G.XOUT;
+  Z := F.XOUT;
+END_FUNCTION_BLOCK
+)";
+inline constexpr std::string_view resonance_truth =
+    "[parameters.G]\nNUM = 1.5\nDEN = [0.0002, 0.006, 1.2]\n"
+    "[parameters.F]\nNUM = [0.4, 0.1]\nDEN = [1.0, -0.7, 0.12]\n";
+inline constexpr std::string_view resonance_start = "[fit.G]\nNUM = {}\nDEN = {}\n[fit.F]\nNUM = {}\nDEN = {}\n";
+
 /// A lag alone: it takes over its input in the first sample.
 inline constexpr std::string_view body = R"(FUNCTION_BLOCK BODY (* @ts 1s *)
   VAR_INPUT X : LREAL; END_VAR

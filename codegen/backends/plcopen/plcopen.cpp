@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "codegen/backends/plcopen/known_values.hpp"
 #include "codegen/backends/plcopen/network.hpp"
 #include "codegen/backends/plcopen/placing.hpp"
 #include "codegen/backends/plcopen/project_xml.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
 #include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/pou.hpp"
+#include "codegen/graph/definition.hpp"
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/fmu_block.hpp"
+#include "support/errors.hpp"
 
 namespace hysteron {
 namespace {
@@ -74,8 +78,32 @@ Pou caller_of(const plcopen::Network& network) {
   return caller;
 }
 
+/// A wire of a network carries one value.
+void refuse_vectors(const Program& program) {
+  Diagnostics diagnostics;
+  Diagnostics ignored;
+  const Definitions definitions = define(program.graph.source, ignored);
+  const plcopen::KnownValues values(program, definitions);
+  for (const std::uint32_t index : definitions.callees_first) {
+    const Definition& definition = definitions.list[index];
+    const auto found = std::ranges::find_if(definition.variables, [](const Declared& one) {
+      return element_of(one.field.name) || (one.block != nullptr && one.block->sized != nullptr);
+    });
+    if (values.is_used(index) && found != definition.variables.end()) {
+      diagnostics.error(
+          error::no_network, definitions.source->place(found->variable->name.span),
+          fmt::format("'{}' has a vector, or a block that takes its sizes from lists", definition.block->name.text),
+          "Generate with --body st: a wire of a network carries one value.");
+    }
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(std::move(diagnostics));
+  }
+}
+
 void add_networks(const Program& program, const PlcopenOptions& options, const StOptions& text,
                   plcopen::Project& project) {
+  refuse_vectors(program);
   plcopen::Networks made =
       plcopen::make_networks(program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);

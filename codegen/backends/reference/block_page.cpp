@@ -12,6 +12,7 @@
 
 #include "codegen/backends/reference/block_response.hpp"
 #include "codegen/graph/names.hpp"
+#include "codegen/trace/sized_block.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron {
@@ -223,6 +224,9 @@ std::string block_page(const BlockType& block, const BlockPageOptions& options) 
   const auto heading = [&](int below) { return std::string(static_cast<std::size_t>(options.heading + below), '#'); };
   std::string text = fmt::format("{} {}: {}\n\n```text\n{}```\n\n{}\n", heading(0), about.name, about.title,
                                  lines_of(about.equation), escaped(about.meaning));
+  if (block.sized != nullptr) {
+    text += "\nPins, parameters and states below are those of the example: how many there are, its lists say.\n";
+  }
   if (!options.picture.empty()) {
     text += fmt::format("\n![Response of {}]({})\n\nThe picture is a run of the example below.\n", about.name,
                         options.picture);
@@ -276,12 +280,8 @@ std::string family_index(std::string_view folder) {
 std::string block_index(std::string_view folder) {
   std::string text;
   for (const GroupText& group : groups) {
-    std::vector<const BlockType*> members;
-    for (const BlockType& block : block_types()) {
-      if (block.about.group == group.group) {
-        members.push_back(&block);
-      }
-    }
+    std::vector<const BlockType*> members = documented_blocks();
+    std::erase_if(members, [&](const BlockType* block) { return block->about.group != group.group; });
     std::ranges::sort(members, {}, [](const BlockType* block) { return block->about.name; });
     auto title = std::string(group.name);
     title.front() = static_cast<char>(title.front() - 'a' + 'A');

@@ -8,8 +8,10 @@
 
 #include "codegen/backends/reference/block_stimuli.hpp"
 #include "codegen/compile.hpp"
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/trace/sized_block.hpp"
 
 namespace hysteron {
 namespace {
@@ -70,9 +72,59 @@ const Field& input_of(const BlockType& block, std::string_view name) {
   return *found;
 }
 
+/// The ports of a diagram for pins, those that are elements of a vector as that vector.
+std::vector<std::string> ports_of(std::span<const Field> fields) {
+  std::vector<std::string> ports;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto element = element_of(fields[i].name);
+    if (!element) {
+      ports.push_back(fmt::format("{} : {};", fields[i].name, type_name(fields[i].type)));
+      continue;
+    }
+    const auto of_next = i + 1 < fields.size() ? element_of(fields[i + 1].name) : std::nullopt;
+    if (!of_next || of_next->vector != element->vector) {
+      ports.push_back(
+          fmt::format("{} : ARRAY[0..{}] OF {};", element->vector, element->index, type_name(fields[i].type)));
+    }
+  }
+  return ports;
+}
+
+/// An instance of a block with sizes, with all of its pins.
+std::string sized_diagram(const BlockType& block) {
+  const std::vector<std::string> inputs = ports_of(block.inputs);
+  const std::vector<std::string> outputs = ports_of(block.outputs);
+  std::string arguments;
+  std::string results;
+  const auto name_of = [](const std::string& port) { return port.substr(0, port.find(' ')); };
+  for (const std::string& port : inputs) {
+    arguments += fmt::format("{0}{1} := {1}", arguments.empty() ? "" : ", ", name_of(port));
+  }
+  for (const std::string& port : outputs) {
+    results += fmt::format("{0} := BLOCK.{0};\n", name_of(port));
+  }
+  return fmt::format(
+      "FUNCTION_BLOCK SHOW_{} (* @ts 1ms *)\n{}{}VAR\nBLOCK : {} := ({});\nEND_VAR\nBLOCK({});\n{}END_FUNCTION_BLOCK\n",
+      short_name(block), declarations("VAR_INPUT", inputs), declarations("VAR_OUTPUT", outputs), block.about.name,
+      block.sized->kind->example, arguments, results);
+}
+
+/// In the house's layout.
+std::string laid_out(const BlockType& block, const std::string& text) {
+  Diagnostics diagnostics;
+  std::string formatted = format_text(std::string(block.about.name), text, diagnostics, {.any_order = true});
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+  return formatted;
+}
+
 }  // namespace
 
 std::string response_diagram(const BlockType& block) {
+  if (block.sized != nullptr) {
+    return laid_out(block, sized_diagram(block));
+  }
   const Stimulus stimulus = stimulus_of(block);
   std::vector<std::string> inputs;
   for (const DrivenPin& driven : stimulus.pins) {
@@ -86,12 +138,7 @@ std::string response_diagram(const BlockType& block) {
       fmt::format("FUNCTION_BLOCK SHOW_{} (* @ts {} *)\n{}{}{}END_FUNCTION_BLOCK\n", short_name(block),
                   duration_text(stimulus.sample_time), declarations("VAR_INPUT", inputs),
                   declarations("VAR_OUTPUT", outputs), body(block, stimulus));
-  Diagnostics diagnostics;
-  std::string formatted = format_text(std::string(block.about.name), text, diagnostics, {.any_order = true});
-  if (diagnostics.has_errors()) {
-    throw InputError(diagnostics);
-  }
-  return formatted;
+  return laid_out(block, text);
 }
 
 BlockResponse block_response(const BlockType& block) {

@@ -26,7 +26,9 @@ std::string reference_page(const BlockType& block) {
   return fmt::format(
       "<!-- Printed by scripts/make-reference from the block's header; not to be edited. -->\n"
       "[Reference](../README.md) · {}\n\n{}",
-      group_name(block.about.group), block_page(block, {.picture = fmt::format("pictures/{}.svg", block.about.name)}));
+      group_name(block.about.group),
+      block_page(block, {.picture = block.sized != nullptr ? std::string()
+                                                           : fmt::format("pictures/{}.svg", block.about.name)}));
 }
 
 std::string with_block_index(std::string_view page) {

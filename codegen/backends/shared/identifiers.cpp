@@ -18,7 +18,7 @@ void append_letter(std::string& text, char letter, LetterCase letter_case) {
     text += static_cast<char>(letter_case == LetterCase::Upper ? letter - between : letter);
   } else if (is_digit(letter)) {
     text += letter;
-  } else if (text.empty() || text.back() != '_') {
+  } else if (letter != ']' && (text.empty() || text.back() != '_')) {  // Y[2] is y_2
     text += '_';
   }
 }

@@ -14,7 +14,7 @@ namespace hysteron {
 
 enum class LetterCase : std::uint8_t { Lower, Upper };
 
-/// The parts of a name as one word: PLANT.HYST and XOUT → plant_hyst_xout. Anything but letters and digits becomes an
+/// The parts of a name as one word: PLANT.HYST and XOUT → plant_hyst_xout, Y[2] → y_2. Anything but letters and digits becomes an
 /// underscore, with never two in a row. Empty parts do not count.
 std::string identifier_text(std::initializer_list<std::string_view> parts, LetterCase letter_case);
 

@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "codegen/backends/st/comment.hpp"
+#include "codegen/graph/lowering.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/graph/text_order.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/trace/sized_block.hpp"
 
 namespace hysteron {
 namespace {
@@ -24,8 +26,53 @@ std::string declaration(const Field& field, bool with_value) {
                      has_value ? " := " + literal_text(field.type, field.preset) : "");
 }
 
+/// The name of its POU: of a block with sizes, with these behind it.
+std::string name_of(const BlockType& block) {
+  if (block.sized == nullptr) {
+    return std::string(block.about.name);
+  }
+  const Sizes& z = block.sized->sizes;
+  return fmt::format("{}{}_{}_{}{}", block.about.name, z.n > 0 ? fmt::format("_{}", z.n) : "", z.m, z.p,
+                     z.direct ? "_D" : "");
+}
+
+/// The same for a block whose pins are elements of vectors, which a text names by their vectors.
+Program wrapper_of_sized(const BlockType& block, std::int64_t sample_time_ns) {
+  Program program;
+  Graph& graph = program.graph;
+  graph.name = name_of(block);
+  graph.source = std::make_shared<const language::SourceFile>();
+  graph.sample_time_ns = sample_time_ns;
+  GraphBuilder builder(graph);
+  const std::uint32_t node = builder.block(block, std::string(core), {}, {});
+  for (std::uint32_t i = 0; i < block.pin_count(); ++i) {
+    const Field& field = block.pin(i);
+    Wire& wire = graph.wires[graph.nodes[node].first_wire + i];
+    if (i < block.inputs.size()) {
+      graph.inputs.push_back({.name = std::string(field.name), .type = field.type, .preset = field.preset});
+      wire = {Wire::From::Input, field.type, 0, i};
+    } else {
+      graph.parameters.push_back({.path = fmt::format("{}.{}", core, field.name),
+                                  .field = field,
+                                  .value = std::vector<double>(field.length, field.preset)});
+      wire = {Wire::From::Parameter, field.type, 0, static_cast<std::uint32_t>(graph.parameters.size() - 1)};
+    }
+  }
+  for (std::uint16_t i = 0; i < block.outputs.size(); ++i) {
+    graph.outputs.push_back({.name = std::string(block.outputs[i].name),
+                             .type = block.outputs[i].type,
+                             .wire = {Wire::From::Node, block.outputs[i].type, i, node}});
+  }
+  Diagnostics none;
+  program.schedule = schedule(graph, none);
+  return program;
+}
+
 /// A diagram that hands its inputs to one instance.
 Program wrapper_of(const BlockType& block, std::int64_t sample_time_ns) {
+  if (block.sized != nullptr) {
+    return wrapper_of_sized(block, sample_time_ns);
+  }
   std::string inputs;
   std::string arguments;
   for (const Field& field : block.inputs) {
@@ -96,10 +143,9 @@ std::string head_of(const BlockType& block, const std::vector<bool>& ahead, std:
   if (ahead == plain && plain != now) {
     append_paragraph(text, fmt::format("Where a pin that decides {} in the step is connected, use {}_NOW, and read it "
                                        "behind the call.",
-                                       names_of(block, plain), block.about.name));
+                                       names_of(block, plain), name_of(block)));
   } else if (ahead != plain) {
-    append_paragraph(text,
-                     fmt::format("As {}, with pins connected that decide outputs in the step.", block.about.name));
+    append_paragraph(text, fmt::format("As {}, with pins connected that decide outputs in the step.", name_of(block)));
   }
   return text + "*)\n";
 }
@@ -120,7 +166,7 @@ std::vector<double> first_values(const Program& program) {
 StPou library_pou(const BlockType& block, std::int64_t sample_time_ns, const StOptions& options) {
   Program program = wrapper_of(block, sample_time_ns);
   const std::vector<double> first = options.library ? first_values(program) : std::vector<double>();
-  program.graph.name = block.about.name;
+  program.graph.name = name_of(block);
   take_description(program.graph.inputs, block.inputs);
   take_description(program.graph.outputs, block.outputs);
   for (Parameter& parameter : program.graph.parameters) {
@@ -167,7 +213,7 @@ const LibraryBlock& LibraryText::block(const BlockType& type, const std::vector<
     }
     others += one.block == &type ? 1 : 0;
   }
-  LibraryBlock made{.block = &type, .ahead = ahead, .name = std::string(type.about.name)};
+  LibraryBlock made{.block = &type, .ahead = ahead, .name = name_of(type)};
   if (ahead != outputs_of_memory(type, true)) {
     made.name += ahead == outputs_of_memory(type, false) ? "_NOW" : fmt::format("_NOW_{}", others);
   }

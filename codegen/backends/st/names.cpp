@@ -5,6 +5,7 @@
 #include <set>
 
 #include "codegen/backends/st/words.hpp"
+#include "codegen/graph/element_name.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {
@@ -72,7 +73,9 @@ void StBlockNames::name_instances(const Graph& graph, const StCalls& calls) {
   }
   for (std::uint32_t i = 0; i < calls.made.output_cells; ++i) {
     const CellInfo& cell = calls.made.routine.cells[i];
-    outputs_of_instances_.push_back(fmt::format("{}.{}", layout_.instances[cell.node], cell.field.name));
+    const std::string pin =
+        element_of(cell.field.name) ? st_pin_name(cell.field.name, dialect_) : std::string(cell.field.name);
+    outputs_of_instances_.push_back(fmt::format("{}.{}", layout_.instances[cell.node], pin));
     layout_.cells.push_back({.name = outputs_of_instances_.back()});
   }
 }

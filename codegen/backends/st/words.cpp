@@ -1,9 +1,12 @@
 #include "codegen/backends/st/words.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <unordered_set>
 
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/language/syntax.hpp"
 
@@ -193,6 +196,9 @@ bool is_scl_word(std::string_view name) {
 std::string st_pin_name(std::string_view name, const StDialect& dialect) {
   const bool kept = dialect.shape == StDialect::Shape::OneFile || is_instruction(name) ||
                     !(dialect.shape == StDialect::Shape::Source ? is_scl_word(name) : is_st_word(name));
+  if (const auto element = element_of(name)) {  // a pin for each element of a vector
+    return fmt::format("{}_{}", st_pin_name(element->vector, dialect), element->index);
+  }
   return kept ? std::string(name) : std::string(name) + "_2";
 }
 

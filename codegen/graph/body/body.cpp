@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "codegen/graph/body/assigned.hpp"
+#include "codegen/graph/vectors.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::bodies {
@@ -61,32 +62,68 @@ std::vector<BorderPort> Body::ports(bool in_place) {
     if (!border || member.empty()) {
       continue;
     }
-    if (member.front().type->kind != BodyType::Kind::Plain) {
+    const BodyType& type = *member.front().type;
+    if (type.kind == BodyType::Kind::Array && type.element->kind == BodyType::Kind::Plain &&
+        type.high - type.low < longest_vector) {
+      add_elements(list, i, *member.front().type);
+      continue;
+    }
+    if (type.kind != BodyType::Kind::Plain) {
       if (in_place) {
         continue;
       }
       refuse(error::refused_in_body, one.name.span,
-             fmt::format("'{}' at the border of the block is an array, a structure or an instance", one.name.text),
-             "Give it inputs and outputs of plain types, or call it from another block of this file.");
+             fmt::format("'{}' at the border of the block is a structure, an instance, or an array of several "
+                         "dimensions or of more than {} elements",
+                         one.name.text, longest_vector),
+             "Give it inputs and outputs of plain types or vectors of these, or call it from another block of this "
+             "file.");
       continue;
     }
-    BorderPort port{.name = std::string(one.name.text),
-                    .type = member.front().type->plain,
-                    .role = one.role,
-                    .initial = member.front().type->start,
-                    .written = one.name,
-                    .declaration = i,
-                    .assigned = assigned(source_).contains(upper(one.name.text))};
-    Place place;
-    const auto made = make(member.front().type, port.name, one.name.span, true);
+    const auto made = make(member.front().type, std::string(one.name.text), one.name.span, true);
     if (one.initial.given()) {
       set_initial(*made, one.initial);
     }
-    port.initial = leaves_[made->leaf].initial;
-    port.initial = port.type == Plain::Time ? port.initial / 1000.0 : port.initial;
-    list.push_back(std::move(port));
+    list.push_back(port(i, type, std::string(one.name.text), *made));
   }
   return list;
+}
+
+BorderPort Body::port(std::size_t declaration, const BodyType& type, std::string name, const Place& place) {
+  const syntax::Declaration& one = source_.unit->declarations[declaration];
+  const double initial = leaves_[place.leaf].initial;
+  return {.name = std::move(name),
+          .type = type.plain,
+          .role = one.role,
+          .initial = type.plain == Plain::Time ? initial / 1000.0 : initial,
+          .written = one.name,
+          .declaration = declaration,
+          .assigned = assigned(source_).contains(upper(one.name.text))};
+}
+
+/// A vector at the border: a port for each element.
+void Body::add_elements(std::vector<BorderPort>& list, std::size_t declaration, const BodyType& type) {
+  const syntax::Declaration& one = source_.unit->declarations[declaration];
+  const auto made = make(std::make_shared<BodyType>(type), std::string(one.name.text), one.name.span, true);
+  if (one.initial.given()) {
+    set_initial(*made, one.initial);
+  }
+  for (std::size_t i = 0; i < made->parts.size(); ++i) {
+    list.push_back(port(declaration, *type.element,
+                        element_name(one.name.text, type.low + static_cast<std::int64_t>(i)), *made->parts[i]));
+  }
+}
+
+Place* Body::border(std::string_view name) {
+  const auto element = element_of(name);
+  Place* const place = root_->find(element ? upper(element->vector) : std::string(name));
+  if (!element || place == nullptr) {
+    return place;
+  }
+  const std::int64_t at = element->index - place->type->low;
+  return at < 0 || at >= static_cast<std::int64_t>(place->parts.size())
+             ? nullptr
+             : place->parts[static_cast<std::size_t>(at)].get();
 }
 
 std::map<std::string, Wire> Body::run(const std::map<std::string, Wire>& inputs) {
@@ -94,7 +131,7 @@ std::map<std::string, Wire> Body::run(const std::map<std::string, Wire>& inputs)
   make_members(*root_, types_.members(source_.unit->declarations), true);
   scope_ = root_.get();
   for (const auto& [name, wire] : inputs) {
-    const Place* const place = root_->find(name);
+    const Place* const place = border(name);
     if (place != nullptr && place->leaf != Place::no_leaf) {
       computer_.at(path_for(name), leaves_[place->leaf].span);
       write(place->leaf, computer_.taken(wire, leaves_[place->leaf].type));
@@ -105,9 +142,19 @@ std::map<std::string, Wire> Body::run(const std::map<std::string, Wire>& inputs)
   for (std::size_t i = 0; i < root_->members.size(); ++i) {
     const auto role = root_->members[i].role;
     const Place& place = *root_->parts[i];
-    if ((role == syntax::Role::Output || role == syntax::Role::InOut) && place.leaf != Place::no_leaf) {
-      computer_.at(path_for(root_->members[i].name), leaves_[place.leaf].span);
-      results[root_->members[i].name] = computer_.given(read(place.leaf));
+    if (role != syntax::Role::Output && role != syntax::Role::InOut) {
+      continue;
+    }
+    const auto give = [&](const std::string& name, const Place& one) {
+      if (one.leaf != Place::no_leaf) {
+        computer_.at(path_for(name), leaves_[one.leaf].span);
+        results[name] = computer_.given(read(one.leaf));
+      }
+    };
+    give(root_->members[i].name, place);
+    for (std::size_t k = 0;
+         k < place.parts.size() && place.type != nullptr && place.type->kind == BodyType::Kind::Array; ++k) {
+      give(element_name(root_->members[i].name, place.type->low + static_cast<std::int64_t>(k)), *place.parts[k]);
     }
   }
   close_cells();

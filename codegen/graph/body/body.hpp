@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/graph/body/computer.hpp"
@@ -45,12 +46,17 @@ class Body {
  public:
   Body(const language::body::Library& library, const language::body::Unit& unit, Surroundings around);
 
-  /// The inputs, outputs and VAR_IN_OUT of the block. One that is an array or a structure is reported.
+  /// The inputs, outputs and VAR_IN_OUT of the block, of a vector its elements X[0], X[1], …. A structure, or an array
+  /// that is no vector, is reported; `in_place`, left out.
   std::vector<BorderPort> ports(bool in_place);
   /// Executes the body: `inputs` by name in upper case. Gives the wires of outputs and VAR_IN_OUT by name.
   std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
 
  private:
+  BorderPort port(std::size_t declaration, const BodyType& type, std::string name, const Place& place);
+  void add_elements(std::vector<BorderPort>& list, std::size_t declaration, const BodyType& type);
+  /// The variable of a border by its name in upper case, of a vector an element.
+  Place* border(std::string_view name);
   struct Leaf {
     Plain type = Plain::Bool;
     double initial = 0.0;

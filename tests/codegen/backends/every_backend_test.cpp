@@ -1,7 +1,7 @@
 // Every back-end against every other, over random diagrams of the whole catalogue, of all types, at several rates, with
-// inputs that are no numbers, infinite or denormal among them. Every diagram is run by the interpreter, by C or C++
-// from the system's compilers, and, in LREAL, by both texts of Structured Text read back by our own front end: the one
-// block, and the calls of the library.
+// with vectors and the blocks that take them, with inputs that are no numbers, infinite or denormal among them. Every
+// diagram is run by the interpreter, by C or C++ from the system's compilers, and, in LREAL, by both texts of
+// Structured Text read back by our own front end: the one block, and the calls of the library.
 //
 // HYSTERON_SEED repeats the fresh part of a run, which prints its seed; HYSTERON_EVERY_BACKEND_DIAGRAMS sets the number
 // of diagrams.
@@ -61,7 +61,7 @@ EveryDiagram every_diagram(std::uint64_t seed, std::size_t number) {
     made.program = body.program();
   } else {
     const RandomDiagram diagram(seed, made.name(), 1 + static_cast<int>(kind % 5),
-                                {.rates = true, .types = true, .functions = true});
+                                {.rates = true, .types = true, .functions = true, .vectors = kind % 2 == 0});
     made.text = diagram.text();
     made.program = diagram.program();
   }
@@ -285,11 +285,7 @@ void hold_batch(std::uint64_t first_seed, std::size_t count, EveryCount& total) 
     if (!diagram.float32) {
       const StOptions options{.dialect = *st_dialect("portable")};
       hold_text(diagram, generate_st_structured(diagram.program, options).front().text, wanted, total.structured);
-      // An array at the border of a block is no input of a diagram; as calls it is not at the border.
-      if (std::ranges::none_of(diagram.program.graph.parameters,
-                               [](const Parameter& one) { return one.value.size() > 1; })) {
-        hold_text(diagram, generate_st(diagram.program, options).front().text, wanted, total.flat);
-      }
+      hold_text(diagram, generate_st(diagram.program, options).front().text, wanted, total.flat);
     }
     (i % 2 == 0 ? in_c : in_cpp).push_back(std::move(diagram));
   }

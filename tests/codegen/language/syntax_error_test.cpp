@@ -131,9 +131,9 @@ TEST(SyntaxError, WhatADiagramDoesNotHave) {
               ElementsAre("120 1:23+2", "120 1:37+5", "120 1:59+2"));
   EXPECT_THAT(in_statements("A := --B; C := NOT -D; E := +F; G := NOT NOT H;"),
               ElementsAre("120 1:24+1", "120 1:37+1", "120 1:46+1", "120 1:59+3"));
-  EXPECT_THAT(in_statements("A := [1.0]; B := 1.0 + [2.0];"), ElementsAre("126 1:23+1", "126 1:41+1"));
-  EXPECT_THAT(in_statements("A := B.C.D; A := B[1]; A[1] := B;"),
-              ElementsAre("128 1:26+1", "128 1:36+1", "128 1:42+1"));
+  EXPECT_THAT(in_statements("A := [[1.0]]; B := 1.0 + [2.0, [3.0]];"), ElementsAre("126 1:24+1", "126 1:49+1"));
+  EXPECT_THAT(in_statements("A := B.C.D; A := B[1][2]; A := B[1].C;"),
+              ElementsAre("128 1:26+1", "128 1:39+1", "128 1:53+1"));
 }
 
 TEST(SyntaxError, Declarations) {

@@ -1,0 +1,35 @@
+// The name of an element of a vector, `Y[2]`: of a variable of a diagram, or of a pin of a block.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace hysteron {
+
+/// What the name of an element says: of `Y[2]`, Y and 2.
+struct ElementName {
+  std::string_view vector{};
+  std::int64_t index = 0;
+};
+
+/// Empty for other names.
+[[nodiscard]] inline std::optional<ElementName> element_of(std::string_view name) {
+  const auto bracket = name.find('[');
+  if (bracket == std::string_view::npos || !name.ends_with(']')) {
+    return std::nullopt;
+  }
+  ElementName result{.vector = name.substr(0, bracket)};
+  const char* const last = name.data() + name.size() - 1;
+  const auto [end, problem] = std::from_chars(name.data() + bracket + 1, last, result.index);
+  return problem == std::errc{} && end == last ? std::optional(result) : std::nullopt;
+}
+
+/// `Y[2]`.
+[[nodiscard]] inline std::string element_name(std::string_view vector, std::int64_t index) {
+  return std::string(vector) + "[" + std::to_string(index) + "]";
+}
+
+}  // namespace hysteron

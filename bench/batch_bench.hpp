@@ -1,5 +1,5 @@
-// 128 instances of the feedforward with an exponent each, over one reference: a batch at each width of registers. A file
-// includes it with a name for its rows, and HYSTERON_BATCH_FAST or not.
+// 128 instances of the feedforward with an exponent each, over one reference: a batch at each width of registers. A
+// file includes it with a name for its rows, and HYSTERON_BATCH_FAST or not.
 #pragma once
 
 #include <benchmark/benchmark.h>

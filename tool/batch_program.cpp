@@ -228,7 +228,8 @@ std::string main_text(const Program& program, const std::string& header, const s
   std::size_t columns = 0;
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     outputs += fmt::format(
-        "      for (std::size_t i = 0; i < width; ++i) {{\n        values[i] = (double)(out[p].{}.lane[i]{});\n      }}\n"
+        "      for (std::size_t i = 0; i < width; ++i) {{\n        values[i] = (double)(out[p].{}.lane[i]{});\n      "
+        "}}\n"
         "      add(figures[p * {} + {}], values, {});\n",
         names.outputs[i], graph.outputs[i].type == Type::Bool ? " & 1" : "", graph.outputs.size(), i,
         measured[i] != nullptr ? fmt::format("measured[{}]", columns++) : "0.0");
@@ -281,7 +282,9 @@ Program with_values(const Program& program, const std::vector<double>& values) {
 
 BatchResult run_compiled_batch(const BatchRequest& request) {
   const Program& program = *request.program;
-  ProgramSources sources{.headers = {generate_batch(program)}, .flags = {"-std=c++17", "-pthread"}, .without = "write --engine interpreter"};
+  ProgramSources sources{.headers = {generate_batch(program)},
+                         .flags = {"-std=c++17", "-pthread"},
+                         .without = "write --engine interpreter"};
   sources.main = main_text(program, sources.headers.front().name, request.measured);
   for (const std::string& flag : words_of(batch_flags)) {
     sources.flags.push_back(flag);
@@ -372,7 +375,7 @@ BatchResult run_interpreted_batch(const BatchRequest& request, bool float32) {
 }
 
 bool worth_compiling(const BatchRequest& request) {
-  constexpr double node = 5e-9;      // s, interpreted
+  constexpr double node = 5e-9;     // s, interpreted
   constexpr double compiler = 2.0;  // s
   const auto steps = static_cast<double>(request.drive->steps) * static_cast<double>(request.sets->size());
   return steps * static_cast<double>(request.program->graph.nodes.size()) * node > compiler * request.threads;

@@ -77,7 +77,8 @@ fs::path built_program(BuildCache& cache, const ProgramSources& sources) {
     const TemporaryFolder folder(cache.folder());
     everything += version_of(compiler, folder.path());
   }
-  return cache.find_or_build(sha256(everything), [&](const fs::path& path) { compile_sources(sources, compiler, path); });
+  return cache.find_or_build(sha256(everything),
+                             [&](const fs::path& path) { compile_sources(sources, compiler, path); });
 }
 
 }  // namespace hysteron::tool

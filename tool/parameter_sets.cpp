@@ -100,10 +100,10 @@ Table table_of_file(const std::string& file) {
     }
     const std::vector<std::string> cells = cells_of(line, separator);
     if (cells.size() != table.paths.size()) {
-      throw InputError(
-          error::ragged_row, place,
-          fmt::format("This set has {} values, for {} parameters.", cells.size(), table.paths.size()),
-          separator == ';' ? "write one value for each name of the first line."
+      throw InputError(error::ragged_row, place,
+                       fmt::format("This set has {} values, for {} parameters.", cells.size(), table.paths.size()),
+                       separator == ';'
+                           ? "write one value for each name of the first line."
                            : "write one value for each name of the first line; a decimal mark is a point.");
     }
     std::vector<double> row;
@@ -212,8 +212,9 @@ Distribution distribution_of(std::string_view text, const std::string& whole) {
   const std::string_view kind = text.substr(0, open);
   if (open == std::string_view::npos || comma == std::string_view::npos || text.back() != ')' ||
       (kind != "normal" && kind != "uniform")) {
-    refuse(fmt::format("--draw {} states no distribution.", whole),
-           "write normal(mean,deviation) or uniform(low,high), in quotes of the shell: --draw 'INV.C1=normal(0.2,0.01)'.");
+    refuse(
+        fmt::format("--draw {} states no distribution.", whole),
+        "write normal(mean,deviation) or uniform(low,high), in quotes of the shell: --draw 'INV.C1=normal(0.2,0.01)'.");
   }
   const Distribution found{
       .normal = kind == "normal",

@@ -12,9 +12,9 @@
 namespace hysteron::tool {
 
 struct SetOptions {
-  std::string file{};                ///< a table in CSV: its head names parameters, each row is a set
-  std::vector<std::string> sweeps{};  ///< INV.C1=0.1..0.3/21: 21 values, ends included; several make a grid
-  std::vector<std::string> draws{};   ///< INV.C1=normal(0.2,0.01) or uniform(0.1,0.3)
+  std::string file{};                    ///< a table in CSV: its head names parameters, each row is a set
+  std::vector<std::string> sweeps{};     ///< INV.C1=0.1..0.3/21: 21 values, ends included; several make a grid
+  std::vector<std::string> draws{};      ///< INV.C1=normal(0.2,0.01) or uniform(0.1,0.3)
   std::optional<std::uint64_t> count{};  ///< of draws
   std::uint64_t seed = 1;                ///< of draws
 };

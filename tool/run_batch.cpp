@@ -32,7 +32,7 @@ namespace {
 /// A figure of an output that the table has a column for.
 struct FigureColumn {
   std::string_view name;
-  double OutputFigures::* value;
+  double OutputFigures::*value;
 };
 constexpr FigureColumn figure_columns[] = {{"MIN", &OutputFigures::least},
                                            {"MAX", &OutputFigures::most},
@@ -75,9 +75,8 @@ std::string table_text(const BatchRequest& request, const BatchResult& result) {
 /// Quantiles of each figure over the sets, and the set that is nearest to the record.
 std::string summary_text(const BatchRequest& request, const BatchResult& result, std::string_view how) {
   const Graph& graph = request.program->graph;
-  std::string text =
-      fmt::format("{}: {} sets of {}, {} steps each, {}\n", graph.name, result.size(),
-                  fmt::join(request.sets->paths, ", "), request.drive->steps, how);
+  std::string text = fmt::format("{}: {} sets of {}, {} steps each, {}\n", graph.name, result.size(),
+                                 fmt::join(request.sets->paths, ", "), request.drive->steps, how);
   text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "output", "least", "5 %", "median", "95 %",
                       "greatest");
   for (std::size_t o = 0; o < graph.outputs.size(); ++o) {
@@ -90,16 +89,14 @@ std::string summary_text(const BatchRequest& request, const BatchResult& result,
       }
       const auto at = [&](double share) { return fmt::format("{:.6g}", quantile(values, share)); };
       const std::string name = fmt::format("{} {}", graph.outputs[o].name, column.name);
-      text += values.empty()
-                  ? fmt::format("{:<20} {:>12}\n", name, "not finite")
-                  : fmt::format("{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name,
-                                fmt::format("{:.6g}", std::ranges::min(values)), at(0.05), at(0.5), at(0.95),
-                                fmt::format("{:.6g}", std::ranges::max(values)));
+      text += values.empty() ? fmt::format("{:<20} {:>12}\n", name, "not finite")
+                             : fmt::format("{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name,
+                                           fmt::format("{:.6g}", std::ranges::min(values)), at(0.05), at(0.5), at(0.95),
+                                           fmt::format("{:.6g}", std::ranges::max(values)));
     }
     if (request.measured[o] != nullptr) {
-      const auto best = std::ranges::min_element(result, {}, [&](const auto& set) {
-        return std::isfinite(set[o].rmse) ? set[o].rmse : infinity;
-      });
+      const auto best = std::ranges::min_element(
+          result, {}, [&](const auto& set) { return std::isfinite(set[o].rmse) ? set[o].rmse : infinity; });
       text += fmt::format("nearest to the record in {}: set {}", graph.outputs[o].name, best - result.begin() + 1);
       const auto& row = request.sets->rows[static_cast<std::size_t>(best - result.begin())];
       for (std::size_t k = 0; k < row.size(); ++k) {
@@ -121,20 +118,23 @@ std::size_t sets_not_finite(const BatchResult& result) {
 
 bool can_compile(const Graph& graph, bool float32) {
   return !float32 && find_compiler("CXX", {"c++", "g++", "clang++"}) &&
-         std::ranges::none_of(graph.nodes, [](const Node& node) { return node.block != nullptr && node.block->fmu != nullptr; });
+         std::ranges::none_of(graph.nodes,
+                              [](const Node& node) { return node.block != nullptr && node.block->fmu != nullptr; });
 }
 
 }  // namespace
 
 void add_batch_options(CLI::App& app, BatchOptions& options) {
-  app.add_option("--batch", options.sets.file, "Runs a set of parameters for each row of a table: INV.C1,INV.C2 in its head.")
+  app.add_option("--batch", options.sets.file,
+                 "Runs a set of parameters for each row of a table: INV.C1,INV.C2 in its head.")
       ->option_text("SETS.csv");
   app.add_option("--sweep", options.sets.sweeps,
                  "Runs a set for each of some values of a parameter: INV.C1=0.1..0.3/21; several make a grid.")
       ->option_text("PARAMETER=LOW..HIGH/COUNT")
       ->allow_extra_args(false);
   app.add_option("--draw", options.sets.draws,
-                 "Runs sets with a random value of a parameter: 'INV.C1=normal(0.2,0.01)' or uniform(0.1,0.3); may be repeated.")
+                 "Runs sets with a random value of a parameter: 'INV.C1=normal(0.2,0.01)' or uniform(0.1,0.3); may be "
+                 "repeated.")
       ->option_text("PARAMETER=DISTRIBUTION")
       ->allow_extra_args(false);
   app.add_option("--sets", options.sets.count, "How many sets are drawn.")
@@ -185,18 +185,15 @@ int run_batch(const BatchOptions& options, Program program, records::Record& rec
     throw InputError(diagnostics);
   }
   const ParameterSets sets = parameter_sets(options.sets, program.graph);
-  BatchRequest request{.program = &program,
-                       .drive = &drive,
-                       .sets = &sets,
-                       .threads = options.threads,
-                       .fast = options.fast};
+  BatchRequest request{
+      .program = &program, .drive = &drive, .sets = &sets, .threads = options.threads, .fast = options.fast};
   for (const Port& one : program.graph.outputs) {
     const records::Column* const column = record.find(one.name);
     request.measured.push_back(column != nullptr ? &column->values : nullptr);
   }
-  const bool compiled = options.engine.empty() ? can_compile(program.graph, output.float32) &&
-                                                     (options.fast || worth_compiling(request))
-                                               : options.engine == "compiled";
+  const bool compiled = options.engine.empty()
+                            ? can_compile(program.graph, output.float32) && (options.fast || worth_compiling(request))
+                            : options.engine == "compiled";
   if (compiled && output.float32) {
     throw InputError(error::bad_usage, {}, "A compiled batch computes in 64 bits.",
                      "leave out --float32, or write --engine interpreter.");
@@ -212,17 +209,18 @@ int run_batch(const BatchOptions& options, Program program, records::Record& rec
     write_file_atomically(output.output, text);
   }
   if (const std::size_t bad = sets_not_finite(result); bad > 0) {
-    diagnostics.error(error::output_not_finite, {.file = output.output},
-                      fmt::format("An output of {} of {} sets is not a finite number in some step.", bad, sets.size()),
-                      "run one of them alone, without --batch: the step is told, and --trace shows the signals inside.");
+    diagnostics.error(
+        error::output_not_finite, {.file = output.output},
+        fmt::format("An output of {} of {} sets is not a finite number in some step.", bad, sets.size()),
+        "run one of them alone, without --batch: the step is told, and --trace shows the signals inside.");
   }
   console.report(diagnostics);
   say_what_was_read(record, program, true);
   if (output.output != "-") {
     console.print(summary_text(request, result,
-                               !compiled        ? "interpreted"
-                               : options.fast   ? "eight at a time, in vectors"
-                                                : "eight at a time"));
+                               !compiled      ? "interpreted"
+                               : options.fast ? "eight at a time, in vectors"
+                                              : "eight at a time"));
   }
   return diagnostics.has_errors() ? exit_findings : exit_ok;
 }

@@ -259,7 +259,8 @@ std::string main_of_batch(const Program& program, const std::string& header) {
   return text + "}\n" + std::string(main_in_c);
 }
 
-std::vector<Signal> run_in_vectors(const Program& program, const std::vector<GeneratedFile>& files, const Drive& drive) {
+std::vector<Signal> run_in_vectors(const Program& program, const std::vector<GeneratedFile>& files,
+                                   const Drive& drive) {
   ProgramSources sources{.main = "#include <cstdlib>\n" + main_of_batch(program, files.front().name),
                          .headers = {files.front()},
                          .flags = {"-std=c++17"}};

@@ -110,7 +110,8 @@ void check_target_options(const TargetOptions& options) {
   check_dialect(options);
   if (const Target* const found = find_target(options.target);
       found != nullptr && options.float32 && !found->has_float32) {
-    refuse(fmt::format("The target {} computes in 64 bits.", found->name), "leave out --float32, or write --target cpp.");
+    refuse(fmt::format("The target {} computes in 64 bits.", found->name),
+           "leave out --float32, or write --target cpp.");
   }
   if (options.structured && !equal_ignoring_case(options.target, "st")) {
     refuse("A structured text is one of Structured Text.", "write --target st, or leave out --structured.");

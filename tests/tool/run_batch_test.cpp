@@ -80,7 +80,8 @@ TEST_F(RunBatch, HasTheSameBytesByBothEngines) {
 TEST_F(RunBatch, SaysOfASetWhatARunOfItSays) {
   bench.write("sets_of.csv", "KP;LAG.T1\n1.5;0.02\n# a remark\n\n2.5;0.1\n");
   const std::string rows = table("--batch sets_of.csv");
-  EXPECT_THAT(rows, HasSubstr("set,KP,LAG.T1,Y.MIN,Y.MAX,Y.LAST,Y.RMS,Y.RMSE,BIG.MIN,BIG.MAX,BIG.LAST,BIG.RMS\n1,1.5,0.02,"));
+  EXPECT_THAT(rows,
+              HasSubstr("set,KP,LAG.T1,Y.MIN,Y.MAX,Y.LAST,Y.RMS,Y.RMSE,BIG.MIN,BIG.MAX,BIG.LAST,BIG.RMS\n1,1.5,0.02,"));
   bench.write("p.toml", "[parameters]\nKP = 2.5\n[parameters.LAG]\nT1 = 0.1\n");
   EXPECT_EQ(bench.shell("hysteron run loop.st --in log.csv --out alone.csv --params p.toml").code, 0);
   std::istringstream alone(bench.read("alone.csv"));
@@ -142,7 +143,8 @@ TEST_F(RunBatch, IsNearlyTheSameInVectors) {
 
 TEST_F(RunBatch, RefusesWhatIsNoSet) {
   bench.write("s.csv", "KP,N\n1,3\n2,2.5\n");
-  EXPECT_THAT(refusal("--batch s.csv"), AllOf(HasSubstr("HY604"), HasSubstr("s.csv:3:1"), HasSubstr("N takes a whole number, not 2.5")));
+  EXPECT_THAT(refusal("--batch s.csv"),
+              AllOf(HasSubstr("HY604"), HasSubstr("s.csv:3:1"), HasSubstr("N takes a whole number, not 2.5")));
   bench.write("s.csv", "KP\n1\n-1\n");
   EXPECT_THAT(refusal("--batch s.csv"), AllOf(HasSubstr("HY214"), HasSubstr("s.csv:3:1")));
   bench.write("s.csv", "KP,Q\n1,1\n");

@@ -242,7 +242,8 @@ class BatchHeader {
   [[nodiscard]] BatchNames names() const {
     BatchNames all{.space = name_};
     for (const Member& member : layout_.names().parameters) {
-      all.parameters.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") + std::string(member.name));
+      all.parameters.push_back(std::string(member.group) + (member.group.empty() ? "" : ".") +
+                               std::string(member.name));
     }
     all.inputs.assign(layout_.names().inputs.begin(), layout_.names().inputs.end());
     all.outputs.assign(layout_.names().outputs.begin(), layout_.names().outputs.end());

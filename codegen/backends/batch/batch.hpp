@@ -15,13 +15,12 @@ namespace hysteron {
 inline constexpr std::size_t batch_width = 8;
 
 /// What a batch is to be compiled with: the bits of the step, and roots that a vector can hold.
-inline constexpr std::string_view batch_flags =
-    "-O2 -ffp-contract=off -frounding-math -fno-math-errno -Wno-psabi";
+inline constexpr std::string_view batch_flags = "-O2 -ffp-contract=off -frounding-math -fno-math-errno -Wno-psabi";
 
-/// NAME_batch.hpp: structures of vectors, and reset and step over packs of eight instances. It needs C++17 and GCC; Clang
-/// takes registers of two numbers. Each lane has the bits of `hysteron run`. With HYSTERON_BATCH_FAST defined, exp, log,
-/// pow and the like are those of libmvec where there is one, within 4 units in the last place. The text depends on the
-/// program alone, to the byte. Throws InputError (HY404) where the diagram states no sample time.
+/// NAME_batch.hpp: structures of vectors, and reset and step over packs of eight instances. It needs C++17 and GCC;
+/// Clang takes registers of two numbers. Each lane has the bits of `hysteron run`. With HYSTERON_BATCH_FAST defined,
+/// exp, log, pow and the like are those of libmvec where there is one, within 4 units in the last place. The text
+/// depends on the program alone, to the byte. Throws InputError (HY404) where the diagram states no sample time.
 GeneratedFile generate_batch(const Program& program);
 
 /// What the header calls things.

@@ -41,7 +41,8 @@ BatchDiagram batch_diagram(int number) {
 }
 
 std::uint64_t source_of_lane(int number, std::size_t lane) {
-  return 88172645463325252ULL ^ (static_cast<std::uint64_t>(100 * number + static_cast<int>(lane) + 1) * 0x9E3779B97F4A7C15ULL);
+  return 88172645463325252ULL ^
+         (static_cast<std::uint64_t>(100 * number + static_cast<int>(lane) + 1) * 0x9E3779B97F4A7C15ULL);
 }
 
 std::uint64_t interpreted_hash(const BatchDiagram& diagram, int number, std::size_t lane) {
@@ -91,7 +92,8 @@ std::string runner_of(const BatchDiagram& diagram, int number) {
       "      in.x2.lane[i] = real_number(&from[i], {4});\n      in.x3.lane[i] = real_number(&from[i], {4});\n"
       "      in.b1.lane[i] = next_number(&from[i]) % 2 != 0 ? -1 : 0;\n"
       "      in.b2.lane[i] = next_number(&from[i]) % 8 == 0 ? -1 : 0;\n"
-      "      in.n1.lane[i] = whole_number(&from[i], 1);\n{5}    }}\n    {0}::step(1, &params, &state, &in, &out, lanes);\n"
+      "      in.n1.lane[i] = whole_number(&from[i], 1);\n{5}    }}\n    {0}::step(1, &params, &state, &in, &out, "
+      "lanes);\n"
       "    for (int i = 0; i < 8; ++i) {{\n{6}    }}\n  }}\n"
       "  for (const uint64_t one : hash) {{ printf(\"%llu\\n\", (unsigned long long)one); }}\n}}\n",
       names.space, sources, batch_steps, batch_middle, diagram.extremes,
@@ -101,9 +103,9 @@ std::string runner_of(const BatchDiagram& diagram, int number) {
 /// What a main prints that is compiled as a batch is.
 std::string output_of_program(const test::ScratchFolder& folder, const std::string& main, std::string_view more) {
   folder.write("main.cpp", main);
-  const std::string build = fmt::format(
-      "cd {} && c++ -std=c++17 -Wall -Wextra -Werror {} main.cpp -o run {} -lm > log 2>&1 && ./run > out",
-      folder.path().string(), batch_flags, more);
+  const std::string build =
+      fmt::format("cd {} && c++ -std=c++17 -Wall -Wextra -Werror {} main.cpp -o run {} -lm > log 2>&1 && ./run > out",
+                  folder.path().string(), batch_flags, more);
   EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
   return test::contents_of(folder / "out");
 }
@@ -123,8 +125,7 @@ TEST_P(BatchBackend, HasInEachLaneTheBitsOfTheInterpreter) {
     main += fmt::format("#include \"{}\"\n", header.name);
     calls += fmt::format("    run_{}(lanes);\n", batch_names(diagrams.back().program).space);
   }
-  main += "#pragma GCC diagnostic ignored \"-Wunused-function\"\n" +
-          std::string(same::text) + "\n";
+  main += "#pragma GCC diagnostic ignored \"-Wunused-function\"\n" + std::string(same::text) + "\n";
   for (int i = 0; i < 6; ++i) {
     main += runner_of(diagrams[static_cast<std::size_t>(i)], first + i);
   }
@@ -163,7 +164,8 @@ TEST(Batch, HasParametersInEachLane) {
       " Y := SEL(LIVE, 0.0, K * X);\nEND_FUNCTION_BLOCK\n");
   const GeneratedFile header = generate_batch(program);
   folder.write(header.name, header.text);
-  const std::string printed = output_of_program(folder, fmt::format(R"(#include "{}"
+  const std::string printed = output_of_program(folder,
+                                                fmt::format(R"(#include "{}"
 #include <cstdio>
 int main() {{
   using namespace scaled_batch;
@@ -183,7 +185,7 @@ int main() {{
   }}
 }}
 )",
-                                                                    header.name),
+                                                            header.name),
                                                 "");
   EXPECT_EQ(printed, "0 2 4 0 8 10 12 14 16 18 20 22 24 26 28 30 ");
 }
@@ -198,7 +200,8 @@ TEST(Batch, HasFastFunctionsWithinFourUnitsInTheLastPlace) {
       " E := EXP(X); L := LN(X); S := SIN(X); C := COS(X); A := ATAN(X); W := X ** P;\nEND_FUNCTION_BLOCK\n");
   const GeneratedFile header = generate_batch(program);
   folder.write(header.name, header.text);
-  const std::string printed = output_of_program(folder, fmt::format(R"(#include "{}"
+  const std::string printed = output_of_program(folder,
+                                                fmt::format(R"(#include "{}"
 #include <cstdio>
 #include <random>
 static double worst = 0.0;
@@ -242,7 +245,7 @@ int main() {{
   std::printf("%g %d", worst, odd);
 }}
 )",
-                                                                    header.name),
+                                                            header.name),
                                                 "-lmvec -DHYSTERON_BATCH_FAST");
   std::istringstream words(printed);
   double worst = 1e9;

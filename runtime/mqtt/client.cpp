@@ -32,14 +32,6 @@ void begin_library() {
   std::call_once(once, [] { (void)::mosquitto_lib_init(); });
 }
 
-/// A broker that closes must not end the process.
-void ignore_broken_pipes() {
-  sigset_t signals;
-  (void)::sigemptyset(&signals);
-  (void)::sigaddset(&signals, SIGPIPE);
-  (void)::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-}
-
 /// Nobody is there to type the password of a key.
 int no_password(char* /*buffer*/, int /*size*/, int /*writes*/, void* /*user*/) {
   return 0;
@@ -58,6 +50,13 @@ MqttFault mqtt_fault(int result, MqttFault otherwise) {
 }
 
 }  // namespace
+
+void ignore_broken_pipes() {
+  sigset_t signals;
+  (void)::sigemptyset(&signals);
+  (void)::sigaddset(&signals, SIGPIPE);
+  (void)::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
 
 /// What the library's callbacks write. It is used by one thread at a time: that which connects, then that of the
 /// client.

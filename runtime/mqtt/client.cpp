@@ -25,7 +25,7 @@ using std::chrono::steady_clock;
 
 constexpr int keep_alive = 10;             ///< seconds without a word, after which the library asks for one
 constexpr std::size_t most_received = 16;  ///< that wait to be looked at
-constexpr std::size_t longest_received = 64 * 1024;
+constexpr std::size_t longest_received = std::size_t{64} * 1024;
 
 void begin_library() {
   static std::once_flag once;
@@ -67,7 +67,7 @@ struct MqttClient::Connection {
   ~Connection() { ::mosquitto_destroy(handle); }
 
   void connect();
-  [[nodiscard]] std::string reason(int result, int system) const;
+  [[nodiscard]] std::string reason(int code, int cause) const;
 
   MqttLink link;
   mosquitto* handle;

@@ -75,8 +75,8 @@ TEST_F(Publishing, GivesEachRowWithItsTime) {
     auto rows = subscriber.on("plant/data");
     rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(before));
     EXPECT_EQ(numbers_in(rows), grid(1000));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const json row = json::parse(rows[i]);
+    for (const std::string& text : rows) {
+      const json row = json::parse(text);
       const auto cycle = row.at("cycle").get<std::int64_t>();
       EXPECT_EQ(row.at("timestamp"), MqttBench::noon_ms + cycle) << "of the sample, not of the sending";
       EXPECT_EQ(row.at("values").at("Y").at("value"), 0.5 * static_cast<double>(cycle));

@@ -25,19 +25,11 @@ using std::chrono::steady_clock;
 
 constexpr int keep_alive = 10;             ///< seconds without a word, after which the library asks for one
 constexpr std::size_t most_received = 16;  ///< that wait to be looked at
-constexpr std::size_t longest_received = 64 * 1024;
+constexpr std::size_t longest_received = std::size_t{64} * 1024;
 
 void begin_library() {
   static std::once_flag once;
   std::call_once(once, [] { (void)::mosquitto_lib_init(); });
-}
-
-/// A broker that closes must not end the process.
-void ignore_broken_pipes() {
-  sigset_t signals;
-  (void)::sigemptyset(&signals);
-  (void)::sigaddset(&signals, SIGPIPE);
-  (void)::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
 /// Nobody is there to type the password of a key.
@@ -59,6 +51,13 @@ MqttFault mqtt_fault(int result, MqttFault otherwise) {
 
 }  // namespace
 
+void ignore_broken_pipes() {
+  sigset_t signals;
+  (void)::sigemptyset(&signals);
+  (void)::sigaddset(&signals, SIGPIPE);
+  (void)::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 /// What the library's callbacks write. It is used by one thread at a time: that which connects, then that of the
 /// client.
 struct MqttClient::Connection {
@@ -68,7 +67,7 @@ struct MqttClient::Connection {
   ~Connection() { ::mosquitto_destroy(handle); }
 
   void connect();
-  [[nodiscard]] std::string reason(int result, int system) const;
+  [[nodiscard]] std::string reason(int code, int cause) const;
 
   MqttLink link;
   mosquitto* handle;

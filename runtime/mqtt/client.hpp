@@ -40,6 +40,9 @@ struct MqttLink {
   std::chrono::milliseconds patience{10'000};  ///< for an answer of the broker
 };
 
+/// Of the calling thread: a broker that closes must not end the process.
+void ignore_broken_pipes();
+
 class MqttClient {
  public:
   /// Begins to connect.

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -276,10 +275,7 @@ Mqtt::~Mqtt() {
 
 void Mqtt::run() {
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), sender_niceness);
-  sigset_t pipes;
-  (void)::sigemptyset(&pipes);
-  (void)::sigaddset(&pipes, SIGPIPE);
-  (void)::pthread_sigmask(SIG_BLOCK, &pipes, nullptr);  // a broker that closes must not end the process
+  ignore_broken_pipes();
   eventfd_t asked = 0;
   while (::eventfd_read(over_.number(), &asked) != 0) {
     sender_.turn(interval_, over_.number());

@@ -12,28 +12,29 @@ namespace hysteron::runtime {
 
 class WireWriter {
  public:
-  void varint(std::uint32_t field, std::uint64_t value) {
-    head(field, 0);
-    raw(value);
+  // `tag` is the number of the field.
+  void varint(std::uint32_t tag, std::uint64_t content) {
+    head(tag, 0);
+    raw(content);
   }
-  void real(std::uint32_t field, double value) {
-    head(field, 1);
-    fixed(std::bit_cast<std::uint64_t>(value), 8);
+  void real(std::uint32_t tag, double content) {
+    head(tag, 1);
+    fixed(std::bit_cast<std::uint64_t>(content), 8);
   }
-  void real(std::uint32_t field, float value) {
-    head(field, 5);
-    fixed(std::bit_cast<std::uint32_t>(value), 4);
+  void real(std::uint32_t tag, float content) {
+    head(tag, 5);
+    fixed(std::bit_cast<std::uint32_t>(content), 4);
   }
   /// A text, or a message within.
-  void bytes(std::uint32_t field, std::string_view value) {
-    head(field, 2);
-    raw(value.size());
-    bytes_ += value;
+  void bytes(std::uint32_t tag, std::string_view content) {
+    head(tag, 2);
+    raw(content.size());
+    bytes_ += content;
   }
   [[nodiscard]] const std::string& written() const { return bytes_; }
 
  private:
-  void head(std::uint32_t field, std::uint32_t kind) { raw(field << 3U | kind); }
+  void head(std::uint32_t tag, std::uint32_t kind) { raw(tag << 3U | kind); }
   void raw(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7U) {
       bytes_ += static_cast<char>(value | 0x80U);

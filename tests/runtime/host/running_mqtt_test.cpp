@@ -207,7 +207,7 @@ TEST_F(PublishingRuns, EndInTimeWhereTheBrokerHangs) {
   ASSERT_TRUE(soon([&] { return stage.taken() == 6.0; })) << "control goes on";
   const auto begin = std::chrono::steady_clock::now();
   const auto [code, said] = host.end();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(6));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(9));
   EXPECT_EQ(code, 0);
   EXPECT_EQ(stage.taken(), -1.0);
   EXPECT_THAT(said, HasSubstr("rows for MQTT are lost: "));

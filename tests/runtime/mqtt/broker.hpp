@@ -48,21 +48,7 @@ inline void skip_without_broker() {
 /// A program in a process of its own, its output in a file.
 class Program {
  public:
-  Program(const std::vector<std::string>& words, const std::string& output) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) {
-      arguments.push_back(const_cast<char*>(word.c_str()));
-    }
-    arguments.push_back(nullptr);
-    process_ = ::fork();
-    if (process_ == 0) {
-      const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
-      (void)::dup2(file, STDOUT_FILENO);
-      (void)::dup2(file, STDERR_FILENO);
-      (void)::execvp(arguments[0], arguments.data());
-      ::_exit(127);
-    }
-  }
+  Program(std::vector<std::string> words, const std::string& output) : process_(begin(words, output)) {}
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program() { kill(); }
@@ -80,7 +66,24 @@ class Program {
   }
 
  private:
-  pid_t process_ = 0;
+  static pid_t begin(std::vector<std::string>& words, const std::string& output) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) {
+      arguments.push_back(word.data());
+    }
+    arguments.push_back(nullptr);
+    const pid_t process = ::fork();
+    if (process == 0) {
+      const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+      (void)::dup2(file, STDOUT_FILENO);
+      (void)::dup2(file, STDERR_FILENO);
+      (void)::execvp(arguments[0], arguments.data());
+      ::_exit(127);
+    }
+    return process;
+  }
+
+  pid_t process_;
 };
 
 class Broker {

@@ -63,6 +63,7 @@ class MqttBench {
     utc_ += time;
     steady_ += time;
   }
+  void set_clock(std::int64_t step) { utc_ += step; }
   void turn() { sender_->turn(std::chrono::milliseconds(1)); }
   /// Turns, with time going by, until something holds.
   bool until(const std::function<bool()>& holds) {

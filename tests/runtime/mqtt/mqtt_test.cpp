@@ -75,8 +75,8 @@ TEST_F(Publishing, GivesEachRowWithItsTime) {
     auto rows = subscriber.on("plant/data");
     rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(before));
     EXPECT_EQ(numbers_in(rows), grid(1000));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const json row = json::parse(rows[i]);
+    for (const std::string& text : rows) {
+      const json row = json::parse(text);
       const auto cycle = row.at("cycle").get<std::int64_t>();
       EXPECT_EQ(row.at("timestamp"), MqttBench::noon_ms + cycle) << "of the sample, not of the sending";
       EXPECT_EQ(row.at("values").at("Y").at("value"), 0.5 * static_cast<double>(cycle));
@@ -212,6 +212,26 @@ TEST_F(Publishing, WhatIsTooOldIsCounted) {
   bench.turn();
   EXPECT_EQ(bench.count().lost, 101U);
   EXPECT_EQ(bench.count().waiting, 0U);
+}
+
+TEST_F(Publishing, AClockThatIsSetReordersNothing) {
+  Broker broker;
+  ASSERT_TRUE(broker.start());
+  const Subscriber subscriber(broker);
+  MqttBench bench(broker.port());
+  bench.start();
+  bench.run(500);
+  bench.turn();
+  bench.set_clock(-3'600'000 * MqttBench::ms);
+  bench.run(500);
+  ASSERT_TRUE(bench.until_confirmed());
+  EXPECT_THAT(bench.said(), HasSubstr("clock was set back by 3600.0 s"));
+  bench.finish();
+  ASSERT_TRUE(soon([&] { return subscriber.on("plant/data").size() >= 101; }));
+  const auto rows = subscriber.on("plant/data");
+  EXPECT_EQ(numbers_in(rows), grid(1000));
+  EXPECT_EQ(json::parse(rows[50]).at("timestamp"), MqttBench::noon_ms + 500);
+  EXPECT_EQ(json::parse(rows[100]).at("timestamp"), MqttBench::noon_ms + 1000 - 3'600'000);
 }
 
 TEST_F(Publishing, ChangesAloneWhereTheyAreAskedFor) {

@@ -22,6 +22,9 @@ using test::MqttBench;
 using test::soon;
 using testing::HasSubstr;
 
+/// Less than anything that hangs would take, and enough for a machine that is busy.
+constexpr std::chrono::seconds prompt{8};
+
 class PublishingTrouble : public test::WithBroker {};
 
 TEST_F(PublishingTrouble, AWrongPasswordIsRefusedAndTriedAgain) {
@@ -125,7 +128,7 @@ TEST_F(PublishingTrouble, ABrokerThatHangsIsLeftAndTheEndIsQuick) {
   bench.turn();
   const auto begin = std::chrono::steady_clock::now();
   bench.finish(milliseconds(300));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, prompt);
   EXPECT_EQ(bench.count().done + bench.count().lost, 111U);
   EXPECT_GE(bench.count().lost, 100U) << "whoever does not confirm has not got them";
   broker.go_on();
@@ -157,7 +160,7 @@ TEST(PublishingToNobody, ASilentPortIsLeft) {
   bench.turn();  // it is tried again
   const auto begin = std::chrono::steady_clock::now();
   bench.finish();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1)) << "there is nobody to say farewell to";
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, prompt) << "there is nobody to say farewell to";
   EXPECT_EQ(bench.count().lost, 11U);
   EXPECT_THAT(bench.remarks().problem(), HasSubstr("11 since the start"));
 }
@@ -188,12 +191,12 @@ TEST(PublishingToNobody, AConnectThatHangsIsSaidAndHoldsUpNothing) {
   bench.run(1000);
   auto begin = std::chrono::steady_clock::now();
   bench.turn();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, prompt);
   EXPECT_EQ(bench.count().waiting, 111U) << "rows are taken meanwhile";
   EXPECT_EQ(bench.said(), "") << "it is said once";
   begin = std::chrono::steady_clock::now();
   bench.finish();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, prompt);
   EXPECT_EQ(bench.count().lost, 111U);
 }
 
@@ -248,7 +251,7 @@ TEST_F(PublishingTrouble, TheThreadEndsInTimeWhateverTheBrokerDoes) {
     }
     const auto begin = std::chrono::steady_clock::now();
     mqtt.finish();
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(hangs ? 5 : 2));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, prompt);
     EXPECT_EQ(counter.read().done, hangs ? 10U : 20U);
     EXPECT_EQ(counter.read().lost, hangs ? 10U : 0U);
   }

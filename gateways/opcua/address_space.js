@@ -2,8 +2,8 @@
 // when a client samples them; a write goes to the task as a staged parameter. docs/how-to/opc-ua.md has the mapping.
 
 import {
-  DataType, DataValue, makePermissionFlag, resolveNodeId, setNamespaceMetaData, StatusCodes, Variant, VariantArrayType,
-  WellKnownRoles,
+  DataType, DataValue, makeAccessLevelFlag, makePermissionFlag, resolveNodeId, setNamespaceMetaData, StatusCodes, Variant,
+  VariantArrayType, WellKnownRoles,
 } from "node-opcua";
 
 import { enumeration, statusOf } from "./quality.js";
@@ -83,6 +83,11 @@ export class TaskSpace {
       { roleId: resolveNodeId(WellKnownRoles.Operator), permissions: all },
     ]);
     setNamespaceMetaData(this.#namespace);
+    // What the library brings along, it leaves open to writes where it says nothing.
+    const look = [{ roleId: resolveNodeId(WellKnownRoles.Anonymous), permissions: makePermissionFlag("Browse | Read | ReceiveEvents | Call") }];
+    for (const index of [0, 1]) {
+      space.getNamespace(index).setDefaultRolePermissions(look);
+    }
     this.#addFixedNodes();
   }
 
@@ -150,6 +155,9 @@ export class TaskSpace {
       this.#folders[name] = this.#namespace.addObject({
         browseName: name, nodeId: `s=${name}`, componentOf: task, typeDefinition: "FolderType", nodeVersion: "1",
       });
+    }
+    for (const { nodeVersion } of [task, ...Object.values(this.#folders)]) {
+      nodeVersion.accessLevel = nodeVersion.userAccessLevel = makeAccessLevelFlag("CurrentRead");
     }
     const add = (parent, name, dataType, description, get, more = {}) => this.#namespace.addVariable({
       browseName: name, nodeId: `s=${parent.browseName.name}.${name}`, componentOf: parent, dataType, description,

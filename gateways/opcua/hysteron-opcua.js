@@ -10,7 +10,7 @@ import { parseOptions, USAGE } from "./options.js";
 import { TaskLink } from "./task_link.js";
 import { addUser, InputError, Users } from "./users.js";
 
-const NICENESS = 10; // whatever runs the machine goes before it, as before the live page
+const NICENESS = 10; // while it serves: whatever runs the machine goes before it, as before the live page
 
 const { version } = JSON.parse(readFileSync(new URL("package.json", import.meta.url), "utf8"));
 
@@ -20,7 +20,6 @@ function tell(line) {
 }
 
 async function serve(options) {
-  setPriority(NICENESS);
   const users = options.users ? new Users(options.users, tell) : null;
   // The library is loaded last: a mistake on the command line is told at once.
   const [{ makeServer }, { TaskSpace }] = await Promise.all([import("./server.js"), import("./address_space.js")]);
@@ -31,6 +30,7 @@ async function serve(options) {
   await server.start().catch((problem) => {
     throw new InputError(`--listen: ${options.address}:${options.port} cannot be used (${problem.code ?? problem.message}).`);
   });
+  setPriority(NICENESS);
   tell(`Listening on ${server.getEndpointUrl()}${options.isWritable ? "" : ", read-only"}.`);
 
   let isEnding = false;

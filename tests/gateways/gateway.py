@@ -39,7 +39,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def eventually(ask, expected, seconds=60):
+def eventually(ask, expected, seconds=180):
     """What is asked, once it is as expected; or the last answer. A busy machine is given time."""
     end = time.monotonic() + seconds
     while True:

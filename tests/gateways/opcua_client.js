@@ -9,7 +9,7 @@ const { createInterface } = require("node:readline");
 const path = require("node:path");
 
 const opcua = createRequire(path.join(path.resolve(process.argv[2]), "package.json"))("node-opcua");
-const { AttributeIds, constructEventFilter, DataType, MessageSecurityMode, OPCUACertificateManager, OPCUAClient, ofType,
+const { AttributeIds, constructEventFilter, DataType, MessageSecurityMode, NodeClass, OPCUACertificateManager, OPCUAClient, ofType,
   SecurityPolicy, TimestampsToReturn, UserTokenType } = opcua;
 opcua.setWarningLogger(() => {});
 opcua.setErrorLogger(() => {});
@@ -110,6 +110,33 @@ const commands = {
       { samplingInterval: 0, queueSize: 100, discardOldest: true, filter }, TimestampsToReturn.Both);
     item.on("changed", ([, changes]) => (seen.events ??= []).push(changes.value.map((one) => one.affected.toString())));
     return item.result.statusCode.name;
+  },
+  /** The identifiers of all variables of the server that this session may write, and of all methods that it may call. */
+  async allowed() {
+    const nodes = { [NodeClass.Variable]: [], [NodeClass.Method]: [] };
+    const seenNodes = new Set();
+    for (let queue = ["ns=0;i=84"]; queue.length > 0;) {
+      const found = await session.browse(queue.splice(0, 100).map((nodeId) => (
+        { nodeId, referenceTypeId: "HierarchicalReferences", includeSubtypes: true, browseDirection: 0, resultMask: 63 })));
+      for (const { nodeId, nodeClass } of found.flatMap((one) => one.references ?? [])) {
+        if (!seenNodes.has(nodeId.toString())) {
+          seenNodes.add(nodeId.toString());
+          queue.push(nodeId.toString());
+          nodes[nodeClass]?.push(nodeId.toString());
+        }
+      }
+    }
+    const those = async (nodeClass, attribute, is) => {
+      const ids = nodes[nodeClass];
+      const values = [];
+      while (values.length < ids.length) {
+        const part = ids.slice(values.length, values.length + 500);
+        values.push(...await session.read(part.map((nodeId) => ({ nodeId, attributeId: AttributeIds[attribute] }))));
+      }
+      return ids.filter((_, i) => is(values[i].value.value)).map((id) => id.replace(prefix, ""));
+    };
+    return { variables: await those(NodeClass.Variable, "UserAccessLevel", (level) => (level ?? 0) & 2),
+      methods: await those(NodeClass.Method, "UserExecutable", (may) => may) };
   },
   async property({ node, name }) {
     const { references } = await session.browse({ nodeId: prefix + node, referenceTypeId: "HasProperty", resultMask: 63 });

@@ -161,6 +161,19 @@ class OfATask(unittest.TestCase):
         self.gateway.wait_for_line("Users: ") if eventually(lambda: self.refused("anna"), True) else self.fail("anna is still let in")
         self.connect(client, "ben")
 
+    def test_of_the_whole_server_parameters_alone_are_open_to_writes(self):
+        client = self.start()
+        standard = {"ns=0;i=11492", "ns=0;i=12749", "ns=0;i=12873"}  # GetMonitoredItems, SetSubscriptionDurable, ResendData
+        self.connect(client, "ben")
+        self.assertEqual(client.allowed()["variables"], [])
+        self.assertEqual(set(client.allowed()["methods"]), standard)
+        self.connect(client)
+        may = client.allowed()
+        parameters = {f"Parameters/{name}" for name in client.browse(node="Parameters") if "." in name}
+        self.assertEqual(set(may["variables"]), parameters)
+        self.assertGreater(len(parameters), 8)
+        self.assertEqual(set(may["methods"]), standard | {"Parameters.Commit", "Parameters.Discard"})
+
     def refused(self, user):
         with Client() as other:
             try:

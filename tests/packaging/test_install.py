@@ -104,6 +104,14 @@ class Install(unittest.TestCase):
         run(self.program, "check", "axis.st", cwd=self.work)
         self.assertIn("# HY402", run(self.program, "explain", "hy402", cwd=self.work))
 
+    def test_the_gateway_of_opc_ua_lies_beside_it_without_what_npm_brings(self):
+        folder = self.prefix / "share/hysteron/opcua"
+        self.assertFalse((folder / "node_modules").exists())
+        self.assertTrue(os.access(folder / "hysteron-opcua.js", os.X_OK))
+        self.assertTrue((folder / "package-lock.json").is_file())
+        if shutil.which("node"):
+            self.assertIn("--task URL", run(folder / "hysteron-opcua.js", "--help", cwd=self.work))
+
     def test_an_fmu_is_run_without_the_source(self):
         (self.work / "axis.st").write_text(DIAGRAM)
         (self.work / "outside.st").write_text(OUTSIDE)

@@ -270,6 +270,14 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"K[1]\" = 7.0"));
   EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"X[1]\" = 3.0"));
 
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0, 5.0]\n"), program.graph);
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[0]"))].value[0], 4.0);
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[1]"))].value[0], 5.0);
+  Diagnostics short_list;
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0]\n"), program.graph, short_list);
+  ASSERT_EQ(short_list.all().size(), 1U);
+  EXPECT_THAT(short_list.all()[0].cause, HasSubstr("K takes 2 numbers, here are 1"));
+
   Diagnostics refused;
   parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters.G]\nA = [0.25, 0.0]\n"), program.graph,
                     refused);

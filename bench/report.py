@@ -119,6 +119,16 @@ def tabulate(best, solutions, scipy):
     ratio("generated step : hand-written", "step/generated", "step/hand_written", 1.05)
     ratio("interpreted step : generated", "step/interpreted", "step/generated", 2.0)
 
+    instances = 128
+    for name, what in (("same_bits", "the bits of the step"), ("fast", "libmvec")):
+        for lanes, goal in ((8, 6e-9), (4, 10e-9), (2, None)):
+            run = f"batch/{name}/{lanes}"
+            if run in best:
+                ours = best[run] / samples / instances
+                one = best["step/generated"] / samples
+                asked = goal / one if goal and name == "fast" else 1.0
+                table.add(f"batch of {lanes} lanes, {what} : generated", duration(ours), duration(one), f"{ours / one:.3f} ×", ours / one, round(asked, 3))
+
     dual = best["dual/dual"] / best["dual/double"]
     jet = best["dual/jet"] / best["dual/double"]
     table.add("dual of 3 : double, against Jet : double", f"{dual:.2f} ×", f"{jet:.2f} ×", f"{dual / jet:.3f} ×", dual / jet, 2.0)

@@ -166,7 +166,7 @@ constexpr std::array titles{
     ErrorTitle{error::malformed_allow_list, "Entry of an allow-list that is not understood"},
     ErrorTitle{error::unusable_tls_file, "Certificate or key that does not serve"},
     ErrorTitle{error::key_of_another_certificate, "Key of another certificate"},
-    ErrorTitle{error::key_open_to_others, "Private key that others may read"},
+    ErrorTitle{error::key_open_to_others, "Private key or password that others may read"},
     ErrorTitle{error::certificate_out_of_date, "Certificate that does not count today"},
     ErrorTitle{error::no_role_may_anything, "TLS, and no role that may do anything"},
     ErrorTitle{error::roles_without_tls, "Roles without TLS, or TLS without a server"},

@@ -5,26 +5,17 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <set>
 #include <utility>
 
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/cpp/cpp_host.hpp"
-#include "support/errors.hpp"
-#include "support/sha256.hpp"
-#include "support/temporary_folder.hpp"
-#include "support/text_file.hpp"
 #include "tool/build_cache.hpp"
-#include "tool/compiler.hpp"
-#include "tool/process.hpp"
+#include "tool/built_program.hpp"
 #include "tool/row_program.hpp"
 
 namespace hysteron::tool {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Optimised a little: it is compiled in half the time, and bits do not depend on it.
 constexpr std::array flags{"-std=c++20", "-O1"};
@@ -76,13 +67,8 @@ std::string runner(const std::string& name, const Graph& graph) {
          "      return 4;\n    }\n  }\n  return std::fflush(stdout) == 0 ? 0 : 4;\n}\n";
 }
 
-struct GeneratedSources {
-  std::string host;
-  std::vector<GeneratedFile> headers;
-};
-
-GeneratedSources sources_of(const std::vector<GeneratedProgram>& programs) {
-  GeneratedSources sources{.host = std::string(host_head), .headers = {}};
+ProgramSources sources_of(const std::vector<GeneratedProgram>& programs) {
+  ProgramSources sources{.main = std::string(host_head), .flags = {flags.begin(), flags.end()}};
   std::string runners;
   std::string cases;
   for (std::size_t i = 0; i < programs.size(); ++i) {
@@ -90,59 +76,19 @@ GeneratedSources sources_of(const std::vector<GeneratedProgram>& programs) {
     Program renamed = *programs[i].program;
     renamed.graph.name = fmt::format("program_{}", i);
     sources.headers.push_back(generate_cpp_header(renamed, {.float32 = programs[i].float32}));
-    sources.host += fmt::format("#include \"{}\"\n", sources.headers.back().name);
+    sources.main += fmt::format("#include \"{}\"\n", sources.headers.back().name);
     runners += "\n" + runner(renamed.graph.name, renamed.graph);
     cases += fmt::format("    case {}:\n      return run_program_{}(steps);\n", i, i);
   }
-  sources.host += "\nnamespace {\n" + runners + "\n}  // namespace\n" + std::string(host_tail) + cases +
+  sources.main += "\nnamespace {\n" + runners + "\n}  // namespace\n" + std::string(host_tail) + cases +
                   "    default:\n      return 2;\n  }\n}\n";
   return sources;
 }
 
-std::string version_of(const std::vector<std::string>& compiler, const fs::path& folder) {
-  auto command = compiler;
-  command.emplace_back("--version");
-  const auto output = folder / "version";
-  return run_program(command, {.output = output}) == 0 ? read_text_file(output.string()) : std::string();
-}
-
-void compile_sources(const GeneratedSources& sources, std::vector<std::string> command, const fs::path& executable) {
-  const auto folder = executable.parent_path();
-  for (const GeneratedFile& header : sources.headers) {
-    write_scratch(folder / header.name, header.text);
-  }
-  write_scratch(folder / "main.cpp", sources.host);
-  command.insert(command.end(), flags.begin(), flags.end());
-  for (const std::string& flag : words_of(cpp_numeric_flags)) {
-    command.push_back(flag);
-  }
-  command.insert(command.end(), {(folder / "main.cpp").string(), "-o", executable.string(), "-lm"});
-  const auto errors = folder / "errors";
-  if (const int code = run_program(command, {.errors = errors}); code != 0) {
-    throw InputError(error::generated_code_fails, {},
-                     fmt::format("The compiler {} refuses the generated code (exit code {}):{}", command.front(), code,
-                                 first_lines(errors)),
-                     "set CXX to a compiler for C++20, or leave generated code out with --no-generated.");
-  }
-}
-
 }  // namespace
 
-std::vector<std::string> compiler_command() {
-  if (auto command = find_compiler("CXX", {"c++", "g++", "clang++"})) {
-    return *command;
-  }
-  if (const char* const set = std::getenv("CXX"); set != nullptr && *set != '\0') {
-    throw InputError(error::no_compiler, {}, fmt::format("CXX is \"{}\", which cannot be run.", set),
-                     "set CXX to a C++ compiler, or unset it.");
-  }
-  throw InputError(error::no_compiler, {}, "There is no C++ compiler (c++, g++ or clang++) on the path.",
-                   "install one (Debian: apt install g++), set CXX, or leave generated code out with --no-generated.");
-}
-
 CompiledPrograms::CompiledPrograms(const std::vector<GeneratedProgram>& programs) {
-  const auto compiler = compiler_command();
-  const GeneratedSources sources = sources_of(programs);
+  const ProgramSources sources = sources_of(programs);
   for (const GeneratedProgram& one : programs) {
     shapes_.push_back({.name = one.program->graph.name,
                        .inputs = one.program->graph.inputs.size(),
@@ -150,23 +96,7 @@ CompiledPrograms::CompiledPrograms(const std::vector<GeneratedProgram>& programs
   }
   BuildCache cache;
   scratch_ = cache.folder();
-  std::string everything = sources.host;
-  for (const GeneratedFile& header : sources.headers) {
-    everything += header.text;
-  }
-  for (const std::string& word : compiler) {
-    everything += word + " ";
-  }
-  for (const char* const flag : flags) {
-    everything += flag;
-  }
-  everything += cpp_numeric_flags;
-  {
-    const TemporaryFolder folder(scratch_);
-    everything += version_of(compiler, folder.path());
-  }
-  executable_ =
-      cache.find_or_build(sha256(everything), [&](const fs::path& path) { compile_sources(sources, compiler, path); });
+  executable_ = built_program(cache, sources);
 }
 
 std::vector<Signal> CompiledPrograms::run(std::size_t program, const Drive& drive) const {

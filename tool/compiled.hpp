@@ -15,11 +15,8 @@ struct GeneratedProgram {
   bool float32 = false;
 };
 
-/// The compiler's command: $CXX, else the first of c++, g++, clang++ on the path. Throws InputError HY725.
-[[nodiscard]] std::vector<std::string> compiler_command();
-
-/// Several diagrams in one executable, so that the compiler is called once. It is kept by the hash of its sources, of
-/// the compiler's version and of the flags, and not compiled again.
+/// Several diagrams in one executable, so that the compiler is called once. It is kept and
+/// not compiled again: see built_program.
 class CompiledPrograms {
  public:
   /// Throws InputError: HY725 without a compiler, HY726 where the compiler refuses, HY404 for a diagram without a

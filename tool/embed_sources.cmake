@@ -6,7 +6,7 @@
 # a host needs go in whole, with every header that they include; of the others, what they include and the source beside
 # it.
 cmake_policy(VERSION 3.25)
-set(rooms "^runtime/(config|history|host|modbus|task)/")
+set(rooms "^runtime/(config|history|host|modbus|mqtt|task)/")
 
 # The sources of a target, relative to the root.
 function(read_list file folder result)

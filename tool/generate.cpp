@@ -38,6 +38,7 @@ constexpr std::string_view generate_examples = R"(Examples:
   hysteron generate feedforward.st --host --params tuned.toml --config RUN.toml --out host
 
 cpp: NAME.hpp, the step itself; main.cpp, which runs it over a record; and CMakeLists.txt, which builds both.
+batch: NAME_batch.hpp, thousands of instances of the step, eight in the lanes of a vector at a time.
 c: NAME.h and NAME.c, in C99. st: NAME.st, one FUNCTION_BLOCK for a PLC, and NAME_program.st, which calls it.
 --a2l: NAME.a2l too, for tools of calibration; with --elf it has the addresses of the linked program.
 The dialects of st: portable, codesys, twincat, siemens-scl. --structured: the diagram as calls of its blocks, and the
@@ -64,7 +65,8 @@ struct GenerateOptions {
 };
 
 void check_usage(const GenerateOptions& options) {
-  const TargetOptions& target = options.target;
+  TargetOptions target = options.target;
+  target.float32 = options.diagram.float32;
   if (target.target.empty() && !options.host) {
     throw InputError(error::bad_usage, {}, "It is not said what to generate.",
                      "write --target cpp for the step, or --host for a program that runs it as a task.");
@@ -127,7 +129,7 @@ int generate(const GenerateOptions& options, Console& console) {
         {.files = generate_host(program, {.run_file = options.config, .inputs = inputs, .float32 = float32})});
   } else {
     for (const Target& one : targets()) {
-      if (all || equal_ignoring_case(one.name, target.target)) {
+      if (all ? one.has_float32 || !float32 : equal_ignoring_case(one.name, target.target)) {
         written.push_back({.target = &one, .files = one.generate(program, target, warnings)});
       }
     }
@@ -179,9 +181,9 @@ Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
   app.add_option("--target", options->target.target,
-                 "The language: cpp (C++11), c (C99), st (Structured Text), plcopen (PLCopen XML), fmu (FMI); or all, "
-                 "each run beside the interpreter.")
-      ->option_text("cpp|c|st|plcopen|fmu|all");
+                 "The language: cpp (C++11), batch (C++17, many instances), c (C99), st (Structured Text), plcopen (PLCopen "
+                 "XML), fmu (FMI); or all, each run beside the interpreter.")
+      ->option_text("cpp|batch|c|st|plcopen|fmu|all");
   app.add_option("--dialect", options->target.dialect,
                  "Of Structured Text or PLCopen XML; portable where none is given.")
       ->option_text("DIALECT");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +39,7 @@ using runtime::utc_text;
 
 constexpr std::string_view history_examples = R"(Examples:
   hysteron history history.sqlite
+  hysteron history history.sqlite --json
   hysteron history history.sqlite --out log.csv
   hysteron history history.sqlite --from 2h --points U,Y --out log.csv
   hysteron history history.sqlite --from 2026-11-28T06:00 --to 2026-11-28T07:30 --run 3 --out log.csv
@@ -58,6 +60,7 @@ struct HistoryOptions {
   std::vector<std::string> points;
   std::int64_t run = 0;
   bool gaps = false;
+  bool json = false;
   std::string output;
 };
 
@@ -102,6 +105,40 @@ std::string listed(const std::vector<RecordedRun>& runs, const StretchList& foun
     text += own.size() > most_listed ? fmt::format("  and {} more stretches\n", own.size() - most_listed) : "";
   }
   return text + clock_text(found);
+}
+
+/// What `listed` says, all stretches of it, in the order in which they were written.
+std::string as_json(const std::string& file, const std::vector<RecordedRun>& runs, const StretchList& found) {
+  using nlohmann::ordered_json;
+  ordered_json json{{"file", file}, {"runs", ordered_json::array()}, {"clock_steps", ordered_json::array()}};
+  for (const RecordedRun& run : runs) {
+    ordered_json stretches = ordered_json::array();
+    for (const Stretch& one : found.stretches) {
+      if (one.run == run.run) {
+        stretches.push_back(
+            {{"from", utc_text(one.first_ms)}, {"to", utc_text(one.last_ms)}, {"rows", one.rows}, {"late", one.late}});
+      }
+    }
+    if (stretches.empty()) {
+      continue;
+    }
+    ordered_json points = ordered_json::array();
+    for (const RecordedPoint& point : run.points) {
+      points.push_back(
+          {{"name", point.name}, {"unit", point.unit == "1" ? "" : point.unit}, {"meaning", point.meaning}});
+    }
+    json["runs"].push_back({{"run", run.run},
+                            {"title", run.title},
+                            {"begun", utc_text(run.begun_ms)},
+                            {"period", static_cast<double>(run.period) / 1e9},
+                            {"sample_time", run.sample_time()},
+                            {"points", std::move(points)},
+                            {"stretches", std::move(stretches)}});
+  }
+  for (const runtime::ClockStep& step : found.clock_steps) {
+    json["clock_steps"].push_back({{"before", utc_text(step.at_ms)}, {"seconds", step.seconds}});
+  }
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::vector<RecordedPoint> points_of(const RecordedRun& run, const HistoryOptions& options) {
@@ -215,7 +252,7 @@ int history(const HistoryOptions& options, Console& console) {
                     fmt::format("call `hysteron history {}`, which lists runs and times.", options.file));
     }
     if (options.output.empty()) {
-      console.print(listed(runs, found));
+      console.print(options.json ? as_json(options.file, runs, found) : listed(runs, found));
       return exit_ok;
     }
     return export_record(reader, runs, found, options, console);
@@ -242,6 +279,7 @@ Action add_history(CLI::App& app) {
   app.add_option("--run", options->run, "Rows of this run alone.")->check(whole_number_from(1))->option_text("N");
   app.add_option("--out", options->output, "The record, CSV.")->option_text("LOG.csv");
   app.add_flag("--gaps", options->gaps, "All stretches of the run, with the gaps between them.")->needs("--out");
+  app.add_flag("--json", options->json, "Prints the list as JSON.")->excludes("--out");
   app.footer(std::string(history_examples));
   return [options](Console& console) { return history(*options, console); };
 }

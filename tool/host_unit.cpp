@@ -143,6 +143,17 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
       }
     }
   }
+  if (config.mqtt) {
+    const auto& mqtt = *config.mqtt;
+    for (const auto& [name, path] : {std::pair(runtime::modbus::mqtt_ca_credential, mqtt.ca),
+                                     {runtime::modbus::mqtt_certificate_credential, mqtt.certificate},
+                                     {runtime::modbus::mqtt_key_credential, mqtt.key},
+                                     {runtime::modbus::mqtt_password_credential, mqtt.password_file}}) {
+      if (std::filesystem::path(path).is_absolute()) {
+        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
+      }
+    }
+  }
   if (!folders.empty()) {
     rights += fmt::format(
         "# Folders elsewhere than in %S must belong to the service's user, which is else made at its start:\n"

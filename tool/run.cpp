@@ -19,6 +19,7 @@
 #include "tool/picture_file.hpp"
 #include "tool/record_figures.hpp"
 #include "tool/record_options.hpp"
+#include "tool/run_batch.hpp"
 #include "tool/writable.hpp"
 #include "tuning/recorded_run.hpp"
 
@@ -32,10 +33,15 @@ constexpr std::string_view run_examples = R"(Examples:
   hysteron run plant.st --in log.csv --out out.csv --plot fit.html
   hysteron run loop.st --in reference.csv --out voltage.csv --trace ERROR --trace PLANT.HYST.XOUT
   hysteron run feedforward.st --in - --out - < reference.csv | head
+  hysteron run plant.st --in log.csv --out sets.csv --sweep INV.C1=0.04..0.06/21 --sweep INV.C3=0.6..0.8/21
+  hysteron run plant.st --in log.csv --out sets.csv --draw 'INV.C1=normal(0.05,0.001)' --sets 10000 --fast
+  hysteron run plant.st --in log.csv --out sets.csv --batch sets_of_parameters.csv
 
 The columns of the record are matched to the inputs by name, without regard to case; t is in seconds, and its step is
 the sample time that the diagram states with @ts. An input without a column keeps the default that the diagram gives
 it. Written are t and the outputs, with the shortest numbers that read back to the same bits; TRUE is 1, FALSE is 0.
+Many sets of parameters over one record (--batch, --sweep, --draw): written is a row for each set, with its values, and
+the least, greatest and last value and the RMS of each output, and the RMSE where the record has its column.
 Exit codes: 0 done; 1 done, but an output is not a finite number (nan and inf are written as such); 2 an error in the
 diagram, the parameters or the record, and nothing is written.
 )";
@@ -47,6 +53,7 @@ struct RunOptions {
   std::string output;
   std::vector<std::string> traces;
   std::string plot;
+  BatchOptions batch;
   bool summary = false;
 };
 
@@ -121,8 +128,10 @@ std::vector<plots::Figure> figures_of(const RecordedRun& run, const records::Rec
 }
 
 int run_command(const RunOptions& options, Console& console) {
+  check_batch_options(options.batch, !options.traces.empty(), !options.plot.empty());
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.input, .named_by = "--in"});
+  inputs.push_back({.file = options.batch.sets.file, .named_by = "--batch"});
   refuse_to_overwrite({.file = options.output == "-" ? "" : options.output}, inputs);
   if (options.output != "-") {
     refuse_unwritable(options.output);
@@ -138,6 +147,10 @@ int run_command(const RunOptions& options, Console& console) {
   console.sources().put(options.input, log);
   const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
   records::Record record = records::parse_record(options.input, log, read_options(reading, &program));
+  if (options.batch.wanted()) {
+    return run_batch(options.batch, std::move(program), record,
+                     {.output = options.output, .float32 = options.diagram.float32}, diagnostics, console);
+  }
 
   Progress progress("Running");
   const RecordedRun run = run_over(std::move(program), record,
@@ -183,6 +196,7 @@ Action add_run(CLI::App& app) {
   add_record_options(app, options->record);
   app.add_option("--plot", options->plot, "Draws the run and its record: .svg, .png, or .html for a page with zoom.")
       ->option_text("FILE");
+  add_batch_options(app, options->batch);
   add_fmu_options(app);
   app.add_flag("--summary", options->summary, "Prints ranges, and errors against columns of the outputs' names.");
   app.footer(std::string(run_examples));

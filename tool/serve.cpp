@@ -46,6 +46,7 @@ struct ServeOptions {
   bool virtual_time = false;
   std::string web;
   std::string token_file;
+  std::string read_token_file;
 };
 
 /// Checked before anything runs.
@@ -57,6 +58,9 @@ std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& optio
   web.access.is_loopback = web.endpoint.is_loopback;
   if (!options.token_file.empty()) {
     web.access.token = runtime::web::read_token(options.token_file);
+  }
+  if (!options.read_token_file.empty()) {
+    web.access.read_token = runtime::web::read_token(options.read_token_file);
   }
   runtime::web::check_access(web.endpoint, web.access);
   return web;
@@ -73,6 +77,7 @@ int serve(const ServeOptions& options, Console& console) {
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
   inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
+  inputs.push_back({.file = options.read_token_file, .named_by = "--web-read-token-file"});
   runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
   console.report(warnings);
   const auto history = config.history.value_or(runtime::HistoryConfig{});
@@ -118,6 +123,10 @@ Action add_serve(CLI::App& app) {
   auto* const web =
       app.add_option("--web", options->web, "Serves the live page there: 127.0.0.1:8080.")->option_text("ADDRESS:PORT");
   app.add_option("--web-token-file", options->token_file, "Who has its token may change parameters on the page.")
+      ->needs(web)
+      ->option_text("FILE");
+  app.add_option("--web-read-token-file", options->read_token_file,
+                 "Who has its token may read beyond the loopback, as a scraper, and change nothing.")
       ->needs(web)
       ->option_text("FILE");
   app.footer(std::string(serve_examples));

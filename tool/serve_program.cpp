@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "codegen/backends/cpp/cpp.hpp"
@@ -14,11 +12,8 @@
 #include "codegen/interpreter/machine.hpp"
 #include "runtime/task/linked_program.hpp"
 #include "support/errors.hpp"
-#include "support/sha256.hpp"
-#include "support/text_file.hpp"
 #include "tool/build_cache.hpp"
-#include "tool/compiled.hpp"
-#include "tool/process.hpp"
+#include "tool/built_program.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -90,44 +85,17 @@ class InterpretedProgram final : public runtime::StepProgram {
   std::vector<Wire> inner_;
 };
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-}
-
-void build_library(const Program& program, bool float32, const std::vector<std::string>& compiler,
-                   const fs::path& path) {
-  const GeneratedFile header = generate_cpp_header(program, {.float32 = float32});
-  const GeneratedFile step = generate_cpp_step(program);
-  const fs::path folder = path.parent_path();
-  write_text(folder / header.name, header.text);
-  write_text(folder / step.name, step.text);
-  auto command = compiler;
-  std::istringstream words("-std=c++20 -O2 -shared -fPIC " + std::string(cpp_numeric_flags));
-  for (std::string word; words >> word;) {
-    command.push_back(word);
-  }
-  command.insert(command.end(), {(folder / step.name).string(), "-o", path.string(), "-lm"});
-  const fs::path errors = folder / "errors";
-  if (const int code = run_program(command, {.errors = errors}); code != 0) {
-    throw InputError(error::generated_code_fails, {},
-                     fmt::format("The compiler {} refuses the generated code (exit code {}):\n{}", compiler.front(),
-                                 code, read_text_file(errors.string()).substr(0, 1000)),
-                     "set CXX to a compiler for C++20, or run it with --engine interpreter.");
-  }
-}
-
 template <class Function>
 Function function_of(void* library, const char* name) {
   return reinterpret_cast<Function>(dlsym(library, name));
 }
 
 std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, ProgramShape shape, bool float32) {
-  const auto compiler = compiler_command();
   BuildCache cache;
-  const auto text = generate_cpp_header(program, {.float32 = float32}).text + generate_cpp_step(program).text;
-  const auto path = cache.find_or_build(sha256("library " + compiler.front() + text),
-                                        [&](const fs::path& to) { build_library(program, float32, compiler, to); });
+  const auto path = built_program(cache, {.main = generate_cpp_step(program).text,
+                                          .headers = {generate_cpp_header(program, {.float32 = float32})},
+                                          .flags = {"-std=c++20", "-O2", "-shared", "-fPIC"},
+                                          .without = "run it with --engine interpreter"});
   void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     throw InputError(error::generated_code_fails, {},

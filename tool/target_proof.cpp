@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "codegen/backends/batch/batch.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/fmu/fmu.hpp"
@@ -21,6 +22,7 @@
 #include "support/numbers.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
+#include "tool/built_program.hpp"
 #include "tool/compiled.hpp"
 #include "tool/compiler.hpp"
 #include "tool/process.hpp"
@@ -228,6 +230,52 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
                   drive);
 }
 
+// ---- in vectors -----------------------------------------------------------------------------------------------------
+
+/// All lanes take the same inputs, and have to give the same outputs.
+std::string main_of_batch(const Program& program, const std::string& header) {
+  const Graph& graph = program.graph;
+  const BatchNames names = batch_names(program);
+  std::string text = fmt::format(
+      "#include <cstdio>\n#include \"{0}\"\n{1}"
+      "static {2}::Params params;\nstatic {2}::State state;\nstatic {2}::In in;\nstatic {2}::Out out;\n"
+      "static void start() {{\n  {2}::reset(1, &params, &state);\n}}\n"
+      "static void step(const double *row, double *results, long) {{\n  (void)row;\n  (void)results;\n"
+      "  for (std::size_t i = 0; i < {2}::width; ++i) {{\n",
+      header, sizes(graph), names.space);
+  for (std::size_t i = 0; i < names.inputs.size(); ++i) {
+    text += graph.inputs[i].type == Type::Bool
+                ? fmt::format("    in.{}.lane[i] = row[{}] != 0.0 ? -1 : 0;\n", names.inputs[i], i)
+                : fmt::format("    in.{0}.lane[i] = (decltype(in.{0}.lane[0] + 0))row[{1}];\n", names.inputs[i], i);
+  }
+  text += fmt::format("  }}\n  {}::step(1, &params, &state, &in, &out);\n", names.space);
+  for (std::size_t i = 0; i < names.outputs.size(); ++i) {
+    text += fmt::format(
+        "  for (std::size_t i = 1; i < {0}::width; ++i) {{\n"
+        "    if (std::memcmp(&out.{1}.lane[i], &out.{1}.lane[0], sizeof(out.{1}.lane[0])) != 0) std::exit(9);\n  }}\n"
+        "  results[{2}] = (double)(out.{1}.lane[0]{3});\n",
+        names.space, names.outputs[i], i, graph.outputs[i].type == Type::Bool ? " & 1" : "");
+  }
+  return text + "}\n" + std::string(main_in_c);
+}
+
+std::vector<Signal> run_in_vectors(const Program& program, const std::vector<GeneratedFile>& files,
+                                   const Drive& drive) {
+  ProgramSources sources{.main = "#include <cstdlib>\n" + main_of_batch(program, files.front().name),
+                         .headers = {files.front()},
+                         .flags = {"-std=c++17"}};
+  for (const std::string& flag : words_of(batch_flags)) {
+    sources.flags.push_back(flag);
+  }
+  BuildCache cache;
+  const fs::path executable = built_program(cache, sources);
+  return run_rows({.command = {executable.string()},
+                   .name = program.graph.name,
+                   .outputs = program.graph.outputs.size(),
+                   .scratch = cache.folder()},
+                  drive);
+}
+
 // ---- read back ------------------------------------------------------------------------------------------------------
 
 /// A text that was generated, as a diagram. Its inputs begin with those of the diagram, in the same order, under names
@@ -257,6 +305,9 @@ TargetProof prove(const Program& program, const Target& target, const std::vecto
     if (target.name == "cpp") {
       proof.way = fmt::format("compiled by {}", fs::path(compiler_command().front()).filename().string());
       found = CompiledPrograms({{.program = &program, .float32 = options.float32}}).run(0, drive);
+    } else if (target.name == "batch") {
+      proof.way = fmt::format("compiled by {}, all lanes", fs::path(compiler_command().front()).filename().string());
+      found = run_in_vectors(program, files, drive);
     } else if (target.name == "c") {
       found = run_in_c(program, files, {namespace_identifier(program.graph.name) + ".c"}, main_of_c(program.graph),
                        drive, proof.way);

@@ -1,6 +1,7 @@
 // Whether the files of a target do what the diagram does: each is run beside the interpreter over the same inputs.
 //
 //   cpp, c    compiled by the system's compiler
+//   batch     compiled; all lanes take the same inputs
 //   fmu       its sources compiled, and stepped through the functions of FMI
 //   st        read back as a diagram
 //   plcopen   imported, and read back as a diagram

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "codegen/backends/batch/batch.hpp"
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/plcopen/plcopen.hpp"
@@ -31,6 +32,11 @@ constexpr std::array list{
              }
              return files;
            }},
+    Target{"batch", "C++17 vectors",
+           [](const Program& program, const TargetOptions& /*options*/, Diagnostics& /*warnings*/) {
+             return std::vector{generate_batch(program)};
+           },
+           false},
     Target{"st", "Structured Text",
            [](const Program& program, const TargetOptions& options, Diagnostics& /*warnings*/) {
              const StOptions given{.dialect = *st_dialect(options.dialect.empty() ? "portable" : options.dialect),
@@ -102,6 +108,11 @@ void check_target_options(const TargetOptions& options) {
            fmt::format("the targets are: {}.", fmt::join(names, ", ")));
   }
   check_dialect(options);
+  if (const Target* const found = find_target(options.target);
+      found != nullptr && options.float32 && !found->has_float32) {
+    refuse(fmt::format("The target {} computes in 64 bits.", found->name),
+           "leave out --float32, or write --target cpp.");
+  }
   if (options.structured && !equal_ignoring_case(options.target, "st")) {
     refuse("A structured text is one of Structured Text.", "write --target st, or leave out --structured.");
   }

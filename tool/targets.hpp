@@ -29,6 +29,7 @@ struct Target {
   std::string_view language{};  ///< for the help
   std::vector<GeneratedFile> (*generate)(const Program& program, const TargetOptions& options,
                                          Diagnostics& warnings) = nullptr;
+  bool has_float32 = true;  ///< whether it computes in 32 bits where it is asked to; all leaves one out that does not
 };
 
 [[nodiscard]] std::span<const Target> targets();

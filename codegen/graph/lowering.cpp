@@ -160,7 +160,7 @@ Wire Lowering::mismatch(language::Span span, std::string_view what, std::initial
   std::string mend =
       fmt::format("It takes {}{}.", names(taken, " or "), taken.size() > 1 ? ", the same on both sides" : "");
   if (is_given(Type::Word)) {
-    mend += " Nothing is computed of a WORD: it is wired as it is.";
+    mend += " WORD_TO_DINT and DINT_TO_WORD convert.";
   } else if (is_given(Type::Real) && is_given(Type::Int)) {
     mend += " Nothing is converted silently: write literals as 1.0, or convert by DINT_TO_LREAL or LREAL_TO_DINT.";
   } else if (is_given(Type::Bool) && !is_taken(Type::Bool)) {
@@ -184,8 +184,9 @@ Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
     return {};
   }
   if (unary.op == Operator::Not) {
-    return operand.type == Type::Bool ? apply(Op::Not, {operand}, span)
-                                      : mismatch(span, "NOT", {operand.type}, {Type::Bool});
+    return operand.type == Type::Bool   ? apply(Op::Not, {operand}, span)
+           : operand.type == Type::Word ? lower_words(Operator::Xor, operand, builder_.literal(Type::Word, 65535), span)
+                                        : mismatch(span, "NOT", {operand.type}, {Type::Bool, Type::Word});
   }
   if (operand.type == Type::Real) {
     return apply(Op::Negate, {operand}, span);
@@ -195,7 +196,7 @@ Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
 }
 
 Wire Lowering::lower_binary(const language::Binary& binary, language::Span span) {
-  const Wire left = expression(binary.left);
+  Wire left = expression(binary.left);
   Wire right = expression(binary.right);
   if (left.from == Wire::From::Nothing || right.from == Wire::From::Nothing) {
     return {};
@@ -204,6 +205,20 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
   if (binary.op == Operator::Power && left.type == Type::Real && right.type == Type::Int &&
       GraphBuilder::is_literal(right)) {
     right = builder_.literal(Type::Real, builder_.value(right));
+  }
+  // STATUS AND 16#6F: beside a WORD, a whole number that is one is a pattern of bits.
+  const auto pattern = [&](Wire& wire, Wire beside) {
+    if (beside.type == Type::Word && wire.type == Type::Int && GraphBuilder::is_literal(wire) &&
+        builder_.unit(wire).empty() && builder_.value(wire) >= 0.0 && builder_.value(wire) <= 65535.0) {
+      wire = builder_.literal(Type::Word, builder_.value(wire));
+    }
+  };
+  pattern(left, right);
+  pattern(right, left);
+  if (left.type == Type::Word && right.type == Type::Word) {
+    if (const Wire result = lower_words(binary.op, left, right, span); result.from != Wire::From::Nothing) {
+      return result;
+    }
   }
   struct Row {
     Operator op;
@@ -248,6 +263,9 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
         if (one) {
           taken.push_back(type);
         }
+      }
+      if (row.truth) {
+        taken.push_back(Type::Word);
       }
       return mismatch(span, row.text, {left.type, right.type}, taken);
     }

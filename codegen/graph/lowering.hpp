@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -65,6 +66,10 @@ class Lowering {
   Wire lower_unary(const language::Unary& unary, language::Span span);
   Wire lower_binary(const language::Binary& binary, language::Span span);
   Wire lower_call(const language::FunctionCall& call, language::Span span);
+  /// AND, OR, XOR, = and <> of two WORDs; From::Nothing for another operator.
+  Wire lower_words(language::Operator op, Wire left, Wire right, language::Span span);
+  /// SHL, SHR, WORD_TO_DINT and DINT_TO_WORD; nothing where the function is another one.
+  std::optional<Wire> lower_word_call(std::string_view name, const std::vector<Wire>& args, language::Span span);
   Wire round_to_int(Wire x, language::Span span);
   Wire angle_of(Wire y, Wire x, language::Span span);
   Wire expression(language::ExpressionId id);

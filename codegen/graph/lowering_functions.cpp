@@ -30,6 +30,8 @@ constexpr std::array formal_names{Formal{"EXPT", {"IN1", "IN2"}},
                                   Formal{"MAX", {"IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7", "IN8"}},
                                   Formal{"LIMIT", {"MN", "IN", "MX"}},
                                   Formal{"SEL", {"G", "IN0", "IN1"}},
+                                  Formal{"SHL", {"IN", "N"}},
+                                  Formal{"SHR", {"IN", "N"}},
                                   Formal{"MUX", {"K", "IN0", "IN1", "IN2", "IN3", "IN4", "IN5", "IN6", "IN7"}}};
 constexpr std::array<std::string_view, 1> only_operand{"IN"};
 
@@ -103,6 +105,64 @@ Wire Lowering::angle_of(Wire y, Wire x, language::Span span) {
   const Wire part = apply(Op::Atan, {apply(Op::Divide, {choose(steep, x, y), divisor}, span)}, span);
   const Wire turn = choose(apply(Op::Less, {x, zero}, span), signed_by_y(pi), zero);
   return choose(steep, apply(Op::Subtract, {signed_by_y(pi / 2.0), part}, span), apply(Op::Add, {part, turn}, span));
+}
+
+Wire Lowering::lower_words(language::Operator op, Wire left, Wire right, language::Span span) {
+  using language::Operator;
+  const auto bits = [&](Op operation) {
+    return apply(operation, {apply(Op::WordToInt, {left}, span), apply(Op::WordToInt, {right}, span)}, span);
+  };
+  switch (op) {
+    case Operator::And:
+      return apply(Op::IntToWord, {bits(Op::IntAnd)}, span);
+    case Operator::Or:
+      return apply(Op::IntToWord, {bits(Op::IntOr)}, span);
+    case Operator::Xor:
+      return apply(Op::IntToWord, {bits(Op::IntXor)}, span);
+    case Operator::Equal:
+      return bits(Op::IntEqual);
+    case Operator::NotEqual:
+      return bits(Op::IntNotEqual);
+    default:
+      return {};
+  }
+}
+
+std::optional<Wire> Lowering::lower_word_call(std::string_view name, const std::vector<Wire>& args,
+                                              language::Span span) {
+  const auto wrong = [&](std::string form) {
+    report_(error::unknown_function, span, fmt::format("{} does not take these arguments", name),
+            fmt::format("Write {}.", form));
+    return Wire{};
+  };
+  if (name == "WORD_TO_DINT") {
+    return args.size() == 1 && args[0].type == Type::Word ? apply(Op::WordToInt, {args[0]}, span)
+                                                          : wrong("WORD_TO_DINT(W) with a WORD");
+  }
+  if (name == "DINT_TO_WORD") {
+    return args.size() == 1 && args[0].type == Type::Int ? apply(Op::IntToWord, {args[0]}, span)
+                                                         : wrong("DINT_TO_WORD(N) with a DINT");
+  }
+  if (name != "SHL" && name != "SHR") {
+    return std::nullopt;
+  }
+  constexpr double bits_of_word = 16.0;
+  if (args.size() != 2 || args[0].type != Type::Word || args[1].type != Type::Int ||
+      !GraphBuilder::is_literal(args[1]) || builder_.value(args[1]) < 0.0 || builder_.value(args[1]) > bits_of_word) {
+    return wrong(fmt::format("{}(W, 4) with a WORD and a number of places from 0 to 16", name));
+  }
+  if (builder_.value(args[1]) == 0.0) {
+    return args[0];
+  }
+  if (builder_.value(args[1]) == bits_of_word) {
+    return apply(Op::IntToWord,
+                 {apply(Op::IntAnd, {apply(Op::WordToInt, {args[0]}, span), builder_.literal(Type::Int, 0)}, span)},
+                 span);
+  }
+  return apply(Op::IntToWord,
+               {apply(name == "SHL" ? Op::IntShiftLeft : Op::IntShiftRight,
+                      {apply(Op::WordToInt, {args[0]}, span), args[1]}, span)},
+               span);
 }
 
 Wire Lowering::lower_call(const language::FunctionCall& call, language::Span span) {
@@ -236,9 +296,14 @@ Wire Lowering::lower_call(const language::FunctionCall& call, language::Span spa
                ? apply(Op::SelectInt, {args[0], builder_.literal(Type::Int, 1), builder_.literal(Type::Int, 0)}, span)
                : wrong("BOOL_TO_DINT(B) with a BOOL");
   }
+  if (!call.arguments.empty() && formal()) {
+    if (const auto result = lower_word_call(name, args, span)) {
+      return *result;
+    }
+  }
   report_(error::unknown_function, call.function.span, fmt::format("there is no function '{}'", call.function.text),
-          "Known: ABS SQRT LN LOG EXP EXPT SIN COS TAN ASIN ACOS ATAN ATAN2 TRUNC MIN MAX LIMIT SEL MUX DINT_TO_LREAL "
-          "LREAL_TO_DINT BOOL_TO_DINT.");
+          "Known: ABS SQRT LN LOG EXP EXPT SIN COS TAN ASIN ACOS ATAN ATAN2 TRUNC MIN MAX LIMIT SEL MUX SHL SHR "
+          "DINT_TO_LREAL LREAL_TO_DINT BOOL_TO_DINT WORD_TO_DINT DINT_TO_WORD.");
   return {};
 }
 

@@ -9,6 +9,7 @@
 
 #include "diagnosis/evidence/driver_lines.hpp"
 #include "diagnosis/evidence/roles.hpp"
+#include "diagnosis/model/filters.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/noise/spectrum.hpp"
 
@@ -65,16 +66,11 @@ RecordSignals direction_of(const RecordSignals& sized_rates) {
   return mapped(sized_rates, [](double v) { return std::tanh(sharpness * v); });
 }
 
-RecordSignals play(const RecordSignals& z, double width) {
-  RecordSignals result = z;
-  for (Signal& one : result) {
-    double state = one.empty() ? 0.0 : one.front();
-    for (double& value : one) {
-      state = std::clamp(state, value - width, value + width);
-      value = state;
-    }
+RecordSignals played(RecordSignals values, double width) {
+  for (Signal& one : values) {
+    one = play(one, width);
   }
-  return result;
+  return values;
 }
 
 /// The share of each record that has passed, from 0 to 1.
@@ -89,16 +85,11 @@ RecordSignals progress_of(const RecordSignals& like) {
 }
 
 /// A first-order lag by so many samples.
-RecordSignals slowed(const RecordSignals& values, double samples) {
-  RecordSignals result = values;
-  for (Signal& one : result) {
-    double state = one.empty() ? 0.0 : one.front();
-    for (double& value : one) {
-      state += (value - state) / (1.0 + samples);
-      value = state;
-    }
+RecordSignals slowed(RecordSignals values, double samples) {
+  for (Signal& one : values) {
+    one = lagged(one, 1.0 + samples);
   }
-  return result;
+  return values;
 }
 
 void add_curves(const RecordSignals& z, std::vector<RecordSignals>& list) {
@@ -122,7 +113,7 @@ KindSignals signals_at(const Space::Place& place, const std::vector<DriverSignal
   of(result, GapKind::Static).push_back(one);
   add_curves(z, of(result, GapKind::Static));
   for (const double width : {0.05, 0.15, 0.4, 0.8}) {
-    of(result, GapKind::Memory).push_back(play(z, width));
+    of(result, GapKind::Memory).push_back(played(z, width));
   }
   const auto add_rate = [&](const RecordSignals& rate) {
     const RecordSignals direction = direction_of(rate);

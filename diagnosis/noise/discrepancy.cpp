@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/model/filters.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -23,7 +25,7 @@ class Features {
     for (std::size_t k = 1; k < steps_; ++k) {
       rate[k] = x[k] - x[k - 1];
     }
-    const Signal smooth_rate = normalised(smoothed(rate, 4.0));
+    const Signal smooth_rate = normalised(lagged(rate, 4.0));
     Signal direction(steps_, 0.0);
     for (std::size_t k = 0; k < steps_; ++k) {
       direction[k] = smooth_rate.empty() ? 0.0 : std::tanh(5.0 * smooth_rate[k]);
@@ -41,7 +43,7 @@ class Features {
       add_product(direction, smooth_rate);
     }
     for (double time = 2.0; time < 0.25 * static_cast<double>(steps_); time *= 5.0) {
-      const Signal slow = smoothed(x, time);
+      const Signal slow = lagged(x, time);
       columns_.push_back(slow);
       Signal square(steps_);
       std::ranges::transform(slow, square.begin(), [](double v) { return v * v; });
@@ -73,24 +75,6 @@ class Features {
     }
     Signal result(steps_);
     std::ranges::transform(raw, result.begin(), [&](double v) { return (v - mean) / std::sqrt(variance); });
-    return result;
-  }
-  [[nodiscard]] static Signal smoothed(const Signal& x, double time) {
-    Signal result(x.size());
-    double state = x.front();
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      state += (x[k] - state) / time;
-      result[k] = state;
-    }
-    return result;
-  }
-  [[nodiscard]] static Signal play(const Signal& x, double width) {
-    Signal result(x.size());
-    double state = x.front();
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      state = std::clamp(state, x[k] - width, x[k] + width);
-      result[k] = state;
-    }
     return result;
   }
   template <class Function>

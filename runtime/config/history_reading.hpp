@@ -1,11 +1,6 @@
 // The table [history] of a run file.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "runtime/config/run_config.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "support/diagnostic.hpp"
@@ -19,9 +14,6 @@ class HistoryReading {
   [[nodiscard]] HistoryConfig read(TomlReader table);
 
  private:
-  [[nodiscard]] std::uint64_t read_step(TomlReader& table);
-  [[nodiscard]] std::vector<std::string> read_points(TomlReader& table);
-
   const ProgramShape* shape_;
   Diagnostics* found_;
 };

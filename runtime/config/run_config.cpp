@@ -10,6 +10,7 @@
 
 #include "runtime/config/device_reader.hpp"
 #include "runtime/config/history_reading.hpp"
+#include "runtime/config/mqtt_reader.hpp"
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
@@ -77,6 +78,7 @@ class Reader {
       config_.history =
           HistoryReading(shape_, found_).read({file_, "[history]", *table, run_table("history").keys, found_});
     }
+    MqttReader(file_, shape_, config_, found_).read(table_at(root_, "mqtt"), table_at(root_, "dead_bands"));
     if (const auto* const table = table_at(root_, "modbus")) {
       read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
     }

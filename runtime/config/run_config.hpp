@@ -60,6 +60,36 @@ struct HistoryConfig {
   Place place{};
 };
 
+enum class MqttPayload : std::uint8_t { Json, SparkplugB };
+
+struct MqttConfig {
+  std::string broker{};
+  std::uint16_t port = 1883;
+  std::string ca{};           ///< files in PEM; empty: no TLS
+  std::string certificate{};  ///< of the client, with its key; both empty where it shows none
+  std::string key{};
+  Place ca_place{};  ///< for errors
+  Place certificate_place{};
+  Place key_place{};
+  std::string user{};
+  std::string password_file{};
+  Place password_place{};
+  std::string client_id{};  ///< empty: one that is made up
+  MqttPayload payload = MqttPayload::Json;
+  std::string topic{};  ///< of JSON
+  int qos = 1;          ///< of JSON
+  std::string group{};  ///< of Sparkplug B
+  std::string node{};
+  std::vector<std::string> points{};  ///< as the task's door names them
+  std::uint64_t step = 1;             ///< periods from row to row
+  bool on_change = false;
+  std::uint64_t refresh = 60;        ///< on change: periods after which a point is published without one
+  std::vector<double> dead_bands{};  ///< on change, by point
+  std::int64_t keep = std::int64_t{86'400'000'000'000};
+  std::uint64_t bytes = 64'000'000;
+  Place place{};
+};
+
 struct ModbusConfig {
   std::string listen = "127.0.0.1";
   std::uint16_t port = 1502;
@@ -86,6 +116,7 @@ struct RunConfig {
   std::optional<TraceSettings> trace{};
   Place trace_place{};
   std::optional<HistoryConfig> history{};
+  std::optional<MqttConfig> mqtt{};
   std::optional<ModbusConfig> modbus{};
   std::vector<modbus::DeviceOptions> devices{};
   std::vector<DeviceInput> device_inputs{};

@@ -36,6 +36,7 @@ constexpr std::array<Words, 2> map_words{"compact", "openplc"};
 constexpr std::array<Words, 3> mismatch_words{"refuse", "cold", "carry"};
 constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
 constexpr std::array<Words, 2> after_words{"resume", "reset"};
+constexpr std::array<Words, 2> payload_words{"json", "sparkplug-b"};
 
 constexpr std::array task_keys{
     RunKey{"period", time, "(the diagram's)", "for the reader: must be the sample time of the diagram", 1.0, many},
@@ -195,6 +196,49 @@ constexpr std::array history_keys{
     RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 10000.0 * 86400.0 * s},
     RunKey{"megabytes", whole, "1000", "what it takes on the disk at most: the oldest rows give way", 1.0, 1e6},
 };
+constexpr std::array mqtt_keys{
+    RunKey{"broker", text, "(required)", "name or address of the MQTT broker"},
+    RunKey{"port", whole, "(1883, with `ca` 8883)", "its port", 1.0, 65535.0},
+    RunKey{"ca", text, "(none: in the clear)",
+           "TLS: certificates in PEM that sign the broker's; of public ones, "
+           "`/etc/ssl/certs/ca-certificates.crt`"},
+    RunKey{"certificate", text, "(none)", "the client's certificate in PEM, where the broker asks for one"},
+    RunKey{"key", text, "(none)", "its private key in PEM, without a password; its owner and group alone may read it"},
+    RunKey{"user", text, "(none)", "the user name that is said to the broker"},
+    RunKey{"password_file", text, "(none)",
+           "a file with the user's password in one line; its owner and group alone may read it"},
+    RunKey{"client_id", text, "(made up at each start)", "the client's name, of no other client of the broker"},
+    RunKey{.name = "payload",
+           .kind = choice,
+           .otherwise = "\"json\"",
+           .meaning = "what is published: JSON, or Sparkplug B as an edge node",
+           .words = payload_words},
+    RunKey{"topic", text, "(`hysteron/` and the diagram's name)",
+           "of JSON: rows go to `TOPIC/data`, whether the task is online to `TOPIC/state`"},
+    RunKey{"qos", whole, "1", "of JSON: the quality of service of rows; Sparkplug B prescribes its own", 0.0, 1.0},
+    RunKey{"group", text, "(`hysteron`)", "of Sparkplug B: the group"},
+    RunKey{"node", text, "(the diagram's name)", "of Sparkplug B: the edge node"},
+    RunKey{"points", texts, "(all inputs and outputs)",
+           "what is published: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`"},
+    RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods", 1.0, 86400.0 * s},
+    RunKey{"on_change", flag, "false", "a row has those points alone that changed, and there is none where none did"},
+    RunKey{"refresh",
+           time,
+           "(60s, or `every` where that is longer)",
+           "on change: a point that stays is published again after so long",
+           1.0,
+           86400.0 * s,
+           {},
+           "`every` at the least"},
+    RunKey{"keep", time, "\"1d\"", "rows that wait for the broker for longer are lost", s, 1000.0 * 86400.0 * s},
+    RunKey{"megabytes", whole, "64", "memory for rows that wait, at most: the oldest give way", 1.0, 1e5},
+};
+constexpr std::array dead_band_keys{
+    RunKey{
+        "NAME", number, "(0: any change counts)",
+        "with `on_change`: the point NAME has changed where it is further than this from what was last published, in "
+        "its unit"},
+};
 constexpr std::array modbus_keys{
     RunKey{"listen", text, "\"127.0.0.1\"", "the address of the server"},
     RunKey{"port", whole, "1502", "its port, with `[tls]` by default 802; 0: any that is free", 0.0, 65535.0},
@@ -252,9 +296,10 @@ constexpr std::array address_keys{
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"}, RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},   RunKey{"history"},
-                               RunKey{"modbus"},  RunKey{"tls"},      RunKey{"roles"},   RunKey{"addresses"}};
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"},   RunKey{"outputs"}, RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},     RunKey{"trace"},   RunKey{"history"},
+                               RunKey{"mqtt"},    RunKey{"dead_bands"}, RunKey{"modbus"},  RunKey{"tls"},
+                               RunKey{"roles"},   RunKey{"addresses"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -265,6 +310,9 @@ constexpr std::array tables{
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
     RunTable{"[history]", "Chosen points, kept for days; without the table, none.", history_keys},
+    RunTable{"[mqtt]", "Chosen points, published to an MQTT broker; without the table, none.", mqtt_keys},
+    RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",
+             dead_band_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
     RunTable{"[tls]", "Modbus/TCP Security instead of Modbus in the clear, with certificates on both sides.", tls_keys},
     RunTable{"[roles]", "A line for each role that the certificates of clients name.", role_keys},

@@ -22,6 +22,7 @@
 #include "runtime/host/output_turn.hpp"
 #include "runtime/host/retained_state.hpp"
 #include "runtime/host/running_history.hpp"
+#include "runtime/host/running_mqtt.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
@@ -226,9 +227,9 @@ void watch_over(Guard& guard, Task& task) {
 /// The certificate of the server in the course of years. Nothing to do where the server speaks in the clear.
 class CertificateCare {
  public:
-  CertificateCare(modbus::Server* server, const modbus::TlsOptions* options,
+  CertificateCare(modbus::Server* server, Task& task, const modbus::TlsOptions* options,
                   const std::shared_ptr<const modbus::TlsContext>& serving)
-      : server_(server) {
+      : server_(server), task_(&task) {
     if (serving != nullptr) {
       renewal_.emplace(*options, serving, modbus::TlsRenewal::Clock::now());
     }
@@ -243,6 +244,9 @@ class CertificateCare {
     if (found.renewed) {
       server_->renew(found.renewed);
     }
+    if (found.fault) {
+      task_->tls_fault(static_cast<std::uint8_t>(*found.fault));
+    }
     for (const std::string& line : found.lines) {
       tell("TLS", line);
     }
@@ -250,6 +254,7 @@ class CertificateCare {
 
  private:
   modbus::Server* server_;
+  Task* task_;
   std::optional<modbus::TlsRenewal> renewal_;
 };
 
@@ -304,6 +309,12 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
     const modbus::TlsOptions& tls = *config.modbus->tls;
     for (const std::string& file : {tls.certificate, tls.key, tls.clients}) {
       inputs.push_back({.file = file, .named_by = "[tls]"});
+    }
+  }
+  if (config.mqtt) {
+    for (const std::string& file :
+         {config.mqtt->ca, config.mqtt->certificate, config.mqtt->key, config.mqtt->password_file}) {
+      inputs.push_back({.file = file, .named_by = "[mqtt]"});
     }
   }
   const std::string mend = "name another file in the run file.";
@@ -377,12 +388,20 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   Task task(program, config.task);
   const auto history =
       config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
+  const auto mqtt = config.mqtt ? std::make_unique<RunningMqtt>(config, shape, task) : nullptr;
+  // On a clock of its own, a trial would tell others of values that no machine has.
+  const bool publishes = mqtt && !options.virtual_time;
+  how += publishes ? fmt::format("; MQTT to {}:{}", config.mqtt->broker, config.mqtt->port)
+         : mqtt    ? "; nothing is published to MQTT"
+                   : "";
   // Read after the guard was forked: the guard needs no key.
-  const auto tls =
-      config.modbus && config.modbus->tls ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls) : nullptr;
+  const auto tls = config.modbus && config.modbus->tls
+                       ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls, modbus::OutOfDate::taken)
+                       : nullptr;
   const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
   how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
+  how += tls && tls->fault_at(std::time(nullptr)) != modbus::TlsFault::none ? " (no client comes in)" : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
@@ -401,19 +420,24 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                                     .guard = guard.get(),
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),
-                                    .history = history ? &history->counter() : nullptr};
+                                    .history = history ? &history->counter() : nullptr,
+                                    .mqtt = publishes ? &mqtt->counter() : nullptr};
   task.attach(attachments);
-  if (history) {
-    task.door().attach({&history->tap()});
-    history->start();
-  }
-
+  std::vector<SampleTap*> taps;
   std::map<std::string, Remarks*> beside;
   if (history) {
+    taps.push_back(&history->tap());
+    history->start();
     beside.emplace("History", &history->remarks());
   }
+  if (publishes) {
+    taps.push_back(&mqtt->tap());
+    mqtt->start();
+    beside.emplace("MQTT", &mqtt->remarks());
+  }
+  task.door().attach(std::move(taps));
   RunNotices notices(config, shape, task, attachments, std::move(beside));
-  CertificateCare certificate(server.get(), tls ? &*config.modbus->tls : nullptr, tls);
+  CertificateCare certificate(server.get(), task, tls ? &*config.modbus->tls : nullptr, tls);
   LoopEnd end = LoopEnd::stopped;
   {
     const CyclicThread cyclic(task, config, options.virtual_time);
@@ -430,6 +454,9 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   if (history) {
     history->finish();
+  }
+  if (publishes) {
+    mqtt->finish();
   }
   notices.look_beside();
   print(status_line(task, shape.name + ": " + std::string(name_of(end)), notices.at_the_end()));

@@ -169,7 +169,10 @@ std::string RunNotices::at_the_end() const {
       guard_ == nullptr || !guard_->holds_on()
           ? ""
           : fmt::format("; its guard, process {}, goes on until the devices have their safe values", guard_->process());
-  return faults + left + not_written();
+  // What no broker took is said, and makes no failure of the run: the network is not the task's.
+  const auto mqtt = beside_.find("MQTT");
+  const std::string problem = mqtt == beside_.end() ? "" : mqtt->second->problem();
+  return faults + left + not_written() + (problem.empty() ? "" : fmt::format("; rows for MQTT are lost: {}", problem));
 }
 
 std::string RunNotices::not_written() const {

@@ -10,6 +10,7 @@
 #include <openssl/x509v3.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -52,19 +53,6 @@ int no_password(char* /*buffer*/, int /*size*/, int /*writes*/, void* /*user*/) 
   return -1;
 }
 
-/// The file that is named, or what systemd hands over instead.
-std::string credential_path(const std::string& path, const char* credential) {
-  const char* const folder = std::getenv("CREDENTIALS_DIRECTORY");
-  if (folder != nullptr) {
-    const auto given = std::filesystem::path(folder) / credential;
-    std::error_code ignored;
-    if (std::filesystem::exists(given, ignored)) {
-      return given.string();
-    }
-  }
-  return path;
-}
-
 FilePointer open(const std::string& path, const std::string& what, const Place& place) {
   FilePointer file(BIO_new_file(path.c_str(), "r"));
   if (file == nullptr) {
@@ -96,10 +84,7 @@ std::vector<CertificatePointer> read_certificates(const std::string& path, const
 }
 
 KeyPointer read_key(const std::string& path, const Place& place) {
-  struct stat status {};
-  const bool is_there = ::stat(path.c_str(), &status) == 0;
-  // Its group may read it: Debian's ssl-cert is for that.
-  if (is_there && (status.st_mode & (S_IRWXO | S_IWGRP | S_IXGRP)) != 0) {
+  if (is_open_to_others(path)) {
     throw InputError(error::key_open_to_others, place,
                      fmt::format("Others than its owner may read or change the private key {}.", path),
                      fmt::format("chmod 600 {}; if anybody could have read it, make a new key and certificate.", path));
@@ -142,19 +127,39 @@ void require_now(const X509& certificate, const std::string& path, const Place& 
   }
 }
 
-/// Gives back when it ends.
-std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) {
-  const std::string path = credential_path(options.certificate, certificate_credential);
-  auto chain = read_certificates(path, "certificate", options.certificate_place);
-  require_now(*chain.front(), path, options.certificate_place);
-  const std::string key_path = credential_path(options.key, key_credential);
-  const KeyPointer key = read_key(key_path, options.key_place);
-  if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
+Validity validity_of(const X509& certificate) {
+  return {.begins = seconds_of(*X509_get0_notBefore(&certificate)),
+          .ends = seconds_of(*X509_get0_notAfter(&certificate))};
+}
+
+struct OwnCertificate {
+  std::vector<CertificatePointer> chain{};
+  KeyPointer key{};
+};
+
+/// A certificate, with those behind it and its key.
+OwnCertificate read_own_certificate(const std::string& path, const Place& place, const std::string& key_path,
+                                    const Place& key_place, OutOfDate out_of_date) {
+  OwnCertificate own{.chain = read_certificates(path, "certificate", place)};
+  if (out_of_date == OutOfDate::refused) {
+    require_now(*own.chain.front(), path, place);
+  }
+  own.key = read_key(key_path, key_place);
+  if (X509_check_private_key(own.chain.front().get(), own.key.get()) != 1) {
     ERR_clear_error();
-    throw InputError(error::key_of_another_certificate, options.key_place,
+    throw InputError(error::key_of_another_certificate, key_place,
                      fmt::format("The private key {} is not that of the certificate {}.", key_path, path),
                      "name the key that the certificate was asked for with.");
   }
+  return own;
+}
+
+/// Gives back when it counts.
+Validity use_server_certificate(SSL_CTX& context, const TlsOptions& options, OutOfDate out_of_date) {
+  const std::string path = credential_path(options.certificate, certificate_credential);
+  const auto [chain, key] =
+      read_own_certificate(path, options.certificate_place, credential_path(options.key, key_credential),
+                           options.key_place, out_of_date);
   bool taken =
       SSL_CTX_use_certificate(&context, chain.front().get()) == 1 && SSL_CTX_use_PrivateKey(&context, key.get()) == 1;
   for (std::size_t i = 1; taken && i < chain.size(); ++i) {
@@ -165,21 +170,25 @@ std::time_t use_server_certificate(SSL_CTX& context, const TlsOptions& options) 
                      fmt::format("The certificate {} does not serve: {}.", path, library_reason()),
                      "have one signed for a key of today's strength: RSA of 2048 bits, or an elliptic curve.");
   }
-  return seconds_of(*X509_get0_notAfter(chain.front().get()));
+  return validity_of(*chain.front());
 }
 
-void trust_clients_of(SSL_CTX& context, const TlsOptions& options) {
+/// Gives back when each of those who sign counts.
+std::vector<Validity> trust_clients_of(SSL_CTX& context, const TlsOptions& options, OutOfDate out_of_date) {
   const std::string path = credential_path(options.clients, clients_credential);
   const auto list = read_certificates(path, "file of those who sign clients' certificates", options.clients_place);
   bool any = false;
+  std::vector<Validity> signers;
   for (const CertificatePointer& one : list) {
     any = any || counts_now(*one);
+    signers.push_back(validity_of(*one));
     X509_STORE_add_cert(SSL_CTX_get_cert_store(&context), one.get());
     SSL_CTX_add_client_CA(&context, one.get());
   }
-  if (!any) {
+  if (!any && out_of_date == OutOfDate::refused) {
     require_now(*list.front(), path, options.clients_place);
   }
+  return signers;
 }
 
 /// One role; nothing where the certificate has none. `is_one` is false where the extension is there and is no role.
@@ -209,6 +218,36 @@ std::optional<std::string> role_of(const X509& certificate, bool& is_one) {
 
 }  // namespace
 
+std::string credential_path(const std::string& path, const char* credential) {
+  const char* const folder = std::getenv("CREDENTIALS_DIRECTORY");
+  if (folder != nullptr) {
+    const auto given = std::filesystem::path(folder) / credential;
+    std::error_code ignored;
+    if (std::filesystem::exists(given, ignored)) {
+      return given.string();
+    }
+  }
+  return path;
+}
+
+bool is_open_to_others(const std::string& path) {
+  struct stat status {};
+  // Its group may read it: Debian's ssl-cert is for that.
+  return ::stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IRWXO | S_IWGRP | S_IXGRP)) != 0;
+}
+
+void check_client_files(const TlsClientFiles& files) {
+  const auto authorities =
+      read_certificates(files.authority, "file of those who sign the broker's certificate", files.authority_place);
+  if (std::ranges::none_of(authorities, [](const CertificatePointer& one) { return counts_now(*one); })) {
+    require_now(*authorities.front(), files.authority, files.authority_place);
+  }
+  if (!files.certificate.empty()) {
+    (void)read_own_certificate(files.certificate, files.certificate_place, files.key, files.key_place,
+                               OutOfDate::refused);
+  }
+}
+
 std::vector<std::string> files_of(const TlsOptions& options) {
   return {credential_path(options.certificate, certificate_credential), credential_path(options.key, key_credential),
           credential_path(options.clients, clients_credential)};
@@ -218,7 +257,7 @@ void TlsContext::Free::operator()(ssl_ctx_st* context) const {
   SSL_CTX_free(context);
 }
 
-TlsContext::TlsContext(const TlsOptions& options)
+TlsContext::TlsContext(const TlsOptions& options, OutOfDate out_of_date)
     : context_(SSL_CTX_new(TLS_server_method())), roles_(options.roles), without_role_(options.without_role) {
   if (context_ == nullptr) {
     throw std::runtime_error("TLS: " + library_reason());
@@ -236,12 +275,20 @@ TlsContext::TlsContext(const TlsOptions& options)
   SSL_CTX_set_verify(&context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_verify_depth(&context, longest_chain);
   SSL_CTX_set_max_cert_list(&context, longest_chain_bytes);
-  ends_ = use_server_certificate(context, options);
-  trust_clients_of(context, options);
+  validity_ = use_server_certificate(context, options, out_of_date);
+  signers_ = trust_clients_of(context, options, out_of_date);
+}
+
+TlsFault TlsContext::fault_at(std::time_t now) const {
+  const auto counts = [now](const Validity& one) { return one.begins <= now && now < one.ends; };
+  return now >= validity_.ends                    ? TlsFault::ended
+         : now < validity_.begins                 ? TlsFault::not_begun
+         : !std::ranges::any_of(signers_, counts) ? TlsFault::signers
+                                                  : TlsFault::none;
 }
 
 std::string TlsContext::valid_until() const {
-  return date_text(ends_);
+  return date_text(validity_.ends);
 }
 
 Rights TlsContext::rights_of(const x509_st& certificate) const {

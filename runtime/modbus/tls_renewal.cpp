@@ -49,20 +49,42 @@ TlsRenewal::Found TlsRenewal::look(Clock::time_point now, std::time_t today) {
   }
   // Once a day of the clock: one that jumps tells once more at the most.
   const std::time_t day = today / seconds_a_day;
-  const std::time_t ends = serving_->ends();
-  if (ends - today < days_before * seconds_a_day && told_ != day) {
+  found.fault = serving_->fault_at(today);
+  if (std::string line = told_ == day ? "" : line_on_dates(today, *found.fault); !line.empty()) {
     told_ = day;
-    found.lines.push_back(
-        ends > today
-            ? fmt::format("the server's certificate ends in {}, on {}; have a new one signed and write it over {}, "
-                          "it is read while the task runs",
-                          days_text((ends - today) / seconds_a_day), serving_->valid_until(),
-                          files_of(options_).front())
-            : fmt::format("the server's certificate ended on {}: clients refuse it, the control goes on; write a new "
-                          "one over {}, it is read while the task runs",
-                          serving_->valid_until(), files_of(options_).front()));
+    found.lines.push_back(std::move(line));
   }
   return found;
+}
+
+std::string TlsRenewal::line_on_dates(std::time_t today, TlsFault fault) const {
+  const auto files = files_of(options_);
+  const std::time_t left = serving_->ends() - today;
+  switch (fault) {
+    case TlsFault::ended:
+      return fmt::format(
+          "the server's certificate ended on {}: clients refuse it, the control goes on; write a new "
+          "one over {}, it is read while the task runs",
+          serving_->valid_until(), files.front());
+    case TlsFault::not_begun:
+      return fmt::format(
+          "the server's certificate {} does not count yet by the clock of this machine: no client comes "
+          "in, the control goes on; see whether the date is right",
+          files.front());
+    case TlsFault::signers:
+      return fmt::format(
+          "none of the certificates in {} that sign those of clients counts today: no client comes in, "
+          "the control goes on; write new ones over it, they are read while the task runs",
+          files.back());
+    case TlsFault::none:
+      break;
+  }
+  return left >= days_before * seconds_a_day
+             ? ""
+             : fmt::format(
+                   "the server's certificate ends in {}, on {}; have a new one signed and write it over {}, "
+                   "it is read while the task runs",
+                   days_text(left / seconds_a_day), serving_->valid_until(), files.front());
 }
 
 void TlsRenewal::read_again(Found& found) {

@@ -29,6 +29,7 @@ class TlsRenewal {
 
   struct Found {
     std::shared_ptr<const TlsContext> renewed{};  ///< for connections from now on; none: as before
+    std::optional<TlsFault> fault{};              ///< of what serves; none: it was not looked at
     std::vector<std::string> lines{};             ///< for a log
   };
   /// To be called as time goes by; looks once an interval. `today` by the wall clock, which may jump.
@@ -46,6 +47,8 @@ class TlsRenewal {
   };
   [[nodiscard]] std::vector<Stamp> stamps() const;
   void read_again(Found& found);
+  /// What is to be said of dates; empty where all is well for long.
+  [[nodiscard]] std::string line_on_dates(std::time_t today, TlsFault fault) const;
 
   TlsOptions options_;
   std::vector<Stamp> read_;  ///< of the files as they were read last

@@ -24,7 +24,9 @@ namespace hysteron::runtime {
 struct KeptCount {
   std::uint64_t done = 0;
   std::uint64_t lost = 0;
-  std::uint16_t fault = 0;  ///< that holds now; 0: none
+  std::uint16_t fault = 0;    ///< that holds now; 0: none
+  std::uint64_t waiting = 0;  ///< of what is sent: rows that nobody has confirmed
+  bool is_connected = false;  ///< of what is sent
 };
 
 /// The same, told by one thread to any other.
@@ -33,16 +35,22 @@ class KeptCounter {
   void add_done(std::uint64_t count) noexcept { done_.fetch_add(count, std::memory_order_relaxed); }
   void add_lost(std::uint64_t count) noexcept { lost_.fetch_add(count, std::memory_order_relaxed); }
   void set_fault(std::uint16_t fault) noexcept { fault_.store(fault, std::memory_order_relaxed); }
+  void set_waiting(std::uint64_t count) noexcept { waiting_.store(count, std::memory_order_relaxed); }
+  void set_connected(bool is_connected) noexcept { connected_.store(is_connected, std::memory_order_relaxed); }
   [[nodiscard]] KeptCount read() const noexcept {
     return {.done = done_.load(std::memory_order_relaxed),
             .lost = lost_.load(std::memory_order_relaxed),
-            .fault = fault_.load(std::memory_order_relaxed)};
+            .fault = fault_.load(std::memory_order_relaxed),
+            .waiting = waiting_.load(std::memory_order_relaxed),
+            .is_connected = connected_.load(std::memory_order_relaxed)};
   }
 
  private:
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint16_t> fault_{0};
+  std::atomic<std::uint64_t> waiting_{0};
+  std::atomic<bool> connected_{false};
 };
 
 /// One row.

@@ -208,6 +208,8 @@ void Task::count_writes() noexcept {
     status_.write_failures += attachments_.trace->is_cut() ? 1 : 0;
   }
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
+  status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();
+  status_.tls_fault = tls_fault_.load(std::memory_order_relaxed);
 }
 
 void Task::settle(Clock& clock, Fault fault) {

@@ -47,6 +47,7 @@ struct TaskAttachments {
   Retainer* retainer = nullptr;
   Trace* trace = nullptr;
   const KeptCounter* history = nullptr;
+  const KeptCounter* mqtt = nullptr;
 };
 
 class Task final : private CycleBody {
@@ -64,6 +65,9 @@ class Task final : private CycleBody {
   /// From a thread beside the cyclic one: the guard's process died. The task ends after this cycle, with safe outputs:
   /// nobody would make them safe if it hung or died.
   void guard_lost() noexcept;
+  /// From a thread beside the cyclic one: what keeps clients of TLS away, as task.tls_fault says it. No fault of the
+  /// task: the control goes on.
+  void tls_fault(std::uint8_t fault) noexcept { tls_fault_.store(fault, std::memory_order_relaxed); }
   /// Not while it runs; then, points() of the door say the same.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
   /// After run(): what ended it, or what was wrong at its end; stop where nothing was.
@@ -113,6 +117,7 @@ class Task final : private CycleBody {
   std::atomic<bool> client_is_lost_{false};
   std::atomic<bool> client_was_lost_{false};  ///< and no reset came since; only where one is asked for
   std::atomic<bool> guard_is_lost_{false};
+  std::atomic<std::uint8_t> tls_fault_{0};
   bool tripped_ = false;
   bool guard_took_over_ = false;
 };

@@ -51,6 +51,14 @@ constexpr std::array statuses{
     count_of("task.history_lost", "rows of the history that are lost"),
     Status{"task.history_fault", PointType::uint16, "1",
            "0 none, 1 disk full, 2 cannot be reached, 3 damaged, 4 held by another program"},
+    Status{"task.mqtt_connected", PointType::uint16, "1", "0 no, 1 the MQTT broker takes rows"},
+    count_of("task.mqtt_rows", "rows that the MQTT broker has confirmed"),
+    Status{"task.mqtt_queued", PointType::uint64, "1", "rows that the MQTT broker has not confirmed"},
+    count_of("task.mqtt_lost", "rows for MQTT that are lost"),
+    Status{"task.mqtt_fault", PointType::uint16, "1",
+           "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost"},
+    Status{"task.tls_fault", PointType::uint16, "1",
+           "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
 };
 constexpr std::size_t status_count = statuses.size();
 
@@ -263,6 +271,12 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.history.done),
       static_cast<double>(status.history.lost),
       static_cast<double>(status.history.fault),
+      status.mqtt.is_connected ? 1.0 : 0.0,
+      static_cast<double>(status.mqtt.done),
+      static_cast<double>(status.mqtt.waiting),
+      static_cast<double>(status.mqtt.lost),
+      static_cast<double>(status.mqtt.fault),
+      static_cast<double>(status.tls_fault),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

@@ -46,6 +46,8 @@ struct TaskStatus {
   std::uint64_t faults = 0;          ///< that began
   Fault last_fault = Fault::none;    ///< the newest, over or not
   KeptCount history{};
+  KeptCount mqtt{};
+  std::uint8_t tls_fault = 0;
   double heartbeat = 0.0;
 };
 

@@ -42,6 +42,25 @@ std::optional<std::uint16_t> port_of(std::string_view text) {
   return whole ? std::optional(port) : std::nullopt;
 }
 
+/// Every character of what was given is looked at, whether it fits or not. No text is an empty token.
+bool is_same(const std::string& token, std::string_view text) {
+  if (token.empty()) {
+    return false;
+  }
+  unsigned difference = text.size() == token.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char own = token[i % token.size()];
+    difference |= static_cast<unsigned>(static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(own));
+  }
+  return difference == 0;
+}
+
+/// Of Authorization: Bearer TOKEN; empty where there is none.
+std::string_view bearer_in(std::string_view authorization) {
+  constexpr std::string_view scheme = "Bearer ";
+  return authorization.starts_with(scheme) ? authorization.substr(scheme.size()) : std::string_view();
+}
+
 bool is_loopback_address(const modbus::AddressBytes& bytes) {
   static const auto four = modbus::Network::parse("127.0.0.0/8");
   static const auto six = modbus::Network::parse("::1/128");
@@ -88,29 +107,34 @@ std::string read_token(const std::string& file) {
 }
 
 void check_access(const Endpoint& endpoint, const Access& access) {
-  if (!endpoint.is_loopback && !access.can_write()) {
+  if (access.can_write() && access.token == access.read_token) {
+    throw InputError(error::unfit_token_file, {},
+                     "Both token files hold the same token: who may only look could change parameters.",
+                     "let each hold one of its own: head -c 24 /dev/urandom | base64.");
+  }
+  if (!endpoint.is_loopback && !access.can_write() && access.read_token.empty()) {
     throw InputError(error::open_web_page, {},
                      fmt::format("On {} the live page would show every value to whoever reaches it.", endpoint.address),
-                     "listen on 127.0.0.1 and reach it through a tunnel, or give it a token: --web-token-file FILE.");
+                     "listen on 127.0.0.1 and reach it through a tunnel, or give it a token: --web-token-file FILE, or "
+                     "--web-read-token-file FILE.");
   }
 }
 
 bool is_token(const Access& access, std::string_view text) {
-  if (!access.can_write()) {
-    return false;
-  }
-  // Every character of what was given is looked at, whether it fits or not.
-  unsigned difference = text.size() == access.token.size() ? 0U : 1U;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char own = access.token[i % access.token.size()];
-    difference |= static_cast<unsigned>(static_cast<unsigned char>(text[i]) ^ static_cast<unsigned char>(own));
-  }
-  return difference == 0;
+  return is_same(access.token, text);
 }
 
 bool is_authorized(const Access& access, std::string_view authorization) {
-  constexpr std::string_view scheme = "Bearer ";
-  return authorization.starts_with(scheme) && is_token(access, authorization.substr(scheme.size()));
+  return is_token(access, bearer_in(authorization));
+}
+
+bool is_reading_token(const Access& access, std::string_view text) {
+  const bool is_reader = is_same(access.read_token, text);
+  return is_token(access, text) || is_reader;
+}
+
+bool may_read(const Access& access, std::string_view authorization) {
+  return is_reading_token(access, bearer_in(authorization));
 }
 
 bool is_loopback_host(std::string_view host) {

@@ -29,20 +29,25 @@ struct Endpoint {
 
 struct Access {
   bool is_loopback = true;
-  std::string token{};  ///< empty: nobody may change anything
+  std::string token{};       ///< empty: nobody may change anything
+  std::string read_token{};  ///< of who may only look, as a scraper of /metrics; empty: there is none
 
   [[nodiscard]] bool can_write() const { return !token.empty(); }
   /// Beyond the loopback nothing is shown to strangers.
   [[nodiscard]] bool reading_needs_token() const { return !is_loopback; }
 };
 
-/// Throws InputError HY843 where the page would be open to a network without a token.
+/// Throws InputError HY843 where the page would be open to a network without a token, and HY844 where who may only look
+/// would have the token of who may write.
 void check_access(const Endpoint& endpoint, const Access& access);
 
 /// Whether a text is the token; takes as long whatever its first wrong character is. Never where there is no token.
 [[nodiscard]] bool is_token(const Access& access, std::string_view text);
 /// The same for the header Authorization: Bearer TOKEN.
 [[nodiscard]] bool is_authorized(const Access& access, std::string_view authorization);
+/// Whether a text is one of the tokens, so that who has it may look.
+[[nodiscard]] bool is_reading_token(const Access& access, std::string_view text);
+[[nodiscard]] bool may_read(const Access& access, std::string_view authorization);
 
 /// Whether the header Host names this machine's loopback. A page of a stranger whose name resolves to 127.0.0.1 does
 /// not.

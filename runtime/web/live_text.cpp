@@ -8,7 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include "runtime/modbus/value_bits.hpp"
 #include "support/json_number.hpp"
+
 namespace hysteron::runtime::web {
 namespace {
 
@@ -66,6 +68,7 @@ std::string description_text(const Subject& subject, const PointDoor& door, bool
     points.push_back({{"name", point.name},
                       {"kind", name_of(point.kind)},
                       {"type", name_of(point.type)},
+                      {"data_type", modbus::name_of(point.type)},
                       {"unit", point.unit},
                       {"low", number_or_null<json>(point.low)},
                       {"high", number_or_null<json>(point.high)},
@@ -73,7 +76,10 @@ std::string description_text(const Subject& subject, const PointDoor& door, bool
   }
   json inner = json::array();
   for (const Point& signal : door.inner()) {
-    inner.push_back({{"name", signal.name}, {"type", name_of(signal.type)}, {"unit", signal.unit}});
+    inner.push_back({{"name", signal.name},
+                     {"type", name_of(signal.type)},
+                     {"data_type", modbus::name_of(signal.type)},
+                     {"unit", signal.unit}});
   }
   return text_of({{"name", subject.name},
                   {"period", static_cast<double>(subject.period) * 1e-9},

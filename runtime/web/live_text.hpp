@@ -20,9 +20,10 @@ struct Subject {
   std::vector<std::string> history_points{};  ///< what is in it
 };
 
-/// {"name", "period" in seconds, "diagram", "points": [{"name", "kind", "type", "unit", "low", "high", "meaning"}],
-/// "inner": [{"name", "type", "unit"}], "history": [names of points], "writable", "token_to_read"}. Limits that are
-/// infinite are null.
+/// {"name", "period" in seconds, "diagram", "points": [{"name", "kind", "type", "data_type", "unit", "low", "high",
+/// "meaning"}], "inner": [{"name", "type", "data_type", "unit"}], "history": [names of points], "writable",
+/// "token_to_read"}. Limits that are infinite are null; "type" is boolean, integer or real, "data_type" as in the
+/// register map.
 [[nodiscard]] std::string description_text(const Subject& subject, const PointDoor& door, bool writable,
                                            bool token_to_read);
 

@@ -111,7 +111,7 @@ Answer Responder::read(const Request& request) {
   if (!description && !metrics && !history && request.target != "/api/values") {
     return refusal(404, "There is nothing of this name.");
   }
-  if (access_.reading_needs_token() && !is_authorized(access_, request.authorization)) {
+  if (access_.reading_needs_token() && !may_read(access_, request.authorization)) {
     return refusal(401, "The token is missing or wrong.");
   }
   if (description) {
@@ -175,7 +175,9 @@ Answer Responder::write(const Request& request) {
     return refusal(403, "The live page is read-only: it was started without --web-token-file.");
   }
   if (!is_authorized(access_, request.authorization)) {
-    return refusal(401, "The token is missing or wrong.");
+    return may_read(access_, request.authorization)
+               ? refusal(403, "This token is for reading; to change parameters takes the other one.")
+               : refusal(401, "The token is missing or wrong.");
   }
   return request.target == targets[0] ? stage(request.body)
                                       : give(request.target == targets[1] ? "task.commit" : "task.discard");

@@ -11,7 +11,8 @@
 //   POST /api/commit         all that wait count from the next step on, or none
 //   POST /api/discard        none of them waits any longer
 //
-// Whoever posts, and beyond the loopback whoever reads values, sends Authorization: Bearer TOKEN.
+// Whoever posts, and beyond the loopback whoever reads values, sends Authorization: Bearer TOKEN. There may be a token
+// of its own for who only reads.
 #pragma once
 
 #include <filesystem>

@@ -241,7 +241,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       }
       const auto data = self->message_.data();
       const std::string_view text(static_cast<const char*>(data.data()), data.size());
-      if (self->is_stream_ || !is_token(self->host_.responder().access(), text)) {
+      if (self->is_stream_ || !is_reading_token(self->host_.responder().access(), text)) {
         return self->refuse_message();
       }
       self->is_stream_ = true;

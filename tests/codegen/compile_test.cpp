@@ -100,7 +100,8 @@ TEST(Compile, TheMendOfATypeSaysWhatTheOperatorTakes) {
                        "Y := " + expression + ";"));
     return found.size() == 1 && found[0].number == error::type_mismatch ? found[0].mend : "";
   };
-  EXPECT_THAT(mend("WORD", "A AND B"), AllOf(HasSubstr("It takes BOOL"), HasSubstr("Nothing is computed of a WORD")));
+  EXPECT_THAT(mend("WORD", "A + B"), AllOf(HasSubstr("It takes LREAL or DINT"), HasSubstr("WORD_TO_DINT")));
+  EXPECT_THAT(mend("LREAL", "A AND B"), AllOf(HasSubstr("It takes BOOL or WORD"), HasSubstr("A comparison")));
   EXPECT_THAT(mend("DINT", "A ** B"), AllOf(HasSubstr("It takes LREAL"), HasSubstr("DINT_TO_LREAL")));
   EXPECT_THAT(mend("LREAL", "A MOD B"), AllOf(HasSubstr("It takes DINT"), HasSubstr("LREAL_TO_DINT")));
   EXPECT_THAT(mend("BOOL", "A + B"), AllOf(HasSubstr("It takes LREAL or DINT"), HasSubstr("SEL turns a BOOL")));

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 
 #include "codegen/compile.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "support/errors.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -57,6 +59,63 @@ TEST(Functions, ANamedArgumentOfAnotherNameIsRefused) {
                            "; END_FUNCTION_BLOCK"),
         InputError)
         << call;
+  }
+}
+
+TEST(Functions, WordsHaveTheirBits) {
+  Machine<double> machine(compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT A, B : WORD; N : DINT; END_VAR\n"
+      "VAR_OUTPUT Q1, Q2, Q3, Q4, L0, L3, L16, R1, R16, C : WORD; E, D : BOOL; I : DINT; END_VAR\n"
+      "Q1 := A AND B; Q2 := A OR B; Q3 := A XOR 16#00FF; Q4 := NOT A; L0 := SHL(A, 0); L3 := SHL(IN := A, N := 3); "
+      "L16 := SHL(A, 16); R1 := SHR(A, 1); R16 := SHR(A, 16); C := DINT_TO_WORD(N); E := (A AND 16#6F) = 16#27; "
+      "D := A <> B; I := WORD_TO_DINT(A);\nEND_FUNCTION_BLOCK"));
+  std::mt19937 engine(1);
+  for (int k = 0; k < 2000; ++k) {
+    const unsigned a = k < 256 ? 0xFF00U + static_cast<unsigned>(k) : engine() % 65536;
+    const unsigned b = k % 5 == 0 ? a : engine() % 65536;
+    const auto n = static_cast<std::int32_t>(engine());
+    machine.set_input(0, a);
+    machine.set_input(1, b);
+    machine.set_input(2, n);
+    machine.step();
+    const std::array<double, 13> wanted{static_cast<double>(a & b),
+                                        static_cast<double>(a | b),
+                                        static_cast<double>(a ^ 0xFFU),
+                                        static_cast<double>(~a & 0xFFFFU),
+                                        static_cast<double>(a),
+                                        static_cast<double>((a << 3U) & 0xFFFFU),
+                                        0.0,
+                                        static_cast<double>(a >> 1U),
+                                        0.0,
+                                        static_cast<double>(static_cast<std::uint32_t>(n) & 0xFFFFU),
+                                        (a & 0x6FU) == 0x27U ? 1.0 : 0.0,
+                                        a != b ? 1.0 : 0.0,
+                                        static_cast<double>(a)};
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      ASSERT_EQ(machine.output(i), wanted[i]) << "output " << i << ", " << a << ", " << b << ", " << n;
+    }
+  }
+}
+
+TEST(Functions, WhatIsNoOperationOnWordsIsRefused) {
+  const auto refused = [](const std::string& expression) {
+    try {
+      (void)compile_text(
+          "FUNCTION_BLOCK F VAR_INPUT A : WORD; N : DINT; X : LREAL; B : BOOL; END_VAR VAR_OUTPUT Y : WORD; "
+          "END_VAR Y := " +
+          expression + "; END_FUNCTION_BLOCK");
+    } catch (const InputError& error) {
+      return error.diagnostics().all().front().number;
+    }
+    return 0;
+  };
+  for (const char* const expression :
+       {"A + A", "A AND 65536", "A AND -1", "A AND N", "A AND B", "A < A", "-A", "A AND X"}) {
+    EXPECT_EQ(refused(expression), error::type_mismatch) << expression;
+  }
+  for (const char* const expression : {"SHL(A, 17)", "SHL(A, -1)", "SHL(A, N)", "SHL(N, 1)", "SHR(A)",
+                                       "DINT_TO_WORD(A)", "DINT_TO_WORD(X)", "ROL(A, 1)"}) {
+    EXPECT_EQ(refused(expression), error::unknown_function) << expression;
   }
 }
 

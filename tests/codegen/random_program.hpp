@@ -69,6 +69,15 @@ class RandomDiagram {
       const auto real = [&] { return source(Type::Real, depth + 1); };
       const auto truth = [&] { return source(Type::Bool, depth + 1); };
       const auto integer = [&] { return source(Type::Int, depth + 1); };
+      const auto word = [&] { return source(Type::Word, depth + 1); };
+      if (words_.types && words_.functions && pick(4) == 0) {
+        if (type == Type::Bool) {
+          return fmt::format("({} {} {})", word(), pick(2) != 0 ? "=" : "<>", word());
+        }
+        if (type == Type::Int) {
+          return fmt::format("WORD_TO_DINT({})", word());
+        }
+      }
       switch (type) {
         case Type::Real: {
           if (words_.functions && pick(3) == 0) {
@@ -117,7 +126,17 @@ class RandomDiagram {
           return forms[pick(forms.size())];
         }
         default:
-          break;
+          if (words_.types && words_.functions) {
+            const std::vector<std::string> forms{fmt::format("({} AND {})", word(), word()),
+                                                 fmt::format("({} OR {})", word(), word()),
+                                                 fmt::format("({} XOR 16#{:X})", word(), pick(65536)),
+                                                 fmt::format("(NOT {})", word()),
+                                                 fmt::format("SHL({}, {})", word(), pick(17)),
+                                                 fmt::format("SHR({}, {})", word(), pick(17)),
+                                                 fmt::format("DINT_TO_WORD({})", integer()),
+                                                 fmt::format("SEL({}, {}, {})", truth(), word(), word())};
+            return forms[pick(forms.size())];
+          }
       }
     }
     return list.empty() || pick(8) == 0 ? literal(type) : list[pick(list.size())];

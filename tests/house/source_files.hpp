@@ -28,7 +28,8 @@ inline std::vector<SourceText> source_files(const std::vector<std::string>& fold
     }
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
-      if (!entry.is_regular_file() || std::ranges::find(extensions, extension) == extensions.end()) {
+      const bool is_fetched = entry.path().string().find("/node_modules/") != std::string::npos;
+      if (!entry.is_regular_file() || is_fetched || std::ranges::find(extensions, extension) == extensions.end()) {
         continue;
       }
       SourceText text{.path = entry.path().lexically_relative(root).generic_string(), .lines = {}};

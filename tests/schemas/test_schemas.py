@@ -1,8 +1,11 @@
 """Every output in JSON is what its schema says, no key more and none less; and every key of a schema occurs."""
 import json
 import os
+import shutil
+import socket
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -40,8 +43,9 @@ initial_states = ["LAG.RATE1"]
 """
 FAULTY = "FUNCTION_BLOCK A\n  VAR_OUTPUT Y : LREAL; END_VAR\n  VAR G : HY_GAIN; H : HY_GAIN; END_VAR\n  G(XIN := H.XOUT);\n" \
          "  H(XIN := G.XOUT);\n  Y := H.XOUT;\n  Y := 2.0;\nEND_FUNCTION_BLOCK\n"
-# What the replay of a runtime's trace, a measured inner signal and an FMU say; tests of their own have them.
-RARE = {"fit": {"instance", "file", "derivatives", "relative_step", "instances", "steps"},
+# A wall clock that was set, what the replay of a runtime's trace, a measured inner signal and an FMU say; tests of their own have them.
+RARE = {"history": {"before", "seconds"},
+        "fit": {"instance", "file", "derivatives", "relative_step", "instances", "steps"},
         "verdict": {"agrees", "controller", "same_bits", "different", "first_different", "dropped", "outputs", "difference_rms",
                     "limited_rms"}}
 
@@ -132,6 +136,11 @@ class Schemas(unittest.TestCase):
     def test_record(self):
         self.holds("record", self.printed("record", "log.csv", "--json"))
 
+    def test_history(self):
+        (self.folder / "run.toml").write_text('[outputs.Y]\nsafe = 0.0\n[history]\nfile = "history.sqlite"\nevery = "1ms"\n')
+        self.printed("serve", "plant.st", "--config", "run.toml", "--virtual", "--engine", "interpreter", "--cycles", "1500")
+        self.holds("history", self.printed("history", "history.sqlite", "--json"))
+
     def test_fit(self):
         self.holds("fit", self.printed("tune", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "tuned.toml",
                                        "--start", "2", "--report", "report", "--json", codes=(0, 1)),
@@ -171,6 +180,43 @@ class Schemas(unittest.TestCase):
                    (self.folder / "found/verdict.json").read_text(encoding="utf-8"),
                    self.printed("diagnose", "plant.st", "--log", "still.csv", "--params", "p.toml", "--out", "still", "--json",
                                 codes=(1,)))
+
+    def test_mqtt(self):
+        broker = shutil.which("mosquitto", path=os.environ["PATH"] + ":/usr/sbin")
+        listener = shutil.which("mosquitto_sub")
+        if broker is None or listener is None:
+            self.skipTest("no broker is installed: apt install mosquitto mosquitto-clients")
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        (self.folder / "broker.conf").write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+        (self.folder / "mqtt.toml").write_text(
+            "[task]\nscheduling = \"other\"\nlock_memory = false\n[outputs.Y]\nsafe = 0.0\n"
+            f"[mqtt]\nbroker = \"127.0.0.1\"\nport = {port}\nevery = \"10ms\"\ntopic = \"plant\"\n")
+        quiet = {"cwd": self.folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with subprocess.Popen([broker, "-c", "broker.conf"], **quiet) as serving:
+            try:
+                for _ in range(1000):
+                    with socket.socket() as client:
+                        if client.connect_ex(("127.0.0.1", port)) == 0:
+                            break
+                    time.sleep(0.01)
+                heard = subprocess.Popen([listener, "-h", "127.0.0.1", "-p", str(port), "-t", "plant/#", "-F", "%t %p", "-W", "20"],
+                                         cwd=self.folder, stdout=subprocess.PIPE, text=True)
+                self.printed("serve", "plant.st", "--config", "mqtt.toml", "--cycles", "300")
+                messages = {"plant/data": [], "plant/state": ['{"online":false}']}  # the last is the broker's, of a crash
+                for line in heard.stdout:
+                    topic, text = line.split(" ", 1)
+                    messages[topic].append(text)
+                    if topic == "plant/state" and not json.loads(text)["online"]:
+                        break
+                heard.kill()
+                heard.communicate()
+            finally:
+                serving.kill()
+        self.assertGreater(len(messages["plant/data"]), 5)
+        self.holds("mqtt-data", *messages["plant/data"])
+        self.holds("mqtt-state", *messages["plant/state"])
 
     def test_diagram(self):
         try:

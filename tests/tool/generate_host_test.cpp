@@ -194,6 +194,11 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
                     HasSubstr("\nLoadCredential=\"tls-key:/etc/my keys/server.key\"\n"
                               "LoadCredential=tls-clients:/etc/ssl/clients.pem\n"),
                     Not(HasSubstr("tls-certificate"))));
+  EXPECT_THAT(
+      unit("[mqtt]\nbroker = \"b\"\nca = \"/etc/ssl/ca.pem\"\nuser = \"stage\"\npassword_file = \"/etc/stage/word\"\n"),
+      AllOf(HasSubstr("\nLoadCredential=mqtt-ca:/etc/ssl/ca.pem\n"
+                      "LoadCredential=mqtt-password:/etc/stage/word\n"),
+            Not(HasSubstr("mqtt-key"))));
   EXPECT_THAT(unit("[trace]\nfile = \"/srv/my runs/100%/run.trace\"\n"),
               HasSubstr("\nReadWritePaths=\"-/srv/my runs/100%%\"\n"));
 }

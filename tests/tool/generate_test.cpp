@@ -249,7 +249,7 @@ TEST(Generate, AnUnknownTargetOrDialectIsNamed) {
     EXPECT_FALSE(bench.has("g"));
     return outcome.err;
   };
-  EXPECT_THAT(refused("--target rust"), AllOf(HasSubstr("HY730"), HasSubstr("cpp, c, st")));
+  EXPECT_THAT(refused("--target rust"), AllOf(HasSubstr("HY730"), HasSubstr("cpp, c, batch, st")));
   EXPECT_THAT(refused("--target st --dialect rockwell"), AllOf(HasSubstr("HY730"), HasSubstr("siemens-scl")));
   EXPECT_THAT(refused("--target c --dialect codesys"), AllOf(HasSubstr("HY730"), HasSubstr("--target st")));
 }

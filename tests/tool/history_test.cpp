@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support/diagnostic.hpp"
@@ -59,6 +60,33 @@ class ServedHistory : public testing::Test {
   }
   test::Workbench bench;
 };
+
+TEST_F(ServedHistory, IsListedAsJsonForAProgram) {
+  serve(2000);
+  serve(500);
+  const auto listed = bench.shell("hysteron history history.sqlite --json");
+  EXPECT_EQ(listed.code, 0) << listed.err;
+  const auto json = nlohmann::json::parse(listed.out);
+  EXPECT_EQ(json["file"], "history.sqlite");
+  ASSERT_EQ(json["runs"].size(), 2U);
+  const auto& first = json["runs"][0];
+  EXPECT_EQ(first["run"], 1);
+  EXPECT_EQ(first["title"], "PLANT");
+  EXPECT_EQ(first["sample_time"], 0.01);
+  EXPECT_EQ(first["points"][1]["name"], "U");
+  EXPECT_EQ(first["points"][1]["unit"], "V");
+  ASSERT_EQ(first["stretches"].size(), 1U);
+  EXPECT_EQ(first["stretches"][0]["rows"], 2000);
+  EXPECT_EQ(json["runs"][1]["stretches"][0]["rows"], 500);
+  EXPECT_EQ(json["clock_steps"], nlohmann::json::array());
+  const auto second = bench.shell("hysteron history history.sqlite --run 2 --from 1s --json");
+  const auto part = nlohmann::json::parse(second.out);
+  ASSERT_EQ(part["runs"].size(), 1U) << "what is asked for alone";
+  EXPECT_EQ(part["runs"][0]["stretches"][0]["rows"], 101);
+  const auto refused = bench.shell("hysteron history history.sqlite --json --out log.csv");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--out"));
+}
 
 TEST_F(ServedHistory, IsExportedAsARecordThatTuneReads) {
   serve(2000);

@@ -46,6 +46,11 @@ TEST(WebAccess, BeyondTheLoopbackThereIsAToken) {
   const Endpoint open = parse_endpoint("0.0.0.0:80");
   EXPECT_EQ(refusal_of([&] { check_access(open, {.is_loopback = false}); }), error::open_web_page);
   EXPECT_EQ(refusal_of([&] { check_access(open, {.is_loopback = false, .token = "0123456789abcdef"}); }), 0);
+  EXPECT_EQ(refusal_of([&] { check_access(open, {.is_loopback = false, .read_token = "0123456789abcdef"}); }), 0);
+  EXPECT_EQ(refusal_of([&] {
+              check_access(open, {.is_loopback = false, .token = "0123456789abcdef", .read_token = "0123456789abcdef"});
+            }),
+            error::unfit_token_file);
   EXPECT_EQ(refusal_of([] { check_access(parse_endpoint("127.0.0.1:80"), {}); }), 0);
 }
 
@@ -87,6 +92,15 @@ TEST(WebAccess, ATokenIsTakenWholeOrNotAtAll) {
   }
   EXPECT_FALSE(is_authorized(access, "0123456789abcdef"));
   EXPECT_FALSE(is_authorized(access, "Basic 0123456789abcdef"));
+  const Access both{.token = "0123456789abcdef", .read_token = "fedcba9876543210"};
+  EXPECT_TRUE(may_read(both, "Bearer 0123456789abcdef"));
+  EXPECT_TRUE(may_read(both, "Bearer fedcba9876543210"));
+  EXPECT_FALSE(is_authorized(both, "Bearer fedcba9876543210"));
+  for (const char* const wrong : {"Bearer ", "Bearer fedcba987654321", "fedcba9876543210", ""}) {
+    EXPECT_FALSE(may_read(both, wrong)) << wrong;
+  }
+  EXPECT_FALSE(may_read({.read_token = "fedcba9876543210"}, "Bearer "));
+  EXPECT_FALSE(may_read({}, "Bearer "));
   // Without a token nothing is one.
   EXPECT_FALSE(is_token({}, ""));
   EXPECT_FALSE(is_authorized({}, "Bearer "));

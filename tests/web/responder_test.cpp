@@ -68,10 +68,13 @@ TEST(WebResponder, DescribesWhatThereIsToBeSeen) {
   ASSERT_EQ(about["points"].size(), bench.door.points().size());
   EXPECT_EQ(about["points"][0]["name"], "X");
   EXPECT_EQ(about["points"][0]["kind"], "input");
+  EXPECT_EQ(about["points"][0]["type"], "real");
+  EXPECT_EQ(about["points"][0]["data_type"], "real64");
   EXPECT_EQ(about["points"][0]["unit"], "V");
   EXPECT_EQ(about["points"][0]["low"], nullptr);
   EXPECT_EQ(about["points"][3]["high"], 1e9);
-  EXPECT_EQ(about["inner"], json::parse(R"([{"name": "SUM.XOUT", "type": "real", "unit": "um"}])"));
+  EXPECT_EQ(about["inner"],
+            json::parse(R"([{"name": "SUM.XOUT", "type": "real", "data_type": "real64", "unit": "um"}])"));
 }
 
 TEST(WebResponder, GivesTheValuesOfTheNewestCycle) {
@@ -174,6 +177,29 @@ TEST(WebResponder, BeyondTheLoopbackReadingNeedsTheTokenToo) {
     EXPECT_EQ(bench.get(target, bearer).status, 200U);
   }
   EXPECT_EQ(bench.get("/").status, 200U) << "the page itself holds no values";
+}
+
+TEST(WebResponder, ATokenForReadingChangesNothing) {
+  PageBench bench({.is_loopback = false, .token = test::token, .read_token = "a-token-to-read-with"});
+  const std::string_view reader = "Bearer a-token-to-read-with";
+  for (const char* const target : {"/api/description", "/api/values", "/metrics"}) {
+    EXPECT_EQ(bench.get(target, reader).status, 200U);
+    EXPECT_EQ(bench.get(target, bearer).status, 200U);
+    EXPECT_EQ(bench.get(target, "Bearer a-token-to-read-wit").status, 401U);
+  }
+  for (const char* const target : {"/api/stage", "/api/commit", "/api/discard"}) {
+    const Answer refused = bench.post(target, R"({"G.A": 2})", reader);
+    EXPECT_EQ(refused.status, 403U);
+    EXPECT_NE(refused.body.find("for reading"), std::string::npos);
+    EXPECT_EQ(refused.body.find("a-token-to-read-with"), std::string::npos);
+  }
+  EXPECT_TRUE(bench.staged().empty());
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2})").status, 200U);
+
+  PageBench without({.is_loopback = false, .read_token = "a-token-to-read-with"});
+  EXPECT_EQ(without.get("/api/values", reader).status, 200U);
+  EXPECT_EQ(without.post("/api/stage", R"({"G.A": 2})", reader).status, 403U) << "nobody writes";
+  EXPECT_EQ(json::parse(without.get("/api/description", reader).body)["writable"], false);
 }
 
 TEST(WebResponder, PagesOfOthersMayNotAsk) {

@@ -24,7 +24,9 @@ std::string_view type_of(const DialectOfC& dialect, Type type) {
   return "";
 }
 
-std::string literal_of(const DialectOfC& dialect, Type type, double value, bool float32) {
+namespace {
+
+std::string digits_of(const DialectOfC& dialect, Type type, double value, bool float32) {
   switch (type) {
     case Type::Real:
       if (std::isnan(value)) {
@@ -42,6 +44,14 @@ std::string literal_of(const DialectOfC& dialect, Type type, double value, bool 
       return fmt::format("{}0x{:04X}{}", dialect.word_begin, static_cast<unsigned>(value), dialect.word_end);
   }
   return "";
+}
+
+}  // namespace
+
+std::string literal_of(const DialectOfC& dialect, Type type, double value, bool float32) {
+  std::string text(dialect.literal_begin);
+  append(text, digits_of(dialect, type, value, float32), dialect.literal_end);
+  return text;
 }
 
 void PrinterOfC::print_member(std::string_view object, const Member& member, std::string& out) {

@@ -16,6 +16,7 @@ struct DialectOfC {
   std::string_view parameters{}, state{}, input{}, output{};  ///< what stands before a member: params.
   std::string_view infinity{}, not_a_number{};
   std::string_view word_begin{}, word_end{};  ///< round the digits of a word
+  std::string_view literal_begin{}, literal_end{};  ///< round every literal
   std::string_view element_begin{};           ///< the call that sets an element of an array
   bool passes_length = false;                 ///< whether the calls for elements take the length of the array
   bool careful = false;  ///< x == x is written as !isnan(x), and operators of two kinds stand in brackets
@@ -77,6 +78,7 @@ class WriterOfC : public StepWriter {
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
 
   const PrinterOfC& printer() const { return printer_; }
+  const Layout& layout() const { return layout_; }
 
  private:
   PrinterOfC& printer_;

@@ -132,7 +132,8 @@ function buildCycles() {
   description.points.forEach((point, at) => {
     if (point.kind !== "status") return;
     const row = add(body, "tr", {});
-    const isState = ["task.state", "task.fault", "task.last_fault", "task.history_fault"].includes(point.name);
+    const isState = ["task.state", "task.fault", "task.last_fault", "task.history_fault", "task.mqtt_connected",
+                     "task.mqtt_fault", "task.tls_fault"].includes(point.name);
     add(row, "th", { textContent: isState ? point.name.slice(5).replace("_", " ") : point.meaning, scope: "row", title: point.name });
     const cell = add(row, "td", { className: "number" });
     cell.dataset.value = point.name;

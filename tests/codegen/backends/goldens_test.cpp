@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "codegen/backends/batch/batch.hpp"
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/backends/st/st.hpp"
@@ -53,6 +54,15 @@ void hold_against_golden(const GeneratedFile& file, const std::string& folder) {
   EXPECT_EQ(file.text, test::contents_of(path)) << path;
 }
 
+/// Structures and steps of a batch, without the functions on vectors, which are the same for every diagram.
+GeneratedFile step_of_batch(const Program& program) {
+  const std::string text = generate_batch(program).text;
+  const std::size_t structures = text.find("struct Params");
+  const std::size_t passes = text.find("// The code below");
+  return {"axis_batch.txt",
+          text.substr(structures, passes - structures) + text.substr(text.find("HYSTERON_INLINE void reset_pack"))};
+}
+
 TEST(Goldens, OfEveryTargetAreKeptToTheByte) {
   const Program program = compile_text(std::string(golden_diagram));
   for (const char* const dialect : {"portable", "codesys", "twincat", "siemens-scl"}) {
@@ -66,6 +76,7 @@ TEST(Goldens, OfEveryTargetAreKeptToTheByte) {
   }
   hold_against_golden(generate_c(program, {.float32 = true}).back(), "c_float");
   hold_against_golden(generate_cpp_header(program), "cpp");
+  hold_against_golden(step_of_batch(program), "batch");
 }
 
 }  // namespace

@@ -422,5 +422,66 @@ TEST(RunConfig, AHistoryNamesPointsInTheWordsOfTheDoor) {
   EXPECT_EQ(errors(file + "megabytes = 0\n"), "805@5:13 ");
 }
 
+TEST(RunConfig, AnMqttTableHasItsDefaultsFromTheDiagram) {
+  const std::string safe = "[outputs.Y]\nsafe = 0.0\n";
+  const auto read = [&](const std::string& keys) {
+    return *parse_run_config("RUN.toml", safe + "[mqtt]\nbroker = \"b\"\n" + keys, plant()).mqtt;
+  };
+  const MqttConfig usual = read("");
+  EXPECT_EQ(usual.broker, "b");
+  EXPECT_EQ(usual.port, 1883);
+  EXPECT_EQ(usual.points, (std::vector<std::string>{"X", "Z", "Y"}));
+  EXPECT_EQ(usual.dead_bands, (std::vector<double>{0.0, 0.0, 0.0}));
+  EXPECT_EQ(usual.step, 1000U);
+  EXPECT_EQ(usual.refresh, 60'000U);
+  EXPECT_EQ(usual.topic, "hysteron/PLANT");
+  EXPECT_EQ(read("ca = \"ca.pem\"\n").port, 8883);
+  EXPECT_EQ(read("ca = \"ca.pem\"\nport = 5\n").port, 5);
+  EXPECT_EQ(read("on_change = true\nevery = \"2min\"\n").refresh, 120'000U) << "no more often than rows";
+  const MqttConfig own = read(
+      "payload = \"sparkplug-b\"\ngroup = \"g\"\nnode = \"n\"\npoints = [\"y\", \"task.fault\"]\non_change = true\n"
+      "[dead_bands]\nY = 0.5\ntask.fault = 2\n");
+  EXPECT_EQ(own.payload, MqttPayload::SparkplugB);
+  EXPECT_EQ(own.group + own.node, "gn");
+  EXPECT_EQ(own.points, (std::vector<std::string>{"Y", "task.fault"}));
+  EXPECT_EQ(own.dead_bands, (std::vector<double>{0.5, 2.0}));
+}
+
+/// A key that does nothing, or cannot do what it says beside another, is an error where it stands.
+TEST(RunConfig, AnMqttTableHasNoKeyThatDoesNothing) {
+  const auto errors = [&](const std::string& keys) {
+    return errors_of("[outputs.Y]\nsafe = 0.0\n[mqtt]\nbroker = \"b\"\n" + keys);
+  };
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[mqtt]\nport = 5\n"), "804@3:1 ");
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[dead_bands]\nY = 1\n"), "804@3:1 ");
+  EXPECT_EQ(errors("certificate = \"a\"\n"), "804@5:15 ");
+  EXPECT_EQ(errors("key = \"a\"\n"), "804@5:7 ");
+  EXPECT_EQ(errors("ca = \"a\"\nkey = \"a\"\n"), "804@6:7 ");
+  EXPECT_EQ(errors("ca = \"a\"\ncertificate = \"a\"\n"), "804@6:15 ");
+  EXPECT_EQ(errors("password_file = \"a\"\n"), "804@5:17 ");
+  EXPECT_EQ(errors("payload = \"sparkplug-b\"\ntopic = \"a\"\n"), "804@6:9 ");
+  EXPECT_EQ(errors("payload = \"sparkplug-b\"\nqos = 1\n"), "804@6:7 ");
+  EXPECT_EQ(errors("group = \"a\"\n"), "804@5:9 ");
+  EXPECT_EQ(errors("node = \"a\"\n"), "804@5:8 ");
+  EXPECT_EQ(errors("refresh = \"5s\"\n"), "804@5:11 ");
+  EXPECT_EQ(errors("on_change = true\nrefresh = \"5ms\"\n"), "805@6:11 ");
+  EXPECT_EQ(errors("[dead_bands]\nY = 1.0\n"), "804@5:1 ");
+  const std::string change = "on_change = true\n[dead_bands]\n";
+  EXPECT_EQ(errors(change + "Y = -1.0\n"), "804@7:5 ");
+  EXPECT_EQ(errors(change + "Y = nan\n"), "804@7:5 ");
+  EXPECT_EQ(errors(change + "W = 1.0\n"), "807@7:5 ");
+  EXPECT_EQ(errors(change + "task.fault = 1.0\n"), "807@7:14 ") << "it is not published";
+  EXPECT_EQ(errors(change + "y = 1.0\nY = 2.0\n"), "802@7:5 ") << "the library gives keys in the order of their names";
+  EXPECT_EQ(errors("qos = 2\n"), "805@5:7 ");
+  EXPECT_EQ(errors("every = \"1500us\"\n"), "804@5:9 ");
+  EXPECT_EQ(errors("payload = \"xml\"\n"), "804@5:11 ");
+  for (const char* const topic : {"a/#", "a/+/b", "$SYS", "/a", "a/", "a\\u0000b"}) {
+    EXPECT_EQ(errors(fmt::format("topic = \"{}\"\n", topic)), "804@5:9 ") << topic;
+  }
+  for (const char* const name : {"a/b", "+", "#"}) {
+    EXPECT_EQ(errors(fmt::format("payload = \"sparkplug-b\"\nnode = \"{}\"\n", name)), "804@6:8 ") << name;
+  }
+}
+
 }  // namespace
 }  // namespace hysteron::runtime

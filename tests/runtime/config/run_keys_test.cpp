@@ -51,6 +51,17 @@ std::string before(const RunTable& table, std::string_view key) {
   if (name == "[history]") {
     return others + "[history]\n" + (key == "file" ? "" : "file = \"history.sqlite\"\n");
   }
+  if (name == "[mqtt]") {
+    const bool is_sparkplug = key == "group" || key == "node";
+    return others + "[mqtt]\n" + (key == "broker" ? "" : "broker = \"127.0.0.1\"\n") +
+           (key == "certificate" || key == "key" ? "ca = \"ca.pem\"\n" : "") +
+           (key == "certificate" ? "key = \"a.key\"\n" : "") + (key == "key" ? "certificate = \"a.pem\"\n" : "") +
+           (key == "password_file" ? "user = \"stage\"\n" : "") + (is_sparkplug ? "payload = \"sparkplug-b\"\n" : "") +
+           (key == "refresh" ? "on_change = true\n" : "");
+  }
+  if (name == "[dead_bands]") {
+    return others + "[mqtt]\nbroker = \"127.0.0.1\"\non_change = true\n[dead_bands]\n";
+  }
   if (name == "[tls]" || name == "[roles]") {
     std::string text = others + "[modbus]\n" + (name == "[tls]" ? "[roles]\nR = [\"read\"]\n" : "") + "[tls]\n";
     for (const char* const file : {"certificate", "key", "clients"}) {
@@ -106,6 +117,12 @@ std::string described(const RunConfig& c) {
   }
   if (c.history) {
     put(c.history->file, c.history->points.size(), c.history->step, c.history->keep, c.history->bytes);
+  }
+  if (c.mqtt) {
+    const MqttConfig& mqtt = *c.mqtt;
+    put(mqtt.broker, mqtt.port, mqtt.ca, mqtt.certificate, mqtt.key, mqtt.user, mqtt.password_file, mqtt.client_id,
+        static_cast<int>(mqtt.payload), mqtt.topic, mqtt.qos, mqtt.group, mqtt.node, mqtt.points.size(), mqtt.step,
+        mqtt.on_change, mqtt.refresh, mqtt.keep, mqtt.bytes);
   }
   if (c.modbus) {
     put(c.modbus->listen, c.modbus->port, c.modbus->allow.size(), c.modbus->connections, c.modbus->read_only,

@@ -25,6 +25,7 @@
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "tests/runtime/host/host_process.hpp"
+#include "tests/runtime/modbus/tls_files.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
 
@@ -96,6 +97,31 @@ TEST(Host, NamesTheDeviceThatIsLostAndCountsFaults) {
   EXPECT_EQ(code, 0);
   EXPECT_NE(said.find(" on stage (127.0.0.1:"), std::string::npos) << said;
   EXPECT_TRUE(said.ends_with("; fault: none")) << said;
+}
+
+TEST(Host, ACertificateThatEndedStopsNoControl) {
+  const test::TlsFiles files;
+  const auto write = [&files](const test::Certificate& server) {
+    files.folder.write("server.pem", server.certificate_pem());
+    files.private_file("server.key", server.key_pem());
+  };
+  write(test::Certificate({.name = "server", .begins = -7200, .ends = -3600, .for_clients = false}, &files.authority));
+  Stage stage;
+  stage.give(0.25);
+  HostProcess host(
+      run_file(stage.port, fmt::format("[tls]\ncertificate = \"{0}server.pem\"\nkey = \"{0}server.key\"\nclients = "
+                                       "\"{0}clients.pem\"\nwithout_role = [\"read\"]\n{1}",
+                                       files.folder / "", x_on_stage)));
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return stage.taken() == 0.5; })) << host.told() << host.said_before();
+  const auto told = [&](const std::string& text) {
+    return test::soon([&] { return host.told().find(text) != std::string::npos; });
+  };
+  EXPECT_TRUE(told("TLS: the server's certificate ended on ")) << host.told();
+  write(test::Certificate({.name = "server", .for_clients = false}, &files.authority));
+  EXPECT_TRUE(told("TLS: new certificate, until ")) << host.told();
+  const auto [code, said] = host.end();
+  EXPECT_EQ(code, 0) << said << host.told();
 }
 
 TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {

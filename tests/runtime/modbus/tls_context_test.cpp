@@ -96,6 +96,23 @@ TEST_F(TlsContexts, EachFileIsNamedWithItsPlaceAndCause) {
   EXPECT_EQ(refusal_with("certificate", "server.pem"), "");
 }
 
+TEST_F(TlsContexts, WhatIsOutOfDateMayBeTakenAndSaysSo) {
+  const std::time_t now = std::time(nullptr);
+  TlsOptions options = files_.options();
+  EXPECT_EQ(TlsContext(options).fault_at(now), TlsFault::none);
+  EXPECT_EQ(TlsContext(options).fault_at(now + 7200), TlsFault::ended);
+  EXPECT_EQ(TlsContext(options).fault_at(0), TlsFault::not_begun);
+  options.certificate = files_.folder / "expired.pem";
+  options.key = files_.folder / "expired.key";
+  EXPECT_TRUE(refusal(options).starts_with("834@"));
+  EXPECT_EQ(TlsContext(options, OutOfDate::taken).fault_at(now), TlsFault::ended);
+  options = files_.options();
+  options.clients = files_.folder / "expired.pem";
+  EXPECT_EQ(TlsContext(options, OutOfDate::taken).fault_at(now), TlsFault::signers);
+  options.key = files_.folder / "other.key";
+  EXPECT_THROW(TlsContext(options, OutOfDate::taken), InputError) << "nothing but dates is let pass";
+}
+
 TEST_F(TlsContexts, NoSecretIsInARefusal) {
   for (const char* const file : {"locked.key", "other.key", "open.key"}) {
     const std::string key = test::contents_of(files_.folder / file);

@@ -62,7 +62,7 @@ struct TlsFiles {
   }
 
   ScratchFolder folder{};
-  Certificate authority{{.name = "authority"}, nullptr};
+  Certificate authority{{.name = "authority", .ends = 1000L * 24 * 3600}, nullptr};
   Certificate server{{.name = "server", .for_clients = false}, &authority};
 };
 

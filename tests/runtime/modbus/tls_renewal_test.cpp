@@ -27,7 +27,8 @@ class Renewal : public ::testing::Test {
     renewal_.emplace(files_.options(), serving_, now_);
   }
   void write_server(long days) {
-    const Certificate fresh({.name = "server", .ends = days * a_day + 600, .for_clients = false}, &files_.authority);
+    const Certificate fresh({.name = "server", .begins = -10 * a_day, .ends = days * a_day + 600, .for_clients = false},
+                            &files_.authority);
     write_certificate(fresh);
     write_key(fresh);
   }
@@ -133,10 +134,55 @@ TEST_F(Renewal, TheEndIsToldOfOnceADayFromThirtyDaysBefore) {
   EXPECT_TRUE(look(46).lines.empty());
 }
 
-TEST_F(Renewal, AClockThatStandsAtItsBeginningSaysNothing) {
+TEST_F(Renewal, AClockThatStandsAtItsBeginningIsToldOf) {
   serve_for(400);
   now_ += TlsRenewal::interval;
-  EXPECT_TRUE(renewal_->look(now_, 0).lines.empty());
+  const auto found = renewal_->look(now_, 0);
+  ASSERT_EQ(found.lines.size(), 1U);
+  EXPECT_NE(found.lines[0].find("does not count yet by the clock of this machine"), std::string::npos);
+  EXPECT_EQ(found.fault, TlsFault::not_begun);
+  const auto right = look();
+  EXPECT_EQ(right.fault, TlsFault::none) << "once the clock is right, all is well";
+  EXPECT_TRUE(right.lines.empty());
+}
+
+TEST_F(Renewal, WhatWasOutOfDateAtTheStartIsToldOfUntilNewFilesCome) {
+  write_server(-2);
+  serving_ = std::make_shared<const TlsContext>(files_.options(), OutOfDate::taken);
+  renewal_.emplace(files_.options(), serving_, now_);
+  const auto first = look();
+  EXPECT_EQ(first.fault, TlsFault::ended);
+  ASSERT_EQ(first.lines.size(), 1U);
+  EXPECT_TRUE(first.lines[0].starts_with("the server's certificate ended on ")) << first.lines[0];
+  EXPECT_TRUE(look().lines.empty()) << "once a day";
+  write_server(-1);
+  (void)look();
+  const auto no_better = look();
+  EXPECT_FALSE(no_better.renewed);
+  ASSERT_EQ(no_better.lines.size(), 1U);
+  EXPECT_NE(no_better.lines[0].find("HY834"), std::string::npos) << no_better.lines[0];
+  write_server(400);
+  (void)look();
+  const auto renewed = look();
+  EXPECT_TRUE(renewed.renewed);
+  EXPECT_EQ(renewed.fault, TlsFault::none);
+  EXPECT_EQ(look().fault, TlsFault::none);
+}
+
+TEST_F(Renewal, SignersOfWhomNoneCountsAreToldOf) {
+  const Certificate old({.name = "old authority", .begins = -3 * a_day, .ends = -2 * a_day}, nullptr);
+  files_.folder.write("clients.pem", old.certificate_pem());
+  write_server(400);
+  serving_ = std::make_shared<const TlsContext>(files_.options(), OutOfDate::taken);
+  renewal_.emplace(files_.options(), serving_, now_);
+  const auto found = look();
+  EXPECT_EQ(found.fault, TlsFault::signers);
+  ASSERT_EQ(found.lines.size(), 1U);
+  EXPECT_NE(found.lines[0].find("clients.pem that sign those of clients counts today"), std::string::npos)
+      << found.lines[0];
+  files_.folder.write("clients.pem", old.certificate_pem() + files_.authority.certificate_pem());
+  (void)look();
+  EXPECT_EQ(look().fault, TlsFault::none);
 }
 
 }  // namespace

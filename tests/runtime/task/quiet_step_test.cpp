@@ -12,10 +12,15 @@
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <thread>
 
+#include "runtime/host/running_history.hpp"
+#include "runtime/mqtt/json_dialect.hpp"
+#include "runtime/mqtt/mqtt.hpp"
 #include "runtime/task/scheduling.hpp"
 #include "runtime/task/task.hpp"
+#include "tests/runtime/modbus/free_port.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/quiet_thread.hpp"
 #include "tests/support/counted_new.hpp"
@@ -34,8 +39,21 @@ void run_task(const std::string& folder, const std::function<void(std::uint64_t)
   RetainFolder files(folder);
   Retainer retainer(files, program, {});
   Trace trace({.file = folder + ".trace"}, program);
+  KeptCounter published;
   Task task(program, {.loop = {.cycles = warm_up + cycles}, .inputs = {{}}, .outputs = {{}, {}}, .retain_every = 10},
-            {.retainer = &retainer, .trace = &trace});
+            {.retainer = &retainer, .trace = &trace, .mqtt = &published});
+  // A broker that is not there: rows wait, and the oldest are lost.
+  SampleTap tap({0, 1, test::point(task.door(), "task.fault")}, 1, 1000, published);
+  MqttSettings settings{
+      .rows = {.points = {{.name = "X", .is_port = true}, {.name = "Y", .is_port = true}}, .fault_column = 2},
+      .period = program.shape().period,
+      .bytes = 20'000,
+      .keep = 1'000'000'000};
+  settings.link.broker = "127.0.0.1";
+  settings.link.port = test::free_port();
+  Mqtt mqtt(settings, std::make_unique<JsonDialect>("quiet", 1, settings.rows.points), tap, published,
+            clocks_beside(task.door()));
+  task.door().attach({&tap});
   std::uint64_t cycle = 0;
   program.during_step = [&](std::span<double> /*outputs*/) { in_step(cycle++); };
   std::atomic<bool> stop{false};
@@ -60,6 +78,8 @@ void run_task(const std::string& folder, const std::function<void(std::uint64_t)
     std::this_thread::sleep_for(std::chrono::milliseconds(3));
   }
   cyclic.join();
+  mqtt.finish();
+  EXPECT_EQ(published.read().lost, warm_up + cycles) << "each cycle was a row";
 }
 
 TEST(QuietStep, AllocatesNothingAndMeetsNoMissingPage) {

@@ -1,0 +1,297 @@
+#include "runtime/mqtt/mqtt.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <random>
+#include <system_error>
+#include <utility>
+
+namespace hysteron::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::int64_t a_second = 1'000'000'000;
+constexpr std::int64_t longest_retry = 60 * a_second;
+/// A connection that breaks sooner counts as a try: so two clients of one name do not push each other out every second.
+constexpr std::int64_t steadiness = 60 * a_second;
+constexpr std::size_t rows_at_once = 100;      ///< rows that are on their way at once
+constexpr std::int64_t birth_pace = a_second;  ///< however often a birth is asked for
+constexpr int sender_niceness = 10;            ///< whatever runs the machine goes before
+constexpr milliseconds longest_wait{100};
+constexpr milliseconds longest_end{2000};
+constexpr milliseconds farewell_time{500};
+
+/// So that machines that lost one broker do not all come back at once.
+std::int64_t spread(std::int64_t pause) {
+  static thread_local std::minstd_rand random(std::random_device{}());
+  return static_cast<std::int64_t>(static_cast<double>(pause) *
+                                   std::uniform_real_distribution<double>(0.75, 1.0)(random));
+}
+
+}  // namespace
+
+MqttSender::MqttSender(MqttSettings settings, std::unique_ptr<MqttDialect> dialect, SampleTap& tap,
+                       KeptCounter& counter, BesideClocks clocks)
+    : settings_(std::move(settings)),
+      dialect_(std::move(dialect)),
+      tap_(&tap),
+      counter_(&counter),
+      time_(std::move(clocks), settings_.period, false),
+      maker_(settings_.rows),
+      outbox_(settings_.bytes, settings_.keep) {}
+
+std::string MqttSender::broker() const {
+  return fmt::format("{}:{}", settings_.link.broker, settings_.link.port);
+}
+
+void MqttSender::turn(milliseconds wait, int wake) {
+  take();
+  try {
+    serve(wait, wake);
+  } catch (const MqttError& problem) {
+    failed(problem);
+  }
+  counter_->set_waiting(outbox_.size());
+}
+
+void MqttSender::take() {
+  if (const double step = time_.look(); step != 0.0) {
+    remarks_.say(fmt::format("the machine's clock was set {} by {:.1f} s. Rows keep their order.",
+                             step > 0.0 ? "forward" : "back", std::abs(step)));
+  }
+  const std::int64_t now = time_.steady();
+  taken_.clear();
+  tap_->take(taken_);
+  std::uint64_t lost = 0;
+  for (Sample& sample : taken_) {
+    if (auto row = maker_.row(sample, time_.utc_ms(sample.elapsed))) {
+      lost += outbox_.add(std::move(*row), now);
+    }
+  }
+  if (!taken_.empty()) {
+    newest_ = std::move(taken_.back());
+  }
+  lose(lost + outbox_.expire(now));
+}
+
+void MqttSender::lose(std::uint64_t rows) {
+  if (rows == 0) {
+    return;
+  }
+  counter_->add_lost(rows);
+  if (!std::exchange(is_losing_, true)) {
+    remarks_.say(
+        fmt::format("the oldest of the rows that wait for {} are lost from now on: they are too many, or too "
+                    "old. task.mqtt_lost counts them; megabytes and keep in [mqtt] are the bounds.",
+                    broker()));
+  }
+}
+
+void MqttSender::serve(milliseconds wait, int wake) {
+  if (client_ == nullptr) {
+    if (time_.steady() < retry_at_) {
+      pollfd end{wake, POLLIN, 0};
+      (void)::poll(&end, 1, static_cast<int>(wait.count()));
+      return;
+    }
+    client_ = std::make_unique<MqttClient>(settings_.link, dialect_->will());
+  }
+  if (client_->is_connected()) {
+    greet();
+    answer();
+    send();
+  }
+  client_->turn(wait, wake);
+  confirm();
+  if (client_->is_late()) {
+    // The system still tries to connect; that is not given up, only said.
+    counter_->set_fault(static_cast<std::uint16_t>(MqttFault::Unreachable));
+    remarks_.failed("it does not answer",
+                    fmt::format("{} does not answer. Rows wait meanwhile. The task goes on.", broker()));
+  }
+}
+
+/// Rows follow the birth, and a birth has values: it waits for the first row of the task.
+void MqttSender::greet() {
+  if (is_greeted_ || !newest_) {
+    return;
+  }
+  if (const std::string topic = dialect_->commands(); !topic.empty()) {
+    client_->subscribe(topic);
+  }
+  birth_at_ = time_.steady();
+  client_->publish(dialect_->birth(maker_.whole(*newest_, time_.utc_ms(newest_->elapsed)), time_.now_ms()));
+  is_greeted_ = true;
+  greeted_at_ = birth_at_;
+  progress_ = birth_at_;
+  first_live_ = outbox_.next_number() + outbox_.size();
+  maker_.forget();
+  counter_->set_connected(true);
+  counter_->set_fault(static_cast<std::uint16_t>(MqttFault::None));
+  remarks_.is_well(fmt::format("connected to {}; {} rows wait, {} are lost since the start.", broker(), outbox_.size(),
+                               counter_->read().lost));
+}
+
+void MqttSender::answer() {
+  for (const std::string& payload : client_->received()) {
+    is_birth_asked_ = is_birth_asked_ || dialect_->asks_for_birth(payload);
+  }
+  const std::int64_t now = time_.steady();
+  if (is_greeted_ && is_birth_asked_ && now - birth_at_ >= birth_pace) {
+    is_birth_asked_ = false;
+    birth_at_ = now;
+    client_->publish(dialect_->birth(maker_.whole(*newest_, time_.utc_ms(newest_->elapsed)), time_.now_ms()));
+  }
+}
+
+void MqttSender::send() {
+  if (!is_greeted_) {
+    return;
+  }
+  std::optional<std::uint64_t> unfenced;
+  while (outbox_.next() != nullptr && outbox_.on_the_way() < rows_at_once) {
+    if (outbox_.on_the_way() == 0) {
+      progress_ = time_.steady();
+    }
+    const std::uint64_t number = outbox_.next_number();
+    const MqttMessage message = dialect_->data(*outbox_.next(), number < first_live_, time_.now_ms());
+    const int sent = client_->publish(message);
+    outbox_.send();
+    if (message.qos > 0) {
+      rows_on_the_way_.emplace(sent, number);
+    } else {
+      unfenced = number;
+    }
+  }
+  if (unfenced) {
+    fences_.emplace(client_->fence(), *unfenced);
+  }
+}
+
+void MqttSender::confirm() {
+  const std::int64_t now = time_.steady();
+  for (const int number : client_->confirmed()) {
+    std::size_t done = 0;
+    if (const auto row = rows_on_the_way_.extract(number)) {
+      done = outbox_.confirm(row.mapped());
+    } else if (const auto fence = fences_.extract(number)) {
+      done = outbox_.confirm_through(fence.mapped());
+    } else {
+      continue;
+    }
+    counter_->add_done(done);
+    progress_ = now;
+  }
+  if (is_losing_ && outbox_.size() == 0) {
+    is_losing_ = false;
+    maker_.forget();  // what is lost may have been a change
+  }
+  const std::int64_t patience = std::chrono::nanoseconds(settings_.link.patience).count();
+  if (outbox_.on_the_way() > 0 && now - progress_ > patience) {
+    throw MqttError(MqttFault::Lost, "it confirms nothing any more");
+  }
+}
+
+void MqttSender::failed(const MqttError& problem) {
+  const std::int64_t now = time_.steady();
+  if (is_greeted_ && now - greeted_at_ >= steadiness) {
+    pause_ = 0;
+  }
+  client_.reset();
+  is_greeted_ = false;
+  is_birth_asked_ = false;
+  rows_on_the_way_.clear();
+  fences_.clear();
+  outbox_.call_back();
+  pause_ = std::clamp(2 * pause_, a_second, longest_retry);
+  retry_at_ = now + spread(pause_);
+  counter_->set_connected(false);
+  counter_->set_fault(static_cast<std::uint16_t>(problem.fault()));
+  remarks_.failed(problem.what(), fmt::format("nothing reaches {}: {}. Rows wait meanwhile; it is tried again, at last "
+                                              "once a minute. The task goes on.",
+                                              broker(), problem.what()));
+}
+
+void MqttSender::finish(milliseconds longest) {
+  using Clock = std::chrono::steady_clock;
+  constexpr milliseconds step{20};
+  take();
+  const auto end = Clock::now() + longest;
+  try {
+    while (client_ != nullptr && is_greeted_ && outbox_.size() > 0 && Clock::now() < end) {
+      send();
+      client_->turn(step, -1);
+      confirm();
+    }
+    if (client_ != nullptr && is_greeted_) {
+      client_->publish(dialect_->farewell(time_.now_ms()));
+      client_->disconnect();
+      while (!client_->is_empty() && Clock::now() < end + farewell_time) {
+        client_->turn(step, -1);
+      }
+    }
+  } catch (const MqttError& problem) {
+    if (outbox_.size() > 0) {
+      failed(problem);
+    }
+  }
+  client_.reset();
+  counter_->set_connected(false);
+  counter_->add_lost(outbox_.size());
+  counter_->set_waiting(0);
+  const std::uint64_t lost = counter_->read().lost;
+  if (lost == 0) {
+    remarks_.is_well("no row waits at the end, and none is lost.");
+    return;
+  }
+  const std::string known = remarks_.problem();
+  remarks_.failed(fmt::format("{} since the start{}{}", lost, known.empty() ? "" : "; ", known),
+                  fmt::format("{} rows for {} are lost since the start.", lost, broker()));
+}
+
+Mqtt::Mqtt(MqttSettings settings, std::unique_ptr<MqttDialect> dialect, SampleTap& tap, KeptCounter& counter,
+           BesideClocks clocks)
+    : interval_(std::clamp(milliseconds(settings.period * static_cast<std::int64_t>(tap.step()) / 1'000'000),
+                           milliseconds(5), longest_wait)),
+      sender_(std::move(settings), std::move(dialect), tap, counter, std::move(clocks)),
+      over_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!over_.is_open()) {
+    throw std::system_error(errno, std::generic_category(), "MQTT");
+  }
+  thread_ = std::thread([this] { run(); });
+}
+
+Mqtt::~Mqtt() {
+  finish();
+}
+
+void Mqtt::run() {
+  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), sender_niceness);
+  sigset_t pipes;
+  (void)::sigemptyset(&pipes);
+  (void)::sigaddset(&pipes, SIGPIPE);
+  (void)::pthread_sigmask(SIG_BLOCK, &pipes, nullptr);  // a broker that closes must not end the process
+  eventfd_t asked = 0;
+  while (::eventfd_read(over_.number(), &asked) != 0) {
+    sender_.turn(interval_, over_.number());
+  }
+  sender_.finish(longest_end);
+}
+
+void Mqtt::finish() {
+  if (thread_.joinable()) {
+    (void)::eventfd_write(over_.number(), 1);
+    thread_.join();
+  }
+}
+
+}  // namespace hysteron::runtime

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/unit.hpp"
 #include "records/read.hpp"
 #include "records/resample.hpp"
@@ -76,7 +77,8 @@ std::optional<std::size_t> whole(std::string_view text) {
 /// NAME or NAME[unit].
 std::pair<std::string, std::string> name_and_unit(std::string_view given) {
   const auto open = given.rfind('[');
-  if (!given.ends_with(']') || open == std::string_view::npos || open == 0) {
+  const bool element = element_of(given).has_value() && open > 0 && given[open - 1] != ' ';  // Y[2], and no unit
+  if (!given.ends_with(']') || open == std::string_view::npos || open == 0 || element) {
     return {std::string(trimmed(given)), {}};
   }
   return {std::string(trimmed(given.substr(0, open))),

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
 
+#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/relations.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -319,8 +321,32 @@ void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
     by_path.emplace(graph.parameters[i].path, i);
   }
+  std::deque<ParameterValue> elements;  // of lists for vectors
   for (const ParameterValue& given : file.values) {
     const auto found = by_path.find(in_capitals(given.path));
+    const auto* const list = std::get_if<std::vector<double>>(&given.value);
+    if (found == by_path.end() && list != nullptr && by_path.contains(element_name(in_capitals(given.path), 0))) {
+      std::size_t length = 0;
+      while (by_path.contains(element_name(in_capitals(given.path), static_cast<std::int64_t>(length)))) {
+        ++length;
+      }
+      if (list->size() != length) {
+        diagnostics.error(error::wrong_value_type, given.value_place,
+                          fmt::format("{} takes {} numbers, here are {}.", given.path, length, list->size()),
+                          "give each element of the vector one number.");
+        all_set = false;
+        continue;
+      }
+      for (std::size_t i = 0; i < length; ++i) {
+        ParameterValue& one = elements.emplace_back(given);
+        one.path = element_name(in_capitals(given.path), static_cast<std::int64_t>(i));
+        one.value = (*list)[i];
+        const std::size_t place = by_path.at(one.path);
+        all_set = set(one, graph.parameters[place], diagnostics) && all_set;
+        set_by[place] = &one;
+      }
+      continue;
+    }
     if (found == by_path.end()) {
       report_unknown_parameter(graph, given.path, given.place, diagnostics);
     } else {

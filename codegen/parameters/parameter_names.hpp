@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <string_view>
 
+#include "codegen/graph/element_name.hpp"
+
 namespace hysteron::parameters {
 
 /// INV.C1: letters, digits and underscores, in parts between single points.
 inline bool is_path(std::string_view key) {
+  if (const auto element = element_of(key); element && element->index >= 0) {  // "Y[2]": the element of a vector
+    key = element->vector;
+  }
   const bool letters = std::ranges::all_of(key, [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
   });

@@ -192,6 +192,8 @@ class Enumeration {
               bool delayed = false) {
     std::string base_name = edge.local;
     std::ranges::replace(base_name, '.', '_');
+    std::ranges::replace(base_name, '[', '_');  // an element of a vector
+    std::erase(base_name, ']');
     if (base_name.ends_with("_XOUT")) {
       base_name.resize(base_name.size() - 5);
     }

@@ -5,6 +5,8 @@
 #include <set>
 #include <variant>
 
+#include "codegen/graph/element_name.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -34,6 +36,9 @@ class BlockEdges {
   [[nodiscard]] std::vector<Edge> list() const {
     std::vector<Edge> result;
     for (const auto& [name, reads] : reads_) {
+      if (of_vectors_.contains(name)) {
+        continue;
+      }
       Edge edge{.name = name, .definition = index_, .local = name, .source = name};
       for (const Read& read : reads) {
         edge.reads.push_back(read.span);
@@ -134,6 +139,24 @@ class BlockEdges {
     return name;
   }
 
+  /// A vector of the text is read by all of its elements at one place, which no edit of one of them can hold; one value
+  /// that stands for every element is read there once.
+  void take_read(const std::string& name, const Read& read) {
+    if (element_of(name) && !text(read.span).ends_with(']')) {
+      of_vectors_.insert(name);
+    }
+    std::vector<Read>& reads = reads_[name];
+    if (std::ranges::none_of(reads, [&](const Read& one) { return one.span.offset == read.span.offset; })) {
+      reads.push_back(read);
+    }
+  }
+
+  /// Whether a target is a whole vector in the text, of which one element is looked at here.
+  [[nodiscard]] bool is_of_vector(const language::Name& target) const {
+    const std::size_t behind = source_.text->find_first_not_of(" \t\r\n", target.span.offset + target.span.length);
+    return element_of(target.text) && (behind == std::string::npos || (*source_.text)[behind] != '[');
+  }
+
   /// Notes every signal that an expression reads. `consumer` names what takes the value of the whole expression.
   /// Returns how many were read.
   std::size_t take_reads(ExpressionId id, const std::string& consumer) {
@@ -144,7 +167,7 @@ class BlockEdges {
     std::size_t count = 0;
     if (const auto* const reference = std::get_if<language::Reference>(&expression.node)) {
       if (is_signal(*reference)) {
-        reads_[full_name(*reference)].push_back({.span = expression.span, .consumer = consumer});
+        take_read(full_name(*reference), {.span = expression.span, .consumer = consumer});
         count = 1;
       }
     } else if (const auto* const unary = std::get_if<language::Unary>(&expression.node)) {
@@ -168,7 +191,7 @@ class BlockEdges {
       const bool signal = is_signal_pin(call.instance.text, argument.pin.text);
       const std::string pin = language::upper(call.instance.text) + "." + language::upper(argument.pin.text);
       const std::size_t count = take_reads(argument.value, signal ? pin : std::string());
-      if (signal && count > 0 && !is_bare(argument.value)) {
+      if (signal && count > 0 && !is_bare(argument.value) && !is_of_vector(argument.pin)) {
         computed_.emplace(pin, source_.expressions[argument.value].span);
       }
     }
@@ -179,7 +202,7 @@ class BlockEdges {
     const bool signal = target != nullptr && target->field.type == Type::Real;
     const std::string name = language::upper(assignment.target.text);
     const std::size_t count = take_reads(assignment.value, signal ? name : std::string());
-    if (signal && count > 0 && !is_bare(assignment.value)) {
+    if (signal && count > 0 && !is_bare(assignment.value) && !is_of_vector(assignment.target)) {
       computed_.emplace(name, source_.expressions[assignment.value].span);
     }
   }
@@ -227,6 +250,7 @@ class BlockEdges {
   std::uint32_t index_;
   std::map<std::string, std::vector<Read>> reads_{};
   std::map<std::string, Span> computed_{};
+  std::set<std::string> of_vectors_{};  ///< elements that are read as a part of their vector
 };
 
 void add_instances(const Definitions& definitions, std::uint32_t index, const std::string& prefix,

@@ -97,7 +97,10 @@ class Readings {
     const language::Expression& expression = source_.expressions[id];
     if (const auto* reference = std::get_if<language::Reference>(&expression.node)) {
       if (language::same_name(reference->name.text, instance_) && language::same_name(reference->pin.text, pin_)) {
-        found_.push_back({.span = expression.span, .whole = whole});
+        const auto is_here = [&](const auto& one) { return one.span.offset == expression.span.offset; };
+        if (std::ranges::none_of(found_, is_here)) {  // one value that stands for each element of a vector
+          found_.push_back({.span = expression.span, .whole = whole});
+        }
       }
     } else if (const auto* unary = std::get_if<language::Unary>(&expression.node)) {
       collect(unary->operand, false);

@@ -73,13 +73,27 @@ bool is_blank(std::string_view line, char separator) {
   return std::all_of(line.begin(), line.end(), [&](char c) { return is_space(c) || c == separator || c == '"'; });
 }
 
+namespace {
+
+/// Behind the index of an element, which stands at its name without a blank: of `Y[2] [um]`, 4. 0 where there is none:
+/// `gain [1]` is a number without a unit.
+std::size_t end_of_index(std::string_view cell) {
+  const auto open = cell.find('[');
+  const auto close = open == std::string_view::npos ? open : cell.find_first_not_of("0123456789", open + 1);
+  const bool index = close != std::string_view::npos && cell[close] == ']' && close > open + 1 && open > 0 &&
+                     !is_space(cell[open - 1]);
+  return index ? close + 1 : 0;
+}
+
+}  // namespace
+
 HeaderName split_header(std::string_view cell) {
   const auto with = [&](std::size_t end, std::size_t begin, std::size_t length) {
     return HeaderName{.name = std::string(trimmed(cell.substr(0, end))),
                       .unit = std::string(trimmed(cell.substr(begin, length)))};
   };
   if (cell.ends_with(']')) {
-    if (const auto open = cell.find('['); open != std::string_view::npos) {
+    if (const auto open = cell.find('[', end_of_index(cell)); open != std::string_view::npos) {
       return with(open, open + 1, cell.size() - open - 2);
     }
   }

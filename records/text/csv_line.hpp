@@ -25,7 +25,7 @@ struct HeaderName {
   std::string unit{};
 };
 
-/// `u [V]`, `u (V)` and `u / V` as name `u` and unit `V`.
+/// `u [V]`, `u (V)` and `u / V` as name `u` and unit `V`; `y[2] [V]` as the element `y[2]` in V.
 [[nodiscard]] HeaderName split_header(std::string_view cell);
 
 }  // namespace hysteron::records

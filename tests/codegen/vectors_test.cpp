@@ -13,6 +13,8 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/parameters/apply.hpp"
+#include "codegen/parameters/parameter_file.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::testing {
@@ -236,6 +238,51 @@ TEST(Vectors, StatementsAreSortedAsTheyWereWritten) {
   const std::string sorted =
       format_text("t.st", text + "  Y := V * 2.0;\n  V := -X;\nEND_FUNCTION_BLOCK\n", diagnostics, {.any_order = true});
   EXPECT_EQ(sorted, text + "  V := -X;\n  Y := V * 2.0;\nEND_FUNCTION_BLOCK\n");
+}
+
+TEST(Vectors, ParametersOfAVectorAreSetByTheirElementsAndWrittenAgain) {
+  Program program = compile_text(R"(FUNCTION_BLOCK T  (* @ts 1ms *)
+  VAR_INPUT
+    U : LREAL;
+    K : ARRAY[0..1] OF LREAL := [1.0, 2.0];  (* @param *)
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;
+  END_VAR
+  VAR
+    G : HY_STATE_SPACE := (A := [0.5, 0.0, 0.0, 0.5], B := [1.0, 1.0], C := [1.0, 0.0], D := 1.0);
+  END_VAR
+
+  G(U := U * K[0]);
+  Y := G.Y + SUM(K);
+END_FUNCTION_BLOCK
+)");
+  const std::string text =
+      "[parameters]\n\"K[1]\" = 7.0\n\n[parameters.G]\nA = [0.25, 0.0, 0.0, 0.5]\n\n[initial.G]\n\"X[1]\" = 3.0\n";
+  const auto file = parameters::parse_parameter_file("t.toml", text);
+  Diagnostics diagnostics;
+  parameters::apply(file, program.graph, diagnostics);
+  EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.all()[0].cause;
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[1]"))].value[0], 7.0);
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "G.A"))].value[0], 0.25);
+  ASSERT_EQ(program.graph.initial_states.size(), 1U);
+  EXPECT_EQ(program.graph.initial_states[0].value, 3.0);
+  EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"K[1]\" = 7.0"));
+  EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"X[1]\" = 3.0"));
+
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0, 5.0]\n"), program.graph);
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[0]"))].value[0], 4.0);
+  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[1]"))].value[0], 5.0);
+  Diagnostics short_list;
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0]\n"), program.graph, short_list);
+  ASSERT_EQ(short_list.all().size(), 1U);
+  EXPECT_THAT(short_list.all()[0].cause, HasSubstr("K takes 2 numbers, here are 1"));
+
+  Diagnostics refused;
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters.G]\nA = [0.25, 0.0]\n"), program.graph,
+                    refused);
+  ASSERT_TRUE(refused.has_errors());
+  EXPECT_THAT(refused.all()[0].cause, HasSubstr("takes 4 numbers, here are 2"));
 }
 
 TEST(Vectors, NamesOfElements) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "records/read.hpp"
+#include "records/text/csv_line.hpp"
 #include "support/errors.hpp"
 #include "tests/records/refusal.hpp"
 
@@ -190,6 +191,19 @@ TEST(CsvReader, AMissingFileIsHY100) {
   } catch (const InputError& refused) {
     EXPECT_EQ(refused.diagnostics().all().front().number, error::unreadable_file);
   }
+}
+
+TEST(SplitHeader, AnElementOfAVectorKeepsItsIndex) {
+  const auto parts = [](std::string_view cell) {
+    const records::HeaderName found = records::split_header(cell);
+    return found.name + "|" + found.unit;
+  };
+  EXPECT_EQ(parts("Y[2]"), "Y[2]|");
+  EXPECT_EQ(parts("Y[2] [um]"), "Y[2]|um");
+  EXPECT_EQ(parts("Y[12][1/s]"), "Y[12]|1/s");
+  EXPECT_EQ(parts("Y[2] (V)"), "Y[2]|V");
+  EXPECT_EQ(parts("gain [1]"), "gain|1");
+  EXPECT_EQ(parts("u[V]"), "u|V");
 }
 
 }  // namespace

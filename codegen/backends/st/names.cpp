@@ -16,7 +16,8 @@ std::string_view StBlockNames::keep(std::string_view name) {
     return identifiers_.take(st_pin_name(name, dialect_));
   }
   const std::string_view kept = identifiers_.make({name});
-  if (!language::same_name(kept, name)) {
+  const bool plain = element_of(name) && language::same_name(kept, identifier_text({name}, LetterCase::Upper));
+  if (!plain && !language::same_name(kept, name)) {  // X[0] is X_0 as a matter of course
     renamed_ +=
         fmt::format("   {} is called {}: its name is taken, or some compiler keeps it for itself.\n", name, kept);
   }

@@ -49,6 +49,27 @@ TEST(Edges, AreFoundByAnyNameInAnyCase) {
   EXPECT_EQ(find_edge(read.edges, "HYST.Q"), nullptr);  // BOOL
 }
 
+/// An edit of the text at one element holds where the text names that element, and nowhere else.
+TEST(Edges, OfAVectorAreThoseThatTheTextNames) {
+  const auto read = read_text(R"(FUNCTION_BLOCK AXES  (* @ts 1ms *)
+  VAR_INPUT U : ARRAY[0..1] OF LREAL; G : LREAL; END_VAR
+  VAR_OUTPUT Y : ARRAY[0..1] OF LREAL; Z : LREAL; END_VAR
+  VAR V : ARRAY[0..1] OF LREAL; A : HY_LAG; END_VAR
+  V := U * G;
+  A(XIN := V[0]);
+  Y[0] := A.XOUT;
+  Y[1] := V[1] + 1.0;
+  Z := SUM(U);
+END_FUNCTION_BLOCK
+)",
+                              "AXES");
+  const auto names = names_of(read.edges);
+  EXPECT_THAT(names, IsSupersetOf({"G", "V[0]", "V[1]", "A.XOUT", "Z"}));
+  EXPECT_THAT(names, testing::Not(testing::Contains("U[0]")));
+  EXPECT_THAT(names, testing::Not(testing::Contains("U[1]")));
+  EXPECT_EQ(edge_of(read.edges, "G").reads.size(), 1U);
+}
+
 constexpr std::string_view branched = R"(FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   VAR_INPUT u : LREAL; BIAS : LREAL := 0.5; (* @param *) HOT : BOOL; END_VAR
   VAR_OUTPUT y : LREAL; Z : LREAL; END_VAR

@@ -67,7 +67,15 @@ const Column& Record::column(std::string_view name) const {
     return one.size() > name.size() && equal_ignoring_case(one.substr(one.size() - name.size()), name) &&
            std::string_view("._:/ ").find(one[one.size() - name.size() - 1]) != std::string_view::npos;
   });
-  const std::string near = ends_so != known.end() ? *ends_so : std::string(nearest_name(name, known));
+  std::string near = ends_so != known.end() ? *ends_so : std::string(nearest_name(name, known));
+  // An element of a vector: U_2 may be U[2], as generated code calls it; U[0] is not.
+  if (const std::size_t bracket = name.find('['); bracket != std::string_view::npos && name.ends_with(']')) {
+    const std::string_view vector = name.substr(0, bracket);
+    const std::string index(name.substr(bracket + 1, name.size() - bracket - 2));
+    const auto flat = std::ranges::find_if(
+        known, [&](const std::string& one) { return equal_ignoring_case(one, fmt::format("{}_{}", vector, index)); });
+    near = flat != known.end() ? *flat : equal_ignoring_case(near.substr(0, bracket + 1), fmt::format("{}[", vector)) ? std::string() : near;
+  }
   throw InputError(error::missing_column, header_,
                    fmt::format("There is no column {}; the columns are {}.", name,
                                known.empty() ? std::string("t alone") : fmt::format("t, {}", fmt::join(known, ", "))),

@@ -29,6 +29,9 @@ namespace {
 /// Figures of an output that a program writes: least, most, last, rms, rmse.
 constexpr std::size_t figure_count = 5;
 
+/// By a thread of the compiled program: 16 packs, which stay in the first cache.
+constexpr std::size_t sets_at_once = 16 * batch_width;
+
 /// Sums in the order of the steps: those of the compiled program, below, are taken alike.
 class Figures {
  public:
@@ -302,8 +305,9 @@ BatchResult run_compiled_batch(const BatchRequest& request) {
       .input = folder.path() / "in", .output = folder.path() / "out", .errors = folder.path() / "err"};
   write_scratch(streams.input, bytes_of(request));
   const std::size_t sets = request.sets->size();
+  const std::size_t groups = (sets + sets_at_once - 1) / sets_at_once;
   const int code = run_program({executable.string(), std::to_string(request.drive->steps), std::to_string(sets),
-                                std::to_string(std::max(1U, request.threads))},
+                                std::to_string(std::clamp<std::size_t>(request.threads, 1, groups))},
                                streams);
   const std::size_t outputs = program.graph.outputs.size();
   const std::string written = code == 0 ? read_text_file(streams.output.string()) : std::string();
@@ -361,7 +365,7 @@ BatchResult run_interpreted_batch(const BatchRequest& request, bool float32) {
     }
   };
   std::vector<std::thread> workers;
-  for (unsigned i = 1; i < request.threads; ++i) {
+  for (unsigned i = 1; i < std::min<std::size_t>(request.threads, result.size()); ++i) {
     workers.emplace_back(guarded);
   }
   guarded();

@@ -149,7 +149,8 @@ constexpr std::string_view draw_example = "INV.C1=normal(0.2,0.01)";
 std::vector<double> sweep_values(std::string_view range, const std::string& whole) {
   const std::size_t dots = range.find("..");
   const std::size_t slash = range.find('/', dots == std::string_view::npos ? 0 : dots);
-  if (dots == std::string_view::npos || slash == std::string_view::npos) {
+  const bool third_dot = dots != std::string_view::npos && range.substr(dots + 2).starts_with('.');
+  if (dots == std::string_view::npos || slash == std::string_view::npos || third_dot) {
     refuse(fmt::format("--sweep {} states no range with a number of values.", whole),
            fmt::format("write --sweep {}: from 0.1 to 0.3 in 21 values.", sweep_example));
   }
@@ -285,15 +286,10 @@ Table table_of(const SetOptions& options) {
 
 // --- in the diagram --------------------------------------------------------------------------------------------------
 
-/// What a parameter of this type takes; a number that is none of its values is left for the message.
 parameters::Value value_for(const Graph& graph, const std::string& path, double number) {
   const std::int64_t found = find_parameter(graph, path);
-  const Type type = found < 0 ? Type::Real : graph.parameters[static_cast<std::size_t>(found)].field.type;
-  if (type == Type::Bool && (number == 0.0 || number == 1.0)) {
-    return number != 0.0;
-  }
-  const bool whole = number == std::floor(number) && std::fabs(number) < 0x1p53;
-  return type != Type::Real && whole ? parameters::Value(static_cast<std::int64_t>(number)) : parameters::Value(number);
+  return found < 0 ? parameters::Value(number)
+                   : parameters::value_for(graph.parameters[static_cast<std::size_t>(found)].field, number);
 }
 
 std::vector<double> all_values(const Graph& graph) {

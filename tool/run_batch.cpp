@@ -75,7 +75,7 @@ std::string table_text(const BatchRequest& request, const BatchResult& result) {
 /// Quantiles of each figure over the sets, and the set that is nearest to the record.
 std::string summary_text(const BatchRequest& request, const BatchResult& result, std::string_view how) {
   const Graph& graph = request.program->graph;
-  std::string text = fmt::format("{}: {} sets of {}, {} steps each, {}\n", graph.name, result.size(),
+  std::string text = fmt::format("{}: {} set{} of {}, {} steps each, {}\n", graph.name, result.size(), result.size() == 1 ? "" : "s",
                                  fmt::join(request.sets->paths, ", "), request.drive->steps, how);
   text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "output", "least", "5 %", "median", "95 %",
                       "greatest");
@@ -95,6 +95,11 @@ std::string summary_text(const BatchRequest& request, const BatchResult& result,
                                            fmt::format("{:.6g}", std::ranges::max(values)));
     }
     if (request.measured[o] != nullptr) {
+      const auto [low, high] = std::ranges::minmax_element(result, {}, [&](const auto& set) { return set[o].rmse; });
+      if (result.size() > 1 && (*low)[o].rmse == (*high)[o].rmse) {
+        text += fmt::format("{} is the same in all sets\n", graph.outputs[o].name);
+        continue;
+      }
       const auto best = std::ranges::min_element(
           result, {}, [&](const auto& set) { return std::isfinite(set[o].rmse) ? set[o].rmse : infinity; });
       text += fmt::format("nearest to the record in {}: set {}", graph.outputs[o].name, best - result.begin() + 1);

@@ -148,6 +148,15 @@ bool set(const ParameterValue& given, Parameter& parameter, Diagnostics& diagnos
 
 }  // namespace
 
+Value value_for(const Field& field, double number) {
+  if (field.type == Type::Bool && (number == 0.0 || number == 1.0)) {
+    return number != 0.0;
+  }
+  const bool whole = number == std::floor(number) && std::fabs(number) < 0x1p53;
+  return field.type != Type::Real && field.type != Type::Bool && whole ? Value(static_cast<std::int64_t>(number))
+                                                                       : Value(number);
+}
+
 std::string range_fault(const Field& field, double value) {
   double low = field.minimum;
   double high = field.maximum;
@@ -340,8 +349,8 @@ void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
       for (std::size_t i = 0; i < length; ++i) {
         ParameterValue& one = elements.emplace_back(given);
         one.path = element_name(in_capitals(given.path), static_cast<std::int64_t>(i));
-        one.value = (*list)[i];
         const std::size_t place = by_path.at(one.path);
+        one.value = value_for(graph.parameters[place].field, (*list)[i]);
         all_set = set(one, graph.parameters[place], diagnostics) && all_set;
         set_by[place] = &one;
       }

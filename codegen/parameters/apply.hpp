@@ -24,6 +24,10 @@ void apply(const ParameterFile& file, Graph& graph);
 std::optional<InitialState> find_state(const Graph& graph, std::string_view path, const Place& place,
                                        Diagnostics& diagnostics);
 
+/// A number as the value that a field takes: TRUE of a BOOL is 1. One that the field cannot take stays a real number, for
+/// the message.
+[[nodiscard]] Value value_for(const Field& field, double number);
+
 /// Why a parameter cannot take a number, as `must be above 0`; empty where it can.
 [[nodiscard]] std::string range_fault(const Field& field, double value);
 

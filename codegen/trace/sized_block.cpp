@@ -203,7 +203,9 @@ std::variant<Sizes, SizeProblem> transfer_function_sizes(const SizedKind& kind, 
   const GivenNumbers* const num = given_numbers(given, "NUM");
   const GivenNumbers* const den = given_numbers(given, "DEN");
   if (num == nullptr || den == nullptr) {
-    return missing_list(kind, num == nullptr ? "NUM" : "DEN", "Write := (NUM := [1.0, 0.2], DEN := [1.0, -0.7]).");
+    return missing_list(kind, num == nullptr ? "NUM" : "DEN", kind.about.name == TransferFunction::about.name
+                            ? "Write literals in the declaration: := (NUM := [1.0, 0.2], DEN := [1.0, -0.7])."
+                            : "Write literals in the declaration: := (NUM := [1.0], DEN := [0.1, 1.0]), a lag of 0.1 s.");
   }
   const Sizes sizes{.n = den->numbers.size() - 1,
                     .m = num->numbers.size(),

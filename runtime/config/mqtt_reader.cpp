@@ -55,6 +55,12 @@ void MqttReader::read_broker(TomlReader& table, MqttConfig& mqtt) {
                   "write it as in broker = \"192.168.10.5\", or remove the table.");
   }
   table.read("broker", mqtt.broker);
+  const std::size_t colon = mqtt.broker.find(':');
+  if (mqtt.broker.find('/') != std::string::npos || (colon != std::string::npos && colon == mqtt.broker.rfind(':'))) {
+    found_->error(error::wrong_run_value, table.place("broker"),
+                  "The broker " + mqtt.broker + " is no host name and no address.",
+                  "write the host alone, as in broker = \"192.168.10.5\"; its port stands in port, and ca asks for TLS.");
+  }
   table.read("ca", mqtt.ca);
   table.read("certificate", mqtt.certificate);
   table.read("key", mqtt.key);

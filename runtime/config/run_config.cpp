@@ -89,9 +89,10 @@ class Reader {
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;
+        const std::string key = name.find('[') == std::string::npos ? name : "\"" + name + "\"";
         found_.error(
             error::no_safe_value, {.file = file_}, "The output " + name + " has no safe value.",
-            "write what it shall be when something is wrong: [outputs." + name + "], and below it safe = 0.0.");
+            "write what it shall be when something is wrong: [outputs." + key + "], and below it safe = 0.0.");
       }
     }
     if (found_.has_errors()) {

@@ -285,6 +285,24 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(refused.all()[0].cause, HasSubstr("takes 4 numbers, here are 2"));
 }
 
+TEST(Vectors, OfEveryTypeAreSetByAList) {
+  Program program = compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : WORD; M : ARRAY[0..1] OF WORD; (* @param *) "
+      "N : ARRAY[0..1] OF DINT; (* @param *) END_VAR VAR_OUTPUT Y : WORD; Z : DINT; END_VAR\n"
+      "Y := X AND M[0] AND M[1]; Z := N[0] + N[1];\nEND_FUNCTION_BLOCK");
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nM = [4, 8]\nN = [-3, 5]\n"),
+                    program.graph);
+  const auto value = [&](std::string_view path) {
+    return program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, path))].value[0];
+  };
+  EXPECT_EQ((std::vector{value("M[0]"), value("M[1]"), value("N[0]"), value("N[1]")}),
+            (std::vector{4.0, 8.0, -3.0, 5.0}));
+  Diagnostics refused;
+  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nN = [0.5, 5.0]\n"), program.graph, refused);
+  ASSERT_TRUE(refused.has_errors());
+  EXPECT_THAT(refused.all()[0].cause, HasSubstr("takes a whole number, not 0.5"));
+}
+
 TEST(Vectors, NamesOfElements) {
   EXPECT_EQ(element_name("Y", 2), "Y[2]");
   EXPECT_EQ(element_of("Y[12]")->vector, "Y");

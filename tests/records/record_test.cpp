@@ -39,6 +39,20 @@ TEST(Record, ColumnsByName) {
   EXPECT_THAT(record.names(), ElementsAre("u", "Y"));
 }
 
+TEST(Record, AnElementIsNoOtherElement) {
+  const auto mend = [](const std::string& head, const std::string& name) {
+    const auto record = parse_record("log.csv", head + "\n0,1,2\n1,1,2\n");
+    try {
+      (void)record.column(name);
+    } catch (const InputError& refused) {
+      return refused.diagnostics().all().front().mend;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(mend("t,U[0],U[1]", "U[2]"), "record the signal, or say which column it is, as --column U[2]=NAME.");
+  EXPECT_EQ(mend("t,U_0,U_1", "u[1]"), "if U_1 is meant, say so: --column u[1]=U_1.");
+}
+
 TEST(Record, AMissingColumnNamesThoseThereAre) {
   const auto record = parse_record("log.csv", "# x\nt,ref,position\n0,1,2\n1,1,2\n");
   try {

@@ -166,7 +166,7 @@ TEST_F(RunBatch, RefusesWhatIsNoSet) {
 
 TEST_F(RunBatch, RefusesWhatCouldBeReadInTwoWays) {
   for (const char* const options :
-       {"--sweep KP=3", "--sweep KP=1..2/1", "--sweep KP=1..2/2.5", "--sweep KP", "--sweep KP=1..2/3 --sweep kp=1..2/3",
+       {"--sweep KP=3", "--sweep KP=1...3/3", "--sweep KP=1..2/1", "--sweep KP=1..2/2.5", "--sweep KP", "--sweep KP=1..2/3 --sweep kp=1..2/3",
         "--sweep KP=1..2/3 --draw 'N=uniform(1,2)' --sets 3", "--sets 5", "--fast", "--draw KP=3 --sets 3",
         "--draw 'KP=normal(1,-1)' --sets 3", "--draw 'KP=uniform(2,1)' --sets 3", "--draw 'KP=uniform(1,2)'",
         "--sweep KP=1..2/3 --trace LAG.XOUT", "--sweep KP=1..2/3 --plot a.svg", "--sweep KP=1..2/3 --sets 4",
@@ -174,6 +174,20 @@ TEST_F(RunBatch, RefusesWhatCouldBeReadInTwoWays) {
         "--sweep KP=1..2/10000 --sweep N=1..2000/2000"}) {
     EXPECT_THAT(refusal(options), HasSubstr("HY730")) << options;
   }
+}
+
+TEST_F(RunBatch, TakesNoMoreThreadsThanItHasWorkFor) {
+  const std::string few = table("--sweep KP=1..3/3 --engine compiled --threads 1");
+  EXPECT_EQ(table("--sweep KP=1..3/3 --engine compiled --threads 999999"), few);
+  EXPECT_EQ(table("--sweep KP=1..3/3 --engine interpreter --threads 999999"), few);
+}
+
+TEST_F(RunBatch, SaysWhereSetsDoNotDiffer) {
+  bench.write("loop.st",
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT R : LREAL; K : LREAL := 1.0; (* @param *) END_VAR\n"
+              "VAR_OUTPUT Y : LREAL; END_VAR\nY := R + 0.0 * K;\nEND_FUNCTION_BLOCK\n");
+  (void)table("--sweep K=1..2/3");
+  EXPECT_THAT(said, HasSubstr("Y is the same in all sets"));
 }
 
 TEST_F(RunBatch, SaysThatAnOutputIsNotFinite) {

@@ -9,6 +9,7 @@
 #include "codegen/backends/batch/lanes.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/c_family/words.hpp"
+#include "codegen/backends/cpp/cpp_member.hpp"
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
@@ -277,27 +278,8 @@ class BatchHeader {
 
   void append_member(std::string& text, const Field& field, const Member& member,
                      const std::vector<double>* values) const {
-    append(text, member.group.empty() ? "  " : "    ");
-    const std::string_view type = type_of(batch_dialect, field.type);
-    if (field.length > 1) {
-      append(text, "std::array<", type, ", ", std::to_string(field.length), "> ");
-    } else {
-      append(text, type, " ");
-    }
-    append(text, member.name);
-    if (values == nullptr) {
-      append(text, "{}");
-    } else if (field.length > 1) {
-      for (std::size_t i = 0; i < values->size(); ++i) {
-        append(text, i == 0 ? "{{" : ", ", in_all_lanes(field.type, (*values)[i]));
-      }
-      append(text, "}}");
-    } else {
-      append(text, " = ", in_all_lanes(field.type, values->front()));
-    }
-    append(text, ";");
-    append_comment(text, "  // ", field.unit, field.meaning, "");
-    append(text, "\n");
+    append_cpp_member(text, type_of(batch_dialect, field.type), field, member, values, true,
+                      [&](double value) { return in_all_lanes(field.type, value); });
   }
 
   void append_structs(std::string& text) const {

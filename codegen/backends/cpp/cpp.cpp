@@ -9,6 +9,7 @@
 #include "codegen/backends/c_family/words.hpp"
 #include "codegen/backends/cpp/cpp_helpers.hpp"
 #include "codegen/backends/cpp/cpp_host.hpp"
+#include "codegen/backends/cpp/cpp_member.hpp"
 #include "codegen/backends/cpp/dialect.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
@@ -112,27 +113,8 @@ class CppHeader {
   /// A member with the values that it begins with: none for the members of the state, which reset gives theirs.
   void append_member(std::string& text, const Field& field, const Member& member,
                      const std::vector<double>* values) const {
-    append(text, member.group.empty() ? "  " : "    ");
-    const std::string_view type = type_of(cpp_dialect, field.type);
-    if (field.length > 1) {
-      append(text, "std::array<", type, ", ", std::to_string(field.length), "> ");
-    } else {
-      append(text, type, " ");
-    }
-    append(text, member.name);
-    if (values == nullptr) {
-      append(text, "{}");
-    } else if (field.length > 1) {
-      for (std::size_t i = 0; i < values->size(); ++i) {
-        append(text, i == 0 ? "{" : ", ", printer_.literal(field.type, (*values)[i]));
-      }
-      append(text, "}");
-    } else {
-      append(text, " = ", printer_.literal(field.type, values->front()));
-    }
-    append(text, ";");
-    append_comment(text, "  // ", field.unit, field.meaning, "");
-    append(text, "\n");
+    append_cpp_member(text, type_of(cpp_dialect, field.type), field, member, values, false,
+                      [&](double value) { return printer_.literal(field.type, value); });
   }
 
   void append_structs(std::string& text) const {

@@ -454,6 +454,10 @@ TEST(RunConfig, AnMqttTableHasNoKeyThatDoesNothing) {
   };
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[mqtt]\nport = 5\n"), "804@3:1 ");
   EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[dead_bands]\nY = 1\n"), "804@3:1 ");
+  for (const std::string broker : {"mqtt://b", "b:1883", "b/x"}) {
+    EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[mqtt]\nbroker = \"" + broker + "\"\n"), "804@4:10 ") << broker;
+  }
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = 0.0\n[mqtt]\nbroker = \"fe80::1\"\n"), "");
   EXPECT_EQ(errors("certificate = \"a\"\n"), "804@5:15 ");
   EXPECT_EQ(errors("key = \"a\"\n"), "804@5:7 ");
   EXPECT_EQ(errors("ca = \"a\"\nkey = \"a\"\n"), "804@6:7 ");

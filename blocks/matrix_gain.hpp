@@ -22,6 +22,10 @@ struct MatrixGain {
   static constexpr std::string_view example = "K := [1.0, 0.5, 0.25, 0.0, 1.0, -2.0], ROWS := 2";
   static constexpr Sizes example_sizes{.m = 3, .p = 2};
 
+  static constexpr SizeRule size_rule = SizeRule::Matrix;
+  static constexpr std::array<std::string_view, 1> settings{"ROWS"};  ///< what an instance says beside its parameters
+  static constexpr bool is_discretised = false;  ///< whether settings become parameters at the sample time
+
   static constexpr std::array inputs{vector_pin("XIN", Size::M, "vector")};
   static constexpr std::array params{matrix_parameter("K", Size::P, Size::M, "matrix, row by row")};
   static constexpr std::array outputs{vector_pin("XOUT", Size::P, "K·XIN")};

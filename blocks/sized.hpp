@@ -37,6 +37,16 @@ struct Sizes {
   bool operator==(const Sizes&) const = default;
 };
 
+/// How the lists that an instance gives say its sizes.
+enum class SizeRule : std::uint8_t {
+  Matrix,           ///< K and a number of ROWS
+  StateSpace,       ///< A, B and C, perhaps D and X0
+  TransferFunction  ///< NUM and DEN
+};
+
+/// Of a block whose lists are all parameters.
+inline constexpr std::array<std::string_view, 0> no_settings{};
+
 /// Bounds that keep a step readable: each element of a state is a line of it.
 inline constexpr std::size_t most_states = 16;
 inline constexpr std::size_t most_elements_of_pin = 32;

@@ -24,6 +24,10 @@ struct StateSpace {
   static constexpr std::string_view example = "A := [0.9, 0.1, 0.0, 0.8], B := [0.0, 1.0], C := [1.0, 0.0], D := [0.0]";
   static constexpr Sizes example_sizes{.n = 2, .m = 1, .p = 1, .direct = true};
 
+  static constexpr SizeRule size_rule = SizeRule::StateSpace;
+  static constexpr auto settings = no_settings;
+  static constexpr bool is_discretised = false;
+
   static constexpr std::array inputs{vector_pin("U", Size::M, "inputs"), flag_pin("R1", "reset, dominant: loads X0")};
   static constexpr std::array params{matrix_parameter("A", Size::N, Size::N, "from state to state, row by row"),
                                      matrix_parameter("B", Size::N, Size::M, "from inputs to the state"),

@@ -7,6 +7,10 @@ namespace hysteron {
 
 /// What transfer functions have in common: P = N + 1 numbers of the denominator, M of the numerator, and N states.
 struct TransferFunctionPins {
+  static constexpr SizeRule size_rule = SizeRule::TransferFunction;
+  static constexpr auto settings = no_settings;
+  static constexpr bool is_discretised = false;
+
   static constexpr std::array inputs{signal_pin("XIN", "signal"),
                                      flag_pin("R1", "reset, dominant: the memory begins at 0 again")};
   static constexpr std::array params{

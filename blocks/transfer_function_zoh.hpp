@@ -26,6 +26,10 @@ struct TransferFunctionZoh {
           "C. F. Van Loan, IEEE Trans. Automatic Control 23 (1978) 395; K. J. Åström and B. Wittenmark, "
           "Computer-Controlled Systems, 3rd ed., section 2.3"};
 
+  static constexpr SizeRule size_rule = SizeRule::TransferFunction;
+  static constexpr std::array<std::string_view, 2> settings{"NUM", "DEN"};
+  static constexpr bool is_discretised = true;
+
   static constexpr auto inputs = TransferFunctionPins::inputs;
   static constexpr std::array params{
       matrix_parameter("PHI", Size::N, Size::N, "from state to state, row by row"),

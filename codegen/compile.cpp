@@ -191,7 +191,7 @@ void warn_of_time(const Definitions& definitions, std::size_t top, Diagnostics& 
 void require_held_time(const Graph& graph, Diagnostics& diagnostics) {
   for (const Node& node : graph.nodes) {
     if (graph.sample_time_ns <= 0 && node.block != nullptr && node.block->sized != nullptr &&
-        !node.block->sized->kind->settings.empty() && !node.block->states.empty()) {
+        node.block->sized->kind->is_discretised) {
       diagnostics.error(
           error::missing_sample_time, graph.place(node.span),
           fmt::format("'{}' is discretised at the sample time, and '{}' states none", node.path, graph.name),

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/trace/sized_block.hpp"
 #include "lsp/words.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron::lsp {
 namespace {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "records/text/source_text.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -69,12 +70,13 @@ const Column& Record::column(std::string_view name) const {
   });
   std::string near = ends_so != known.end() ? *ends_so : std::string(nearest_name(name, known));
   // An element of a vector: U_2 may be U[2], as generated code calls it; U[0] is not.
-  if (const std::size_t bracket = name.find('['); bracket != std::string_view::npos && name.ends_with(']')) {
-    const std::string_view vector = name.substr(0, bracket);
-    const std::string index(name.substr(bracket + 1, name.size() - bracket - 2));
-    const auto flat = std::ranges::find_if(
-        known, [&](const std::string& one) { return equal_ignoring_case(one, fmt::format("{}_{}", vector, index)); });
-    near = flat != known.end() ? *flat : equal_ignoring_case(near.substr(0, bracket + 1), fmt::format("{}[", vector)) ? std::string() : near;
+  if (const auto element = element_of(name)) {
+    const auto flat = std::ranges::find_if(known, [&](const std::string& one) {
+      return equal_ignoring_case(one, fmt::format("{}_{}", element->vector, element->index));
+    });
+    const auto other = element_of(near);
+    const bool is_sibling = other && equal_ignoring_case(other->vector, element->vector);
+    near = flat != known.end() ? *flat : is_sibling ? std::string() : near;
   }
   throw InputError(error::missing_column, header_,
                    fmt::format("There is no column {}; the columns are {}.", name,

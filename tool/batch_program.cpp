@@ -88,8 +88,6 @@ void begin(Figures& figures) {{
   }}
 }}
 
-double truth(double x) {{ return x != 0.0 ? -1.0 : 0.0; }}
-
 void set_lane({1}::Params& params, std::size_t lane, const double* value) {{
   (void)params;
   (void)lane;
@@ -211,31 +209,23 @@ std::string main_text(const Program& program, const std::string& header, const s
     const Parameter& one = graph.parameters[i];
     for (std::size_t k = 0; k < one.value.size(); ++k, ++value) {
       const std::string member = names.parameters[i] + (one.field.length > 1 ? fmt::format("[{}]", k) : "");
-      parameters += one.field.type == Type::Bool
-                        ? fmt::format("  params.{}.lane[lane] = (std::int64_t)truth(value[{}]);\n", member, value)
-                    : one.field.type == Type::Real
-                        ? fmt::format("  params.{}.lane[lane] = value[{}];\n", member, value)
-                        : fmt::format("  params.{}.lane[lane] = (std::int64_t)value[{}];\n", member, value);
+      parameters += fmt::format("  params.{}.lane[lane] = {};\n", member,
+                                lane_of_number(one.field.type, fmt::format("value[{}]", value)));
     }
   }
   std::string inputs;
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-    const Type type = graph.inputs[i].type;
-    inputs += fmt::format("    in.{}.lane[i] = {}row[{}]{};\n", names.inputs[i],
-                          type == Type::Real   ? ""
-                          : type == Type::Bool ? "(std::int64_t)truth("
-                                               : "(std::int64_t)",
-                          i, type == Type::Bool ? ")" : "");
+    inputs += fmt::format("    in.{}.lane[i] = {};\n", names.inputs[i],
+                          lane_of_number(graph.inputs[i].type, fmt::format("row[{}]", i)));
   }
   std::string outputs;
   std::size_t columns = 0;
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     outputs += fmt::format(
-        "      for (std::size_t i = 0; i < width; ++i) {{\n        values[i] = (double)(out[p].{}.lane[i]{});\n      "
-        "}}\n"
+        "      for (std::size_t i = 0; i < width; ++i) {{\n        values[i] = {};\n      }}\n"
         "      add(figures[p * {} + {}], values, {});\n",
-        names.outputs[i], graph.outputs[i].type == Type::Bool ? " & 1" : "", graph.outputs.size(), i,
-        measured[i] != nullptr ? fmt::format("measured[{}]", columns++) : "0.0");
+        number_of_lane(graph.outputs[i].type, fmt::format("out[p].{}.lane[i]", names.outputs[i])), graph.outputs.size(),
+        i, measured[i] != nullptr ? fmt::format("measured[{}]", columns++) : "0.0");
   }
   return fmt::format(batch_main, header, names.space, fmt::format("{}u", graph.inputs.size()),
                      fmt::format("{}u", columns), fmt::format("{}u", value), fmt::format("{}u", graph.outputs.size()),
@@ -271,27 +261,28 @@ std::string bytes_of(const BatchRequest& request) {
   return bytes;
 }
 
-Program with_values(const Program& program, const std::vector<double>& values) {
-  Program set = program;
+void set_values(Graph& graph, const std::vector<double>& values) {
   auto next = values.begin();
-  for (Parameter& one : set.graph.parameters) {
+  for (Parameter& one : graph.parameters) {
     std::copy_n(next, one.value.size(), one.value.begin());
     next += static_cast<std::ptrdiff_t>(one.value.size());
   }
-  return set;
 }
 
 }  // namespace
 
+ProgramSources batch_sources(const GeneratedFile& header, std::string main) {
+  ProgramSources sources{.main = std::move(main), .headers = {header}, .flags = words_of(batch_flags)};
+  sources.flags.emplace_back("-std=c++17");
+  return sources;
+}
+
 BatchResult run_compiled_batch(const BatchRequest& request) {
   const Program& program = *request.program;
-  ProgramSources sources{.headers = {generate_batch(program)},
-                         .flags = {"-std=c++17", "-pthread"},
-                         .without = "write --engine interpreter"};
-  sources.main = main_text(program, sources.headers.front().name, request.measured);
-  for (const std::string& flag : words_of(batch_flags)) {
-    sources.flags.push_back(flag);
-  }
+  const GeneratedFile header = generate_batch(program);
+  ProgramSources sources = batch_sources(header, main_text(program, header.name, request.measured));
+  sources.flags.emplace_back("-pthread");
+  sources.without = "write --engine interpreter";
 #if defined(__x86_64__) && defined(__GLIBC__)
   if (request.fast) {
     sources.flags.emplace_back("-DHYSTERON_BATCH_FAST");
@@ -340,8 +331,10 @@ BatchResult run_interpreted_batch(const BatchRequest& request, bool float32) {
   std::exception_ptr failure;
   std::mutex mutex;
   const auto work = [&] {
+    Program set = program;
     for (std::size_t i = next++; i < result.size(); i = next++) {
-      const auto values = interpret(with_values(program, request.sets->whole[i]), *request.drive, wires, float32);
+      set_values(set.graph, request.sets->whole[i]);
+      const auto values = interpret(set, *request.drive, wires, float32);
       for (std::size_t o = 0; o < values.size(); ++o) {
         Figures figures;
         for (std::size_t k = 0; k < request.drive->steps; ++k) {

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "codegen/compile.hpp"
+#include "tool/built_program.hpp"
 #include "tool/parameter_sets.hpp"
 #include "tuning/simulation.hpp"
 
@@ -32,6 +34,9 @@ struct BatchRequest {
 
 /// By set and output. The bits are those of `interpret`, and the sums are taken from the first step to the last.
 using BatchResult = std::vector<std::vector<OutputFigures>>;
+
+/// The header of a batch and a main beside it, with the flags that a batch needs.
+[[nodiscard]] ProgramSources batch_sources(const GeneratedFile& header, std::string main);
 
 /// Eight sets at a time, by a program that the system's compiler makes. Throws InputError HY725, HY726, HY754.
 [[nodiscard]] BatchResult run_compiled_batch(const BatchRequest& request);

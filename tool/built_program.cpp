@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <optional>
 
 #include "codegen/backends/cpp/cpp.hpp"
 #include "support/errors.hpp"
@@ -17,6 +18,10 @@ namespace hysteron::tool {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::optional<std::vector<std::string>> compiler_found() {
+  return find_compiler("CXX", {"c++", "g++", "clang++"});
+}
 
 std::string version_of(const std::vector<std::string>& compiler, const fs::path& folder) {
   auto command = compiler;
@@ -49,8 +54,12 @@ void compile_sources(const ProgramSources& sources, std::vector<std::string> com
 
 }  // namespace
 
+bool has_compiler() {
+  return compiler_found().has_value();
+}
+
 std::vector<std::string> compiler_command(std::string_view without) {
-  if (auto command = find_compiler("CXX", {"c++", "g++", "clang++"})) {
+  if (auto command = compiler_found()) {
     return *command;
   }
   if (const char* const set = std::getenv("CXX"); set != nullptr && *set != '\0') {

@@ -22,6 +22,9 @@ struct ProgramSources {
 /// The compiler's command: $CXX, else the first of c++, g++, clang++ on the path. Throws InputError HY725.
 [[nodiscard]] std::vector<std::string> compiler_command(std::string_view without = ProgramSources{}.without);
 
+/// Whether there is one.
+[[nodiscard]] bool has_compiler();
+
 /// The executable, or the library where a flag says -shared, which is kept by the hash of its sources, of the
 /// compiler's version and of the flags, and not compiled again. Throws InputError: HY725 without a compiler, HY726
 /// where the compiler refuses.

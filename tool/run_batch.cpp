@@ -20,10 +20,8 @@
 #include "support/progress.hpp"
 #include "tool/batch_program.hpp"
 #include "tool/commands.hpp"
-#include "tool/compiler.hpp"
 #include "tool/option_values.hpp"
 #include "tool/record_options.hpp"
-#include "tuning/record_units.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -75,8 +73,9 @@ std::string table_text(const BatchRequest& request, const BatchResult& result) {
 /// Quantiles of each figure over the sets, and the set that is nearest to the record.
 std::string summary_text(const BatchRequest& request, const BatchResult& result, std::string_view how) {
   const Graph& graph = request.program->graph;
-  std::string text = fmt::format("{}: {} set{} of {}, {} steps each, {}\n", graph.name, result.size(), result.size() == 1 ? "" : "s",
-                                 fmt::join(request.sets->paths, ", "), request.drive->steps, how);
+  std::string text =
+      fmt::format("{}: {} set{} of {}, {} steps each, {}\n", graph.name, result.size(), result.size() == 1 ? "" : "s",
+                  fmt::join(request.sets->paths, ", "), request.drive->steps, how);
   text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "output", "least", "5 %", "median", "95 %",
                       "greatest");
   for (std::size_t o = 0; o < graph.outputs.size(); ++o) {
@@ -122,9 +121,9 @@ std::size_t sets_not_finite(const BatchResult& result) {
 }
 
 bool can_compile(const Graph& graph, bool float32) {
-  return !float32 && find_compiler("CXX", {"c++", "g++", "clang++"}) &&
-         std::ranges::none_of(graph.nodes,
-                              [](const Node& node) { return node.block != nullptr && node.block->fmu != nullptr; });
+  return !float32 && has_compiler() && std::ranges::none_of(graph.nodes, [](const Node& node) {
+    return node.block != nullptr && node.block->fmu != nullptr;
+  });
 }
 
 }  // namespace
@@ -182,10 +181,7 @@ void check_batch_options(const BatchOptions& options, bool traces, bool plot) {
 
 int run_batch(const BatchOptions& options, Program program, records::Record& record, const BatchOutput& output,
               Diagnostics& diagnostics, Console& console) {
-  refuse_ports_named_as_time(diagnostics);
-  convert_units(record, program, diagnostics);
-  settle_sample_time(record, program, diagnostics);
-  const Drive drive = drive_from(record, program, {}, diagnostics);
+  const Drive drive = drive_of(program, record, diagnostics);
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);
   }

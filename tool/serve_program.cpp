@@ -142,12 +142,7 @@ std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engin
 }
 
 Engine best_engine() {
-  try {
-    (void)compiler_command();
-    return Engine::compiled;
-  } catch (const InputError&) {
-    return Engine::interpreter;
-  }
+  return has_compiler() ? Engine::compiled : Engine::interpreter;
 }
 
 }  // namespace hysteron::tool

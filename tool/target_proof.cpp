@@ -22,6 +22,7 @@
 #include "support/numbers.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
+#include "tool/batch_program.hpp"
 #include "tool/built_program.hpp"
 #include "tool/compiled.hpp"
 #include "tool/compiler.hpp"
@@ -244,31 +245,26 @@ std::string main_of_batch(const Program& program, const std::string& header) {
       "  for (std::size_t i = 0; i < {2}::width; ++i) {{\n",
       header, sizes(graph), names.space);
   for (std::size_t i = 0; i < names.inputs.size(); ++i) {
-    text += graph.inputs[i].type == Type::Bool
-                ? fmt::format("    in.{}.lane[i] = row[{}] != 0.0 ? -1 : 0;\n", names.inputs[i], i)
-                : fmt::format("    in.{0}.lane[i] = (decltype(in.{0}.lane[0] + 0))row[{1}];\n", names.inputs[i], i);
+    text += fmt::format("    in.{}.lane[i] = {};\n", names.inputs[i],
+                        lane_of_number(graph.inputs[i].type, fmt::format("row[{}]", i)));
   }
   text += fmt::format("  }}\n  {}::step(1, &params, &state, &in, &out);\n", names.space);
   for (std::size_t i = 0; i < names.outputs.size(); ++i) {
     text += fmt::format(
         "  for (std::size_t i = 1; i < {0}::width; ++i) {{\n"
         "    if (std::memcmp(&out.{1}.lane[i], &out.{1}.lane[0], sizeof(out.{1}.lane[0])) != 0) std::exit(9);\n  }}\n"
-        "  results[{2}] = (double)(out.{1}.lane[0]{3});\n",
-        names.space, names.outputs[i], i, graph.outputs[i].type == Type::Bool ? " & 1" : "");
+        "  results[{2}] = {3};\n",
+        names.space, names.outputs[i], i,
+        number_of_lane(graph.outputs[i].type, fmt::format("out.{}.lane[0]", names.outputs[i])));
   }
   return text + "}\n" + std::string(main_in_c);
 }
 
 std::vector<Signal> run_in_vectors(const Program& program, const std::vector<GeneratedFile>& files,
                                    const Drive& drive) {
-  ProgramSources sources{.main = "#include <cstdlib>\n" + main_of_batch(program, files.front().name),
-                         .headers = {files.front()},
-                         .flags = {"-std=c++17"}};
-  for (const std::string& flag : words_of(batch_flags)) {
-    sources.flags.push_back(flag);
-  }
   BuildCache cache;
-  const fs::path executable = built_program(cache, sources);
+  const fs::path executable = built_program(
+      cache, batch_sources(files.front(), "#include <cstdlib>\n" + main_of_batch(program, files.front().name)));
   return run_rows({.command = {executable.string()},
                    .name = program.graph.name,
                    .outputs = program.graph.outputs.size(),

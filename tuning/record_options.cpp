@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/unit.hpp"
 #include "records/read.hpp"
 #include "records/resample.hpp"
 #include "support/diagnostic.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"

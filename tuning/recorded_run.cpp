@@ -90,12 +90,16 @@ void check_finite(const std::vector<Place>& places, std::span<const double> time
   }
 }
 
-RecordedRun run_over(Program program, records::Record& record, const RunRequest& request, Diagnostics& diagnostics) {
+Drive drive_of(Program& program, records::Record& record, Diagnostics& diagnostics) {
   refuse_ports_named_as_time(diagnostics);
   convert_units(record, program, diagnostics);
   settle_sample_time(record, program, diagnostics);
+  return drive_from(record, program, {}, diagnostics);
+}
+
+RecordedRun run_over(Program program, records::Record& record, const RunRequest& request, Diagnostics& diagnostics) {
   RecordedRun result;
-  result.drive = drive_from(record, program, {}, diagnostics);
+  result.drive = drive_of(program, record, diagnostics);
   const Graph& graph = program.graph;
   std::vector<Place> places;
   for (const Port& output : graph.outputs) {

@@ -36,6 +36,10 @@ struct RecordedRun {
 [[nodiscard]] RecordedRun run_over(Program program, records::Record& record, const RunRequest& request,
                                    Diagnostics& diagnostics);
 
+/// What a record drives a program by: its columns brought to the units of the ports, its sample time held against that
+/// of the diagram. Throws InputError HY216; reports what else does not fit.
+[[nodiscard]] Drive drive_of(Program& program, records::Record& record, Diagnostics& diagnostics);
+
 /// Refuses a diagram with a port that no record can hold: throws InputError where HY216 is among its warnings.
 void refuse_ports_named_as_time(const Diagnostics& warnings);
 

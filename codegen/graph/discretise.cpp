@@ -49,7 +49,7 @@ HeldSystem discretise_held(std::span<const double> num, std::span<const double> 
 }
 
 void Elaborator::discretise(const Instance& instance, const Declared& declared, Part& part, Rate rate) {
-  if (!is_sized(declared) || declared.block->sized->kind->about.name != "HY_TRANSFER_FUNCTION_ZOH") {
+  if (!is_sized(declared) || !declared.block->sized->kind->is_discretised) {
     return;
   }
   std::vector<double> num;

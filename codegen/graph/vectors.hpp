@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "codegen/graph/element_name.hpp"
 #include "codegen/language/syntax.hpp"
 #include "support/diagnostic.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 

@@ -14,8 +14,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/relations.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"

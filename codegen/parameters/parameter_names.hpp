@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "codegen/graph/element_name.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron::parameters {
 

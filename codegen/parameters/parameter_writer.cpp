@@ -8,6 +8,7 @@
 
 #include "codegen/parameters/parameter_file.hpp"
 #include "support/atomic_file.hpp"
+#include "support/element_name.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "support/utf8.hpp"
@@ -68,11 +69,6 @@ std::string comment_of(const Remark& remark) {
   return text;
 }
 
-/// A key of TOML; the name of an element, Y[2], stands in quotes.
-std::string key_text(const std::string& name) {
-  return name.find('[') == std::string::npos ? name : "\"" + name + "\"";
-}
-
 /// A line of the file: a key with its value, or the head of a table.
 struct Entry {
   std::string key{};  ///< in capitals, with its table
@@ -122,7 +118,7 @@ void Tables::add(const std::string& path, const std::string& text, const Remarks
   const auto key = in_capitals(title_ + "." + path);
   const auto remark = remarks.find(key);
   table->entries.push_back({.key = key,
-                            .text = key_text(name) + " = " + text,
+                            .text = toml_key(name) + " = " + text,
                             .remark = remark == remarks.end() ? std::string() : comment_of(remark->second)});
 }
 
@@ -197,7 +193,7 @@ void append_record(const RecordSettings& record, std::vector<Entry>& entries) {
     entries.push_back({.key = in_capitals(table), .text = "[" + table + "]", .remark = {}, .head = true});
     for (const RecordSettings::Setting& one : settings) {
       entries.push_back({.key = in_capitals(table + "." + one.key),
-                         .text = key_text(one.key) + " = " + toml_string(one.value.text),
+                         .text = toml_key(one.key) + " = " + toml_string(one.value.text),
                          .remark = {}});
     }
   };

@@ -203,9 +203,8 @@ std::variant<Sizes, SizeProblem> transfer_function_sizes(const SizedKind& kind, 
   const GivenNumbers* const num = given_numbers(given, "NUM");
   const GivenNumbers* const den = given_numbers(given, "DEN");
   if (num == nullptr || den == nullptr) {
-    return missing_list(kind, num == nullptr ? "NUM" : "DEN", kind.about.name == TransferFunction::about.name
-                            ? "Write literals in the declaration: := (NUM := [1.0, 0.2], DEN := [1.0, -0.7])."
-                            : "Write literals in the declaration: := (NUM := [1.0], DEN := [0.1, 1.0]), a lag of 0.1 s.");
+    return missing_list(kind, num == nullptr ? "NUM" : "DEN",
+                        fmt::format("Write literals in the declaration: := ({}).", kind.example));
   }
   const Sizes sizes{.n = den->numbers.size() - 1,
                     .m = num->numbers.size(),
@@ -242,7 +241,10 @@ SizedKind sized_kind_of() {
           .outputs = B::outputs,
           .states = B::states,
           .example = B::example,
-          .example_sizes = B::example_sizes};
+          .example_sizes = B::example_sizes,
+          .size_rule = B::size_rule,
+          .settings = B::settings,
+          .is_discretised = B::is_discretised};
 }
 
 }  // namespace
@@ -251,13 +253,6 @@ std::span<const SizedKind> sized_kinds() {
   static const std::vector<SizedKind> kinds = [] {
     std::vector<SizedKind> list;
     SizedCatalogue::for_each([&]<class B> { list.push_back(sized_kind_of<B>()); });
-    for (SizedKind& kind : list) {
-      if (kind.about.name == MatrixGain::about.name) {
-        kind.settings = {"ROWS"};
-      } else if (kind.about.name == TransferFunctionZoh::about.name) {
-        kind.settings = {"NUM", "DEN"};
-      }
-    }
     return list;
   }();
   return kinds;
@@ -344,11 +339,15 @@ std::size_t scaling_numbers(const BlockType& block, std::size_t param) {
 }
 
 std::variant<Sizes, SizeProblem> sizes_of(const SizedKind& kind, std::span<const GivenNumbers> given) {
-  if (kind.about.name == MatrixGain::about.name) {
-    return matrix_gain_sizes(kind, given);
+  switch (kind.size_rule) {
+    case SizeRule::Matrix:
+      return matrix_gain_sizes(kind, given);
+    case SizeRule::StateSpace:
+      return state_space_sizes(kind, given);
+    case SizeRule::TransferFunction:
+      break;
   }
-  return kind.about.name == StateSpace::about.name ? state_space_sizes(kind, given)
-                                                   : transfer_function_sizes(kind, given);
+  return transfer_function_sizes(kind, given);
 }
 
 }  // namespace hysteron

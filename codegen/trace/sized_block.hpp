@@ -24,8 +24,10 @@ struct SizedKind {
   std::span<const SizedField> states{};
   std::string_view example{};  ///< the settings of an instance
   Sizes example_sizes{};
+  SizeRule size_rule = SizeRule::Matrix;
   /// What an instance says beside its parameters: ROWS, or the coefficients that become them.
-  std::vector<std::string_view> settings{};
+  std::span<const std::string_view> settings{};
+  bool is_discretised = false;  ///< whether settings become parameters at the sample time
 };
 
 /// All kinds, in the order of the catalogue.

@@ -5,7 +5,7 @@
 #include <set>
 #include <variant>
 
-#include "codegen/graph/element_name.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron::diagnosis {
 namespace {

@@ -14,6 +14,7 @@
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -89,10 +90,9 @@ class Reader {
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;
-        const std::string key = name.find('[') == std::string::npos ? name : "\"" + name + "\"";
-        found_.error(
-            error::no_safe_value, {.file = file_}, "The output " + name + " has no safe value.",
-            "write what it shall be when something is wrong: [outputs." + key + "], and below it safe = 0.0.");
+        found_.error(error::no_safe_value, {.file = file_}, "The output " + name + " has no safe value.",
+                     "write what it shall be when something is wrong: [outputs." + toml_key(name) +
+                         "], and below it safe = 0.0.");
       }
     }
     if (found_.has_errors()) {

@@ -127,8 +127,7 @@ void MqttSender::greet() {
   if (const std::string topic = dialect_->commands(); !topic.empty()) {
     client_->subscribe(topic);
   }
-  birth_at_ = time_.steady();
-  client_->publish(dialect_->birth(maker_.whole(*newest_, time_.utc_ms(newest_->elapsed)), time_.now_ms()));
+  publish_birth();
   is_greeted_ = true;
   greeted_at_ = birth_at_;
   progress_ = birth_at_;
@@ -144,12 +143,15 @@ void MqttSender::answer() {
   for (const std::string& payload : client_->received()) {
     is_birth_asked_ = is_birth_asked_ || dialect_->asks_for_birth(payload);
   }
-  const std::int64_t now = time_.steady();
-  if (is_greeted_ && is_birth_asked_ && now - birth_at_ >= birth_pace) {
+  if (is_greeted_ && is_birth_asked_ && time_.steady() - birth_at_ >= birth_pace) {
     is_birth_asked_ = false;
-    birth_at_ = now;
-    client_->publish(dialect_->birth(maker_.whole(*newest_, time_.utc_ms(newest_->elapsed)), time_.now_ms()));
+    publish_birth();
   }
+}
+
+void MqttSender::publish_birth() {
+  birth_at_ = time_.steady();
+  client_->publish(dialect_->birth(maker_.whole(*newest_, time_.utc_ms(newest_->elapsed)), time_.now_ms()));
 }
 
 void MqttSender::send() {

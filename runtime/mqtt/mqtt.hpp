@@ -53,6 +53,7 @@ class MqttSender {
   void serve(std::chrono::milliseconds wait, int wake);
   void greet();
   void answer();
+  void publish_birth();
   void send();
   void confirm();
   void failed(const MqttError& problem);

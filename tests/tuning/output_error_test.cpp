@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "codegen/graph/element_name.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "records/read.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/tuning/measured_machines.hpp"

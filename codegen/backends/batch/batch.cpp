@@ -9,7 +9,8 @@
 #include "codegen/backends/batch/lanes.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/c_family/words.hpp"
-#include "codegen/backends/cpp/cpp_member.hpp"
+#include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/cpp/cpp_structs.hpp"
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
@@ -268,49 +269,23 @@ class BatchHeader {
                "// Eight instances at a time, in the lanes of a vector: instance i is lane i % 8 of pack i / 8.\n"
                "// Sample time {} s. State: {} bytes an instance. Operations a step: {}.\n"
                "// Hash of diagram and parameters: {}.\n"
-               "// C++17 with the vectors of GCC; Clang takes the narrowest registers. Compile with\n// {}:\n"
+               "// C++17 with the vectors of GCC; Clang takes the narrowest registers. Compile with\n// {} {}:\n"
                "// then each lane has the bits that `hysteron run` shows. With -DHYSTERON_BATCH_FAST and -lmvec, exp,\n"
                "// log, pow and the like are libmvec's, within 4 units in the last place.\n//\n",
                graph_.name, number_text(graph_.sample_time()), state_bytes(routine_, false), routine_.operations,
-               program_hash(program_), batch_flags) +
+               program_hash(program_), cpp_numeric_flags, batch_flags) +
            schedule_lines(program_, "//", "...");
   }
 
-  void append_member(std::string& text, const Field& field, const Member& member,
-                     const std::vector<double>* values) const {
-    append_cpp_member(text, type_of(batch_dialect, field.type), field, member, values, true,
-                      [&](double value) { return in_all_lanes(field.type, value); });
-  }
-
   void append_structs(std::string& text) const {
-    const Layout& names = layout_.names();
-    append(text, "struct Params {\n");
-    StructLayout::append_grouped(text, names.parameters, [&](std::size_t i) {
-      append_member(text, graph_.parameters[i].field, names.parameters[i], &graph_.parameters[i].value);
-    });
-    append(text, "};\n\nstruct State {\n");
-    StructLayout::append_grouped(text, names.cells, [&](std::size_t i) {
-      if (routine_.longest_period > 1 && i == routine_.counter) {
-        append(text, "  std::int32_t ", names.cells[i].name, "{};  // of steps, the same for all instances\n");
-      } else {
-        append_member(text, routine_.cells[i].field, names.cells[i], nullptr);
-      }
-    });
-    append(text, "};\n\n");
-    append_ports(text, "In", graph_.inputs, names.inputs);
-    append_ports(text, "Out", graph_.outputs, names.outputs);
-  }
-
-  void append_ports(std::string& text, std::string_view name, const std::vector<Port>& ports,
-                    const std::vector<std::string_view>& names) const {
-    append(text, "struct ", name, " {\n");
-    for (std::size_t i = 0; i < ports.size(); ++i) {
-      append(text, "  ", type_of(batch_dialect, ports[i].type), " ", names[i], " = ",
-             in_all_lanes(ports[i].type, ports[i].preset), ";");
-      append_comment(text, "  // ", ports[i].unit, ports[i].meaning, "");
-      append(text, "\n");
-    }
-    append(text, "};\n\n");
+    CppStructs{.graph = graph_,
+               .routine = routine_,
+               .names = layout_.names(),
+               .dialect = batch_dialect,
+               .literal = in_all_lanes,
+               .in_braces = true,
+               .counter_meaning = "of steps, the same for all instances"}
+        .append_to(text);
   }
 
   void append_functions(std::string& text) {
@@ -352,6 +327,22 @@ class BatchHeader {
 GeneratedFile generate_batch(const Program& program) {
   require_generable(program.graph);
   return BatchHeader(program).run();
+}
+
+std::string lane_of_number(Type type, std::string_view number) {
+  switch (type) {
+    case Type::Real:
+      return std::string(number);
+    case Type::Bool:
+      return fmt::format("({} != 0.0 ? -1 : 0)", number);
+    default:
+      return fmt::format("static_cast<std::int64_t>({})", number);
+  }
+}
+
+std::string number_of_lane(Type type, std::string_view lane) {
+  return type == Type::Bool ? fmt::format("static_cast<double>({} & 1)", lane)
+                            : fmt::format("static_cast<double>({})", lane);
 }
 
 BatchNames batch_names(const Program& program) {

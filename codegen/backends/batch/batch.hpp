@@ -14,8 +14,8 @@ namespace hysteron {
 /// Instances that are computed at once. A processor with narrower registers takes two or four of its own for them.
 inline constexpr std::size_t batch_width = 8;
 
-/// What a batch is to be compiled with: the bits of the step, and roots that a vector can hold.
-inline constexpr std::string_view batch_flags = "-O2 -ffp-contract=off -frounding-math -fno-math-errno -Wno-psabi";
+/// What a batch is to be compiled with besides `cpp_numeric_flags`: roots that a vector can hold.
+inline constexpr std::string_view batch_flags = "-O2 -fno-math-errno -Wno-psabi";
 
 /// NAME_batch.hpp: structures of vectors, and reset and step over packs of eight instances. It needs C++17 and GCC;
 /// Clang takes registers of two numbers. Each lane has the bits of `hysteron run`. With HYSTERON_BATCH_FAST defined,
@@ -31,5 +31,9 @@ struct BatchNames {
   std::vector<std::string> outputs{};
 };
 BatchNames batch_names(const Program& program);
+
+/// C++ that makes of a number what a lane of a type holds, and the other way round: TRUE is -1 in a lane.
+std::string lane_of_number(Type type, std::string_view number);
+std::string number_of_lane(Type type, std::string_view lane);
 
 }  // namespace hysteron

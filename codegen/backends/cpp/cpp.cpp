@@ -9,7 +9,7 @@
 #include "codegen/backends/c_family/words.hpp"
 #include "codegen/backends/cpp/cpp_helpers.hpp"
 #include "codegen/backends/cpp/cpp_host.hpp"
-#include "codegen/backends/cpp/cpp_member.hpp"
+#include "codegen/backends/cpp/cpp_structs.hpp"
 #include "codegen/backends/cpp/dialect.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
@@ -110,39 +110,12 @@ class CppHeader {
            "computes\"\n#endif\n\n";
   }
 
-  /// A member with the values that it begins with: none for the members of the state, which reset gives theirs.
-  void append_member(std::string& text, const Field& field, const Member& member,
-                     const std::vector<double>* values) const {
-    append_cpp_member(text, type_of(cpp_dialect, field.type), field, member, values, false,
-                      [&](double value) { return printer_.literal(field.type, value); });
-  }
-
   void append_structs(std::string& text) const {
-    const Layout& names = layout_.names();
     text.reserve(text.size() + 100 * (graph_.parameters.size() + routine_.cells.size()));
-    append(text, "struct Params {\n");
-    StructLayout::append_grouped(text, names.parameters, [&](std::size_t i) {
-      append_member(text, graph_.parameters[i].field, names.parameters[i], &graph_.parameters[i].value);
-    });
-    text += "};\n\nstruct State {\n";
-    StructLayout::append_grouped(text, names.cells, [&](std::size_t i) {
-      append_member(text, routine_.cells[i].field, names.cells[i], nullptr);
-    });
-    text += "};\n\n";
-    append_ports(text, "In", graph_.inputs, names.inputs);
-    append_ports(text, "Out", graph_.outputs, names.outputs);
-  }
-
-  void append_ports(std::string& text, std::string_view name, const std::vector<Port>& ports,
-                    const std::vector<std::string_view>& names) const {
-    append(text, "struct ", name, " {\n");
-    for (std::size_t i = 0; i < ports.size(); ++i) {
-      append(text, "  ", type_of(cpp_dialect, ports[i].type), " ", names[i], " = ",
-             printer_.literal(ports[i].type, ports[i].preset), ";");
-      append_comment(text, "  // ", ports[i].unit, ports[i].meaning, "");
-      append(text, "\n");
-    }
-    append(text, "};\n\n");
+    const auto literal = [this](Type type, double value) { return printer_.literal(type, value); };
+    CppStructs{
+        .graph = graph_, .routine = routine_, .names = layout_.names(), .dialect = cpp_dialect, .literal = literal}
+        .append_to(text);
   }
 
   // --- functions ---

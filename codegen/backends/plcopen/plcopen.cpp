@@ -13,8 +13,8 @@
 #include "codegen/backends/st/library_block.hpp"
 #include "codegen/backends/st/pou.hpp"
 #include "codegen/graph/definition.hpp"
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/fmu_block.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {

@@ -8,10 +8,10 @@
 
 #include "codegen/backends/reference/block_stimuli.hpp"
 #include "codegen/compile.hpp"
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "codegen/trace/sized_block.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 namespace {

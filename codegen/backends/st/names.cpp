@@ -5,7 +5,7 @@
 #include <set>
 
 #include "codegen/backends/st/words.hpp"
-#include "codegen/graph/element_name.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {

@@ -6,9 +6,9 @@
 #include <array>
 #include <unordered_set>
 
-#include "codegen/graph/element_name.hpp"
 #include "codegen/graph/names.hpp"
 #include "codegen/language/syntax.hpp"
+#include "support/element_name.hpp"
 
 namespace hysteron {
 namespace {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "tests/codegen/backends/same_inputs.hpp"
 #include "tests/codegen/random_body.hpp"
@@ -80,8 +81,9 @@ std::string runner_of(const BatchDiagram& diagram, int number) {
   }
   std::string outputs;
   for (std::size_t i = 0; i < names.outputs.size(); ++i) {
-    outputs += fmt::format("      mix(&hash[i], (double)(out.{}.lane[i]{}));\n", names.outputs[i],
-                           diagram.program.graph.outputs[i].type == Type::Bool ? " & 1" : "");
+    outputs += fmt::format(
+        "      mix(&hash[i], {});\n",
+        number_of_lane(diagram.program.graph.outputs[i].type, fmt::format("out.{}.lane[i]", names.outputs[i])));
   }
   return fmt::format(
       "static void run_{0}(int lanes) {{\n  static {0}::Params params;\n  static {0}::State state;\n"
@@ -103,9 +105,9 @@ std::string runner_of(const BatchDiagram& diagram, int number) {
 /// What a main prints that is compiled as a batch is.
 std::string output_of_program(const test::ScratchFolder& folder, const std::string& main, std::string_view more) {
   folder.write("main.cpp", main);
-  const std::string build =
-      fmt::format("cd {} && c++ -std=c++17 -Wall -Wextra -Werror {} main.cpp -o run {} -lm > log 2>&1 && ./run > out",
-                  folder.path().string(), batch_flags, more);
+  const std::string build = fmt::format(
+      "cd {} && c++ -std=c++17 -Wall -Wextra -Werror {} {} main.cpp -o run {} -lm > log 2>&1 && ./run > out",
+      folder.path().string(), cpp_numeric_flags, batch_flags, more);
   EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
   return test::contents_of(folder / "out");
 }

@@ -32,4 +32,9 @@ struct ElementName {
   return std::string(vector) + "[" + std::to_string(index) + "]";
 }
 
+/// A name as a key of TOML: that of an element stands in quotes, "Y[2]".
+[[nodiscard]] inline std::string toml_key(const std::string& name) {
+  return element_of(name) ? "\"" + name + "\"" : name;
+}
+
 }  // namespace hysteron

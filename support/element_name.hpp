@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/names.hpp"
+
 namespace hysteron {
 
 /// What the name of an element says: of `Y[2]`, Y and 2.
@@ -25,6 +27,12 @@ struct ElementName {
   const char* const last = name.data() + name.size() - 1;
   const auto [end, problem] = std::from_chars(name.data() + bracket + 1, last, result.index);
   return problem == std::errc{} && end == last ? std::optional(result) : std::nullopt;
+}
+
+/// Whether a name is the wanted one, or an element of the vector that is named so; case makes no difference.
+[[nodiscard]] inline bool is_or_is_element_of(std::string_view name, std::string_view wanted) {
+  const auto element = element_of(name);
+  return equal_ignoring_case(name, wanted) || (element && equal_ignoring_case(element->vector, wanted));
 }
 
 /// `Y[2]`.

@@ -22,6 +22,9 @@ std::vector<double> numbers_of(const parameters::Value& value) {
   if (const auto* list = std::get_if<std::vector<double>>(&value)) {
     return *list;
   }
+  if (const auto* truths = std::get_if<std::vector<bool>>(&value)) {
+    return {truths->begin(), truths->end()};
+  }
   if (const auto* real = std::get_if<double>(&value)) {
     return {*real};
   }

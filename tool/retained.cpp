@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "runtime/task/retain.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "support/atomic_file.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 #include "support/overwriting.hpp"
@@ -114,18 +116,31 @@ void put(parameters::ParameterFile& file, const std::string& path, parameters::V
 /// The retained parameters in the file; what is not finite, as a limit that is off, stays what it was.
 parameters::ParameterFile with_retained(parameters::ParameterFile file, const Newest& newest) {
   std::map<std::string, std::vector<double>> arrays;
+  std::set<std::string> truths;
   for (std::size_t i = 0; i < newest.layout.parameters.size(); ++i) {
     const auto& about = newest.layout.parameters[i];
     const std::string path = without_element(about.name);
     const double number = newest.values.parameters[i];
     if (path != about.name) {
       arrays[path].push_back(number);
+      if (about.type == runtime::PointType::boolean) {
+        truths.insert(path);
+      }
     } else if (std::isfinite(number)) {
       put(file, path, value_of(about.type, number));
     }
   }
   for (const auto& [path, values] : arrays) {
-    if (std::ranges::all_of(values, [](double one) { return std::isfinite(one); })) {
+    if (!std::ranges::all_of(values, [](double one) { return std::isfinite(one); })) {
+      continue;
+    }
+    std::erase_if(file.values, [&](const parameters::ParameterValue& one) {
+      const auto element = element_of(one.path);
+      return element && language::same_name(element->vector, path);
+    });
+    if (truths.contains(path)) {
+      put(file, path, std::vector<bool>(values.begin(), values.end()));
+    } else {
       put(file, path, values);
     }
   }
@@ -142,10 +157,16 @@ double number_of(const parameters::Value& value, std::size_t element) {
   if (const auto* const list = std::get_if<std::vector<double>>(&value)) {
     return list->at(element);
   }
+  if (const auto* const truths = std::get_if<std::vector<bool>>(&value)) {
+    return truths->at(element) ? 1.0 : 0.0;
+  }
   return std::get<double>(value);
 }
 
 std::size_t length_of(const parameters::Value& value) {
+  if (const auto* const truths = std::get_if<std::vector<bool>>(&value)) {
+    return truths->size();
+  }
   const auto* const list = std::get_if<std::vector<double>>(&value);
   return list == nullptr ? 1 : list->size();
 }
@@ -153,7 +174,7 @@ std::size_t length_of(const parameters::Value& value) {
 /// Why a retained parameter cannot take a value, a sentence; empty where it can.
 std::string refusal_of(const runtime::KeptLayout::Parameter& about, const parameters::Value& given, double value) {
   const bool is_truth = about.type == runtime::PointType::boolean;
-  if (is_truth != std::holds_alternative<bool>(given)) {
+  if (is_truth != (std::holds_alternative<bool>(given) || std::holds_alternative<std::vector<bool>>(given))) {
     return fmt::format("{} is {}, and takes {}.", about.name, is_truth ? "a BOOL" : "a number",
                        is_truth ? "true or false" : "a number");
   }

@@ -189,7 +189,7 @@ Action add_run(CLI::App& app) {
       ->required()
       ->option_text("OUT.csv");
   app.add_option("--trace", options->traces,
-                 "Writes a signal inside too: a variable, INSTANCE.PIN, or PLANT.INSTANCE.PIN; may be repeated.")
+                 "Writes a signal inside too: a variable, INSTANCE.PIN, or PLANT.INSTANCE.PIN; a vector is each of its elements; may be repeated.")
       ->option_text("PATH")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -377,6 +378,7 @@ double mean_over_records(const OutputErrorProblem& problem, const OutputErrorFit
 
 parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
                                      const OutputErrorFit& fit) {
+  file = parameters::by_element(std::move(file), problem.program.graph);
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     const FreeParameter& free = problem.parameters[j];
     const Parameter& parameter = problem.program.graph.parameters[free.parameter];

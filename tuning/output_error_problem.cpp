@@ -9,6 +9,7 @@
 
 #include "codegen/graph/units.hpp"
 #include "codegen/parameters/apply.hpp"
+#include "codegen/parameters/elements.hpp"
 #include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -31,10 +32,10 @@ using parameters::ParameterFile;
 class Builder {
  public:
   Builder(const Program& program, const ParameterFile& file, std::span<const records::Record> records)
-      : file_(file), records_(records) {
+      : file_(parameters::by_element(file, program.graph, diagnostics_)), records_(records) {
     problem_.program = program;
     problem_.loss = file.tune.loss == parameters::Loss::Huber ? Loss::Huber : Loss::Squares;
-    parameters::apply(file, problem_.program.graph, diagnostics_);
+    parameters::apply(file_, problem_.program.graph, diagnostics_);
   }
 
   OutputErrorProblem build(bool may_be_fixed) {
@@ -309,11 +310,11 @@ class Builder {
     return result;
   }
 
-  const ParameterFile& file_;
+  Diagnostics diagnostics_{};
+  ParameterFile file_;  ///< by element
   std::span<const records::Record> records_;
   std::vector<std::string> units_{};                     ///< by parameter
   std::vector<std::vector<std::string>> state_units_{};  ///< by node and state
-  Diagnostics diagnostics_{};
   OutputErrorProblem problem_{};
 };
 

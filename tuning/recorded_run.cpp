@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -14,39 +15,45 @@
 namespace hysteron {
 namespace {
 
+struct NamedSignal {
+  std::string name{};
+  Wire wire{};
+};
+
 /// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
-std::vector<std::string> signal_names(const Graph& graph) {
-  std::vector<std::string> names;
+std::vector<NamedSignal> signals_of(const Graph& graph) {
+  std::vector<NamedSignal> signals;
   for (const NamedWire& named : graph.named) {
-    names.push_back(named.path);
+    signals.push_back({.name = named.path, .wire = named.wire});
   }
-  for (const Node& node : graph.nodes) {
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
     for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
-      names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
+      signals.push_back(
+          {.name = fmt::format("{}.{}", node.path, node.block->outputs[i].name),
+           .wire = {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index}});
     }
   }
-  return names;
+  return signals;
 }
 
-Wire find_signal(const Graph& graph, const std::string& path) {
-  for (const NamedWire& named : graph.named) {
-    if (equal_ignoring_case(named.path, path)) {
-      return named.wire;
+/// The signal of a name, or the elements of the vector of that name.
+std::vector<NamedSignal> find_signals(const Graph& graph, const std::string& path) {
+  const std::vector<NamedSignal> signals = signals_of(graph);
+  std::vector<NamedSignal> found;
+  std::vector<std::string> names;
+  for (const NamedSignal& one : signals) {
+    if (equal_ignoring_case(one.name, path)) {
+      return {{.name = path, .wire = one.wire}};
     }
+    if (is_or_is_element_of(one.name, path)) {
+      found.push_back(one);
+    }
+    names.push_back(one.name);
   }
-  const auto dot = path.rfind('.');
-  for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
-    const Node& node = graph.nodes[index];
-    if (node.block == nullptr || !equal_ignoring_case(node.path, path.substr(0, dot))) {
-      continue;
-    }
-    for (std::size_t i = 0; i < node.block->outputs.size(); ++i) {
-      if (equal_ignoring_case(node.block->outputs[i].name, path.substr(dot + 1))) {
-        return {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index};
-      }
-    }
+  if (!found.empty()) {
+    return found;
   }
-  const auto names = signal_names(graph);
   const auto near = nearest_name(path, names);
   throw InputError(error::unknown_signal, {.file = graph.source->path},
                    fmt::format("{} has no signal {}.", graph.name, path),
@@ -109,11 +116,14 @@ RecordedRun run_over(Program program, records::Record& record, const RunRequest&
   }
   std::vector<Wire> watched = output_wires(graph);
   for (const std::string& path : request.traces) {
-    watched.push_back(find_signal(graph, path));
-    places.push_back({.file = graph.source->path});
-    // A variable T would stand in a second column t.
-    result.names.push_back(equal_ignoring_case(path, "t") ? in_capitals(graph.name + "." + path) : in_capitals(path));
-    result.units.emplace_back();
+    for (const NamedSignal& one : find_signals(graph, path)) {
+      watched.push_back(one.wire);
+      places.push_back({.file = graph.source->path});
+      // A variable T would stand in a second column t.
+      const bool is_time = equal_ignoring_case(one.name, "t");
+      result.names.push_back(in_capitals(is_time ? graph.name + "." + one.name : one.name));
+      result.units.emplace_back();
+    }
   }
   if (diagnostics.has_errors()) {
     throw InputError(diagnostics);

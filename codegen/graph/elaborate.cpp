@@ -375,7 +375,7 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
     }
   }
   error(error::unknown_pin, reference.pin.span,
-        fmt::format("{} has no output '{}'", declared.variable->type.text, reference.pin.text),
+        fmt::format("{} has no output '{}'", type_of(declared), reference.pin.text),
         fmt::format("Its outputs are {}.", fmt::join(pin_names(declared, false), ", ")));
   return {};
 }

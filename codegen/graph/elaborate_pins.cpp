@@ -9,6 +9,7 @@
 #include "codegen/graph/elaborator.hpp"
 #include "codegen/graph/relations.hpp"
 #include "codegen/trace/sized_block.hpp"
+#include "support/element_name.hpp"
 #include "support/names.hpp"
 
 namespace hysteron {
@@ -91,9 +92,14 @@ Pin Elaborator::find_pin(const Declared& declared, const language::Name& name) {
     }
   }
   std::vector<std::string> names = pin_names(declared, true);
-  error(error::unknown_pin, name.span, fmt::format("{} has no input '{}'", declared.variable->type.text, name.text),
+  error(error::unknown_pin, name.span, fmt::format("{} has no input '{}'", type_of(declared), name.text),
         fmt::format("Its inputs are {}.", fmt::join(names, ", ")));
   return {};
+}
+
+std::string_view Elaborator::type_of(const Declared& declared) {
+  const bool sized = declared.kind == Declared::Kind::LibraryBlock && declared.block->sized != nullptr;
+  return sized ? declared.block->sized->kind->about.name : declared.variable->type.text;
 }
 
 std::vector<std::string> Elaborator::pin_names(const Declared& declared, bool inputs) {
@@ -116,7 +122,19 @@ std::vector<std::string> Elaborator::pin_names(const Declared& declared, bool in
       }
     }
   }
-  return names;
+  // A vector is one pin: XIN[0], XIN[1] and XIN[2] are XIN[0..2].
+  std::vector<std::string> pins;
+  for (std::size_t i = 0; i < names.size();) {
+    const auto first = element_of(names[i]);
+    std::size_t end = i + 1;
+    while (first && end < names.size() && element_of(names[end]) && element_of(names[end])->vector == first->vector) {
+      ++end;
+    }
+    pins.push_back(first ? fmt::format("{}[{}..{}]", first->vector, first->index, element_of(names[end - 1])->index)
+                         : names[i]);
+    i = end;
+  }
+  return pins;
 }
 
 Wire& Elaborator::pin_wire(const Declared& declared, const Part& part, const Pin& pin) {
@@ -205,13 +223,9 @@ void Elaborator::check_relations() {
 }
 
 void Elaborator::wrong_type(Span span, const std::string& target, Type wanted, Type given) {
-  const bool number = (wanted == Type::Real && given == Type::Int) || (wanted == Type::Int && given == Type::Real);
-  error(
-      error::type_mismatch, span, fmt::format("{} is {}, the value is {}", target, type_name(wanted), type_name(given)),
-      number
-          ? (wanted == Type::Real ? "Write literals with a decimal point (1.0), or convert by DINT_TO_LREAL."
-                                  : "Write literals without a decimal point (1), or convert by LREAL_TO_DINT or TRUNC.")
-          : "A comparison turns a number into a BOOL; SEL turns a BOOL into a number.");
+  error(error::type_mismatch, span,
+        fmt::format("{} is {}, the value is {}", target, type_name(wanted), type_name(given)),
+        conversion_in_words(wanted, given));
 }
 
 Wire Elaborator::unconnected(const std::string& path, const Declared& declared, const Field& field, bool parameter,

@@ -88,6 +88,8 @@ class Elaborator {
   void discretise(const Instance& instance, const Declared& declared, Part& part, Rate rate);
   Pin find_pin(const Declared& declared, const language::Name& name);
   std::vector<std::string> pin_names(const Declared& declared, bool inputs);
+  /// Its name without sizes.
+  static std::string_view type_of(const Declared& declared);
   Wire& pin_wire(const Declared& declared, const Part& part, const Pin& pin);
   void set_span(const Instance& instance, const Declared& declared, const Part& part, const Pin& pin, Span span);
   /// Refuses a second value for a pin.

@@ -145,8 +145,29 @@ Wire Lowering::expression(language::ExpressionId id) {
   return {};
 }
 
+std::string conversion_in_words(Type wanted, Type given) {
+  if (wanted == Type::Bool) {
+    return given == Type::Word ? "A bit of a WORD is a BOOL, as W.3; so is a comparison, as W <> 16#0."
+                               : "A comparison turns a number into a BOOL.";
+  }
+  if (given == Type::Bool) {
+    return fmt::format("SEL turns a BOOL into a {}: SEL(B, {}).", type_name(wanted),
+                       wanted == Type::Real  ? "0.0, 1.0"
+                       : wanted == Type::Int ? "0, 1"
+                                             : "WORD#0, WORD#1");
+  }
+  if (wanted == Type::Word) {
+    return given == Type::Int ? "DINT_TO_WORD converts." : "DINT_TO_WORD(LREAL_TO_DINT(X)) converts.";
+  }
+  if (given == Type::Word) {
+    return wanted == Type::Int ? "WORD_TO_DINT converts." : "DINT_TO_LREAL(WORD_TO_DINT(W)) converts.";
+  }
+  return wanted == Type::Real ? "Write literals with a decimal point (1.0), or convert by DINT_TO_LREAL."
+                              : "Write literals without a decimal point (1), or convert by LREAL_TO_DINT or TRUNC.";
+}
+
 Wire Lowering::mismatch(language::Span span, std::string_view what, std::initializer_list<Type> given,
-                        const std::vector<Type>& taken) {
+                        const std::vector<Type>& taken, const std::string& hint) {
   const auto is_taken = [&](Type type) { return std::ranges::find(taken, type) != taken.end(); };
   const auto is_given = [&](Type type) { return std::ranges::find(given, type) != given.end(); };
   const auto names = [](const auto& types, std::string_view between) {
@@ -159,23 +180,46 @@ Wire Lowering::mismatch(language::Span span, std::string_view what, std::initial
   };
   std::string mend =
       fmt::format("It takes {}{}.", names(taken, " or "), taken.size() > 1 ? ", the same on both sides" : "");
-  if (is_given(Type::Word)) {
-    mend += " WORD_TO_DINT and DINT_TO_WORD convert.";
+  // What is not taken becomes what is beside it, else the first that is taken.
+  const auto stays = std::ranges::find_if(given, is_taken);
+  const bool bits = is_given(Type::Int) && is_taken(Type::Word);
+  const Type wanted = stays != given.end() ? *stays : bits ? Type::Word : taken.front();
+  const auto odd = std::ranges::find_if(given, [&](Type type) { return type != wanted; });
+  if (!hint.empty()) {
+    mend = hint;
   } else if (is_given(Type::Real) && is_given(Type::Int)) {
     mend += " Nothing is converted silently: write literals as 1.0, or convert by DINT_TO_LREAL or LREAL_TO_DINT.";
-  } else if (is_given(Type::Bool) && !is_taken(Type::Bool)) {
-    mend += " SEL turns a BOOL into a number.";
-  } else if (!is_given(Type::Bool) && !is_taken(Type::Real) && !is_taken(Type::Int)) {
-    mend += " A comparison turns a number into a BOOL.";
-  } else if (!is_taken(Type::Int)) {
-    mend += " DINT_TO_LREAL converts.";
-  } else if (!is_taken(Type::Real)) {
-    mend += " LREAL_TO_DINT and TRUNC convert.";
-  } else {
-    mend += " A comparison turns a number into a BOOL, SEL a BOOL into a number.";
+  } else if (odd != given.end()) {
+    mend += " " + conversion_in_words(wanted, *odd);
   }
   report_(error::type_mismatch, span, fmt::format("{} does not take {}", what, names(given, " and ")), std::move(mend));
   return {};
+}
+
+std::string Lowering::meant_brackets(const language::Binary& binary, Type left, Type right) const {
+  const auto text_of = [&](language::ExpressionId id) {
+    const language::Span span = span_of(id);
+    return std::string_view(*source_.text).substr(span.offset, span.length);
+  };
+  const bool is_logic = binary.op == Operator::And || binary.op == Operator::Or || binary.op == Operator::Xor;
+  if (!is_logic || (left == Type::Word) == (right == Type::Word)) {
+    return {};
+  }
+  const language::ExpressionId other = left == Type::Word ? binary.right : binary.left;
+  const auto* const comparison = std::get_if<language::Binary>(&source_.expressions[other].node);
+  if (comparison == nullptr || (comparison->op != Operator::Equal && comparison->op != Operator::NotEqual) ||
+      text_of(other).starts_with('(')) {
+    return {};
+  }
+  const std::string_view sign = comparison->op == Operator::Equal ? "=" : "<>";
+  const auto between = [&](language::ExpressionId first, language::ExpressionId second) {
+    const auto from = span_of(first).offset;
+    return std::string_view(*source_.text).substr(from, span_of(second).offset + span_of(second).length - from);
+  };
+  return left == Type::Word ? fmt::format("{0} is done before the operation on bits. Write ({1}) {0} {2}.", sign,
+                                          between(binary.left, comparison->left), text_of(comparison->right))
+                            : fmt::format("{0} is done before the operation on bits. Write {1} {0} ({2}).", sign,
+                                          text_of(comparison->left), between(comparison->right, binary.right));
 }
 
 Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
@@ -267,7 +311,7 @@ Wire Lowering::lower_binary(const language::Binary& binary, language::Span span)
       if (row.truth) {
         taken.push_back(Type::Word);
       }
-      return mismatch(span, row.text, {left.type, right.type}, taken);
+      return mismatch(span, row.text, {left.type, right.type}, taken, meant_brackets(binary, left.type, right.type));
     }
     const Wire result = row.swapped ? apply(*op, {right, left}, span) : apply(*op, {left, right}, span);
     return row.op == Operator::Equal && left.type == Type::Bool ? apply(Op::Not, {result}, span) : result;

@@ -48,6 +48,9 @@ class GraphBuilder {
 std::span<const std::string_view> formal_arguments(std::string_view function);
 
 /// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
+/// How a value of one type becomes one of another, as the mend of an error says it.
+[[nodiscard]] std::string conversion_in_words(Type wanted, Type given);
+
 class Lowering {
  public:
   using Resolve = std::function<Wire(const language::Reference&, language::Span)>;
@@ -78,7 +81,9 @@ class Lowering {
   }
   /// Refuses the types of an operator that takes those of `taken`, both sides the same.
   Wire mismatch(language::Span span, std::string_view what, std::initializer_list<Type> given,
-                const std::vector<Type>& taken);
+                const std::vector<Type>& taken, const std::string& hint = {});
+  /// The mend for W AND 16#6F = 16#27, where the comparison is done first; empty where it is not that.
+  [[nodiscard]] std::string meant_brackets(const language::Binary& binary, Type left, Type right) const;
   [[nodiscard]] language::Span span_of(language::ExpressionId id) const { return source_.expressions[id].span; }
 
   GraphBuilder& builder_;

@@ -7,6 +7,8 @@
 
 #include "codegen/graph/body/body.hpp"
 #include "codegen/graph/definition.hpp"
+#include "codegen/graph/lowering.hpp"
+#include "codegen/graph/names.hpp"
 #include "codegen/graph/vectors.hpp"
 #include "codegen/trace/sized_block.hpp"
 #include "support/errors.hpp"
@@ -127,16 +129,31 @@ void VectorPins::declare_sized(const language::FunctionBlock& block) {
     }
     std::vector<GivenNumbers> given;
     std::vector<language::Span> spans;
-    bool misplaced = false;
+    bool refused = false;
     const auto take = [&](const language::Argument& argument) {
       const auto is_it = [&](std::string_view name) { return same_name(name, argument.pin.text); };
       const bool parameter = std::ranges::any_of(kind->params, [&](const auto& one) { return is_it(one.field.name); });
       if (!parameter && std::ranges::none_of(kind->settings, is_it)) {
         return;
       }
+      if (double value = 0.0; !parameter) {
+        Type type = Type::Int;
+        if (constant_value(source_, argument.value, value, type) && type != Type::Int) {
+          refused = true;
+          report_(error::type_mismatch, source_.expressions[argument.value].span,
+                  fmt::format("{} is DINT, the value is {}", upper(argument.pin.text), type_name(type)),
+                  conversion_in_words(Type::Int, type));
+          return;
+        }
+      }
       if (auto numbers = numbers_of(argument.value)) {
         given.push_back({.name = argument.pin.text, .numbers = std::move(*numbers)});
         spans.push_back(source_.expressions[argument.value].span);
+      } else {
+        refused = true;
+        report_(error::type_mismatch, source_.expressions[argument.value].span,
+                fmt::format("the value of {} is not a constant", upper(argument.pin.text)),
+                "Write literals here, as in [1.0, 0.5]: how many there are is the size of the block.");
       }
     };
     std::ranges::for_each(variable.settings, take);
@@ -147,7 +164,7 @@ void VectorPins::declare_sized(const language::FunctionBlock& block) {
       }
       for (const language::Argument& argument : call->arguments) {
         if (is_setting(variable, argument.pin.text)) {
-          misplaced = true;
+          refused = true;
           report_(error::block_sizes, argument.pin.span,
                   fmt::format("{} is no pin of {} and cannot be given in a call", upper(argument.pin.text),
                               kind->about.name),
@@ -158,7 +175,7 @@ void VectorPins::declare_sized(const language::FunctionBlock& block) {
         take(argument);
       }
     }
-    if (misplaced) {
+    if (refused) {
       continue;
     }
     const auto sizes = sizes_of(*kind, given);

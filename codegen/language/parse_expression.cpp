@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <utility>
 
@@ -191,7 +192,32 @@ ExpressionId Parser::reference() {
     return no_expression;
   }
   const auto height = reference.index == no_expression ? 1U : 1U + heights_[reference.index];
-  return make({.node = reference, .span = since(begin)}, height);
+  const ExpressionId whole = make({.node = reference, .span = since(begin)}, height);
+  return is(Symbol::Number) && text_of(span_of(now())).front() == '.' && now().offset == last_.end()
+             ? bit_of(whole, begin)
+             : whole;
+}
+
+/// `W.3` is (W AND 16#8) <> 16#0.
+ExpressionId Parser::bit_of(ExpressionId word, std::uint32_t begin) {
+  constexpr int highest = 15;
+  const auto span = span_of(now());
+  const auto digits = text_of(span).substr(1);
+  int bit = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), bit);
+  advance();
+  if (problem != std::errc{} || end != digits.data() + digits.size() || bit > highest) {
+    error(error::refused_access, span, fmt::format("A WORD has no bit {}.", digits),
+          fmt::format("Its bits are 0 to {}; bit 0 is the lowest.", highest));
+    return no_expression;
+  }
+  const auto literal = [&](std::int64_t value) {
+    return make({.node = IntLiteral{.value = value, .is_word = true}, .span = span}, 1);
+  };
+  const auto joined = [&](Operator op, ExpressionId left, ExpressionId right) {
+    return make({.node = Binary{op, left, right}, .span = since(begin)}, heights_[left] + 1);
+  };
+  return joined(Operator::NotEqual, joined(Operator::And, word, literal(std::int64_t{1} << bit)), literal(0));
 }
 
 bool Parser::index(ExpressionId& index) {

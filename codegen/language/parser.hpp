@@ -60,6 +60,7 @@ class Parser {
   ExpressionId primary(bool behind_minus);
   ExpressionId parenthesized();
   ExpressionId reference();
+  ExpressionId bit_of(ExpressionId word, std::uint32_t begin);
   /// `[2]` behind a name; no_expression where there is none. False where an error was reported.
   bool index(ExpressionId& index);
   ExpressionId function_call();

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
@@ -15,7 +14,7 @@
 #include <utility>
 
 #include "codegen/graph/relations.hpp"
-#include "support/element_name.hpp"
+#include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -44,6 +43,9 @@ std::string kind_of(const Value& value) {
   if (const auto* const list = std::get_if<std::vector<double>>(&value)) {
     return fmt::format("a list of {}", list->size());
   }
+  if (const auto* const truths = std::get_if<std::vector<bool>>(&value)) {
+    return fmt::format("a list of {} truths", truths->size());
+  }
   if (const auto* const truth = std::get_if<bool>(&value)) {
     return *truth ? "true" : "false";
   }
@@ -70,8 +72,8 @@ std::string example_of(const Field& field) {
 /// The numbers of a value, where it is of a field's type.
 std::optional<std::vector<double>> numbers_of(const Value& value, const Field& field) {
   const auto* const list = std::get_if<std::vector<double>>(&value);
-  if ((list != nullptr) != (field.length > 1)) {
-    return std::nullopt;
+  if ((list != nullptr) != (field.length > 1) || std::holds_alternative<std::vector<bool>>(value)) {
+    return std::nullopt;  // no block has a list of truths for a parameter
   }
   if (list != nullptr) {
     return *list;
@@ -323,39 +325,17 @@ void check_relations(const Graph& graph, const std::vector<const ParameterValue*
 
 }  // namespace
 
-void apply(const ParameterFile& file, Graph& graph, Diagnostics& diagnostics) {
-  bool all_set = true;
+void apply(const ParameterFile& as_written, Graph& graph, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.all().size();
+  const ParameterFile file = by_element(as_written, graph, diagnostics);
+  bool all_set = diagnostics.all().size() == before;
   std::vector<const ParameterValue*> set_by(graph.parameters.size(), nullptr);
   std::unordered_map<std::string, std::size_t> by_path;
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
     by_path.emplace(graph.parameters[i].path, i);
   }
-  std::deque<ParameterValue> elements;  // of lists for vectors
   for (const ParameterValue& given : file.values) {
     const auto found = by_path.find(in_capitals(given.path));
-    const auto* const list = std::get_if<std::vector<double>>(&given.value);
-    if (found == by_path.end() && list != nullptr && by_path.contains(element_name(in_capitals(given.path), 0))) {
-      std::size_t length = 0;
-      while (by_path.contains(element_name(in_capitals(given.path), static_cast<std::int64_t>(length)))) {
-        ++length;
-      }
-      if (list->size() != length) {
-        diagnostics.error(error::wrong_value_type, given.value_place,
-                          fmt::format("{} takes {} numbers, here are {}.", given.path, length, list->size()),
-                          "give each element of the vector one number.");
-        all_set = false;
-        continue;
-      }
-      for (std::size_t i = 0; i < length; ++i) {
-        ParameterValue& one = elements.emplace_back(given);
-        one.path = element_name(in_capitals(given.path), static_cast<std::int64_t>(i));
-        const std::size_t place = by_path.at(one.path);
-        one.value = value_for(graph.parameters[place].field, (*list)[i]);
-        all_set = set(one, graph.parameters[place], diagnostics) && all_set;
-        set_by[place] = &one;
-      }
-      continue;
-    }
     if (found == by_path.end()) {
       report_unknown_parameter(graph, given.path, given.place, diagnostics);
     } else {

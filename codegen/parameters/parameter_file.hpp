@@ -40,7 +40,7 @@
 namespace hysteron::parameters {
 
 /// A whole number stands for an INT or for a REAL parameter alike: C1 = 1.
-using Value = std::variant<bool, std::int64_t, double, std::vector<double>>;
+using Value = std::variant<bool, std::int64_t, double, std::vector<double>, std::vector<bool>>;
 
 struct ParameterValue {
   std::string path{};  ///< "INV.C1", instance by instance, as written

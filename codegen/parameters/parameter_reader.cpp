@@ -184,6 +184,13 @@ class Reader {
       wrong_type(key, node, wanted, fmt::format("{0} = 0.05, or {0} = [0.0, 0.5, 1.0]", key.str()));
       return std::nullopt;
     }
+    if (list->is_homogeneous(toml::node_type::boolean)) {
+      std::vector<bool> truths;
+      for (const toml::node& element : *list) {
+        truths.push_back(element.as_boolean()->get());
+      }
+      return truths;
+    }
     std::vector<double> numbers;
     for (const toml::node& element : *list) {
       if (!element.is_number()) {

@@ -39,6 +39,12 @@ std::string value_text(const Value& value) {
     return real_text(*real);
   }
   std::string text = "[";
+  if (const auto* const truths = std::get_if<std::vector<bool>>(&value)) {
+    for (const bool element : *truths) {
+      text += fmt::format("{}{}", text.size() > 1 ? ", " : "", element);
+    }
+    return text + "]";
+  }
   for (const double element : std::get<std::vector<double>>(value)) {
     text += (text.size() > 1 ? ", " : "") + real_text(element);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "codegen/parameters/apply.hpp"
+#include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 
@@ -52,11 +53,11 @@ bool is_name(const std::string& text) {
 }  // namespace
 
 Task task_of(const DiagnosisInput& input) {
-  Task task{.file = {.file = input.file.file, .values = input.file.values, .initial = input.file.initial},
-            .records = input.records};
   Graph graph = input.program.graph;
-  parameters::apply(input.file, graph);
-  for (const parameters::FitSetting& setting : input.file.fits) {
+  const parameters::ParameterFile file = parameters::by_element(input.file, graph);
+  Task task{.file = {.file = file.file, .values = file.values, .initial = file.initial}, .records = input.records};
+  parameters::apply(file, graph);
+  for (const parameters::FitSetting& setting : file.fits) {
     const std::int64_t found = find_parameter(graph, setting.path);
     if (found < 0 || graph.parameters[static_cast<std::size_t>(found)].field.type != Type::Real ||
         graph.parameters[static_cast<std::size_t>(found)].field.length > 1) {
@@ -79,7 +80,7 @@ Task task_of(const DiagnosisInput& input) {
   }
   for (const Parameter& parameter : graph.parameters) {
     const bool number = parameter.field.type == Type::Real && parameter.field.length == 1;
-    if (!task.known.empty() && !input.file.fits.empty()) {
+    if (!task.known.empty() && !file.fits.empty()) {
       break;
     }
     if (number && parameter.value.front() != 0.0 && std::isfinite(parameter.value.front()) &&

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "codegen/parameters/elements.hpp"
 #include "diagnosis/effects/candidates.hpp"
 #include "diagnosis/findings/doubts.hpp"
 #include "diagnosis/findings/evidence_findings.hpp"
@@ -107,7 +108,8 @@ void add_improved(const Judged& judged, const Explanation& kept, Diagnosis& resu
         "The effect closes a loop, and its block cannot be called before what it reads: improved.st is taken with "
         "--any-order only.");
   }
-  result.improved_file = improved_file(record.task, record.input.file, kept);
+  result.improved_file =
+      improved_file(record.task, parameters::by_element(record.input.file, record.input.program.graph), kept);
 }
 
 }  // namespace
@@ -119,6 +121,7 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   const Explanation& kept = answer.is_named() ? judged.chosen() : calibrated;
   Diagnosis result{.verdict = answer.verdict,
                    .warnings = record.warnings,
+                   .siblings = options.prior.siblings(),
                    .evidence = judged.evidence,
                    .budget = judged.budget,
                    .unknown_score = answer.unknown_score,

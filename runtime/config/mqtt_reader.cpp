@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/config/sampled_points.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -170,21 +171,23 @@ void MqttReader::read_dead_bands(const std::string& prefix, const toml::table& t
                     "write it in the unit of the point, as in " + name + " = 0.1.");
       continue;
     }
-    const auto point =
-        std::ranges::find_if(mqtt.points, [&](const std::string& one) { return equal_ignoring_case(one, name); });
-    if (point == mqtt.points.end()) {
+    if (std::ranges::none_of(mqtt.points, [&](const std::string& one) { return is_or_is_element_of(one, name); })) {
       const auto near = nearest_name(name, mqtt.points);
       found_->error(error::unknown_port_in_run_file, place, name + " is none of the points that are published.",
                     near.empty() ? "name it among points in [mqtt], or remove the line."
                                  : "did you mean " + std::string(near) + "?");
       continue;
     }
-    const auto index = static_cast<std::size_t>(point - mqtt.points.begin());
-    if (!banded_.insert(index).second) {
-      found_->error(error::run_key_twice, place, "The dead band of " + *point + " has been given before.",
-                    "keep one of the two; case makes no difference.");
+    for (std::size_t i = 0; i < mqtt.points.size(); ++i) {
+      if (!is_or_is_element_of(mqtt.points[i], name)) {
+        continue;
+      }
+      if (!banded_.insert(i).second) {
+        found_->error(error::run_key_twice, place, "The dead band of " + mqtt.points[i] + " has been given before.",
+                      "keep one of the two; case makes no difference.");
+      }
+      mqtt.dead_bands[i] = *value;
     }
-    mqtt.dead_bands[index] = *value;
   }
 }
 

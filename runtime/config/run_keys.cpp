@@ -190,7 +190,8 @@ constexpr std::array trace_keys{
 constexpr std::array history_keys{
     RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
     RunKey{"points", texts, "(all inputs and outputs)",
-           "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`"},
+           "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`; the "
+           "name of a vector is each of its elements"},
     RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods; for `tune` and `diagnose`, one period",
            1.0, 86400.0 * s},
     RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 10000.0 * 86400.0 * s},
@@ -219,7 +220,8 @@ constexpr std::array mqtt_keys{
     RunKey{"group", text, "(`hysteron`)", "of Sparkplug B: the group"},
     RunKey{"node", text, "(the diagram's name)", "of Sparkplug B: the edge node"},
     RunKey{"points", texts, "(all inputs and outputs)",
-           "what is published: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`"},
+           "what is published: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`; "
+           "the name of a vector is each of its elements"},
     RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods", 1.0, 86400.0 * s},
     RunKey{"on_change", flag, "false", "a row has those points alone that changed, and there is none where none did"},
     RunKey{"refresh",

@@ -1,8 +1,10 @@
 #include "runtime/config/sampled_points.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "runtime/task/task_door.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 
@@ -53,16 +55,21 @@ std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shap
   std::vector<std::string> points;
   table.read("points", wanted);
   for (const std::string& name : wanted) {
-    const auto known =
-        std::ranges::find_if(all, [&](const std::string& one) { return equal_ignoring_case(one, name); });
-    if (known == all.end()) {
+    // The name of a vector is each of its elements.
+    std::vector<std::string> known;
+    std::ranges::copy_if(all, std::back_inserter(known),
+                         [&](const std::string& one) { return is_or_is_element_of(one, name); });
+    if (known.empty()) {
       const auto near = nearest_name(name, all);
       found.error(error::unknown_port_in_run_file, table.place("points"), shape.name + " has no point " + name + ".",
                   near.empty() ? "name inputs, outputs, parameters as HYST.C1, or what the task says of itself, as "
                                  "task.fault."
                                : "did you mean " + std::string(near) + "?");
-    } else if (std::ranges::find(points, *known) == points.end()) {
-      points.push_back(*known);
+    }
+    for (const std::string& one : known) {
+      if (std::ranges::find(points, one) == points.end()) {
+        points.push_back(one);
+      }
     }
   }
   if (wanted.empty() || points.size() > most_points) {

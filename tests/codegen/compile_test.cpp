@@ -108,6 +108,40 @@ TEST(Compile, TheMendOfATypeSaysWhatTheOperatorTakes) {
   EXPECT_THAT(mend("LREAL", "NOT A"), AllOf(HasSubstr("It takes BOOL"), HasSubstr("A comparison")));
 }
 
+/// Every pair of types that are not the same has a mend that names what turns the one into the other.
+TEST(Compile, TheMendOfAnAssignmentNamesTheConversion) {
+  const std::vector<std::vector<std::string>> wanted{{"", "DINT_TO_LREAL", "SEL(B, 0.0, 1.0)", "WORD_TO_DINT(W)"},
+                                                     {"LREAL_TO_DINT", "", "SEL(B, 0, 1)", "WORD_TO_DINT"},
+                                                     {"A comparison", "A comparison", "", "W.3"},
+                                                     {"LREAL_TO_DINT(X)", "DINT_TO_WORD", "WORD#1", ""}};
+  const std::vector<std::string> types{"LREAL", "DINT", "BOOL", "WORD"};
+  for (std::size_t to = 0; to < types.size(); ++to) {
+    for (std::size_t from = 0; from < types.size(); ++from) {
+      const auto found = diagnose(
+          block("VAR_INPUT A : " + types[from] + "; END_VAR VAR_OUTPUT Y : " + types[to] + "; END_VAR", "Y := A;"));
+      ASSERT_EQ(found.size(), to == from ? 0U : 1U);
+      EXPECT_THAT(to == from ? "" : found[0].mend, HasSubstr(wanted[to][from])) << types[to] << " := " << types[from];
+    }
+  }
+}
+
+TEST(Compile, TheMendOfAPatternOfBitsIsOne) {
+  const auto mend = [](const std::string& expression) {
+    const auto found = diagnose(block("VAR_INPUT W : WORD; N : DINT; B : BOOL; END_VAR VAR_OUTPUT Y : BOOL; END_VAR",
+                                      "Y := " + expression + ";"));
+    return found.empty() ? "" : found[0].mend;
+  };
+  EXPECT_EQ(mend("W AND 16#6F = 16#27"), "= is done before the operation on bits. Write (W AND 16#6F) = 16#27.");
+  EXPECT_EQ(mend("16#27 <> 16#6F OR W"), "<> is done before the operation on bits. Write 16#27 <> (16#6F OR W).");
+  EXPECT_EQ(mend("(W AND 16#6F) = 16#27"), "");
+  EXPECT_EQ(mend("16#27 <> (16#6F OR W)"), "");
+  EXPECT_THAT(mend("(N AND 16#FF) = 3"), HasSubstr("DINT_TO_WORD converts."));
+  EXPECT_THAT(mend("N.3"), HasSubstr("DINT_TO_WORD converts."));
+  EXPECT_THAT(mend("B.3"), HasSubstr("It takes BOOL or WORD"));
+  EXPECT_EQ(mend("W.16"), "Its bits are 0 to 15; bit 0 is the lowest.");
+  EXPECT_EQ(mend("W.3E0"), "Its bits are 0 to 15; bit 0 is the lowest.");
+}
+
 TEST(Compile, RatesThatDifferByTheirPhasesAreTold) {
   const auto found = diagnose(block(io + "VAR A : HY_SAMPLE; (* @every 3 @phase 1 *) B : HY_GAIN; (* @every 3 *) "
                                          "H : HY_HOLD; END_VAR",

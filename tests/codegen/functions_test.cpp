@@ -62,6 +62,35 @@ TEST(Functions, ANamedArgumentOfAnotherNameIsRefused) {
   }
 }
 
+TEST(Functions, ABitOfAWordIsRead) {
+  std::string outputs;
+  std::string statements;
+  for (int bit = 0; bit < 16; ++bit) {
+    outputs += fmt::format("Y{0}, Z{0}, V{0} : BOOL; ", bit);
+    statements += fmt::format("Y{0} := W.{0}; Z{0} := NOT D.XOUT.{0} OR W.{0}; V{0} := X[1].{0};\n", bit);
+  }
+  Machine<double> machine(compile_text(
+      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT W : WORD; X : ARRAY[0..1] OF WORD; END_VAR\nVAR_OUTPUT " + outputs +
+      "END_VAR\nVAR D : HY_DELAY_WORD; END_VAR\n" + statements + "D(XIN := W);\nEND_FUNCTION_BLOCK"));
+  std::mt19937 engine(1);
+  unsigned last = 0;
+  for (int k = 0; k < 300; ++k) {
+    const unsigned word = k < 16 ? 1U << static_cast<unsigned>(k) : engine() % 65536;
+    const unsigned other = engine() % 65536;
+    machine.set_input(0, word);
+    machine.set_input(2, other);
+    machine.step();
+    for (unsigned bit = 0; bit < 16; ++bit) {
+      const auto output = [&](unsigned which) { return machine.output(3 * bit + which) != 0.0; };
+      const auto is_set = [&](unsigned value) { return ((value >> bit) & 1U) != 0; };
+      ASSERT_EQ(output(0), is_set(word)) << word << " " << bit;
+      ASSERT_EQ(output(1), !is_set(last) || is_set(word)) << word << " " << bit;
+      ASSERT_EQ(output(2), is_set(other)) << other << " " << bit;
+    }
+    last = word;
+  }
+}
+
 TEST(Functions, WordsHaveTheirBits) {
   Machine<double> machine(compile_text(
       "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT A, B : WORD; N : DINT; END_VAR\n"

@@ -243,6 +243,7 @@ TEST(SizedBlocks, SizesThatDisagreeAreRefusedByName) {
   EXPECT_EQ(gain("K := [1.0, 2.0], ROWS := 2"), "");
   EXPECT_THAT(gain("K := [1.0, 2.0]"), HasSubstr("HY224 'G': HY_MATRIX_GAIN needs ROWS"));
   EXPECT_THAT(gain("K := [1.0, 2.0, 3.0], ROWS := 2"), HasSubstr("HY224 'G': K has 3 numbers"));
+  EXPECT_THAT(gain("K := [1.0, 2.0], ROWS := 2.0"), HasSubstr("HY207 ROWS is DINT, the value is LREAL"));
   EXPECT_THAT(gain("K := [1.0, 2.0], ROWS := 0"), HasSubstr("HY224 'G': ROWS is not a number of rows"));
   for (const std::string type : {"HY_TRANSFER_FUNCTION", "HY_TRANSFER_FUNCTION_S", "HY_TRANSFER_FUNCTION_ZOH"}) {
     EXPECT_EQ(fault_of(type, "NUM := [1.0], DEN := [1.0, -0.5]"), "") << type;
@@ -251,7 +252,7 @@ TEST(SizedBlocks, SizesThatDisagreeAreRefusedByName) {
     EXPECT_THAT(fault_of(type, "NUM := [1.0], DEN := [0.0, -0.5]"), HasSubstr("HY224 'G': DEN begins with 0"));
     EXPECT_THAT(fault_of(type, "NUM := [1.0], DEN := [1.0]"), HasSubstr("HY224 'G': DEN has 1 number"));
     EXPECT_THAT(fault_of(type, "NUM := [1.0]"), HasSubstr("HY224 'G': " + type + " needs DEN"));
-    EXPECT_THAT(fault_of(type, "NUM := [U], DEN := [1.0, 2.0]"), HasSubstr("needs NUM"));
+    EXPECT_THAT(fault_of(type, "NUM := [U], DEN := [1.0, 2.0]"), HasSubstr("HY207 the value of NUM is not a constant"));
   }
   EXPECT_THAT(fault_of("HY_MATRIX_GAIN", "K := [1.0]", "XIN := U, ROWS := 1"), HasSubstr("HY224 ROWS is no pin"));
   EXPECT_THAT(fault_of("HY_TRANSFER_FUNCTION", "NUM := [1.0], DEN := [1.0, -0.5]", "XIM := U"), HasSubstr("XIN"));

@@ -3,6 +3,7 @@
 #include "codegen/graph/vectors.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,6 +94,24 @@ TEST(Vectors, BoundsAreWholeConstantsFromZero) {
               HasSubstr("HY223 1:264 the bounds of the vector 'V' are not whole constants"));
   EXPECT_THAT(faults_of("Y := X; R := S;", "V : ARRAY[0..256] OF LREAL;")[0], HasSubstr("has 257 elements"));
   EXPECT_THAT(faults_of("Y := X; R := S;", "V : ARRAY[0..-1] OF LREAL;")[0], HasSubstr("ends at -1"));
+}
+
+/// A name that is not declared has its own error, and no other.
+TEST(Vectors, WhatIsNotDeclaredIsSaidOnce) {
+  const std::string gain = "M : HY_MATRIX_GAIN := (K := [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], ROWS := 2);";
+  const auto one = [&](const std::string& statements) {
+    const auto faults = faults_of(statements, gain);
+    return faults.size() == 1 ? faults[0] : fmt::format("{} faults: {}", faults.size(), fmt::join(faults, "; "));
+  };
+  EXPECT_EQ(one("M(XIN := X); Y := X; R := SUM(M.OUT);"), "HY202 2:33 HY_MATRIX_GAIN has no output 'OUT'");
+  EXPECT_EQ(one("M(XIN := X); Y := M.OUT; R := S;"), "HY202 2:21 HY_MATRIX_GAIN has no output 'OUT'");
+  EXPECT_EQ(one("M(XIN := X); Y := X; R := M.OUT[0];"), "HY202 2:29 HY_MATRIX_GAIN has no output 'OUT'");
+  EXPECT_EQ(one("M(XIN := X, KX := 1.0); Y := X; R := S;"), "HY202 2:13 HY_MATRIX_GAIN has no input 'KX'");
+  EXPECT_EQ(one("M(XIN := X); Y := [Q, S, 1.0]; R := S;"), "HY203 2:20 'Q' is not declared");
+  EXPECT_EQ(one("M(XIN := X); Y := X + Q * 2.0; R := S;"), "HY203 2:23 'Q' is not declared");
+  EXPECT_EQ(one("M(XIN := X); Y := X; R := DOT(X, Q);"), "HY203 2:34 'Q' is not declared");
+  EXPECT_EQ(one("M(XIN := X); Y := X; R := S; Q := X;"), "HY203 2:30 'Q' is not declared");
+  EXPECT_EQ(one("M(XIN := X); Y := X; R := S; Q[1] := X[1];"), "HY203 2:30 'Q' is not declared");
 }
 
 TEST(Vectors, AFaultOfEveryElementIsToldOnce) {
@@ -270,37 +289,11 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"K[1]\" = 7.0"));
   EXPECT_THAT(parameters::parameter_text(file), HasSubstr("\"X[1]\" = 3.0"));
 
-  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0, 5.0]\n"), program.graph);
-  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[0]"))].value[0], 4.0);
-  EXPECT_EQ(program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, "K[1]"))].value[0], 5.0);
-  Diagnostics short_list;
-  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nK = [4.0]\n"), program.graph, short_list);
-  ASSERT_EQ(short_list.all().size(), 1U);
-  EXPECT_THAT(short_list.all()[0].cause, HasSubstr("K takes 2 numbers, here are 1"));
-
   Diagnostics refused;
   parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters.G]\nA = [0.25, 0.0]\n"), program.graph,
                     refused);
   ASSERT_TRUE(refused.has_errors());
   EXPECT_THAT(refused.all()[0].cause, HasSubstr("takes 4 numbers, here are 2"));
-}
-
-TEST(Vectors, OfEveryTypeAreSetByAList) {
-  Program program = compile_text(
-      "FUNCTION_BLOCK F (* @ts 1ms *) VAR_INPUT X : WORD; M : ARRAY[0..1] OF WORD; (* @param *) "
-      "N : ARRAY[0..1] OF DINT; (* @param *) END_VAR VAR_OUTPUT Y : WORD; Z : DINT; END_VAR\n"
-      "Y := X AND M[0] AND M[1]; Z := N[0] + N[1];\nEND_FUNCTION_BLOCK");
-  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nM = [4, 8]\nN = [-3, 5]\n"),
-                    program.graph);
-  const auto value = [&](std::string_view path) {
-    return program.graph.parameters[static_cast<std::size_t>(find_parameter(program.graph, path))].value[0];
-  };
-  EXPECT_EQ((std::vector{value("M[0]"), value("M[1]"), value("N[0]"), value("N[1]")}),
-            (std::vector{4.0, 8.0, -3.0, 5.0}));
-  Diagnostics refused;
-  parameters::apply(parameters::parse_parameter_file("t.toml", "[parameters]\nN = [0.5, 5.0]\n"), program.graph, refused);
-  ASSERT_TRUE(refused.has_errors());
-  EXPECT_THAT(refused.all()[0].cause, HasSubstr("takes a whole number, not 0.5"));
 }
 
 TEST(Vectors, NamesOfElements) {

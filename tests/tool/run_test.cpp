@@ -81,6 +81,31 @@ TEST_F(Run, ReadsAndWritesStreams) {
   EXPECT_EQ(cut.err, "0\n");
 }
 
+TEST_F(Run, TracesEachElementOfAVector) {
+  bench.write("log.csv", "t,U\n0,2\n0.001,3\n");
+  bench.write("plant.st",
+              "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT U : LREAL; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+              "VAR V : ARRAY[0..1] OF LREAL; M : HY_MATRIX_GAIN := (K := [1.0, 2.0, 3.0, 4.0], ROWS := 2); END_VAR\n"
+              "V := [U, U * 10.0];\nM(XIN := V);\nY := SUM(M.XOUT);\nEND_FUNCTION_BLOCK\n");
+  EXPECT_EQ(bench.shell(std::string(go) + " --trace v,M.XOUT,M.XOUT[1]").code, 0);
+  EXPECT_EQ(bench.read("out.csv"),
+            "t,Y,V[0],V[1],M.XOUT[0],M.XOUT[1],M.XOUT[1]\n0,128,2,20,42,86,86\n0.001,192,3,30,63,129,129\n");
+}
+
+/// A block's input that has a value of its own needs no column, in a sequential body as in a diagram.
+TEST_F(Run, AnInputOfASequentialBodyKeepsItsDefault) {
+  bench.write("log.csv", "t,U\n0,2\n0.001,3\n");
+  const auto body = [&](const std::string& rate) {
+    bench.write("plant.st", "FUNCTION_BLOCK P (* @ts 1ms *) VAR_INPUT U : LREAL; RATE : " + rate +
+                                "; END_VAR VAR_OUTPUT Y : LREAL; END_VAR\n"
+                                "IF U > 2.5 THEN Y := RATE; ELSE Y := 0.0; END_IF;\nEND_FUNCTION_BLOCK\n");
+    return bench.shell(std::string(go));
+  };
+  EXPECT_THAT(body("LREAL := 0.5").err, HasSubstr("input RATE has no column, and keeps its default 0.5"));
+  EXPECT_EQ(bench.read("out.csv"), "t,Y\n0,0\n0.001,0.5\n");
+  EXPECT_THAT(body("LREAL").err, HasSubstr("HY502"));
+}
+
 TEST_F(Run, TracesSignalsInside) {
   EXPECT_EQ(bench.shell(std::string(go) + " --trace amp.xout --trace SUM.Q").code, 0);
   EXPECT_EQ(bench.read("out.csv"),

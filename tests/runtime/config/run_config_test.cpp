@@ -422,6 +422,28 @@ TEST(RunConfig, AHistoryNamesPointsInTheWordsOfTheDoor) {
   EXPECT_EQ(errors(file + "megabytes = 0\n"), "805@5:13 ");
 }
 
+TEST(RunConfig, TheNameOfAVectorIsEachOfItsElements) {
+  ProgramShape shape = plant();
+  for (const char* const name : {"V[0]", "V[1]", "VX[0]"}) {
+    shape.inputs.push_back(shape.inputs.front());
+    shape.inputs.back().name = name;
+  }
+  const std::string text =
+      "[outputs.Y]\nsafe = 0.0\n[mqtt]\nbroker = \"b\"\non_change = true\npoints = [\"v\", \"Y\", "
+      "\"V[1]\"]\n[dead_bands]\n";
+  const MqttConfig mqtt = *parse_run_config("RUN.toml", text + "V = 0.5\n", shape).mqtt;
+  EXPECT_EQ(mqtt.points, (std::vector<std::string>{"V[0]", "V[1]", "Y"}));
+  EXPECT_EQ(mqtt.dead_bands, (std::vector<double>{0.5, 0.5, 0.0}));
+  try {
+    (void)parse_run_config("RUN.toml", text + "V = 0.5\n\"V[1]\" = 0.1\n", shape);
+    ADD_FAILURE() << "taken";
+  } catch (const InputError& problem) {
+    ASSERT_EQ(problem.diagnostics().all().size(), 1U);
+    EXPECT_EQ(problem.diagnostics().all()[0].number, error::run_key_twice);
+    EXPECT_EQ(problem.diagnostics().all()[0].cause, "The dead band of V[1] has been given before.");
+  }
+}
+
 TEST(RunConfig, AnMqttTableHasItsDefaultsFromTheDiagram) {
   const std::string safe = "[outputs.Y]\nsafe = 0.0\n";
   const auto read = [&](const std::string& keys) {

@@ -168,6 +168,7 @@ struct Diagnosis {
   std::vector<ParameterFinding> calibration{};  ///< known parameters, as refitted
   std::vector<ParameterFinding> nominal{};      ///< as they were given
   std::vector<Rival> rivals{};
+  std::size_t siblings = 0;           ///< that the probabilities of the evidence take into account
   Evidence evidence{};                ///< where effects leave more than noise: what is there, by families
   std::optional<GapBudget> budget{};  ///< of which kind the gap is; empty where there is none
   std::vector<Rival> fitted{};        ///< the best of all sets that were fitted, ruled out or not

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Outcome {
   std::string verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; no errors of a check
   std::vector<FoundEffect> effects{};
   std::vector<FoundParameter> parameters{};
+  std::map<std::string, double> families{};  ///< the probability of each by the record alone, without a prior
   double confidence = not_a_number;
   double nominal_rms = not_a_number;   ///< of the gap, or of a fit's residual at its start, in `unit_of_gap`
   double improved_rms = not_a_number;  ///< with the effects; after the fit, in train

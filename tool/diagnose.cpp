@@ -61,6 +61,7 @@ struct DiagnoseOptions {
   std::vector<std::string> limits;
   DiagramOptions controller;
   std::string trace;
+  std::string prior;
   diagnosis::DiagnosisOptions diagnosis;
   bool json = false;
 };
@@ -91,6 +92,7 @@ void prove_outputs(const DiagnoseOptions& options) {
     inputs.push_back({.file = log, .named_by = "--log"});
   }
   inputs.push_back({.file = options.trace, .named_by = "--trace"});
+  inputs.push_back({.file = options.prior, .named_by = "--prior"});
   inputs.push_back({.file = options.controller.file, .named_by = "--controller"});
   inputs.push_back({.file = options.controller.parameters, .named_by = "--controller-params"});
   std::error_code unknown;
@@ -121,6 +123,9 @@ int diagnose(DiagnoseOptions options, Console& console) {
   diagnosis::ignore_columns(input);
   options.diagnosis.effects = options.effects;
   options.diagnosis.limits = diagnosis::read_limits(program.graph, options.limits);
+  if (!options.prior.empty()) {
+    options.diagnosis.prior = diagnosis::read_prior(options.prior, options.logs);
+  }
   std::optional<diagnosis::ControllerFinding> controller;
   if (!options.trace.empty()) {
     controller = replayed(options, warnings);
@@ -186,6 +191,11 @@ Action add_diagnose(CLI::App& app) {
                  "Seconds after which no further effect is added. The verdict may then be another on another machine.")
       ->check(number_above_zero())
       ->option_text("SECONDS");
+  app.add_option(
+         "--prior", options->prior,
+         "What siblings of the machine say, by `hysteron fleet-report --prior`: a family of effects that they have is "
+         "more probable. The verdict tells the probability by this record alone, too.")
+      ->option_text("PRIOR.json");
   app.add_flag("--explain", options->diagnosis.explain,
                "Tells which rules decided, as measured and against which threshold; in verdict.json, too.");
   app.add_option("--without", options->diagnosis.without, "Leaves a rule of the policy out, to see what it decides.")

@@ -13,6 +13,7 @@
 
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/language/syntax.hpp"
+#include "diagnosis/prior.hpp"
 #include "fleet/manifest.hpp"
 #include "fleet/run.hpp"
 #include "fleet/share.hpp"
@@ -50,6 +51,7 @@ struct FleetOptions {
   std::string command = "diagnose";
   std::string output;
   std::string share;
+  std::string prior;
   double effort = 1.0;
   double material = 0.0;
   fleet::RunOptions run;
@@ -101,7 +103,17 @@ int run_fleet(FleetOptions options, Console& console) {
   options.run.program = std::filesystem::read_symlink("/proc/self/exe").string();
   options.run.version = version;
   options.run.output = options.output;
-  options.run.named_files = files_named_in;
+  if (!options.prior.empty()) {
+    (void)diagnosis::read_prior(options.prior, {});  // told once, not by each record
+    options.run.options.insert(options.run.options.end(), {"--prior", options.prior});
+  }
+  options.run.named_files = [&](const std::string& diagram) {
+    std::vector<std::string> files = files_named_in(diagram);
+    if (!options.prior.empty()) {
+      files.push_back(options.prior);
+    }
+    return files;
+  };
   Progress line("Working");
   options.run.progress = [&](std::size_t done, std::size_t all, const fleet::Unit& last) {
     line.update(static_cast<double>(done) / static_cast<double>(all),
@@ -157,6 +169,7 @@ Action add_fleet(CLI::App& app) {
   app.add_option("--material", options->material, "As of `hysteron diagnose`.")
       ->check(number_from_zero())
       ->option_text("SIZE");
+  app.add_option("--prior", options->prior, "As of `hysteron diagnose`.")->option_text("PRIOR.json");
   app.add_option("--share", options->share, "Works the records K, K + N, K + 2 N, … alone; else MPI or Slurm say it.")
       ->option_text("K/N");
   app.add_flag("--retry", options->run.retry, "Does records that had failed again, as after a larger limit.");

@@ -9,6 +9,7 @@
 #include "fleet/report/analysis.hpp"
 #include "fleet/report/fleet_data.hpp"
 #include "fleet/report/fleet_page.hpp"
+#include "fleet/report/prior_file.hpp"
 #include "fleet/report/words.hpp"
 #include "fleet/run_record.hpp"
 #include "support/atomic_file.hpp"
@@ -26,6 +27,7 @@ constexpr std::string_view fleet_report_examples = R"(Examples:
   hysteron fleet-report fleet
   hysteron fleet-report fleet --out report.html --csv parameters.csv
   hysteron fleet-report fleet --json
+  hysteron fleet-report fleet --prior prior.json --group valves
 
 DIR is the folder of `hysteron fleet`. The report is of the records that its last manifest names, as far as they are worked:
 which machines drift, in which parameter and since when, which stand out from their siblings, and which records have no result.
@@ -38,6 +40,8 @@ struct FleetReportOptions {
   std::string folder;
   std::string output;
   std::string csv;
+  std::string prior;
+  std::string group;
   double false_share = 0.05;
   bool json = false;
 };
@@ -49,7 +53,7 @@ fs::path seen_from(const std::string& page, const std::string& folder) {
 }
 
 int report_fleet(const FleetReportOptions& options, Console& console) {
-  for (const std::string& file : {options.output, options.csv}) {
+  for (const std::string& file : {options.output, options.csv, options.prior}) {
     if (!file.empty()) {
       refuse_unwritable(file);
     }
@@ -68,6 +72,9 @@ int report_fleet(const FleetReportOptions& options, Console& console) {
   if (!options.csv.empty()) {
     write_file_atomically(options.csv, fleet::report_csv(all));
   }
+  if (!options.prior.empty()) {
+    write_file_atomically(options.prior, fleet::prior_json(rows, options.group, options.folder));
+  }
   if (options.json) {
     console.print(fleet::report_json(all, rows, version));
     return exit_ok;
@@ -80,7 +87,7 @@ int report_fleet(const FleetReportOptions& options, Console& console) {
   for (const fleet::Finding& finding : all.findings) {
     text += fmt::format("  {}: {}\n", finding.machine, fleet::sentence(all, finding));
   }
-  for (const std::string& file : {options.output, options.csv}) {
+  for (const std::string& file : {options.output, options.csv, options.prior}) {
     text += file.empty() ? "" : file + "\n";
   }
   console.print(text);
@@ -94,6 +101,11 @@ Action add_fleet_report(CLI::App& app) {
   app.add_option("DIR", options->folder, "The folder of `hysteron fleet`.")->required()->option_text(" ");
   app.add_option("--out", options->output, "The report as a page.")->option_text("REPORT.html");
   app.add_option("--csv", options->csv, "A line for each parameter of each machine.")->option_text("FILE.csv");
+  app.add_option("--prior", options->prior,
+                 "How often each family of effects is there, for `hysteron diagnose --prior`.")
+      ->option_text("PRIOR.json");
+  app.add_option("--group", options->group, "Of which siblings the prior is, where there are several groups.")
+      ->option_text("NAME");
   app.add_option("--false-share", options->false_share,
                  "How many of the findings may be false on average, 0.05 without it.")
       ->check(CLI::Range(1e-6, 0.5))

@@ -136,7 +136,8 @@ void VectorPins::declare_sized(const language::FunctionBlock& block) {
       if (!parameter && std::ranges::none_of(kind->settings, is_it)) {
         return;
       }
-      if (double value = 0.0; !parameter) {
+      // Settings are counts, but for a discretised block, whose continuous numbers they are.
+      if (double value = 0.0; !parameter && !kind->is_discretised) {
         Type type = Type::Int;
         if (constant_value(source_, argument.value, value, type) && type != Type::Int) {
           refused = true;

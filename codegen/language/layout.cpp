@@ -64,6 +64,9 @@ std::vector<Element> elements_of(std::string_view text) {
         before.keyword == Keyword::Control && same_name(text.substr(before.span.offset, before.span.length), "OF");
     element.is_type = (before.symbol == Symbol::Colon || behind_of) && element.symbol == Symbol::Identifier &&
                       is_elementary_type(text.substr(token.offset, token.length));
+    element.is_bit = element.symbol == Symbol::Number && text[token.offset] == '.' &&
+                     (before.symbol == Symbol::Identifier || before.symbol == Symbol::RightBracket) &&
+                     before.span.offset + before.span.length == token.offset;
     element.breaks_after = element.symbol == Symbol::Comma || (is_operator(element) && !element.is_unary);
     elements.push_back(element);
     before = element;
@@ -73,7 +76,7 @@ std::vector<Element> elements_of(std::string_view text) {
 }
 
 bool is_spaced(const Element& before, const Element& element) {
-  if (is_opening(before)) {
+  if (is_opening(before) || element.is_bit) {
     return false;
   }
   if (!element.is_comment) {

@@ -23,6 +23,7 @@ struct Element {
   bool is_trailing = false;   ///< a comment on the line of the token before it
   bool is_type = false;       ///< the name of an elementary type
   bool is_unary = false;      ///< a sign before a value
+  bool is_bit = false;        ///< of a WORD: the .3 of W.3, X[0].3 and I.PIN.3
   bool breaks_after = false;  ///< a line may end behind it
 };
 

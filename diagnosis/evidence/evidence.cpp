@@ -78,12 +78,15 @@ AllSets all_sets(std::vector<Explored>& spaces) {
   return result;
 }
 
-/// Sets by how often each is the best; returns the same of families, and of the effects in them.
+/// Sets by how often each is the best, and how much that counts; returns the same of families, and of the effects in
+/// them.
 struct Votes {
   std::map<std::string, double> families{};
+  std::map<std::string, double> by_record{};  ///< of families, each time alike
   std::map<std::pair<std::string, std::string>, double> members{};
 };
-Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t seed, const Rules& rules) {
+Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t seed, const Prior& prior,
+           const Rules& rules) {
   std::mt19937_64 random(seed);
   std::exponential_distribution<double> weight(1.0);
   std::normal_distribution<double> error(0.0, 1.0);
@@ -106,7 +109,7 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
   const std::vector<Entry> yardsticks = entries(sets.yardsticks, false);
   const std::vector<Entry> elsewhere = entries(sets.told, true);
   const auto count = static_cast<int>(policy::draws.value);
-  const double one_vote = 1.0 / policy::draws.value;
+  double sum = 0.0;
   for (int draw = 0; draw < count; ++draw) {
     VectorXd weights(static_cast<Index>(spaces.front().blocks->count()));
     std::ranges::generate(weights, [&] { return weight(random); });
@@ -145,14 +148,26 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
     for (const Entry& entry : elsewhere) {
       take(entry, least_at_hand + left_by(entry) - yardstick + rules[policy::another_place]);
     }
-    best->set->probability += one_vote;
+    const double counts = prior.weight_of_set(best->families);
+    sum += counts;
+    best->set->probability += counts;
     for (const std::string& family : best->families) {
-      votes.families[family] += one_vote;
+      votes.families[family] += counts;
+      votes.by_record[family] += 1.0 / count;
     }
     for (const std::size_t i : best->set->laws) {
       const Law& law = (*spaces[best->set->space].laws)[i];
-      votes.members[{law.family, law.effect}] += one_vote;
+      votes.members[{law.family, law.effect}] += counts;
     }
+  }
+  for (LawSet& set : sets.told) {
+    set.probability /= sum;
+  }
+  for (auto& [family, votes_of] : votes.families) {
+    votes_of /= sum;
+  }
+  for (auto& [member, votes_of] : votes.members) {
+    votes_of /= sum;
   }
   return votes;
 }
@@ -297,7 +312,7 @@ struct Weighing::Sets {
 
 Weighing::Weighing(const Task& task, const std::string& top, const Explanation& calibrated,
                    const EvidenceOptions& options)
-    : seed_(options.seed), threads_(options.threads), sets_(std::make_unique<Sets>()) {
+    : seed_(options.seed), threads_(options.threads), prior_(options.prior), sets_(std::make_unique<Sets>()) {
   sets_->open = opened(task, top, calibrated.variant);  // kept, since the spaces keep references
   const std::optional<OpenLoop>& open = sets_->open;
   if (open) {
@@ -341,7 +356,7 @@ Evidence Weighing::told(const Rules& rules) {
   if (sets.empty()) {
     return {};
   }
-  const Votes votes = vote(spaces, sets_->all, seed_, rules);
+  const Votes votes = vote(spaces, sets_->all, seed_, prior_, rules);
   std::ranges::stable_sort(sets, [](const LawSet& a, const LawSet& b) { return a.probability > b.probability; });
 
   Evidence result;
@@ -350,7 +365,7 @@ Evidence Weighing::told(const Rules& rules) {
     result.tried += one.laws->size();
   }
   for (const auto& [family, probability] : votes.families) {
-    FamilyFinding finding{.family = family, .probability = probability};
+    FamilyFinding finding{.family = family, .probability = probability, .by_record = votes.by_record.at(family)};
     for (const auto& [member, share] : votes.members) {
       if (member.first == family && share > finding.member * probability) {
         finding.effect = member.second;

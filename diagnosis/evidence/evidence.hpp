@@ -3,7 +3,8 @@
 // What is compared is ln of the energy that a set leaves on the blocks held out, each block by a fit without it, of the
 // energy that the calibrated diagram leaves there. The probability of a set, and of a family of effects, is how often
 // it is the best under weights that are drawn for the blocks (Rubin's Bayesian bootstrap) and under an error that all
-// blocks have in common, since no formula is quite the machine's.
+// blocks have in common, since no formula is quite the machine's. Each time counts as much as siblings of the machine
+// say of the set, where there are any.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "diagnosis/evidence/law_findings.hpp"
+#include "diagnosis/prior.hpp"
 #include "diagnosis/rules.hpp"
 #include "diagnosis/search/fitting.hpp"
 
@@ -23,6 +25,7 @@ struct EvidenceOptions {
   std::vector<std::string> columns{};  ///< of the records that the diagram does not use
   unsigned threads = 2;
   std::uint64_t seed = 1;
+  Prior prior{};
 };
 
 /// The sets of laws of a record, to be weighed again where one of them has been refuted.
@@ -47,6 +50,7 @@ class Weighing {
   struct Sets;
   std::uint64_t seed_;
   unsigned threads_;
+  Prior prior_;
   std::unique_ptr<Sets> sets_;
 };
 

@@ -36,10 +36,11 @@ struct SetFinding {
 struct FamilyFinding {
   std::string family{};
   double probability = 0.0;
-  double closed = 0.0;   ///< of the held-out gap, by Shapley's share in the most probable set that holds it
-  double alone = 0.0;    ///< and by itself
-  std::string effect{};  ///< its most probable member
-  double member = 0.0;   ///< the probability of that one, of that of the family
+  double by_record = 0.0;  ///< the probability by the record alone: without a prior, the same
+  double closed = 0.0;     ///< of the held-out gap, by Shapley's share in the most probable set that holds it
+  double alone = 0.0;      ///< and by itself
+  std::string effect{};    ///< its most probable member
+  double member = 0.0;     ///< the probability of that one, of that of the family
   std::string edge{};
 };
 

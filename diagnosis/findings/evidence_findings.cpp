@@ -155,7 +155,11 @@ std::string sentence_of(const Diagnosis& found, const Rules& rules) {
       next = &one;
     }
   }
-  text += fmt::format(" (probability {:.2f}{})", family.probability,
+  const std::string by_record = found.siblings == 0
+                                    ? std::string()
+                                    : fmt::format(" with {} sibling{}, {:.2f} by this record alone", found.siblings,
+                                                  found.siblings == 1 ? "" : "s", family.by_record);
+  text += fmt::format(" (probability {:.2f}{}{})", family.probability, by_record,
                       next == nullptr
                           ? std::string()
                           : fmt::format("; next best {}, {}", words_of_family(next->family), percent(next->alone)));

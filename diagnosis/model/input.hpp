@@ -10,6 +10,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/parameters/parameter_file.hpp"
+#include "diagnosis/prior.hpp"
 #include "records/record.hpp"
 #include "support/numbers.hpp"
 
@@ -30,6 +31,7 @@ struct DiagnosisOptions {
   double time_limit = infinity;  ///< s, after which no further effect is added either; the verdict then depends on it
   std::uint64_t seed = 1;
   bool explain = false;                ///< keeps the answers of the rules
+  Prior prior{};                       ///< by the machine's siblings
   std::vector<std::string> without{};  ///< rules that are left out, see rules.hpp
   unsigned threads = 2;
   std::function<void(double fraction, std::string_view text)> progress{};

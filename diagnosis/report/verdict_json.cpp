@@ -45,6 +45,7 @@ Json families_of(const Evidence& evidence) {
   for (const FamilyFinding& one : evidence.families) {
     result.push_back({{"family", one.family},
                       {"probability", number_or_null<Json>(one.probability)},
+                      {"probability_by_record", number_or_null<Json>(one.by_record)},
                       {"closed", number_or_null<Json>(one.closed)},
                       {"closed_alone", number_or_null<Json>(one.alone)},
                       {"effect", one.effect},
@@ -220,6 +221,7 @@ std::string verdict_json(const Diagnosis& found) {
                   {"effects", std::move(effects)},
                   {"rivals", std::move(rivals)},
                   {"confidence", number_or_null<Json>(found.confidence)},
+                  {"siblings", found.siblings},
                   {"families", families_of(found.evidence)},
                   {"evidence", law_sets_of(found.evidence)},
                   {"budget", budget_of(found.budget)},

@@ -33,9 +33,12 @@ Judged weighed(Judged judged, const Answer& answer, const DiagnosisOptions& opti
     }
     return judged;
   }
-  Weighing weighing(
-      record.task, record.top, calibrated,
-      {.effects = options.effects, .columns = record.unused, .threads = options.threads, .seed = options.seed});
+  Weighing weighing(record.task, record.top, calibrated,
+                    {.effects = options.effects,
+                     .columns = record.unused,
+                     .threads = options.threads,
+                     .seed = options.seed,
+                     .prior = options.prior});
   judged.budget = weighing.budget(output);
   for (int run = 0; run < static_cast<int>(policy::runs.value); ++run) {
     Evidence evidence = weighing.told(rules);

@@ -13,6 +13,11 @@
 #include "support/median.hpp"
 
 namespace hysteron::fleet {
+
+Kind kind_of(const Unit& unit) {
+  return {.group = unit.group.empty() ? unit.diagram : unit.group, .command = unit.command};
+}
+
 namespace {
 
 // Asymptotic efficiency of the median absolute deviation at the normal distribution.
@@ -20,10 +25,6 @@ constexpr double efficiency_of_mad = 0.37;
 
 // Standard deviation of a median over that of a mean, √(π/2).
 constexpr double widening_of_median = 1.2533;
-
-Kind kind_of(const Unit& unit) {
-  return {.group = unit.group.empty() ? unit.diagram : unit.group, .command = unit.command};
-}
 
 auto key_of(const Kind& kind) {
   return std::pair(kind.group, kind.command);

@@ -15,6 +15,7 @@ struct Kind {
   std::string group{};
   Command command = Command::Diagnose;
 };
+[[nodiscard]] Kind kind_of(const Unit& unit);
 
 /// A parameter over all machines of a kind.
 struct Parameter {

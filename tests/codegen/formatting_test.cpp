@@ -150,6 +150,14 @@ std::vector<double> run_in_any_order(const std::string& text, std::uint64_t seed
   return values;
 }
 
+TEST(Formatting, ABitStaysAtItsWord) {
+  const std::string text =
+      "FUNCTION_BLOCK T\n  VAR_INPUT\n    W : WORD;\n  END_VAR\n  VAR_OUTPUT\n    Y : BOOL;\n  END_VAR\n\n"
+      "  Y := W.3 AND NOT W.15;\nEND_FUNCTION_BLOCK\n";
+  Diagnostics none;
+  EXPECT_EQ(language::format(language::parse("t.st", text, none)), text);
+}
+
 TEST(Formatting, LeavesWhatAnIecCompilerComputesOrRefuses) {
   constexpr std::uint64_t count = 3000;
   const std::uint64_t fresh = std::random_device{}();

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "diagnosis/evidence/open_loop.hpp"
 #include "diagnosis/evidence/summed_edge.hpp"
@@ -120,6 +123,33 @@ TEST(Evidence, WithoutFrictionNoneIsSure) {
     if (one.family == "dry_friction") {
       EXPECT_LT(one.probability * one.closed, 0.35);
     }
+  }
+}
+
+/// Siblings change what is told by as much as they say, and what the record says by itself stays the same.
+TEST(Evidence, SiblingsMakeTheirFamiliesMoreProbable) {
+  const Asked found = asked(messy_axis(0.02, 4), std::string(axis));
+  const auto probability = [](const Evidence& evidence, const std::string& family) {
+    const auto one = std::ranges::find(evidence.families, family, &FamilyFinding::family);
+    return one == evidence.families.end() ? std::pair(0.0, 0.0) : std::pair(one->probability, one->by_record);
+  };
+  const Prior prior(std::vector<Prior::Probabilities>(10, {{"dry_friction", 1.0}}));
+  const Evidence with = Weighing(found.task, "AXIS", found.footing.calibrated, {.prior = prior}).told();
+  const Evidence without = Weighing(found.task, "AXIS", found.footing.calibrated, {}).told();
+  double sum = 0.0;
+  for (const SetFinding& set : with.sets) {
+    sum += set.probability;
+  }
+  EXPECT_NEAR(sum, 1.0, 0.02) << "sets that are not listed have little";
+  for (const FamilyFinding& one : without.families) {
+    EXPECT_DOUBLE_EQ(one.probability, one.by_record) << one.family;
+    EXPECT_DOUBLE_EQ(probability(with, one.family).second, one.by_record) << one.family;
+  }
+  const auto [alone, same] = probability(without, "dry_friction");
+  const auto [told, record] = probability(with, "dry_friction");
+  ASSERT_GT(alone, 0.0);
+  if (alone < 1.0) {
+    EXPECT_GT(told, alone);
   }
 }
 

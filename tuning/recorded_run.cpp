@@ -10,53 +10,9 @@
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "tuning/record_units.hpp"
+#include "tuning/signal_names.hpp"
 
 namespace hysteron {
-namespace {
-
-/// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
-std::vector<std::string> signal_names(const Graph& graph) {
-  std::vector<std::string> names;
-  for (const NamedWire& named : graph.named) {
-    names.push_back(named.path);
-  }
-  for (const Node& node : graph.nodes) {
-    for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
-      names.push_back(fmt::format("{}.{}", node.path, node.block->outputs[i].name));
-    }
-  }
-  return names;
-}
-
-Wire find_signal(const Graph& graph, const std::string& path) {
-  for (const NamedWire& named : graph.named) {
-    if (equal_ignoring_case(named.path, path)) {
-      return named.wire;
-    }
-  }
-  const auto dot = path.rfind('.');
-  for (std::uint32_t index = 0; dot != std::string::npos && index < graph.nodes.size(); ++index) {
-    const Node& node = graph.nodes[index];
-    if (node.block == nullptr || !equal_ignoring_case(node.path, path.substr(0, dot))) {
-      continue;
-    }
-    for (std::size_t i = 0; i < node.block->outputs.size(); ++i) {
-      if (equal_ignoring_case(node.block->outputs[i].name, path.substr(dot + 1))) {
-        return {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index};
-      }
-    }
-  }
-  const auto names = signal_names(graph);
-  const auto near = nearest_name(path, names);
-  throw InputError(error::unknown_signal, {.file = graph.source->path},
-                   fmt::format("{} has no signal {}.", graph.name, path),
-                   near.empty() ? "name a variable, an output of an instance, as INSTANCE.XOUT, or either inside a "
-                                  "nested block, as PLANT.HYST.XOUT."
-                                : fmt::format("did you mean {}?", near));
-}
-
-}  // namespace
-
 void refuse_ports_named_as_time(const Diagnostics& warnings) {
   Diagnostics errors;
   for (Diagnostic one : warnings.all()) {
@@ -109,7 +65,7 @@ RecordedRun run_over(Program program, records::Record& record, const RunRequest&
   }
   std::vector<Wire> watched = output_wires(graph);
   for (const std::string& path : request.traces) {
-    watched.push_back(find_signal(graph, path));
+    watched.push_back(find_signal(graph, path, {.file = graph.source->path}));
     places.push_back({.file = graph.source->path});
     // A variable T would stand in a second column t.
     result.names.push_back(equal_ignoring_case(path, "t") ? in_capitals(graph.name + "." + path) : in_capitals(path));

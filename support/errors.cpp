@@ -90,7 +90,6 @@ constexpr std::array titles{
     ErrorTitle{error::limits_contradict, "Limits that cannot be kept together"},
     ErrorTitle{error::plant_sets_tuned, "Plant that sets what is tuned"},
     ErrorTitle{error::no_limit_cycle, "Record without a limit cycle of a relay"},
-    ErrorTitle{error::nothing_maps, "Diagram of which nothing maps to a joint"},
     ErrorTitle{error::parameter_file_syntax, "Parameter file is not TOML"},
     ErrorTitle{error::duplicate_key, "Key given twice"},
     ErrorTitle{error::unknown_key, "Unknown key in a parameter file"},

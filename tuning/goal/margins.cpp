@@ -45,7 +45,7 @@ double angle_from_critical(Complex open_loop) {
 Sensitivity::Sensitivity(const Signal& impulse, const Eigen::MatrixXd& impulse_by, double sample_time)
     : impulse_(impulse), impulse_by_(impulse_by), sample_time_(sample_time) {
   const double highest = pi / sample_time;
-  const double lowest = std::min(0.1 * highest, pi / (sample_time * static_cast<double>(impulse.size())));
+  const double lowest = std::min(0.1 * highest, 0.1 * pi / (sample_time * static_cast<double>(impulse.size())));
   for (std::size_t i = 0; i < grid_points; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(grid_points - 1);
     const double frequency = i + 1 == grid_points ? highest : lowest * std::pow(highest / lowest, share);

@@ -43,6 +43,7 @@ Action add_generate(CLI::App& app);
 Action add_library(CLI::App& app);
 Action add_import(CLI::App& app);
 Action add_tune(CLI::App& app);
+Action add_relay(CLI::App& app);
 Action add_diagnose(CLI::App& app);
 Action add_fleet(CLI::App& app);
 Action add_fleet_report(CLI::App& app);

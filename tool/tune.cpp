@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,13 +9,13 @@
 
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
-#include "support/overwriting.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/record_options.hpp"
+#include "tool/tune_goal.hpp"
+#include "tool/tune_options.hpp"
 #include "tool/tune_report.hpp"
-#include "tool/writable.hpp"
 #include "tuning/recorded_run.hpp"
 
 namespace hysteron::tool {
@@ -27,6 +25,7 @@ constexpr std::string_view tune_examples = R"(Examples:
   hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml
   hysteron tune plant.st --log sine.csv --log steps.csv --params plant.toml --out tuned.toml --report report
   hysteron tune plant.st --log sine.csv --params plant.toml --out tuned.toml --start 10 --json
+  hysteron tune loop.st --params pid.toml --out tuned.toml --report report
 
 The parameter file says what may change, and on which part of the records:
   [parameters.HYST]
@@ -40,42 +39,20 @@ The parameter file says what may change, and on which part of the records:
   initial_states = ["SUM.SUM"]  fitted too, for each record
   [initial.SUM]
   SUM = 0.0                   where a state begins, instead of its reset
+A file with [goal] tunes the controller of a closed loop instead, and needs no record:
+  [goal]
+  settling_time = 0.5         the wished response, in seconds to 2 %; or rise_time, or wished = "COLUMN" of a record
+  loop = "PID.XOUT"           where the loop is cut for its margins; also the effort, where none is named
+  plants = ["light.toml", "heavy.toml"]  the worst of them counts; robust = "mean" for their mean
+  [goal.limits]
+  effort = 10.0               also effort_rate, overshoot_percent, gain_margin_db, phase_margin_deg, sensitivity
 The diagram is run from its reset over each whole record: columns are its inputs, and the outputs of the same name are
 what it is to meet. TUNED.toml is P.toml with the fitted values, and with your comments; run, generate and tune take it.
 The initial states of a single record stand there under [initial], those of several in the heading alone. Ctrl-C ends
 the fit and writes the best so far.
-Exit codes: 0 fitted; 1 the fit did not converge, the best is written; 2 an error in diagram, parameters or records, and
+Exit codes: 0 fitted; 1 the fit did not converge, or limits of a goal are broken, the best is written; 2 an error in diagram, parameters or records, and
 nothing is written; 130 ended by Ctrl-C, the best is written.
 )";
-
-/// As shells give it for a program that an interrupt has ended.
-constexpr int exit_interrupted = 130;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// Takes Ctrl-C as a wish to end the fit, for as long as it lives.
-class InterruptWatch {
- public:
-  InterruptWatch() : before_(std::signal(SIGINT, [](int /*signal*/) { interrupted = 1; })) { interrupted = 0; }
-  ~InterruptWatch() { (void)std::signal(SIGINT, before_); }
-  InterruptWatch(const InterruptWatch&) = delete;
-  InterruptWatch& operator=(const InterruptWatch&) = delete;
-  InterruptWatch(InterruptWatch&&) = delete;
-  InterruptWatch& operator=(InterruptWatch&&) = delete;
-
- private:
-  void (*before_)(int);
-};
-
-struct TuneOptions {
-  DiagramOptions diagram;
-  RecordOptions record;
-  std::vector<std::string> logs;
-  std::string output;
-  std::string report;
-  int starts = 1;
-  bool json = false;
-};
 
 /// Which output the progress line speaks of: the only one, with its unit; else the share of the ranges.
 std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOptions& options, int start,
@@ -83,36 +60,6 @@ std::string progress_text(const OutputErrorProblem& problem, const OutputErrorOp
   return fmt::format("{}iteration {}, RMSE {:.3g} % of the range{}",
                      options.starts > 1 ? fmt::format("start {} of {}, ", start + 1, options.starts) : std::string(),
                      progress.iteration, 100.0 * progress.rms, problem.outputs.size() > 1 ? "s" : "");
-}
-
-/// What the end of the fit would fail on is said before it.
-void prove_outputs(const TuneOptions& options) {
-  std::vector<InputFile> inputs = inputs_of(options.diagram);
-  for (const std::string& log : options.logs) {
-    inputs.push_back({.file = log, .named_by = "--log"});
-  }
-  refuse_to_overwrite({.file = options.output}, inputs);
-  refuse_unwritable(options.output);
-  if (options.report.empty()) {
-    return;
-  }
-  for (const std::filesystem::path& file : report_paths(options.report, options.logs.size())) {
-    refuse_to_overwrite({.file = file.string(), .mend = "give another folder for --report."}, inputs);
-    if (same_file(file.string(), options.output)) {
-      throw InputError(error::overwrites_input, {.file = file.string()},
-                       fmt::format("--out and --report would both write {}.", options.output),
-                       "give another name for --out, or another folder for --report.");
-    }
-  }
-  const std::filesystem::path report = std::filesystem::absolute(options.report).lexically_normal();
-  for (std::filesystem::path folder = report; folder.has_relative_path(); folder = folder.parent_path()) {
-    if (same_file(folder.string(), options.output)) {
-      throw InputError(error::overwrites_input, {.file = options.output},
-                       fmt::format("--out would write the file {} where --report needs a folder.", options.output),
-                       "give another name for --out, or another folder for --report.");
-    }
-  }
-  refuse_unwritable_folder(options.report);
 }
 
 /// What looks for the cause of what this fit leaves.
@@ -127,12 +74,20 @@ std::string diagnose_command(const TuneOptions& options) {
 }
 
 int tune(const TuneOptions& options, Console& console) {
-  prove_outputs(options);
+  const auto file = parameters::read_parameter_file(options.diagram.parameters);
+  if (file.goal.is_given()) {
+    return tune_goal(options, file, console);
+  }
+  if (options.logs.empty()) {
+    throw InputError(error::bad_usage, {.file = options.diagram.parameters},
+                     "tune has nothing to tune for: no record is given, and the parameter file has no [goal].",
+                     "give a measured record as --log LOG.csv to fit it, or a [goal] for a control loop.");
+  }
+  prove_outputs(options, report_paths(options.report, options.logs.size()));
   Diagnostics warnings;
   const Program program = compile_file(options.diagram.file,
                                        {.top = options.diagram.top, .any_order = options.diagram.any_order}, warnings);
   refuse_ports_named_as_time(warnings);
-  const auto file = parameters::read_parameter_file(options.diagram.parameters);
   const std::vector<records::Record> records =
       read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
   const OutputErrorProblem problem = output_error_problem(program, file, records);
@@ -146,7 +101,7 @@ int tune(const TuneOptions& options, Console& console) {
       // How many iterations are left nobody knows; most fits take some thirty.
       const double within = std::min(0.95, static_cast<double>(progress.iteration) / 30.0);
       line.update((start + within) / std::max(1, options.starts), progress_text(problem, fitting, start, progress));
-      return interrupted == 0;
+      return !watch.interrupted();
     };
     fit = fit_output_error(problem, fitting);
     line.finish();
@@ -177,8 +132,8 @@ Action add_tune(CLI::App& app) {
   app.add_option("FILE", options->diagram.file, "The diagram, a file in Structured Text.")
       ->required()
       ->option_text("FILE.st");
-  app.add_option("--log", options->logs, "A measured record; may be repeated.")
-      ->required()
+  app.add_option("--log", options->logs,
+                 "A measured record; may be repeated. None for a [goal] with a signal of its own.")
       ->option_text("LOG.csv")
       ->allow_extra_args(false);
   add_record_options(app, options->record);

@@ -27,6 +27,10 @@ std::string status_name(FitStatus status) {
       return "no influence";
     case FitStatus::Diverging:
       return "diverging";
+    case FitStatus::WorseThanConstant:
+      return "worse than a constant";
+    case FitStatus::Unbounded:
+      return "unbounded";
     case FitStatus::ModelFailed:
       return "model failed";
     case FitStatus::SolverFailed:

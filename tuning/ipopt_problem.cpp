@@ -412,6 +412,12 @@ std::string_view plain_words(FitStatus status) {
              "bounds.";
     case FitStatus::Diverging:
       return "Parameters ran towards infinity: the record does not determine them. Give bounds, or hold one.";
+    case FitStatus::WorseThanConstant:
+      return "The fit ended at a model that is no nearer to the record than a constant would be: no solution. Start "
+             "elsewhere, from several points with --start 20, or give bounds.";
+    case FitStatus::Unbounded:
+      return "The fit ended at a model whose output runs away within the record: no solution. Start from parameters at "
+             "which the diagram is stable, or give bounds.";
     case FitStatus::ModelFailed:
       return "The model gave no finite values where they were needed; tighten the bounds of the parameters.";
     case FitStatus::SolverFailed:

@@ -18,7 +18,8 @@
 // - Bounds. A parameter that the interior point leaves at its bound is set onto it, and the others are fitted again.
 // - Last digits. A line search compares costs, which no longer change below a cosine of 1e-8 or so. Full Gauss-Newton
 //   steps judged by the gradient instead follow, as long as each makes it smaller.
-// - Result. The best point ever evaluated is kept, the start among them: a cancelled or failed run still returns it, and
+// - Result. The best point ever evaluated is kept, the start among them: a cancelled or failed run still returns it,
+// and
 //   no fit ends worse than it began.
 #pragma once
 
@@ -74,10 +75,12 @@ enum class FitStatus : std::uint8_t {
   NearlyConverged,  ///< no further descent in double precision, with a gradient not quite within the tolerance
   IterationLimit,
   Cancelled,
-  Stalled,      ///< no step lowers the cost although the gradient is not small: often a wrong Jacobian
-  NoInfluence,  ///< a free parameter does not change the residuals at all where the fit ended
-  Diverging,    ///< parameters run to infinity: the record does not determine them
-  ModelFailed,  ///< the model gave no finite values where they were needed
+  Stalled,            ///< no step lowers the cost although the gradient is not small: often a wrong Jacobian
+  NoInfluence,        ///< a free parameter does not change the residuals at all where the fit ended
+  Diverging,          ///< parameters run to infinity: the record does not determine them
+  WorseThanConstant,  ///< output error alone: the outputs are no nearer to the record than a constant would be
+  Unbounded,          ///< output error alone: an output runs away within a record
+  ModelFailed,        ///< the model gave no finite values where they were needed
   SolverFailed
 };
 

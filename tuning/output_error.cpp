@@ -15,6 +15,7 @@
 #include "support/numbers.hpp"
 #include "support/root_mean_square.hpp"
 #include "tuning/rollout.hpp"
+#include "tuning/spread_start.hpp"
 
 namespace hysteron {
 namespace {
@@ -22,17 +23,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// What the heading of a tuned file begins with, and is known by when it is tuned again.
-constexpr std::string_view tuned_by = "Fitted by hysteron tune to ";
-
-/// A fraction in 0 … 1 that depends on the two numbers alone (S. Vigna's SplitMix64).
-double fraction(std::uint64_t start, std::uint64_t unknown) {
-  std::uint64_t z = (start * 1024 + unknown + 1) * 0x9E3779B97F4A7C15U;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-  return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-53;
-}
 
 class Fitter {
  public:
@@ -62,6 +52,7 @@ class Fitter {
       fit_.model.push_back(rollout_.outputs(fit_.solution.x, e));
     }
     score(fit_.solution.x, &OutputScore::train);
+    hold_against_constant();
     fit_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return std::move(fit_);
   }
@@ -214,23 +205,6 @@ class Fitter {
                : fmt::format("its block sets it anew in the first sample: name {} instead.", fmt::join(shown, " or "));
   }
 
-  [[nodiscard]] VectorXd start_point(int start) const {
-    VectorXd x = least_squares_.start;
-    for (Index j = 0; start > 0 && j < x.size(); ++j) {
-      const double low = least_squares_.lower[j];
-      const double high = least_squares_.upper[j];
-      const double share = fraction(static_cast<std::uint64_t>(start), static_cast<std::uint64_t>(j));
-      if (std::isfinite(low) && std::isfinite(high)) {
-        x[j] = low + share * (high - low);
-      } else if (low >= 0.0 && x[j] > 0.0) {
-        x[j] = std::clamp(x[j] * std::pow(10.0, 2.0 * share - 1.0), low, high);
-      } else {
-        x[j] = std::clamp(x[j] + (4.0 * share - 2.0) * least_squares_.typical[j], low, high);
-      }
-    }
-    return x;
-  }
-
   [[nodiscard]] LeastSquaresOptions solver_options(int start) const {
     LeastSquaresOptions options{.loss = problem_.loss, .max_iterations = options_.max_iterations};
     if (options_.progress) {
@@ -267,7 +241,7 @@ class Fitter {
 
   void fit_from(int start) {
     LeastSquaresProblem problem = least_squares_;
-    problem.start = start_point(start);
+    problem.start = spread_start(start, least_squares_);
     LeastSquaresResult result;
     try {
       result = solve(problem, solver_options(start));
@@ -344,6 +318,64 @@ class Fitter {
     }
   }
 
+  /// A gradient that vanishes is no solution where a constant is as near to the record, or where the response runs
+  /// away: far from any sensible point the cost is flat too.
+  void hold_against_constant() {
+    constexpr double runaway = 100.0;  // ranges of what was measured
+    constexpr double notably = 1e-6;
+    if (!fit_.solution.converged()) {
+      return;
+    }
+    double left = 0.0;
+    double of_constants = 0.0;
+    bool is_bounded = true;
+    for (std::size_t output = 0; output < problem_.outputs.size(); ++output) {
+      const double scale = range_in(&Experiment::train, output);
+      if (!(scale > 0.0)) {
+        continue;  // a constant is all that was measured: no model is nearer
+      }
+      left += std::pow(fit_.scores[output].train / scale, 2);
+      of_constants += std::pow(deviation_in_train(output) / scale, 2);
+      for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
+        const Signal& measured = problem_.experiments[e].measured[output];
+        const auto [low, high] = std::ranges::minmax(measured);
+        const double reach = runaway * std::max(high - low, scale);
+        is_bounded = is_bounded && std::ranges::all_of(fit_.model[e][output],
+                                                       [&](double y) { return low - reach < y && y < high + reach; });
+      }
+    }
+    if (!is_bounded) {
+      fit_.solution.status = FitStatus::Unbounded;
+    } else if (left > (1.0 + notably) * of_constants) {
+      fit_.solution.status = FitStatus::WorseThanConstant;
+    } else {
+      return;
+    }
+    fit_.solution.message = std::string(plain_words(fit_.solution.status));
+  }
+
+  /// Of what was measured of an output in train, from its mean there: what the best constant would leave.
+  [[nodiscard]] double deviation_in_train(std::size_t output) const {
+    double sum = 0.0;
+    double count = 0.0;
+    const auto each = [&](const auto& take) {
+      for (const Experiment& experiment : problem_.experiments) {
+        for (const records::RowRange& range : experiment.train) {
+          for (std::size_t row = range.first; row < range.last; ++row) {
+            take(experiment.measured[output][row]);
+          }
+        }
+      }
+    };
+    each([&](double value) {
+      sum += value;
+      count += 1.0;
+    });
+    RootMeanSquare deviation;
+    each([&](double value) { deviation.add(value - sum / count); });
+    return deviation.value();
+  }
+
   const OutputErrorProblem& problem_;
   const OutputErrorOptions& options_;
   detail::Rollout rollout_;
@@ -355,92 +387,6 @@ class Fitter {
 
 OutputErrorFit fit_output_error(const OutputErrorProblem& problem, const OutputErrorOptions& options) {
   return Fitter(problem, options).run();
-}
-
-namespace {
-
-/// The value of a parameter; of one that each record has for itself, the mean of all of them.
-double mean_over_records(const OutputErrorProblem& problem, const OutputErrorFit& fit, std::size_t parameter) {
-  const FreeParameter& wanted = problem.parameters[parameter];
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const FreeParameter& free = problem.parameters[j];
-    if (free.parameter == wanted.parameter && free.element == wanted.element) {
-      sum += fit.solution.x[static_cast<Index>(j)];
-      count += 1.0;
-    }
-  }
-  return sum / count;
-}
-
-}  // namespace
-
-parameters::ParameterFile tuned_file(parameters::ParameterFile file, const OutputErrorProblem& problem,
-                                     const OutputErrorFit& fit) {
-  file = parameters::by_element(std::move(file), problem.program.graph);
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const FreeParameter& free = problem.parameters[j];
-    const Parameter& parameter = problem.program.graph.parameters[free.parameter];
-    const double value = mean_over_records(problem, fit, j);
-    auto found = std::ranges::find_if(file.values, [&](const parameters::ParameterValue& given) {
-      return equal_ignoring_case(given.path, parameter.path);
-    });
-    if (found == file.values.end()) {
-      file.values.push_back({.path = parameter.path, .value = parameter.value});
-      found = file.values.end() - 1;
-    }
-    if (parameter.value.size() == 1) {
-      found->value = value;
-    } else {
-      std::get<std::vector<double>>(found->value)[free.element] = value;
-    }
-  }
-  for (std::size_t i = 0; problem.experiments.size() == 1 && i < problem.initial_states.size(); ++i) {
-    file.set_initial(problem.initial_states[i].path, fit.solution.x[static_cast<Index>(problem.parameters.size() + i)]);
-  }
-  std::erase_if(file.comments, [](const parameters::Comment& comment) {
-    return comment.where == parameters::Comment::Where::Head && comment.text.starts_with(fmt::format("# {}", tuned_by));
-  });
-  return file;
-}
-
-std::string tuned_heading(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
-  std::vector<std::string> files;
-  for (const Experiment& experiment : problem.experiments) {
-    files.push_back(experiment.name);
-  }
-  std::string text = fmt::format("{}{}.\n{}", tuned_by, fmt::join(files, ", "), fit.solution.message);
-  for (std::size_t j = 0; files.size() > 1 && j < fit.names.size(); ++j) {
-    if (j < problem.parameters.size() && !problem.parameters[j].record) {
-      continue;  // the same in all records, and a value of the file
-    }
-    text += fmt::format("\n{}: {}", fit.names[j], number_text(fit.solution.x[static_cast<Index>(j)]));
-  }
-  return text;
-}
-
-parameters::Remarks tuned_remarks(const OutputErrorProblem& problem, const OutputErrorFit& fit) {
-  parameters::Remarks remarks;
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const FreeParameter& free = problem.parameters[j];
-    const Parameter& parameter = problem.program.graph.parameters[free.parameter];
-    parameters::Remark remark{.unit = free.unit, .meaning = std::string(parameter.field.meaning)};
-    if (parameter.value.size() == 1 && !free.record &&
-        std::isfinite(fit.covariance.standard_errors[static_cast<Index>(j)])) {
-      remark.standard_error = fit.covariance.standard_errors[static_cast<Index>(j)];
-    }
-    remarks[in_capitals("parameters." + parameter.path)] = std::move(remark);
-  }
-  for (std::size_t i = 0; i < problem.initial_states.size(); ++i) {
-    const FreeState& state = problem.initial_states[i];
-    const double error = fit.covariance.standard_errors[static_cast<Index>(problem.parameters.size() + i)];
-    remarks[in_capitals("initial." + state.path)] = {
-        .unit = state.unit,
-        .meaning = state.meaning,
-        .standard_error = std::isfinite(error) ? std::optional(error) : std::nullopt};
-  }
-  return remarks;
 }
 
 }  // namespace hysteron

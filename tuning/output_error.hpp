@@ -25,24 +25,11 @@
 #include "codegen/parameters/parameter_file.hpp"
 #include "records/record.hpp"
 #include "tuning/covariance.hpp"
+#include "tuning/free_parameters.hpp"
 #include "tuning/ipopt_problem.hpp"
 #include "tuning/simulation.hpp"
 
 namespace hysteron {
-
-/// A parameter of the graph, or one element of it, that may change.
-struct FreeParameter {
-  std::size_t parameter = 0;  ///< by its place in the graph
-  std::size_t element = 0;
-  std::string name{};  ///< INV.C1; TABLE.Y[2] for an element; INV.C1 of record 2 where each record has its own
-  std::optional<std::size_t> record{};  ///< the only record that it acts in; none: all
-  std::string unit{};                   ///< as the wires give it; empty where they do not
-  Place place{};                        ///< of its fit setting
-  double start = 0.0;
-  double lower = 0.0;  ///< −∞ where there is none
-  double upper = 0.0;
-  double typical = 1.0;  ///< size of a notable change
-};
 
 /// A state of type LREAL whose value after the reset is fitted, for each record on its own.
 struct FreeState {

@@ -11,59 +11,9 @@
 #include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "tuning/record_units.hpp"
+#include "tuning/signal_names.hpp"
 
 namespace hysteron {
-namespace {
-
-struct NamedSignal {
-  std::string name{};
-  Wire wire{};
-};
-
-/// Variables, ports of nested blocks, and the outputs of instances, as INSTANCE.PIN.
-std::vector<NamedSignal> signals_of(const Graph& graph) {
-  std::vector<NamedSignal> signals;
-  for (const NamedWire& named : graph.named) {
-    signals.push_back({.name = named.path, .wire = named.wire});
-  }
-  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
-    const Node& node = graph.nodes[index];
-    for (std::size_t i = 0; node.block != nullptr && i < node.block->outputs.size(); ++i) {
-      signals.push_back(
-          {.name = fmt::format("{}.{}", node.path, node.block->outputs[i].name),
-           .wire = {Wire::From::Node, node.block->outputs[i].type, static_cast<std::uint16_t>(i), index}});
-    }
-  }
-  return signals;
-}
-
-/// The signal of a name, or the elements of the vector of that name.
-std::vector<NamedSignal> find_signals(const Graph& graph, const std::string& path) {
-  const std::vector<NamedSignal> signals = signals_of(graph);
-  std::vector<NamedSignal> found;
-  std::vector<std::string> names;
-  for (const NamedSignal& one : signals) {
-    if (equal_ignoring_case(one.name, path)) {
-      return {{.name = path, .wire = one.wire}};
-    }
-    if (is_or_is_element_of(one.name, path)) {
-      found.push_back(one);
-    }
-    names.push_back(one.name);
-  }
-  if (!found.empty()) {
-    return found;
-  }
-  const auto near = nearest_name(path, names);
-  throw InputError(error::unknown_signal, {.file = graph.source->path},
-                   fmt::format("{} has no signal {}.", graph.name, path),
-                   near.empty() ? "name a variable, an output of an instance, as INSTANCE.XOUT, or either inside a "
-                                  "nested block, as PLANT.HYST.XOUT."
-                                : fmt::format("did you mean {}?", near));
-}
-
-}  // namespace
-
 void refuse_ports_named_as_time(const Diagnostics& warnings) {
   Diagnostics errors;
   for (Diagnostic one : warnings.all()) {
@@ -116,7 +66,7 @@ RecordedRun run_over(Program program, records::Record& record, const RunRequest&
   }
   std::vector<Wire> watched = output_wires(graph);
   for (const std::string& path : request.traces) {
-    for (const NamedSignal& one : find_signals(graph, path)) {
+    for (const NamedSignal& one : find_signals(graph, path, {.file = graph.source->path})) {
       watched.push_back(one.wire);
       places.push_back({.file = graph.source->path});
       // A variable T would stand in a second column t.

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "codegen/cosimulation/session.hpp"
+#include "tuning/dual_value.hpp"
 
 namespace hysteron::detail {
 namespace {
@@ -18,37 +19,8 @@ double sample_time_of(const OutputErrorProblem& problem) {
   return problem.experiments.empty() ? 0.0 : problem.experiments.front().drive.sample_time;
 }
 
-template <class S>
-struct Width {
-  static constexpr std::size_t value = 0;
-};
-template <int N>
-struct Width<Dual<N>> {
-  static constexpr std::size_t value = static_cast<std::size_t>(N);
-};
-
-/// An unknown: a variable where it is among the columns of the pass, else a constant.
-template <class S>
-S seeded(double value, Index column, std::span<const Index> columns) {
-  if constexpr (Width<S>::value > 0) {
-    const auto found = std::ranges::find(columns, column);
-    if (found != columns.end()) {
-      return S::variable(value, static_cast<int>(found - columns.begin()));
-    }
-  }
-  return S(value);
-}
-
 bool acts_in(const FreeParameter& free, std::size_t experiment) {
   return !free.record || *free.record == experiment;
-}
-
-double plain_value(double value) {
-  return value;
-}
-template <int N>
-double plain_value(const Dual<N>& value) {
-  return value.value();
 }
 
 }  // namespace
@@ -175,7 +147,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
         const Index at = first_row_[experiment][output] + row;
         const double scale = scales_[output];
         residuals[at] = (value - record.measured[output][step]) / scale;
-        if constexpr (Width<S>::value > 0) {
+        if constexpr (is_dual<S>) {
           for (std::size_t k = 0; k < columns.size(); ++k) {
             (*jacobian)(at, targets[k]) = y.derivative(static_cast<int>(k)) / scale;
           }

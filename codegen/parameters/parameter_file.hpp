@@ -18,6 +18,13 @@
 //   outputs = ["Y"]
 //   train = [1.0, 21.0]
 //
+//   [goal]                                # what `hysteron tune` tunes a control loop for
+//   settling_time = 0.5
+//   loop = "PID.XOUT"
+//
+//   [goal.limits]
+//   phase_margin_deg = 50.0
+//
 //   [diagnose]
 //   ignore = ["SP"]                       # columns of the records that drive nothing
 //
@@ -88,6 +95,42 @@ struct TuneSettings {
   std::vector<PlacedText> initial_states{};  ///< states whose initial values are fitted too
 };
 
+/// What a control loop is tuned for: [goal], with [goal.limits]. Times in seconds, all else in the units of the ports.
+struct GoalSettings {
+  enum class Signal : std::uint8_t { Step, Ramp, Record };
+  enum class Robust : std::uint8_t { Worst, Mean };
+
+  Place place{};                      ///< of [goal]; line 0: the file has none
+  std::optional<PlacedText> input{};  ///< which input the test signal drives; default: the only one that has no default
+  std::optional<PlacedText> output{};  ///< which output has to respond; default: the only one
+  Signal signal = Signal::Step;
+  std::optional<PlacedNumber> from{};           ///< where the signal stands before; default 0
+  std::optional<PlacedNumber> size{};           ///< of the step, or of the ramp in a second; default 1
+  std::optional<PlacedNumber> duration{};       ///< behind the step; default 3 settling times of the wish
+  std::optional<PlacedNumber> rise_time{};      ///< of the wished response, 10 to 90 %
+  std::optional<PlacedNumber> settling_time{};  ///< of the wished response, to 2 %
+  std::optional<PlacedNumber> order{};          ///< of the wished response: 1 or 2, the default
+  std::optional<PlacedNumber> damping{};        ///< of that of second order; default 1
+  std::optional<PlacedNumber> dead_time{};      ///< of the wished response; default 0
+  std::optional<PlacedText> wished{};           ///< the column of a record that is the wished response
+  std::optional<PlacedText> loop{};             ///< the signal at which the loop is cut for its margins
+  std::optional<PlacedText> effort{};           ///< the signal that counts as effort; default: that of the loop
+  std::optional<PlacedNumber> effort_weight{};  ///< of the root mean square of its rate; default 0
+  std::vector<PlacedText> plants{};             ///< parameter files, each one plant; default: this file alone
+  Robust robust = Robust::Worst;
+
+  // [goal.limits]
+  std::optional<PlacedNumber> largest_effort{};
+  std::optional<PlacedNumber> largest_rate{};       ///< of the effort, in a second
+  std::optional<PlacedNumber> largest_overshoot{};  ///< percent of the step
+  std::optional<PlacedNumber> gain_margin{};        ///< dB
+  std::optional<PlacedNumber> phase_margin{};       ///< degrees
+  std::optional<PlacedNumber> sensitivity{};        ///< largest |S|, Ms
+
+  [[nodiscard]] bool is_given() const { return place.line > 0; }
+  [[nodiscard]] bool limits_margins() const { return gain_margin || phase_margin || sensitivity; }
+};
+
 struct DiagnoseSettings {
   std::vector<PlacedText> ignore{};  ///< columns of the records that the diagnosis does not look at
 };
@@ -121,6 +164,7 @@ struct ParameterFile {
   std::vector<ParameterValue> initial{};  ///< of states, as SUM.SUM, in the order of the file
   std::vector<FitSetting> fits{};         ///< in the order of the file
   TuneSettings tune{};
+  GoalSettings goal{};
   DiagnoseSettings diagnose{};
   RecordSettings record{};
   std::vector<Comment> comments{};  ///< in the order of the file

@@ -8,8 +8,10 @@
 #include <tuple>
 #include <utility>
 
+#include "codegen/parameters/goal_reader.hpp"
 #include "codegen/parameters/parameter_file.hpp"
 #include "codegen/parameters/parameter_names.hpp"
+#include "codegen/parameters/settings_reader.hpp"
 #include "codegen/parameters/toml_comments.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -23,9 +25,12 @@ namespace {
 /// Instances inside instances. Further down is no diagram but an attack on the stack.
 constexpr int most_levels = 64;
 
-constexpr std::array<std::string_view, 6> top_keys{"parameters", "initial", "fit", "tune", "diagnose", "record"};
+constexpr std::array<std::string_view, 7> top_keys{"parameters", "initial",  "fit",   "tune",
+                                                   "goal",       "diagnose", "record"};
 constexpr std::array<std::string_view, 4> fit_keys{"min", "max", "start", "scale"};
 constexpr std::array<std::string_view, 5> tune_keys{"outputs", "loss", "train", "test", "initial_states"};
+/// In the order of Loss.
+constexpr std::array<std::string_view, 2> losses{"squares", "huber"};
 constexpr std::array<std::string_view, 1> diagnose_keys{"ignore"};
 constexpr std::array<std::string_view, 8> record_keys{"time", "rate",    "skip",     "range",
                                                       "rows", "decimal", "resample", "columns"};
@@ -42,9 +47,16 @@ void sort_by_place(std::vector<Item>& items) {
   });
 }
 
-class Reader {
+/// What is read and said, before the reader that refers to it.
+struct Reading {
+  ParameterFile result_{};
+  Diagnostics found_{};
+};
+
+class Reader : private Reading, private SettingsReader {
  public:
-  Reader(const std::string& file, std::string_view text) : root_(parse_toml(file, text, parameter_file)) {
+  Reader(const std::string& file, std::string_view text)
+      : SettingsReader(result_.file, found_), root_(parse_toml(file, text, parameter_file)) {
     result_.file = file;
     result_.comments = comments_of(text);
   }
@@ -60,6 +72,8 @@ class Reader {
           read_fits(*table, "", 0, false);
         } else if (key.str() == "tune") {
           read_tune(*table);
+        } else if (key.str() == "goal") {
+          result_.goal = read_goal(*table, at(key), result_.file, diagnostics_);
         } else if (key.str() == "diagnose") {
           read_diagnose(*table);
         } else {
@@ -83,43 +97,7 @@ class Reader {
   }
 
  private:
-  [[nodiscard]] Place at(const toml::node& node) const { return place_of(result_.file, node.source()); }
-  [[nodiscard]] Place at(const toml::key& key) const { return place_of(result_.file, key.source()); }
-
-  void wrong_type(const toml::key& key, const toml::node& node, std::string_view wanted, std::string_view example) {
-    diagnostics_.error(error::wrong_value_type, at(node),
-                       fmt::format("{} must be {}, but is {}.", key.str(), wanted, toml_kind(node)),
-                       fmt::format("write it as in {}.", example));
-  }
-
   // ---- keys -------------------------------------------------------------------------------------------------------
-
-  bool known_key(const toml::key& key, const toml::node& node, std::span<const std::string_view> known,
-                 std::string_view table) {
-    if (std::find(known.begin(), known.end(), key.str()) != known.end()) {
-      return true;
-    }
-    const auto near = nearest_name(key.str(), known);
-    std::string mend = fmt::format("remove it, or use one of {}.", fmt::join(known, ", "));
-    if (!near.empty()) {
-      mend = fmt::format("did you mean {}?", near);
-    } else if (table.empty()) {
-      mend = fmt::format("values stand under [parameters], those of the instance {0} under [parameters.{0}].",
-                         node.is_table() && is_path(key.str()) ? key.str() : "INV");
-    }
-    diagnostics_.error(error::unknown_key, at(key),
-                       table.empty() ? fmt::format("There is no table or key {} in a parameter file.", key.str())
-                                     : fmt::format("There is no key {} in {}.", key.str(), table),
-                       mend);
-    return false;
-  }
-
-  const toml::table* as_table(const toml::key& key, const toml::node& node) {
-    if (!node.is_table()) {
-      wrong_type(key, node, "a table", fmt::format("[{}]", key.str()));
-    }
-    return node.as_table();
-  }
 
   /// The path of a key below a path; nothing, with an error, where it cannot be that of an instance or parameter.
   std::optional<std::string> path_below(const std::string& path, const toml::key& key, int level) {
@@ -206,31 +184,6 @@ class Reader {
     return numbers;
   }
 
-  /// A number, whole or not, that may be infinite.
-  std::optional<PlacedNumber> number_of(const toml::key& key, const toml::node& node) {
-    const auto number = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!number) {
-      wrong_type(key, node, "a number", fmt::format("{} = 0.05", key.str()));
-      return std::nullopt;
-    }
-    return PlacedNumber{.value = *number, .place = at(node)};
-  }
-
-  void not_finite(const toml::key& key, const PlacedNumber& number, std::string_view mend) {
-    diagnostics_.error(error::parameter_not_finite, number.place,
-                       fmt::format("{} is {}.", key.str(), std::isnan(number.value) ? "not a number" : "infinite"),
-                       std::string(mend));
-  }
-
-  std::optional<PlacedNumber> finite(const toml::key& key, const toml::node& node) {
-    auto number = number_of(key, node);
-    if (number && !std::isfinite(number->value)) {
-      not_finite(key, *number, "write a finite number.");
-      return std::nullopt;
-    }
-    return number;
-  }
-
   // ---- fit --------------------------------------------------------------------------------------------------------
 
   /// A table below [fit] is a parameter where it is empty or has a setting, be it mistyped; else it is an instance.
@@ -286,10 +239,6 @@ class Reader {
     result_.fits.push_back(std::move(fit));
   }
 
-  void contradiction(const Place& place, std::string cause, std::string mend) {
-    diagnostics_.error(error::contradicting_range, place, std::move(cause), std::move(mend));
-  }
-
   void check_range(const FitSetting& fit) {
     if (fit.scale && !(fit.scale->value > 0.0)) {
       contradiction(fit.scale->place, fmt::format("The scale of {} is not above 0.", fit.path),
@@ -333,27 +282,13 @@ class Reader {
       } else if (key.str() == "initial_states") {
         result_.tune.initial_states = names_of(key, node, R"(initial_states = ["LAG.XOUT"])", is_path);
       } else if (key.str() == "loss") {
-        read_loss(key, node);
+        const auto loss = word_of(key, node, losses);
+        result_.tune.loss = loss == 1U ? Loss::Huber : Loss::Squares;
       } else {
         (key.str() == "train" ? result_.tune.train : result_.tune.test) = intervals_of(key, node);
       }
     }
     refuse_shared_intervals();
-  }
-
-  void read_loss(const toml::key& key, const toml::node& node) {
-    constexpr std::array<std::string_view, 2> losses{"squares", "huber"};
-    const auto text = node.value<std::string_view>();
-    if (!text) {
-      wrong_type(key, node, "a text", "loss = \"huber\"");
-    } else if (*text == losses[0] || *text == losses[1]) {
-      result_.tune.loss = *text == losses[1] ? Loss::Huber : Loss::Squares;
-    } else {
-      const auto near = nearest_name(*text, losses);
-      diagnostics_.error(error::wrong_value_type, at(node), fmt::format("There is no loss \"{}\".", *text),
-                         near.empty() ? R"(write "squares", or "huber" where single samples are far off.)"
-                                      : fmt::format("did you mean \"{}\"?", near));
-    }
   }
 
   void read_diagnose(const toml::table& table) {
@@ -392,33 +327,6 @@ class Reader {
       diagnostics_.error(error::unknown_key, at(key), fmt::format("\"{}\" is no name of a signal.", key.str()),
                          "use letters, digits and _, as in the diagram.");
     }
-  }
-
-  std::vector<PlacedText> names_of(const toml::key& key, const toml::node& node, std::string_view example,
-                                   bool (*is_name)(std::string_view)) {
-    std::vector<PlacedText> names;
-    const auto* const list = node.as_array();
-    if (list == nullptr || list->empty()) {
-      wrong_type(key, node, "a list of names", example);
-      return {};
-    }
-    for (const toml::node& element : *list) {
-      const auto text = element.value<std::string_view>();
-      if (!text || !is_name(*text)) {
-        wrong_type(key, element, "a list of names", example);
-        continue;
-      }
-      const auto first = std::find_if(names.begin(), names.end(),
-                                      [&](const PlacedText& name) { return equal_ignoring_case(name.text, *text); });
-      if (first != names.end()) {
-        diagnostics_.error(error::duplicate_key, at(element), fmt::format("{} stands in the list twice.", *text),
-                           "keep one of the two; case makes no difference.",
-                           {{.place = first->place, .text = "the first"}});
-        continue;
-      }
-      names.push_back({.text = std::string(*text), .place = at(element)});
-    }
-    return names;
   }
 
   /// [1.0, 21.0], or a list of such.
@@ -477,8 +385,6 @@ class Reader {
   }
 
   toml::table root_;
-  ParameterFile result_;
-  Diagnostics diagnostics_;
 };
 
 }  // namespace

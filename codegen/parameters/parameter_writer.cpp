@@ -233,6 +233,64 @@ void append_tune(const TuneSettings& tune, std::vector<Entry>& entries) {
   }
 }
 
+void append_goal(const GoalSettings& goal, std::vector<Entry>& entries) {
+  if (!goal.is_given()) {
+    return;
+  }
+  const auto head = [&](const std::string& table) {
+    entries.push_back({.key = in_capitals(table), .text = "[" + table + "]", .remark = {}, .head = true});
+  };
+  const auto add = [&](const std::string& table, const std::string& key, const std::string& value) {
+    entries.push_back({.key = in_capitals(table + "." + key), .text = key + " = " + value, .remark = {}});
+  };
+  head("goal");
+  for (const auto& [key, text] : {std::pair("input", &goal.input), {"output", &goal.output}}) {
+    if (*text) {
+      add("goal", key, toml_string((*text)->text));
+    }
+  }
+  if (goal.signal != GoalSettings::Signal::Step) {
+    add("goal", "signal", goal.signal == GoalSettings::Signal::Ramp ? "\"ramp\"" : "\"record\"");
+  }
+  const auto numbers = [&](const std::string& table,
+                           std::initializer_list<std::pair<const char*, const std::optional<PlacedNumber>*>> list) {
+    for (const auto& [key, number] : list) {
+      if (*number) {
+        add(table, key, real_text((*number)->value));
+      }
+    }
+  };
+  numbers("goal", {{"from", &goal.from},
+                   {"size", &goal.size},
+                   {"duration", &goal.duration},
+                   {"rise_time", &goal.rise_time},
+                   {"settling_time", &goal.settling_time},
+                   {"order", &goal.order},
+                   {"damping", &goal.damping},
+                   {"dead_time", &goal.dead_time}});
+  for (const auto& [key, text] : {std::pair("wished", &goal.wished), {"loop", &goal.loop}, {"effort", &goal.effort}}) {
+    if (*text) {
+      add("goal", key, toml_string((*text)->text));
+    }
+  }
+  numbers("goal", {{"effort_weight", &goal.effort_weight}});
+  if (!goal.plants.empty()) {
+    add("goal", "plants", list_of(goal.plants));
+  }
+  if (goal.robust == GoalSettings::Robust::Mean) {
+    add("goal", "robust", "\"mean\"");
+  }
+  if (goal.largest_effort || goal.largest_rate || goal.largest_overshoot || goal.limits_margins()) {
+    head("goal.limits");
+    numbers("goal.limits", {{"effort", &goal.largest_effort},
+                            {"effort_rate", &goal.largest_rate},
+                            {"overshoot_percent", &goal.largest_overshoot},
+                            {"gain_margin_db", &goal.gain_margin},
+                            {"phase_margin_deg", &goal.phase_margin},
+                            {"sensitivity", &goal.sensitivity}});
+  }
+}
+
 bool is_below(const std::string& key, const std::string& table) {
   return key.size() > table.size() && key.starts_with(table) && key[table.size()] == '.';
 }
@@ -339,6 +397,7 @@ std::string parameter_text(const ParameterFile& file, const Remarks& remarks, st
   fits.append_to(entries);
   each_record.append_to(entries);
   append_tune(file.tune, entries);
+  append_goal(file.goal, entries);
   append_diagnose(file.diagnose, entries);
   append_record(file.record, entries);
   text += entries_text(entries, file.comments);

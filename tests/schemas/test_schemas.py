@@ -34,6 +34,15 @@ PLANT = """FUNCTION_BLOCK PLANT  (* @ts 1ms *)
   Y := LAG.XOUT;
 END_FUNCTION_BLOCK
 """
+LOOP = """FUNCTION_BLOCK LOOP  (* @ts 10ms *)
+  VAR_INPUT SP : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR P : HY_GAIN; PLANT : HY_INTEGRAL_FORWARD; END_VAR
+  P(XIN := SP - PLANT.XOUT);
+  Y := PLANT.XOUT;
+  PLANT(XIN := P.XOUT);
+END_FUNCTION_BLOCK
+"""
 SETTINGS = """[fit.AMP]
 K = {}
 
@@ -145,6 +154,25 @@ class Schemas(unittest.TestCase):
         self.holds("fit", self.printed("tune", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "tuned.toml",
                                        "--start", "2", "--report", "report", "--json", codes=(0, 1)),
                    (self.folder / "report/report.json").read_text(encoding="utf-8"))
+
+    def test_goal_and_relay(self):
+        (self.folder / "loop.st").write_text(LOOP, encoding="utf-8")
+        goal = "[fit.P]\nK = {min = 0.0}\n[goal]\nsettling_time = 0.5\n"
+        (self.folder / "bare.toml").write_text(goal, encoding="utf-8")
+        (self.folder / "goal.toml").write_text(goal + 'loop = "P.XOUT"\n[goal.limits]\neffort = 4.0\n', encoding="utf-8")
+        self.holds("goal", self.printed("tune", "loop.st", "--params", "bare.toml", "--out", "bare_tuned.toml", "--json"),
+                   self.printed("tune", "loop.st", "--params", "goal.toml", "--out", "goal_tuned.toml", "--start", "2",
+                                "--report", "goal_report", "--json"),
+                   (self.folder / "goal_report/report.json").read_text(encoding="utf-8"))
+        rows, y, u = [], 0.0, 0.7
+        for k in range(3000):
+            u = 0.7 if y < -0.05 else -0.3 if y > 0.05 else u
+            rows.append((0.01 * k, u if k >= 50 else 0.0, y))
+            y += 0.01 * (rows[max(0, k - 30)][1] - y)
+        (self.folder / "relay.csv").write_text("t,U,Y\n" + "".join(f"{t:.2f},{u},{y:.6f}\n" for t, u, y in rows))
+        (self.folder / "late.csv").write_text("t,U,Y\n" + "".join(f"{t:.2f},{u},{y:.6f}\n" for t, u, y in rows[100:]))
+        self.holds("relay", self.printed("relay", "relay.csv", "--u", "U", "--y", "Y", "--json"),
+                   self.printed("relay", "late.csv", "--u", "U", "--y", "Y", "--json"))
 
     def test_map(self):
         self.holds("map", self.printed("map", "plant.st", "--format", "json"))

@@ -414,9 +414,10 @@ TEST(LeastSquares, NoOptionFileIsReadAndNothingIsPrinted) {
 }
 
 TEST(LeastSquares, EveryStatusHasItsWords) {
-  for (const auto status : {FitStatus::Converged, FitStatus::NearlyConverged, FitStatus::IterationLimit,
-                            FitStatus::Cancelled, FitStatus::Stalled, FitStatus::NoInfluence, FitStatus::Diverging,
-                            FitStatus::ModelFailed, FitStatus::SolverFailed}) {
+  for (const auto status :
+       {FitStatus::Converged, FitStatus::NearlyConverged, FitStatus::IterationLimit, FitStatus::Cancelled,
+        FitStatus::Stalled, FitStatus::NoInfluence, FitStatus::Diverging, FitStatus::WorseThanConstant,
+        FitStatus::Unbounded, FitStatus::ModelFailed, FitStatus::SolverFailed}) {
     EXPECT_FALSE(plain_words(status).empty());
   }
 }

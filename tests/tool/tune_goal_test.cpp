@@ -1,0 +1,162 @@
+// hysteron tune with [goal], and hysteron relay, as a user runs them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::string_view loop = R"(FUNCTION_BLOCK LOOP  (* @ts 10ms *)
+  VAR_INPUT
+    SP : LREAL;  (* @unit mm *)
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;  (* @unit mm *)
+  END_VAR
+  VAR
+    P : HY_GAIN := (K := 1.0);
+    BODY : HY_GAIN := (K := 1.0);
+    PLANT : HY_INTEGRAL_FORWARD;
+  END_VAR
+
+  P(XIN := SP - PLANT.XOUT);
+  BODY(XIN := P.XOUT);
+  Y := PLANT.XOUT;
+  PLANT(XIN := BODY.XOUT);
+END_FUNCTION_BLOCK
+)";
+
+constexpr std::string_view goal =
+    "# the controller of the axis\n[fit.P]\nK = {min = 0.0}\n\n[goal]\norder = 1.0\nsettling_time = 0.5\nloop = "
+    "\"P.XOUT\"\n";
+
+test::Workbench bench_with(std::string_view settings) {
+  test::Workbench bench;
+  bench.write("loop.st", loop);
+  bench.write("p.toml", settings);
+  return bench;
+}
+
+constexpr const char* tune = "hysteron tune loop.st --params p.toml --out tuned.toml";
+
+TEST(TuneGoal, NeedsNoRecordAndWritesTheTunedFile) {
+  const auto bench = bench_with(std::string(goal) + "\n[goal.limits]\neffort = 5.0\n");
+  const auto done = bench.shell(std::string(tune) + " --report report");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.err, "");
+  EXPECT_THAT(done.out, AllOf(HasSubstr("P.K"), HasSubstr("at its limit"), HasSubstr("phase margin"),
+                              HasSubstr("The loop is tuned, and all limits are kept.")));
+  const std::string tuned = bench.read("tuned.toml");
+  EXPECT_THAT(tuned, AllOf(HasSubstr("# Tuned by hysteron tune for Y with one plant."),
+                           HasSubstr("# the controller of the axis"), HasSubstr("[goal.limits]\neffort = 5.0"),
+                           HasSubstr("K = 4.99")));
+  EXPECT_THAT(bench.read("report/report.html"),
+              AllOf(HasSubstr("Nyquist"), HasSubstr("Limits"), Not(HasSubstr("http://"))));
+  EXPECT_THAT(bench.read("report/response.csv"), HasSubstr("Y_WISHED"));
+  EXPECT_EQ(nlohmann::json::parse(bench.read("report/report.json"))["status"], "tuned");
+  // Tuned again it stays where it is, with one heading.
+  const auto again = bench.shell("hysteron tune loop.st --params tuned.toml --out twice.toml");
+  EXPECT_EQ(again.code, 0) << again.err;
+  const std::string twice = bench.read("twice.toml");
+  EXPECT_EQ(twice.find("# Tuned by"), twice.rfind("# Tuned by")) << twice;
+}
+
+TEST(TuneGoal, SaysWhichLimitsAreBrokenAndWritesTheLeastBroken) {
+  const auto bench = bench_with(
+      "[parameters.P]\nK = 8.0\n[fit.P]\nK = {min = 4.0, max = 20.0}\n[goal]\nsettling_time = 0.5\nloop = \"P.XOUT\"\n"
+      "[goal.limits]\neffort = 2.0\n");
+  const auto done = bench.shell(tune);
+  EXPECT_EQ(done.code, 1);
+  EXPECT_THAT(done.err, AllOf(HasSubstr("HY533 error: p.toml:9:10"), HasSubstr("effort = 2"),
+                              HasSubstr("P.K is on its lower bound")));
+  EXPECT_THAT(bench.read("tuned.toml"), HasSubstr("# BROKEN: effort = 2, is 4"));
+}
+
+TEST(TuneGoal, TakesPlantsBesideItsFile) {
+  const auto bench = bench_with("");
+  bench.write("axis/p.toml", std::string(goal) + "plants = [\"light.toml\", \"heavy.toml\"]\n");
+  bench.write("axis/light.toml", "[parameters.BODY]\nK = 2.0\n");
+  bench.write("axis/heavy.toml", "[parameters.BODY]\nK = 0.5\n");
+  const auto done = bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml --json");
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(nlohmann::json::parse(done.out)["plants"].size(), 2U);
+  bench.write("axis/heavy.toml", "[parameters.BODI]\nK = 0.5\n");
+  EXPECT_THAT(bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml").err,
+              AllOf(HasSubstr("HY603 error: axis/heavy.toml:1"), HasSubstr("BODY")));
+  bench.write("axis/p.toml", std::string(goal) + "plants = [\"none.toml\"]\n");
+  EXPECT_THAT(bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml").err,
+              AllOf(HasSubstr("HY100 error: axis/none.toml"), HasSubstr("named as a plant here")));
+}
+
+TEST(TuneGoal, FollowsARecord) {
+  const auto bench =
+      bench_with("[fit.P]\nK = {min = 0.0}\n[goal]\nsignal = \"record\"\nwished = \"WISH\"\nloop = \"P.XOUT\"\n");
+  // What the loop does with K = 7, column by column.
+  bench.write("k7.toml", "[parameters.P]\nK = 7.0\n");
+  ASSERT_EQ(bench
+                .shell("awk 'BEGIN { print \"t,SP\"; for (k = 0; k < 300; ++k) printf \"%.2f,%.6f\\n\", 0.01 * k, "
+                       "sin(0.05 * k) }' > sp.csv && hysteron run loop.st --in sp.csv --out y.csv --params k7.toml && "
+                       "cut -d, -f2 y.csv | sed 's/Y/WISH/' | paste -d, sp.csv - > log.csv")
+                .code,
+            0);
+  const auto done = bench.shell(std::string(tune) + " --log log.csv --json");
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out.substr(done.out.find('{')));
+  EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 7.0, 1e-3);
+  EXPECT_THAT(bench.shell(tune).err, HasSubstr("HY530 error: p.toml:3"));
+}
+
+TEST(TuneGoal, RefusesWhatTheDiagramDoesNotHave) {
+  const auto said = [](const std::string& settings) { return bench_with(settings).shell(tune).err; };
+  const std::string fit = "[fit.P]\nK = {}\n[goal]\nsettling_time = 0.5\n";
+  EXPECT_THAT(said(fit + "output = \"YY\"\n"), AllOf(HasSubstr("HY603"), HasSubstr("Y")));
+  EXPECT_THAT(said(fit + "input = \"SQ\"\n"), AllOf(HasSubstr("HY603"), HasSubstr("did you mean SP?")));
+  EXPECT_THAT(said(fit + "loop = \"P.XOUR\"\n"), AllOf(HasSubstr("HY708 error: p.toml:5"), HasSubstr("did you mean")));
+  EXPECT_THAT(said(fit + "loop = \"SP\"\n"), HasSubstr("HY531"));
+  EXPECT_THAT(said("[goal]\nsettling_time = 0.5\n"), HasSubstr("HY716"));
+  EXPECT_THAT(said(fit + "duration = 0.01\n"), HasSubstr("HY606"));
+  EXPECT_THAT(said("[fit.record.P]\nK = {}\n[goal]\nsettling_time = 0.5\n"), HasSubstr("HY606"));
+  EXPECT_THAT(said("[fit.P]\nK = {}\n"), AllOf(HasSubstr("HY730"), HasSubstr("no record is given")));
+}
+
+TEST(Relay, WritesWhereAPidMayBegin) {
+  const test::Workbench bench;
+  std::string text = "t,U [V],Y [mm]\n";
+  std::vector<double> applied;
+  double y = 0.0;
+  double u = 0.6;
+  for (int k = 0; k < 1500; ++k) {
+    u = y < -0.05 ? 0.6 : y > 0.05 ? -0.4 : u;
+    applied.push_back(k < 50 ? 0.0 : u);
+    text += fmt::format("{:.2f},{},{:.8f}\n", 0.01 * k, applied.back(), y);
+    y += (1.0 - std::exp(-0.01 / 0.6)) * (2.0 * (k < 8 ? 0.0 : applied[static_cast<std::size_t>(k - 8)]) - y);
+  }
+  bench.write("relay.csv", text);
+  const auto done = bench.shell("hysteron relay relay.csv --u U --y Y --out start.toml --json");
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out);
+  EXPECT_NEAR(json["model"]["K"].get<double>(), 2.0, 0.06);
+  EXPECT_NEAR(json["model"]["T"].get<double>(), 0.6, 0.03);
+  EXPECT_NEAR(json["model"]["dead_time"].get<double>(), 0.085, 0.01);
+  EXPECT_THAT(bench.read("start.toml"),
+              AllOf(HasSubstr("[parameters.PID]\nKP = "), HasSubstr("[fit.PID]\nKP = {min = ")));
+  EXPECT_THAT(bench.shell("hysteron relay relay.csv --u U --y Y").out,
+              AllOf(HasSubstr("-0.4 to 0.6 V"), HasSubstr("start       PI ")));
+  EXPECT_EQ(bench.shell("hysteron relay relay.csv --u U --y Z").code, 2);
+  const auto bad = bench.shell("hysteron relay relay.csv --u Y --y U --out none.toml");
+  EXPECT_THAT(bad.err, HasSubstr("HY535 error: relay.csv"));
+  EXPECT_FALSE(bench.has("none.toml"));
+}
+
+}  // namespace
+}  // namespace hysteron

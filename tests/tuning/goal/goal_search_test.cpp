@@ -1,0 +1,247 @@
+// Goals whose optimum is known by hand, limits that bind, plants that differ, and starts that are unstable.
+#include "tuning/goal/goal_search.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/errors.hpp"
+#include "tests/support/scratch_folder.hpp"
+#include "tests/tuning/goal/loops.hpp"
+
+namespace hysteron {
+namespace {
+
+using loops::integrator;
+using loops::problem_of;
+using std::numbers::pi;
+
+constexpr double ts = 0.01;
+
+/// The gain at which the loop of an integrator is the wished lag: 1 − TS·K = e^(−TS/T), T = settling/ln 50.
+double gain_for(double settling) {
+  return (1.0 - std::exp(-ts * std::log(50.0) / settling)) / ts;
+}
+
+std::string settings(double start, const std::string& goal, const std::string& fit = "{min = 0.0}") {
+  return fmt::format("[parameters.P]\nK = {}\n[fit.P]\nK = {}\n[goal]\norder = 1\nloop = \"P.XOUT\"\n{}", start, fit,
+                     goal);
+}
+
+TEST(GoalSearch, FindsTheGainThatMeetsTheWishExactly) {
+  for (const double start : {0.3, 4.0, 60.0}) {
+    const GoalProblem problem = problem_of(integrator(), settings(start, "settling_time = 0.5\n"));
+    const GoalResult result = tune_for_goal(problem);
+    EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+    EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5)) << start;
+    EXPECT_LT(result.plants[0].after.error, 1e-4);
+    EXPECT_NEAR(result.plants[0].after.settling_time, 0.5, 2.0 * ts);
+  }
+}
+
+/// The largest effort of the step is K·1, at once: a limit on it is a limit on K.
+TEST(GoalSearch, KeepsALimitOnTheEffortAndReachesIt) {
+  const GoalProblem problem =
+      problem_of(integrator(), settings(2.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"));
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  EXPECT_LE(result.x[0], 5.0);
+  EXPECT_NEAR(result.x[0], 5.0, 5e-3);
+  EXPECT_TRUE(result.limits[0].is_kept);
+  EXPECT_TRUE(result.limits[0].is_active);
+}
+
+/// With d delays, φ = 90° − (d + ½)·w and TS·K = 2·sin(w/2): the gain that a phase margin allows.
+TEST(GoalSearch, ReachesThePhaseMarginAndNoLess) {
+  constexpr int delays = 6;
+  constexpr double margin = 65.0;
+  const double w = (90.0 - margin) / 180.0 * pi / (delays + 0.5);
+  const double allowed = 2.0 * std::sin(0.5 * w) / ts;
+  for (const double start : {1.0, 14.0}) {
+    const GoalProblem problem = problem_of(
+        integrator(delays), settings(start, "settling_time = 0.3\n[goal.limits]\nphase_margin_deg = 65.0\n"));
+    const GoalResult result = tune_for_goal(problem);
+    EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+    EXPECT_GE(result.limits[0].value, margin);
+    EXPECT_NEAR(result.x[0], allowed, 2e-3 * allowed) << start;
+  }
+}
+
+TEST(GoalSearch, ReachesALimitOnTheSensitivity) {
+  const GoalProblem problem =
+      problem_of(integrator(6), settings(1.0, "settling_time = 0.3\n[goal.limits]\nsensitivity = 1.5\n"));
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  EXPECT_LE(result.limits[0].value, 1.5);
+  // |1 + L| of the closed form, its least over the frequency
+  double least = 1e9;
+  for (double at = 1e-3; at < pi; at += 1e-4) {
+    least =
+        std::min(least, std::abs(1.0 + ts * result.x[0] * std::polar(1.0, -6.0 * at) / (std::polar(1.0, at) - 1.0)));
+  }
+  EXPECT_NEAR(1.0 / least, 1.5, 2e-3);
+}
+
+/// Integrators of gain 0.5 and 2: the worst error over K, by trying them all.
+TEST(GoalSearch, OfSeveralPlantsTheWorstCounts) {
+  const test::ScratchFolder folder;
+  const std::string light = folder.write("light.toml", "[parameters.BODY]\nK = 2.0\n");
+  const std::string heavy = folder.write("heavy.toml", "[parameters.BODY]\nK = 0.5\n");
+  const auto both = [&](const std::string& robust) {
+    return problem_of(integrator(),
+                      fmt::format("[parameters.P]\nK = 1.0\n[fit.P]\nK = {{min = 0.0}}\n[goal]\norder = 1\n"
+                                  "settling_time = 0.5\nplants = [\"{}\", \"{}\"]\nrobust = \"{}\"\n",
+                                  light, heavy, robust));
+  };
+  for (const std::string robust : {"worst", "mean"}) {
+    const GoalProblem problem = both(robust);
+    const GoalResult result = tune_for_goal(problem);
+    EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+    GoalModel model(problem);
+    double best = 1e9;
+    double best_gain = 0.0;
+    for (double gain = 1.0; gain < 20.0; gain += 0.002) {
+      ASSERT_EQ(model.evaluate(Eigen::VectorXd::Constant(1, gain), false), LoopState::Settles);
+      if (model.cost() < best) {
+        best = model.cost();
+        best_gain = gain;
+      }
+    }
+    EXPECT_NEAR(result.x[0], best_gain, 5e-3) << robust;
+    if (robust == "worst") {
+      EXPECT_NEAR(result.plants[0].after.error, result.plants[1].after.error, 1e-3) << "at a minimax both are equal";
+    }
+  }
+}
+
+TEST(GoalSearch, LeavesAnUnstableStart) {
+  const GoalProblem problem =
+      problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 0.1, max = 300.0}"));
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.start_state, LoopState::Unstable);
+  EXPECT_FALSE(result.plants[0].before);
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
+}
+
+int refused(const std::function<void()>& run) {
+  try {
+    run();
+  } catch (const InputError& error) {
+    return error.diagnostics().all().front().number;
+  }
+  return 0;
+}
+
+TEST(GoalSearch, SaysThatNothingIsStable) {
+  EXPECT_EQ(refused([] {
+              (void)tune_for_goal(
+                  problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 220.0, max = 300.0}")));
+            }),
+            error::no_stable_loop);
+}
+
+TEST(GoalSearch, SaysThatNoLoopPasses) {
+  const std::string beside = "[fit.P]\nK = {}\n[goal]\nsettling_time = 1.0\nloop = \"BESIDE.XOUT\"\n";
+  EXPECT_EQ(refused([&] { (void)tune_for_goal(problem_of(integrator(), beside)); }), error::no_loop_there);
+}
+
+/// Below 0 < TS·K < 2 the effort is at least the lower bound of K: a limit under it cannot be kept.
+TEST(GoalSearch, NamesTheLimitThatCannotBeKept) {
+  const GoalProblem problem = problem_of(
+      integrator(), settings(8.0, "settling_time = 0.5\n[goal.limits]\neffort = 2.0\n", "{min = 4.0, max = 20.0}"));
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Contradiction);
+  EXPECT_FALSE(result.limits[0].is_kept);
+  EXPECT_NEAR(result.x[0], 4.0, 1e-3);
+  EXPECT_EQ(result.at_bound[0], AtBound::Lower);
+  EXPECT_GT(result.limits[0].against, 0.9);
+}
+
+/// y(k+1) = A·y(k) + B·u(k), A = 1.05, B = 0.05, runs away by itself. Ms ≤ 1.2 needs B·K ≥ (A − 1)·(1 + 1/1.2), that is
+/// K ≥ 1.83; a first step of the effort of 1.5, a rate of 150/s, needs K ≤ 1.5.
+constexpr std::string_view unstable_plant = R"(FUNCTION_BLOCK LOOP  (* @ts 10ms *)
+  VAR_INPUT SP : LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR P : HY_GAIN := (K := 1.7); STATE : HY_DELAY; END_VAR
+  P(XIN := SP - STATE.XOUT);
+  Y := STATE.XOUT;
+  STATE(XIN := 1.05 * STATE.XOUT + 0.05 * P.XOUT);
+END_FUNCTION_BLOCK
+)";
+
+TEST(GoalSearch, NamesTheLimitsThatStandAgainstEachOther) {
+  const GoalProblem problem = problem_of(unstable_plant, R"([fit.P]
+K = {min = 0.0}
+[goal]
+settling_time = 1.0
+duration = 3.0
+loop = "P.XOUT"
+[goal.limits]
+effort_rate = 150.0
+sensitivity = 1.2
+phase_margin_deg = 5.0
+)");
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Contradiction) << result.message;
+  EXPECT_FALSE(result.limits[0].is_kept);
+  EXPECT_FALSE(result.limits[2].is_kept);
+  EXPECT_GT(result.limits[0].against, 0.1);
+  EXPECT_GT(result.limits[2].against, 0.05);
+  EXPECT_EQ(result.limits[1].against, 0.0) << "a limit that is far away is no part of it";
+  // The least largest excess: K/1.5 − 1 = ln(Ms/1.2)/ln 1.2, Ms = 0.05/(0.05·K − 0.05).
+  const double k = result.x[0];
+  EXPECT_NEAR(k / 1.5 - 1.0, std::log(1.0 / (k - 1.0) / 1.2) / std::log(1.2), 2e-3);
+}
+
+TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
+  const GoalProblem problem = problem_of(
+      integrator(), "[parameters.P]\nK = 3.0\n[fit.P]\nK = {min = 0.0}\n[goal]\norder = 1\nsettling_time = 0.5\n");
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Tuned);
+  EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
+  EXPECT_FALSE(result.plants[0].after.margins);
+}
+
+TEST(GoalSearch, KeepsEveryLimitOfALoopWithAll) {
+  const GoalProblem problem = problem_of(loops::oven, R"(
+[fit.PID]
+KP = {min = 0.01, max = 20.0}
+TR = {min = 0.1, max = 20.0}
+TD = {min = 0.0, max = 2.0}
+[goal]
+settling_time = 2.0
+dead_time = 0.35
+loop = "PID.XOUT"
+[goal.limits]
+effort = 6.0
+effort_rate = 120.0
+overshoot_percent = 4.0
+gain_margin_db = 7.0
+phase_margin_deg = 55.0
+sensitivity = 1.7
+)");
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  for (const LimitResult& limit : result.limits) {
+    EXPECT_TRUE(limit.is_kept) << text_of(problem.limits[limit.limit].kind).name << " is " << limit.value;
+  }
+  EXPECT_LT(result.plants[0].after.error, result.plants[0].before->error);
+  // No single parameter, moved by a hundredth, is better and keeps the limits.
+  GoalModel model(problem);
+  ASSERT_EQ(model.evaluate(result.x, false), LoopState::Settles);
+  const double cost = model.cost();
+  for (Eigen::Index j = 0; j < result.x.size(); ++j) {
+    for (const double factor : {0.99, 1.01}) {
+      Eigen::VectorXd moved = result.x;
+      moved[j] *= factor;
+      ASSERT_EQ(model.evaluate(moved, false), LoopState::Settles);
+      EXPECT_TRUE(model.largest_excess() > 0.0 || model.cost() > (1.0 - 1e-4) * cost)
+          << problem.parameters[static_cast<std::size_t>(j)].name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hysteron

@@ -1,0 +1,117 @@
+#include "tool/tune_goal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "codegen/compile.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/numbers.hpp"
+#include "support/progress.hpp"
+#include "tool/commands.hpp"
+#include "tool/goal_report.hpp"
+#include "tuning/goal/goal_json.hpp"
+#include "tuning/recorded_run.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+std::string progress_text(const GoalProgress& progress) {
+  return progress.excess > 0.0
+             ? fmt::format("iteration {}, a limit is broken by {:.3g} % of itself", progress.iteration,
+                           100.0 * progress.excess)
+             : fmt::format("iteration {}, error {:.3g} %", progress.iteration, 100.0 * progress.error);
+}
+
+/// HY533: which limits stand against which, with what was reached of each, and the bounds that hold the controller
+/// back.
+void report_contradiction(const GoalProblem& problem, const GoalResult& result, Diagnostics& diagnostics) {
+  std::vector<std::string> parts;
+  std::vector<Note> notes;
+  Place place = problem.settings.place;
+  const auto take = [&](const LimitResult& limit) {
+    const GoalLimit& one = problem.limits[limit.limit];
+    const std::string plant = problem.plants.size() > 1 ? " with " + problem.plants[limit.plant].name : std::string();
+    place = parts.empty() ? one.place : place;
+    parts.push_back(fmt::format("{} = {}", text_of(one.kind).key, number_text(one.limit)));
+    notes.push_back({.place = one.place,
+                     .text = fmt::format("{} is {:.4g}{}{}", text_of(one.kind).name, limit.value, plant,
+                                         limit.is_kept ? "" : ", which breaks it")});
+  };
+  for (const LimitResult& limit : result.limits) {
+    if (limit.against > 0.0) {
+      take(limit);
+    }
+  }
+  for (const LimitResult& limit : result.limits) {
+    if (parts.empty() && !limit.is_kept) {
+      take(limit);
+    }
+  }
+  std::string mend = parts.size() > 1 ? "loosen one of them" : "loosen it";
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    if (result.at_bound[j] != AtBound::Free) {
+      const FreeParameter& free = problem.parameters[j];
+      notes.push_back({.place = free.place,
+                       .text = fmt::format("{} is on its {} bound", free.name,
+                                           result.at_bound[j] == AtBound::Lower ? "lower" : "upper")});
+      mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
+    }
+  }
+  diagnostics.error(
+      error::limits_contradict, place,
+      parts.size() > 1 ? fmt::format("No controller was found that keeps {} together.", fmt::join(parts, " and "))
+                       : fmt::format("No controller was found that keeps {}.", parts.empty() ? "the limits" : parts[0]),
+      mend + ", free a further parameter of the controller, or search from more points: --start 20.", std::move(notes));
+}
+
+}  // namespace
+
+int tune_goal(const TuneOptions& options, const parameters::ParameterFile& file, Console& console) {
+  prove_outputs(options, goal_report_paths(options.report, std::max<std::size_t>(file.goal.plants.size(), 1)));
+  Diagnostics warnings;
+  const Program program =
+      compile_file(options.diagram.file,
+                   {.top = options.diagram.top, .any_order = options.diagram.any_order, .keep_names = true}, warnings);
+  refuse_ports_named_as_time(warnings);
+  const std::vector<records::Record> records =
+      options.logs.empty()
+          ? std::vector<records::Record>()
+          : read_and_told(options.logs, with_settings(options.record, file.record), program, true, warnings);
+  const GoalProblem problem = goal_problem(program, file, records);
+  GoalResult result;
+  {
+    const InterruptWatch watch;
+    Progress line("Tuning");
+    GoalOptions tuning{.starts = options.starts};
+    tuning.progress = [&](const GoalProgress& progress) {
+      // How many iterations are left nobody knows; most searches take some fifty.
+      const double within = std::min(0.95, static_cast<double>(progress.iteration) / 50.0);
+      line.update((progress.start + within) / std::max(1, options.starts), progress_text(progress));
+      return !watch.interrupted();
+    };
+    result = tune_for_goal(problem, tuning);
+    line.finish();
+  }
+  std::vector<OutputFile> files =
+      options.report.empty() ? std::vector<OutputFile>() : goal_report_files(options.report, problem, result);
+  files.push_back({.path = options.output,
+                   .contents = parameters::parameter_text(tuned_file(file, problem, result), tuned_remarks(problem),
+                                                          tuned_heading(problem, result))});
+  write_files_atomically(files);
+  console.print(options.json ? goal_json(problem, result).dump(2) + "\n" : goal_text(problem, result));
+  if (result.status == GoalStatus::Contradiction) {
+    report_contradiction(problem, result, warnings);
+  }
+  console.report(warnings);
+  if (result.status == GoalStatus::Cancelled) {
+    return exit_interrupted;
+  }
+  return result.status == GoalStatus::Tuned ? exit_ok : exit_findings;
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,37 @@
+// What runs with plain and with dual scalars alike ask of them.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <span>
+
+#include "tuning/dual.hpp"
+
+namespace hysteron {
+
+template <class S>
+inline constexpr bool is_dual = false;
+template <int N>
+inline constexpr bool is_dual<Dual<N>> = true;
+
+/// An unknown: a variable where it is among the columns of the pass, else a constant.
+template <class S>
+S seeded(double value, Eigen::Index column, std::span<const Eigen::Index> columns) {
+  if constexpr (is_dual<S>) {
+    const auto found = std::ranges::find(columns, column);
+    if (found != columns.end()) {
+      return S::variable(value, static_cast<int>(found - columns.begin()));
+    }
+  }
+  return S(value);
+}
+
+inline double plain_value(double value) {
+  return value;
+}
+template <int N>
+double plain_value(const Dual<N>& value) {
+  return value.value();
+}
+
+}  // namespace hysteron

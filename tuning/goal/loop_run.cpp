@@ -1,0 +1,167 @@
+#include "tuning/goal/loop_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "codegen/cosimulation/session.hpp"
+#include "tuning/dual_value.hpp"
+
+namespace hysteron {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Of the largest |v|: small against any curvature, large against rounding.
+constexpr double share_put_in = 1e-6;
+/// Of the peak of h, below which it has died away.
+constexpr double died_away = 1e-7;
+constexpr std::size_t longest_impulse = 20;  ///< test durations
+constexpr std::size_t shortest_limit = 2000;
+
+template <class Row>
+void keep_derivatives(const double& /*value*/, std::span<const Index> /*columns*/, double /*scale*/, Row&& /*row*/) {}
+template <int N, class Row>
+void keep_derivatives(const Dual<N>& value, std::span<const Index> columns, double scale, Row&& row) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    row[columns[k]] = scale * value.derivative(static_cast<int>(k));
+  }
+}
+
+}  // namespace
+
+LoopRun::LoopRun(const LoopPlant& plant, const Drive& drive, const std::vector<FreeParameter>& parameters)
+    : plant_(plant), drive_(drive), parameters_(parameters), plain_(plant.program, drive.sample_time) {}
+
+template <class S>
+bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const Index> columns,
+                        LoopResponse& response) {
+  machine.use_directions(columns.size());
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    const auto column = static_cast<Index>(j);
+    machine.set_parameter(parameters_[j].parameter, seeded<S>(x[column], column, columns), parameters_[j].element);
+  }
+  machine.reset();
+  if (plant_.cut) {
+    machine.set_input(plant_.cut->input, S(0.0));
+  }
+  largest_ = 0.0;
+  for (std::size_t step = 0; step < drive_.steps; ++step) {
+    for (std::size_t i = 0; i < drive_.inputs.size(); ++i) {
+      machine.set_input(i, S(at_step(drive_.inputs[i], step)));
+    }
+    machine.step();
+    const S y = machine.value(plant_.output);
+    const S u = plant_.effort ? machine.value(*plant_.effort) : S(0.0);
+    const double v = plant_.cut ? plain_value(machine.value(plant_.cut->behind)) : 0.0;
+    response.output[step] = plain_value(y);
+    response.effort[step] = plain_value(u);
+    largest_ = std::max(largest_, std::fabs(v));
+    if (!std::isfinite(response.output[step]) || !std::isfinite(response.effort[step]) || !std::isfinite(v)) {
+      return false;
+    }
+    if (!columns.empty()) {
+      keep_derivatives(y, columns, 1.0, response.output_by.row(static_cast<Index>(step)));
+      keep_derivatives(u, columns, 1.0, response.effort_by.row(static_cast<Index>(step)));
+    }
+  }
+  return true;
+}
+
+template <class S>
+bool LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, std::size_t steps,
+                           LoopResponse& response) {
+  constexpr std::size_t block = 256;
+  const double put_in = share_put_in * (largest_ > 0.0 ? largest_ : 1.0);
+  const std::size_t most = steps > 0 ? steps : std::max(longest_impulse * drive_.steps, shortest_limit);
+  std::array<std::vector<std::byte>, 2> states;  // of the run with +ε, of that with −ε
+  for (std::vector<std::byte>& state : states) {
+    state.resize(machine.saved_size());
+    machine.save(state);
+  }
+  std::vector<S> above;
+  double peak = 0.0;
+  for (std::size_t first = 0; first < most; first += block) {
+    const std::size_t last = std::min(first + block, most);
+    above.resize(last - first);
+    for (std::size_t run = 0; run < 2; ++run) {
+      machine.restore(states[run]);
+      for (std::size_t step = first; step < last; ++step) {
+        machine.set_input(plant_.cut->input, S(step > 0 ? 0.0 : run == 0 ? put_in : -put_in));
+        machine.step();
+        const S v = machine.value(plant_.cut->behind);
+        if (run == 0) {
+          above[step - first] = v;
+          continue;
+        }
+        const S difference = above[step - first] - v;
+        const double h = plain_value(difference) / (2.0 * put_in);
+        if (columns.empty()) {
+          response.impulse.push_back(h);
+        } else {
+          keep_derivatives(difference, columns, 0.5 / put_in, response.impulse_by.row(static_cast<Index>(step)));
+        }
+        peak = std::max(peak, std::fabs(h));
+      }
+      machine.save(states[run]);
+    }
+    if (!std::isfinite(peak) || peak > 1e9) {
+      return false;
+    }
+    const auto tail = static_cast<std::ptrdiff_t>(last / 4);
+    const bool is_small = std::all_of(response.impulse.end() - tail, response.impulse.end(),
+                                      [&](double h) { return std::fabs(h) < died_away * peak; });
+    if (steps == 0 && is_small) {
+      return true;
+    }
+  }
+  return steps > 0;
+}
+
+template <class S>
+bool LoopRun::pass(std::optional<Machine<S>>& machine, const VectorXd& x, std::span<const Index> columns,
+                   LoopResponse& response) {
+  if (!machine) {
+    machine.emplace(plant_.program, drive_.sample_time);
+  }
+  return take_test(*machine, x, columns, response) &&
+         (!plant_.cut || take_impulse(*machine, columns, response.impulse.size(), response));
+}
+
+LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopResponse& response) {
+  response = {.output = Signal(drive_.steps), .effort = Signal(drive_.steps)};
+  try {
+    if (!take_test(plain_, x, {}, response)) {
+      return LoopState::NotFinite;
+    }
+    if (plant_.cut && !take_impulse(plain_, {}, 0, response)) {
+      return LoopState::Unstable;
+    }
+    if (!with_derivatives) {
+      return LoopState::Settles;
+    }
+    const auto rows = static_cast<Index>(drive_.steps);
+    response.output_by = Eigen::MatrixXd::Zero(rows, x.size());
+    response.effort_by = Eigen::MatrixXd::Zero(rows, x.size());
+    response.impulse_by = Eigen::MatrixXd::Zero(std::ssize(response.impulse), x.size());
+    std::vector<Index> columns(parameters_.size());
+    std::iota(columns.begin(), columns.end(), Index{0});
+    for (std::span<const Index> left(columns); !left.empty();) {
+      const std::size_t taken = std::min<std::size_t>(left.size(), left.size() <= 4 ? 4 : 8);
+      const bool finite =
+          left.size() <= 4 ? pass(four_, x, left.first(taken), response) : pass(eight_, x, left.first(taken), response);
+      if (!finite) {
+        return LoopState::NotFinite;
+      }
+      left = left.subspan(taken);
+    }
+  } catch (const cosimulation::FmuRefusal&) {  // a point at which a model cannot go on has no value
+    return LoopState::NotFinite;
+  }
+  return LoopState::Settles;
+}
+
+}  // namespace hysteron

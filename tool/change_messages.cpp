@@ -11,12 +11,11 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json place_json(const Place& place) {
-  return {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"length", place.length}};
-}
-
 Place place_of(const Json& json) {
-  return {.file = json.at("file"), .line = json.at("line"), .column = json.at("column"), .length = json.at("length")};
+  return {.file = json.at("file"),
+          .line = json.value("line", 0U),
+          .column = json.value("column", 0U),
+          .length = json.value("length", 1U)};
 }
 
 }  // namespace
@@ -47,33 +46,16 @@ Json as_json(const runtime::ChangeReport& report) {
           {"retained", report.is_retained}};
 }
 
-Json as_json(const Diagnostics& diagnostics) {
-  Json list = Json::array();
-  for (const Diagnostic& one : diagnostics.all()) {
-    Json notes = Json::array();
-    for (const Note& note : one.notes) {
-      notes.push_back({{"place", place_json(note.place)}, {"text", note.text}});
-    }
-    list.push_back({{"number", one.number},
-                    {"is_error", one.severity == Severity::Error},
-                    {"place", place_json(one.place)},
-                    {"cause", one.cause},
-                    {"mend", one.mend},
-                    {"notes", notes}});
-  }
-  return list;
-}
-
 Diagnostics diagnostics_of(const Json& json) {
   Diagnostics diagnostics;
   for (const Json& one : json) {
-    Diagnostic diagnostic{.number = one.at("number"),
-                          .severity = one.at("is_error") ? Severity::Error : Severity::Warning,
-                          .place = place_of(one.at("place")),
+    Diagnostic diagnostic{.number = std::stoi(one.at("number").get<std::string>().substr(2)),
+                          .severity = one.at("severity") == "error" ? Severity::Error : Severity::Warning,
+                          .place = place_of(one),
                           .cause = one.at("cause"),
                           .mend = one.at("mend")};
     for (const Json& note : one.at("notes")) {
-      diagnostic.notes.push_back({.place = place_of(note.at("place")), .text = note.at("text")});
+      diagnostic.notes.push_back({.place = place_of(note), .text = note.at("text")});
     }
     diagnostics.add(std::move(diagnostic));
   }

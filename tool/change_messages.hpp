@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 /// As docs/reference/schemas/online-change.schema.json has it; what is no number is null.
 [[nodiscard]] Json as_json(const runtime::ChangeReport& report);
 
-[[nodiscard]] Json as_json(const Diagnostics& diagnostics);
+/// Back from what support/render.hpp makes of them.
 [[nodiscard]] Diagnostics diagnostics_of(const Json& json);
 
 [[nodiscard]] Json as_json(const std::vector<OutputFile>& files);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "support/errors.hpp"
+#include "support/render.hpp"
 #include "support/text_file.hpp"
 #include "tool/change_messages.hpp"
 #include "tool/inner_signals.hpp"
@@ -45,6 +46,21 @@ LoadedVersion load_version(const DiagramOptions& options, Diagnostics& warnings)
   return {.diagram = std::move(diagram), .files = std::move(files)};
 }
 
+ServedVersions::NextVersion ServedVersions::next_version(const runtime::OnlineChange& change,
+                                                         const runtime::ChangeWish& wish, Diagnostics& warnings) const {
+  try {
+    LoadedVersion loaded = load_version(options_, warnings);
+    const auto inner = shows_inner_ ? inner_signals(loaded.diagram) : std::vector<InnerSignal>();
+    return {.program = step_program(loaded.diagram, engine_, options_.float32, inner),
+            .files = std::move(loaded.files)};
+  } catch (const InputError& refused) {
+    if (!wish.only_check) {
+      change.tell_refused(refused);
+    }
+    throw;
+  }
+}
+
 std::string ServedVersions::answer(runtime::OnlineChange& change, const std::string& request) {
   Json answer = Json::object();
   Diagnostics warnings;
@@ -62,12 +78,10 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
         std::swap(running_, former_);
       }
     } else {
-      LoadedVersion version = load_version(options_, warnings);
-      const auto inner = shows_inner_ ? inner_signals(version.diagram) : std::vector<InnerSignal>();
-      answer["report"] =
-          as_json(change.change_to(step_program(version.diagram, engine_, options_.float32, inner), wish));
+      NextVersion next = next_version(change, wish, warnings);
+      answer["report"] = as_json(change.change_to(std::move(next.program), wish));
       if (!wish.only_check) {
-        former_ = std::exchange(running_, std::move(version.files));
+        former_ = std::exchange(running_, std::move(next.files));
       }
     }
     answer["warnings"] = as_json(warnings);

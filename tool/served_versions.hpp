@@ -36,6 +36,13 @@ class ServedVersions {
   [[nodiscard]] std::string answer(runtime::OnlineChange& change, const std::string& request);
 
  private:
+  struct NextVersion {
+    std::unique_ptr<runtime::StepProgram> program{};
+    std::vector<OutputFile> files{};
+  };
+  [[nodiscard]] NextVersion next_version(const runtime::OnlineChange& change, const runtime::ChangeWish& wish,
+                                         Diagnostics& warnings) const;
+
   DiagramOptions options_;
   Engine engine_;
   bool shows_inner_;

@@ -76,6 +76,8 @@ class OnlineChange {
   /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
   /// have is carried back. A second time is forward again. Throws as change_to, HY853 too where there is none.
   ChangeReport change_back(const ChangeWish& wish);
+  /// Says on standard error, and in task.online_change, that a change was refused: here, or before it came here.
+  void tell_refused(const InputError& refused) const;
 
  private:
   struct Plan;
@@ -89,8 +91,6 @@ class OnlineChange {
   void tell_changed(ChangeReport& report, ChangeOutcome outcome);
   /// Begins a change; throws where it cannot be now.
   [[nodiscard]] std::unique_lock<std::mutex> one_at_a_time();
-  /// Says and counts a change that was refused.
-  void tell_refused(const InputError& refused) const;
   template <class Ready>
   [[nodiscard]] bool wait_for(const Ready& ready) const;
   [[noreturn]] void refuse_for_now(const std::string& why) const;

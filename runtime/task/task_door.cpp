@@ -61,8 +61,7 @@ constexpr std::array statuses{
            "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
     Status{"task.version", PointType::uint64, "1",
            "the version of the diagram: 1, and one more with each online change"},
-    Status{"task.online_change", PointType::uint16, "1",
-           "the last online change: 0 none, 1 changed, 2 refused, 3 changed back"},
+    Status{"task.online_change", PointType::uint16, "1", "0 none, 1 changed, 2 refused, 3 changed back"},
 };
 constexpr std::size_t status_count = statuses.size();
 

@@ -181,6 +181,12 @@ constexpr std::array titles{
     ErrorTitle{error::malformed_web_address, "Address of the live page that is not understood"},
     ErrorTitle{error::open_web_page, "Live page open to a network without a token"},
     ErrorTitle{error::unfit_token_file, "Token file that does not serve"},
+    ErrorTitle{error::other_interface, "Online change to another interface"},
+    ErrorTitle{error::bump_too_large, "Online change that would make an output jump"},
+    ErrorTitle{error::no_online_change, "No task that takes an online change"},
+    ErrorTitle{error::online_change_not_now, "Online change that cannot be now"},
+    ErrorTitle{error::unusable_change_socket, "Socket for online changes that cannot be made"},
+    ErrorTitle{error::carried_parameters_unfit, "Carried parameters that do not go together in the new version"},
 };
 
 }  // namespace

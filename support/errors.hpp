@@ -189,6 +189,12 @@ inline constexpr int replay_differs = 841;
 inline constexpr int malformed_web_address = 842;
 inline constexpr int open_web_page = 843;
 inline constexpr int unfit_token_file = 844;
+inline constexpr int other_interface = 850;
+inline constexpr int bump_too_large = 851;
+inline constexpr int no_online_change = 852;
+inline constexpr int online_change_not_now = 853;
+inline constexpr int unusable_change_socket = 854;
+inline constexpr int carried_parameters_unfit = 855;
 }  // namespace error
 
 /// In the order of the numbers.

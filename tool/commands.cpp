@@ -24,6 +24,7 @@ std::span<const Command> commands() {
       Command{"import", "Reads a diagram that was drawn elsewhere, in PLCopen XML.", add_import},
       Command{"test", "Runs the tests beside diagrams, interpreted and as generated code.", add_test},
       Command{"serve", "Runs a diagram as a cyclic task, and serves it over Modbus.", add_serve},
+      Command{"online-change", "Changes the diagram of a task that runs, without ending it.", add_online_change},
       Command{"replay", "Runs a recorded trace again, and compares every bit.", add_replay},
       Command{"history", "What a task has kept for days: listed, or as a record.", add_history},
       Command{"map", "Prints the registers of a served diagram.", add_map},

@@ -50,6 +50,7 @@ Action add_fleet_report(CLI::App& app);
 Action add_lsp(CLI::App& app);
 Action add_test(CLI::App& app);
 Action add_serve(CLI::App& app);
+Action add_online_change(CLI::App& app);
 Action add_replay(CLI::App& app);
 Action add_history(CLI::App& app);
 Action add_map(CLI::App& app);

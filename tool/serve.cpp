@@ -11,14 +11,17 @@
 #include <vector>
 
 #include "runtime/host/host.hpp"
+#include "runtime/task/changeable_program.hpp"
 #include "runtime/web/server.hpp"
 #include "support/text_file.hpp"
+#include "tool/change_channel.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
 #include "tool/inner_signals.hpp"
 #include "tool/live_diagram.hpp"
 #include "tool/option_values.hpp"
 #include "tool/serve_program.hpp"
+#include "tool/served_versions.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -68,11 +71,12 @@ std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& optio
 
 int serve(const ServeOptions& options, Console& console) {
   Diagnostics warnings;
-  const Program diagram = load_diagram(options.diagram, warnings);
+  LoadedVersion version = load_version(options.diagram, warnings);
+  const Program& diagram = version.diagram;
   const Engine engine = engine_of(options.engine);
   const auto web = web_options(options);
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
-  const auto program = step_program(diagram, engine, options.diagram.float32, inner);
+  auto program = step_program(diagram, engine, options.diagram.float32, inner);
   auto config = runtime::parse_run_config(options.config, read_text_file(options.config), program->shape());
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
@@ -82,8 +86,8 @@ int serve(const ServeOptions& options, Console& console) {
   console.report(warnings);
   const auto history = config.history.value_or(runtime::HistoryConfig{});
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
-    const runtime::web::Subject subject{.name = program->shape().name,
-                                        .period = program->shape().period,
+    const runtime::web::Subject subject{.name = diagram.graph.name,
+                                        .period = diagram.graph.sample_time_ns,
                                         .diagram = live_diagram(diagram.graph, inner),
                                         .history = history.file,
                                         .history_points = history.points};
@@ -91,11 +95,25 @@ int serve(const ServeOptions& options, Console& console) {
     where += fmt::format("; live page on http://{}/", runtime::web::text_of(web->endpoint, server->port()));
     return server;
   };
-  const bool well = runtime::run_host(*program, std::move(config),
+  std::unique_ptr<runtime::ChangeableProgram> changeable;
+  if (config.online_change) {
+    changeable = std::make_unique<runtime::ChangeableProgram>(std::move(program));
+  }
+  runtime::StepProgram& running = changeable ? *changeable : *program;
+  ServedVersions versions(options.diagram, engine, web.has_value(), std::move(version.files));
+  const auto take_changes = [&, where = config.online_change](runtime::OnlineChange& change,
+                                                              std::string& said) -> std::shared_ptr<void> {
+    said += fmt::format("; online change on {}", where->socket);
+    return std::make_shared<ChangeListener>(
+        where->socket, where->place, [&](const std::string& request) { return versions.answer(change, request); });
+  };
+  const bool well = runtime::run_host(running, std::move(config),
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",
                                        .cycles = options.cycles,
                                        .virtual_time = options.virtual_time,
-                                       .beside = web ? BesideTask(serve_page) : BesideTask()},
+                                       .beside = web ? BesideTask(serve_page) : BesideTask(),
+                                       .changeable = changeable.get(),
+                                       .take_changes = take_changes},
                                       [&](std::string_view text) {
                                         console.print(text);
                                         (void)std::fflush(stdout);

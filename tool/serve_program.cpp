@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "codegen/backends/cpp/cpp.hpp"
@@ -12,8 +13,11 @@
 #include "codegen/interpreter/machine.hpp"
 #include "runtime/task/linked_program.hpp"
 #include "support/errors.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 #include "tool/build_cache.hpp"
 #include "tool/built_program.hpp"
+#include "tool/row_program.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -96,13 +100,21 @@ std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, P
                                           .headers = {generate_cpp_header(program, {.float32 = float32})},
                                           .flags = {"-std=c++20", "-O2", "-shared", "-fPIC"},
                                           .without = "run it with --engine interpreter"});
-  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  // Each program has a state of its own: the same file opened twice would be one library, with one state.
+  const TemporaryFolder folder(cache.folder());
+  const fs::path copy = folder.path() / path.filename();
+  write_scratch(copy, read_text_file(path.string()));
+  const std::shared_ptr<void> opened(dlopen(copy.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* library) {
+    if (library != nullptr) {
+      (void)dlclose(library);
+    }
+  });
+  void* const library = opened.get();
   if (library == nullptr) {
     throw InputError(error::generated_code_fails, {},
                      fmt::format("The compiled program cannot be opened: {}.", dlerror()),
                      "see whether programs may be run from the folder for temporary files; TMPDIR sets another.");
   }
-  // Never closed: it runs for as long as this process does.
   return std::make_unique<runtime::LinkedProgram>(
       std::move(shape),
       runtime::StepFunctions{
@@ -112,7 +124,8 @@ std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, P
           .parameter = function_of<double (*)(std::size_t)>(library, "hysteron_parameter"),
           .state = function_of<void* (*)()>(library, "hysteron_state"),
           .state_size = function_of<std::size_t (*)()>(library, "hysteron_state_size"),
-          .state_offset = function_of<std::size_t (*)(std::size_t)>(library, "hysteron_state_offset")});
+          .state_offset = function_of<std::size_t (*)(std::size_t)>(library, "hysteron_state_offset")},
+      opened);
 }
 
 /// The program with its inner signals as further outputs, by names that no diagram can have.

@@ -75,6 +75,9 @@ class Reader {
     if (const auto* const table = table_at(root_, "trace")) {
       read_trace({file_, "[trace]", *table, run_table("trace").keys, found_});
     }
+    if (const auto* const table = table_at(root_, "online_change")) {
+      read_online_change({file_, "[online_change]", *table, run_table("online_change").keys, found_});
+    }
     if (const auto* const table = table_at(root_, "history")) {
       config_.history =
           HistoryReading(shape_, found_).read({file_, "[history]", *table, run_table("history").keys, found_});
@@ -189,6 +192,9 @@ class Reader {
     table.read("slew", output.slew);
     table.read("ramp", output.ramp);
     table.read_whole("hold_cycles", output.hold_cycles);
+    if (table.has("bump")) {
+      table.read("bump", config_.bumps[*index]);
+    }
     std::size_t action = 0;
     table.read_choice("on_fault", action);
     output.action = static_cast<SafeAction>(action);
@@ -261,6 +267,16 @@ class Reader {
       found_.error(error::wrong_run_value, table.place(), table.name() + " needs the key " + key + ".",
                    "write it as in " + key + " = " + example + ", or remove the table.");
     }
+  }
+
+  void read_online_change(TomlReader table) {
+    ChangeConfig change{.place = table.place("socket")};
+    table.read("socket", change.socket);
+    if (!table.has("socket")) {
+      found_.error(error::wrong_run_value, change.place, "[online_change] needs the key socket, a file's name.",
+                   "write it as in socket = \"online-change.socket\", or remove the table.");
+    }
+    config_.online_change = std::move(change);
   }
 
   void read_retain(TomlReader table) {
@@ -425,6 +441,14 @@ std::optional<std::int64_t> parse_duration(std::string_view text) {
     return std::nullopt;
   }
   return static_cast<std::int64_t>(value);
+}
+
+std::optional<ChangeConfig> change_config_of(const std::string& file, std::string_view text) {
+  const toml::table root = parse_toml(file, text, run_file);
+  const auto* const table = root["online_change"].as_table();
+  const auto* const socket = table == nullptr ? nullptr : table->get("socket");
+  const auto path = socket == nullptr ? std::nullopt : socket->value<std::string>();
+  return path ? std::optional(ChangeConfig{.socket = *path, .place = place_of(file, socket->source())}) : std::nullopt;
 }
 
 std::optional<TraceTrigger> parse_trigger(std::string_view text, const ProgramShape& shape) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,6 +49,11 @@ struct DeviceOutput {
 struct RetainConfig {
   std::string folder{};
   MismatchPolicy mismatch = MismatchPolicy::carry;
+  Place place{};
+};
+
+struct ChangeConfig {
+  std::string socket{};
   Place place{};
 };
 
@@ -115,6 +121,8 @@ struct RunConfig {
   std::optional<RetainConfig> retain{};
   std::optional<TraceSettings> trace{};
   Place trace_place{};
+  std::optional<ChangeConfig> online_change{};
+  std::map<std::size_t, double> bumps{};  ///< by output: how far it may jump at an online change
   std::optional<HistoryConfig> history{};
   std::optional<MqttConfig> mqtt{};
   std::optional<ModbusConfig> modbus{};
@@ -126,6 +134,10 @@ struct RunConfig {
 /// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835 and HY836;
 /// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
+
+/// Of a run file only where its task takes online changes, whatever else it says; nothing where it names no socket.
+/// Throws InputError where it is no TOML.
+[[nodiscard]] std::optional<ChangeConfig> change_config_of(const std::string& file, std::string_view text);
 
 /// A length of time as "5ms": a number and one of ns, us, ms, s, min, h, d. In nanoseconds; nothing where it is none.
 [[nodiscard]] std::optional<std::int64_t> parse_duration(std::string_view text);

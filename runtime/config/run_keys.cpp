@@ -89,6 +89,8 @@ constexpr std::array output_keys{
     RunKey{"low", number, "(the diagram's)", "the output is never below"},
     RunKey{"high", number, "(the diagram's)", "the output is never above"},
     RunKey{"slew", number, "(none)", "the largest change a second", above_zero},
+    RunKey{"bump", number, "(1 % of `low` to `high`; where it has none of both, 0)",
+           "at an online change: how far it may jump, in its unit", 0.0},
     RunKey{"device", text, "(none)", "the device that takes it, as named under [devices]"},
     RunKey{"register", whole, "0", "where it lies there: the first register, or the coil", 0.0, 65535.0},
     RunKey{.name = "area",
@@ -186,6 +188,11 @@ constexpr std::array trace_keys{
            "\"U > 5.0\", an input or output and a number; or \"fault\""},
     RunKey{"before", whole, "1000", "with a trigger: cycles kept from before", 0.0, many},
     RunKey{"after", whole, "1000", "with a trigger: cycles kept from then on", 0.0, many},
+};
+constexpr std::array online_change_keys{
+    RunKey{"socket", text, "(required)",
+           "the file of the socket on which the task of `hysteron serve` takes an online change from its own user; "
+           "`hysteron online-change` finds it here"},
 };
 constexpr std::array history_keys{
     RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
@@ -298,10 +305,10 @@ constexpr std::array address_keys{
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"},   RunKey{"outputs"}, RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},     RunKey{"trace"},   RunKey{"history"},
-                               RunKey{"mqtt"},    RunKey{"dead_bands"}, RunKey{"modbus"},  RunKey{"tls"},
-                               RunKey{"roles"},   RunKey{"addresses"}};
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"},    RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},      RunKey{"online_change"},
+                               RunKey{"history"}, RunKey{"mqtt"},     RunKey{"dead_bands"}, RunKey{"modbus"},
+                               RunKey{"tls"},     RunKey{"roles"},    RunKey{"addresses"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -311,6 +318,8 @@ constexpr std::array tables{
     RunTable{"[devices.NAME]", "A Modbus device with inputs or outputs of the task.", device_keys},
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},
+    RunTable{"[online_change]", "The diagram may change while the task runs; without the table, not.",
+             online_change_keys},
     RunTable{"[history]", "Chosen points, kept for days; without the table, none.", history_keys},
     RunTable{"[mqtt]", "Chosen points, published to an MQTT broker; without the table, none.", mqtt_keys},
     RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",

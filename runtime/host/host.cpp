@@ -258,6 +258,17 @@ class CertificateCare {
   std::optional<modbus::TlsRenewal> renewal_;
 };
 
+/// Where the run file has the table and the program can change.
+std::unique_ptr<OnlineChange> online_change(const HostOptions& options, const RunConfig& config, Task& task) {
+  if (config.online_change && options.changeable == nullptr) {
+    tell("Online change", "[online_change] has no effect here: only `hysteron serve` can compile a new version.");
+  }
+  return config.online_change && options.changeable != nullptr
+             ? std::make_unique<OnlineChange>(*options.changeable, task,
+                                              bump_limits(config, options.changeable->shape()))
+             : nullptr;
+}
+
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
 void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, CertificateCare& certificate,
               nanoseconds period) {
@@ -318,6 +329,10 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
     }
   }
   const std::string mend = "name another file in the run file.";
+  if (config.online_change) {
+    refuse_to_overwrite({.file = config.online_change->socket, .mend = mend, .place = config.online_change->place},
+                        inputs);
+  }
   // Each is read by the next start, so what is written after it must not take its place either.
   if (config.modbus) {
     const std::string& file = config.modbus->lock_file;
@@ -403,6 +418,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
   how += tls && tls->fault_at(std::time(nullptr)) != modbus::TlsFault::none ? " (no client comes in)" : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
+  const auto change = online_change(options, config, task);
+  auto changer = change ? options.take_changes(*change, how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
   std::unique_ptr<Retainer> retainer;
@@ -421,7 +438,8 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),
                                     .history = history ? &history->counter() : nullptr,
-                                    .mqtt = publishes ? &mqtt->counter() : nullptr};
+                                    .mqtt = publishes ? &mqtt->counter() : nullptr,
+                                    .changes = options.changeable};
   task.attach(attachments);
   std::vector<SampleTap*> taps;
   std::map<std::string, Remarks*> beside;
@@ -443,8 +461,15 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     const CyclicThread cyclic(task, config, options.virtual_time);
     print(how + "; " + cyclic.obtained() + "\n");
     tell_service_manager("READY=1");
+    if (change) {
+      change->begin(retainer.get(), trace.get());
+    }
     wait_for(cyclic, task, guard.get(), notices, certificate, nanoseconds(shape.period));
     end = cyclic.end();
+    if (change) {
+      change->end();
+      changer.reset();  // it uses what is finished next
+    }
   }
   if (retainer) {
     retainer->finish();

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
+#include "runtime/host/online_change.hpp"
 #include "runtime/modbus/register_map.hpp"
 #include "runtime/point.hpp"
+#include "runtime/task/changeable_program.hpp"
 #include "runtime/task/step_program.hpp"
 #include "support/overwriting.hpp"
 
@@ -23,6 +25,10 @@ struct HostOptions {
   bool virtual_time = false;
   /// Makes what else serves the door beside the task, and adds to the status line where. Its life is that of the task.
   std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)> beside{};
+  /// Where the version of the diagram may change: the program itself, and what hands on to it who wishes a change, as
+  /// `beside`. Where the run file has no [online_change], it is not asked for.
+  ChangeableProgram* changeable = nullptr;
+  std::function<std::shared_ptr<void>(OnlineChange& change, std::string& where)> take_changes{};
 };
 
 /// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew

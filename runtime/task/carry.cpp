@@ -60,9 +60,8 @@ T value_at(std::span<const std::byte> bytes, std::size_t at) {
 }
 
 /// Every number of these types is a double to the last bit, but for counts beyond 2^53, which no run reaches.
-double number_at(std::span<const std::byte> bytes, const StateField& field, std::size_t element) {
-  const std::size_t at = field.offset + element * about(field.type).size;
-  switch (field.type) {
+double number_at(std::span<const std::byte> bytes, PointType type, std::size_t at) {
+  switch (type) {
     case PointType::boolean:
       return value_at<std::uint8_t>(bytes, at) != 0 ? 1.0 : 0.0;
     case PointType::uint16:
@@ -83,9 +82,8 @@ void put(std::span<std::byte> bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
-void put_number(std::span<std::byte> bytes, const StateField& field, std::size_t element, double value) {
-  const std::size_t at = field.offset + element * about(field.type).size;
-  switch (field.type) {
+void put_number(std::span<std::byte> bytes, PointType type, std::size_t at, double value) {
+  switch (type) {
     case PointType::boolean:
       put(bytes, at, value != 0.0);
       break;
@@ -196,8 +194,8 @@ void tell_gone(const std::vector<Kept>& kept, const std::vector<Own>& own, std::
   }
 }
 
-/// Why a number of the state is not taken over; empty where it is.
-std::string refusal_of(const StateField& was, std::span<const std::byte> from, const StateField& is) {
+/// Why a number of the state is another one; empty where it is the same.
+std::string refusal_of(const StateField& was, const StateField& is) {
   if (was.block != is.block) {
     return fmt::format("of {} there, of {} here", was.block, is.block);
   }
@@ -206,11 +204,6 @@ std::string refusal_of(const StateField& was, std::span<const std::byte> from, c
   }
   if (was.length != is.length) {
     return fmt::format("{} values there, {} here", was.length, is.length);
-  }
-  for (std::size_t i = 0; i < was.length; ++i) {
-    if (!std::isfinite(number_at(from, was, i))) {
-      return "not finite";
-    }
   }
   return "";
 }
@@ -270,38 +263,70 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
   return carried;
 }
 
-void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
-                 std::span<std::byte> into, CarriedValues& carried) {
+std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShape& shape,
+                                       std::vector<std::string>& left_out) {
+  std::vector<SharedNumber> shared;
   if (kept.period != shape.period) {
-    carried.left.push_back(
+    left_out.push_back(
         left("the state", fmt::format("of steps of {} ns there, {} ns here", kept.period, shape.period)));
-    return;
+    return shared;
   }
   const auto places = by_name(kept.state);
-  for (const StateField& own : shape.state) {
+  for (std::size_t i = 0; i < shape.state.size(); ++i) {
+    const StateField& own = shape.state[i];
     const auto found = places.find(own.name);
     if (found == places.end()) {
-      carried.left.push_back(left(own.name, "new"));
+      left_out.push_back(left(own.name, "new"));
       continue;
     }
     const StateField& was = kept.state[found->second];
-    if (std::string why = refusal_of(was, from, own); !why.empty()) {
-      carried.left.push_back(left(own.name, why));
+    if (std::string why = refusal_of(was, own); !why.empty()) {
+      left_out.push_back(left(own.name, why));
       continue;
     }
-    for (std::size_t i = 0; i < own.length; ++i) {
-      put_number(into, own, i, number_at(from, was, i));
-    }
-    ++carried.states_taken;
+    shared.push_back({.type_from = was.type,
+                      .type_into = own.type,
+                      .from = was.offset,
+                      .into = own.offset,
+                      .length = own.length,
+                      .field = i});
   }
-  tell_gone(kept.state, shape.state, carried.left);
+  tell_gone(kept.state, shape.state, left_out);
+  return shared;
+}
+
+bool copy_shared(const SharedNumber& shared, std::span<const std::byte> from, std::span<std::byte> into) noexcept {
+  const std::size_t size_from = about(shared.type_from).size;
+  const std::size_t size_into = about(shared.type_into).size;
+  for (std::size_t i = 0; i < shared.length; ++i) {
+    if (!std::isfinite(number_at(from, shared.type_from, shared.from + i * size_from))) {
+      return false;
+    }
+  }
+  for (std::size_t i = 0; i < shared.length; ++i) {
+    put_number(into, shared.type_into, shared.into + i * size_into,
+               number_at(from, shared.type_from, shared.from + i * size_from));
+  }
+  return true;
+}
+
+void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
+                 std::span<std::byte> into, CarriedValues& carried) {
+  for (const SharedNumber& one : shared_state(kept, shape, carried.left)) {
+    if (copy_shared(one, from, into)) {
+      ++carried.states_taken;
+    } else {
+      carried.left.push_back(left(shape.state[one.field].name, "not finite"));
+    }
+  }
 }
 
 std::string not_finite(const ProgramShape& shape, std::span<const std::byte> state,
                        std::span<const std::byte> after_reset) {
   for (const StateField& field : shape.state) {
     for (std::size_t i = 0; is_real(field.type) && i < field.length; ++i) {
-      if (!std::isfinite(number_at(state, field, i)) && std::isfinite(number_at(after_reset, field, i))) {
+      const std::size_t at = field.offset + i * about(field.type).size;
+      if (!std::isfinite(number_at(state, field.type, at)) && std::isfinite(number_at(after_reset, field.type, at))) {
         return field.name;
       }
     }

@@ -48,6 +48,23 @@ struct CarriedValues {
 [[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
                                              const ProgramShape& shape, std::span<const double> given);
 
+/// A number of the state, or a row of them, that two layouts have in common, as it lies in the bytes of each.
+struct SharedNumber {
+  PointType type_from = PointType::real64;
+  PointType type_into = PointType::real64;
+  std::size_t from = 0;  ///< in bytes
+  std::size_t into = 0;
+  std::size_t length = 1;
+  std::size_t field = 0;  ///< of the shape's state
+};
+
+/// Numbers of the state whose instance, block, type and unit are the same; none where the period is another, in which a
+/// delay of so many steps is another time. The reasons are added to `left`.
+[[nodiscard]] std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShape& shape,
+                                                     std::vector<std::string>& left);
+/// Copies what is finite; a row of which one number is not stays as it is in `into`. False then. Allocates nothing.
+bool copy_shared(const SharedNumber& shared, std::span<const std::byte> from, std::span<std::byte> into) noexcept;
+
 /// Numbers of the state whose instance, block, type and unit are the same, and which are finite; none where the period
 /// is another, in which a delay of so many steps is another time. `into` is the state of
 /// the program after its reset; the count and the reasons are added to `carried`.

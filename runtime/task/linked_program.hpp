@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -21,11 +22,16 @@ struct StepFunctions {
   std::size_t (*state_offset)(std::size_t index) = nullptr;
 };
 
-/// There is one state behind the functions, and so only one such program of a kind in a process.
+/// There is one state behind the functions, and so only one such program of a kind in a process, or in a library that
+/// was opened.
 class LinkedProgram final : public StepProgram {
  public:
-  LinkedProgram(ProgramShape shape, const StepFunctions& functions)
-      : shape_(std::move(shape)), functions_(functions), results_(shape_.outputs.size() + shape_.inner.size()) {
+  /// `library`: what the functions lie in, where it is to be closed with the program.
+  LinkedProgram(ProgramShape shape, const StepFunctions& functions, std::shared_ptr<void> library = {})
+      : library_(std::move(library)),
+        shape_(std::move(shape)),
+        functions_(functions),
+        results_(shape_.outputs.size() + shape_.inner.size()) {
     functions_.reset();
     for (std::size_t i = 0; i < shape_.state.size(); ++i) {
       shape_.state[i].offset = functions_.state_offset(i);
@@ -56,6 +62,7 @@ class LinkedProgram final : public StepProgram {
   }
 
  private:
+  std::shared_ptr<void> library_;
   ProgramShape shape_;
   StepFunctions functions_;
   std::vector<double> results_;

@@ -202,15 +202,18 @@ std::string put_aside(RetainFiles& files, const Recovery& recovery) {
   return problems;
 }
 
-Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
-                   std::vector<std::byte> after_reset)
-    : files_(&files),
-      shape_(&program.shape()),
+RetainImage::RetainImage(const StepProgram& program, std::vector<std::byte> after_reset)
+    : shape_(&program.shape()),
       after_reset_(std::move(after_reset)),
       newest_(RetainedValues{.layout = program.shape().layout,
                              .described = describe(program.shape()),
                              .parameters = std::vector<double>(program.shape().parameters.size()),
-                             .state = std::vector<std::byte>(program.state_size())}),
+                             .state = std::vector<std::byte>(program.state_size())}) {}
+
+Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
+                   std::vector<std::byte> after_reset)
+    : files_(&files),
+      first_(program, std::move(after_reset)),
       slot_(start.next_slot),
       sequence_(start.sequence),
       written_(start.sequence) {
@@ -236,32 +239,36 @@ std::string Retainer::problem() const {
 }
 
 void Retainer::offer(const StepProgram& program, std::uint64_t commits) noexcept {
-  RetainedValues& values = newest_.filling();
+  Latest<RetainedValues>& newest = image_.load(std::memory_order_relaxed)->newest_;
+  RetainedValues& values = newest.filling();
   values.commits = commits;
   for (std::size_t i = 0; i < values.parameters.size(); ++i) {
     values.parameters[i] = program.parameter(i);
   }
   program.save(values.state);
-  newest_.publish();
+  newest.publish();
 }
 
-std::string Retainer::write(const RetainedValues& values) {
-  const std::string bad = after_reset_.empty() ? "" : not_finite(*shape_, values.state, after_reset_);
+std::string Retainer::write(const RetainImage& image, const RetainedValues& values) {
+  const std::string bad = image.after_reset_.empty() ? "" : not_finite(*image.shape_, values.state, image.after_reset_);
   return bad.empty() ? files_->write(slot_, encode_slot(values)) : bad + " is not finite";
 }
 
 void Retainer::write_newest() {
-  const RetainedValues* const taken = newest_.take();
+  const std::scoped_lock reading(writing_);
+  RetainImage& image = *image_.load(std::memory_order_acquire);
+  const RetainedValues* const taken = image.newest_.take();
   if (taken == nullptr) {
     return;
   }
   RetainedValues values = *taken;
   values.sequence = sequence_ + 1;
-  std::string problem = write(values);
+  std::string problem = write(image, values);
   if (problem.empty()) {
     sequence_ = values.sequence;
     slot_ = 1 - slot_;
     written_.store(sequence_, std::memory_order_relaxed);
+    image.written_.fetch_add(1, std::memory_order_relaxed);
     saved_commits_.store(values.commits, std::memory_order_relaxed);
   } else {
     failures_.fetch_add(1, std::memory_order_relaxed);

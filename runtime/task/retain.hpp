@@ -118,11 +118,28 @@ struct RetainChecks {
 /// Puts aside what the recovery says. Empty, or why it failed.
 [[nodiscard]] std::string put_aside(RetainFiles& files, const Recovery& recovery);
 
+/// The values of one program on their way to the disk.
+class RetainImage {
+ public:
+  /// A state is not written in which a number is not finite that is so in `after_reset`, the program's state when it
+  /// begins; empty: whatever it is. The program's shape must outlive it.
+  RetainImage(const StepProgram& program, std::vector<std::byte> after_reset);
+
+  /// How many of them are on the disk; from any thread.
+  [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
+
+ private:
+  friend class Retainer;
+  std::atomic<std::uint64_t> written_{0};
+  const ProgramShape* shape_;
+  std::vector<std::byte> after_reset_;
+  Latest<RetainedValues> newest_;
+};
+
 /// Copies in the cyclic thread, writes in its own.
 class Retainer {
  public:
-  /// A state is not written in which a number is not finite that is so in `after_reset`, the program's state when it
-  /// begins; empty: whatever it is. The program must outlive it.
+  /// As RetainImage says of the program and its state when it begins. The program must outlive it.
   Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
            std::vector<std::byte> after_reset = {});
   ~Retainer() { finish(); }
@@ -131,6 +148,11 @@ class Retainer {
 
   /// From the cyclic thread, between two steps; `commits`: the sets of parameters applied in this run.
   void offer(const StepProgram& program, std::uint64_t commits = 0) noexcept;
+  /// From the cyclic thread: what is offered from now on is of another program, which has this image. What was offered
+  /// before and is not written yet never is.
+  void change(RetainImage& image) noexcept { image_.store(&image, std::memory_order_release); }
+  /// From another thread: back when nothing reads an image that was changed for another one.
+  void let_go() { const std::scoped_lock lock(writing_); }
 
   /// Sequence number of the newest slot on the disk.
   [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
@@ -144,12 +166,12 @@ class Retainer {
 
  private:
   void write_newest();
-  [[nodiscard]] std::string write(const RetainedValues& values);
+  [[nodiscard]] std::string write(const RetainImage& image, const RetainedValues& values);
 
   RetainFiles* files_;
-  const ProgramShape* shape_;
-  std::vector<std::byte> after_reset_;  ///< the state that the program began with
-  Latest<RetainedValues> newest_;
+  RetainImage first_;
+  std::atomic<RetainImage*> image_{&first_};  ///< of the program that runs
+  std::mutex writing_{};                      ///< held while an image is read; never taken by the cyclic thread
   std::size_t slot_;
   std::uint64_t sequence_;
   std::atomic<std::uint64_t> written_;

@@ -34,8 +34,7 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       watchdog_(settings.watchdog),
       computed_(program.shape().outputs.size()),
       writes_seen_(program.shape().inputs.size(), 0),
-      ages_(program.shape().inputs.size(), 0),
-      parameters_(parameters_of(program)) {
+      ages_(program.shape().inputs.size(), 0) {
   settings_.loop.period = program.shape().period;
   for (const ProgramSignal& input : program.shape().inputs) {
     inputs_.push_back(input.preset);
@@ -78,9 +77,10 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
     faulty_port_ = no_port;
   } else {
     if (attachments_.trace != nullptr) {
-      attachments_.trace->before_step(moment.number, *program_);
+      attachments_.trace->before_step(moment.number, running());
     }
     program_->step(inputs_, computed_);
+    follow_change(moment.number);
   }
   safe_.step(computed_, fault);
   status_.fault = safe_.worst();
@@ -91,6 +91,22 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
     attachments_.trace->step(moment.number, moment.period, status_.fault, inputs_, computed_, safe_.values());
   }
   return written;
+}
+
+/// The version may have changed with the step just made: what is kept and traced is of the new one from that step on.
+void Task::follow_change(std::uint64_t cycle) noexcept {
+  ProposedChange* const change = attachments_.changes == nullptr ? nullptr : attachments_.changes->taken();
+  if (change == nullptr) {
+    return;
+  }
+  if (attachments_.trace != nullptr) {
+    attachments_.trace->program_changed(cycle, running(), change->into, *change->to->traced);
+  }
+  if (attachments_.retainer != nullptr) {
+    attachments_.retainer->change(*change->to->retained);
+  }
+  has_changed_ = true;
+  attachments_.changes->conclude();
 }
 
 void Task::take_orders() noexcept {
@@ -110,12 +126,11 @@ void Task::take_orders() noexcept {
   }
   if (orders->commits != applied_commits_) {
     applied_commits_ = orders->commits;
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-      parameters_[i] = orders->parameters[i];
-      program_->set_parameter(i, parameters_[i]);
+    for (std::size_t i = 0; i < orders->parameters.size(); ++i) {
+      program_->set_parameter(i, orders->parameters[i]);
     }
     if (attachments_.trace != nullptr) {
-      attachments_.trace->parameters_changed(parameters_);
+      attachments_.trace->parameters_changed(running());
     }
   }
   if (orders->resets != resets_seen_) {
@@ -178,9 +193,10 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
   }
   if (attachments_.retainer != nullptr) {
     const bool is_due = settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0;
-    if ((is_due || applied_commits_ != offered_commits_) && !tripped_) {
-      attachments_.retainer->offer(*program_, applied_commits_);
+    if ((is_due || applied_commits_ != offered_commits_ || has_changed_) && !tripped_) {
+      attachments_.retainer->offer(running(), applied_commits_);
       offered_commits_ = applied_commits_;
+      has_changed_ = false;
     }
   }
   publish(statistics);
@@ -210,6 +226,10 @@ void Task::count_writes() noexcept {
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
   status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();
   status_.tls_fault = tls_fault_.load(std::memory_order_relaxed);
+  if (attachments_.changes != nullptr) {
+    status_.version = attachments_.changes->version_number();
+    status_.last_change = static_cast<std::uint8_t>(attachments_.changes->outcome());
+  }
 }
 
 void Task::settle(Clock& clock, Fault fault) {
@@ -241,7 +261,7 @@ void Task::settle(Clock& clock, Fault fault) {
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
-    attachments_.retainer->offer(*program_, applied_commits_);
+    attachments_.retainer->offer(running(), applied_commits_);
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/task/changeable_program.hpp"
 #include "runtime/task/cyclic_loop.hpp"
 #include "runtime/task/fault_log.hpp"
 #include "runtime/task/field_io.hpp"
@@ -48,6 +49,7 @@ struct TaskAttachments {
   Trace* trace = nullptr;
   const KeptCounter* history = nullptr;
   const KeptCounter* mqtt = nullptr;
+  ChangeableProgram* changes = nullptr;  ///< the program itself, where its version may change
 };
 
 class Task final : private CycleBody {
@@ -87,11 +89,16 @@ class Task final : private CycleBody {
   bool finished(const LoopStatistics& statistics, std::int64_t duration, Verdict verdict) noexcept override;
 
   void take_orders() noexcept;
+  void follow_change(std::uint64_t cycle) noexcept;
   [[nodiscard]] Fault read_inputs() noexcept;
   [[nodiscard]] bool write_outputs() noexcept;
   void beat() noexcept { beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
   void count_writes() noexcept;
   void publish(const LoopStatistics& statistics) noexcept;
+  /// What is kept and traced: the version that runs, with all its parameters.
+  [[nodiscard]] const StepProgram& running() const noexcept {
+    return attachments_.changes == nullptr ? *program_ : attachments_.changes->running().program();
+  }
   void settle(Clock& clock, Fault fault);
 
   StepProgram* program_;
@@ -103,6 +110,7 @@ class Task final : private CycleBody {
   LoopStatistics statistics_{};
   std::uint64_t applied_commits_ = 0;
   std::uint64_t offered_commits_ = 0;  ///< to be retained
+  bool has_changed_ = false;           ///< the version, in this cycle
   TaskStatus status_{};
   FaultLog faults_{};
   std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found
@@ -111,7 +119,6 @@ class Task final : private CycleBody {
   std::vector<double> computed_;
   std::vector<std::uint64_t> writes_seen_;
   std::vector<std::uint64_t> ages_;
-  std::vector<double> parameters_;
   std::uint64_t resets_seen_ = 0;
   std::atomic<std::uint64_t> beats_{0};
   std::atomic<bool> client_is_lost_{false};

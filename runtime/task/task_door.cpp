@@ -59,6 +59,9 @@ constexpr std::array statuses{
            "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost"},
     Status{"task.tls_fault", PointType::uint16, "1",
            "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
+    Status{"task.version", PointType::uint64, "1",
+           "the version of the diagram: 1, and one more with each online change"},
+    Status{"task.online_change", PointType::uint16, "1", "0 none, 1 changed, 2 refused, 3 changed back"},
 };
 constexpr std::size_t status_count = statuses.size();
 
@@ -105,7 +108,9 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
     : device_inputs_(std::move(device_inputs)),
       snapshots_(width_of(program.shape())),
       published_(width_of(program.shape())),
-      parameters_(program.shape(), parameters_of(program)),
+      judged_by_({.parameters = program.shape().parameters, .relations = program.shape().relations}),
+      gone_(program.shape().parameters.size(), false),
+      parameters_(judged_by_, parameters_of(program)),
       wanted_(first_orders(program)),
       orders_(wanted_) {
   const ProgramShape& shape = program.shape();
@@ -202,6 +207,9 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
       wanted.inputs[one.point] = one.value;
       ++wanted.input_writes[one.point];
     } else if (point.kind == PointKind::parameter) {
+      if (gone_[one.point - first_parameter_]) {
+        return point.name + " is not in the version of the diagram that runs since an online change.";
+      }
       parameters.stage(one.point - first_parameter_, one.value);
     } else if (point.kind != PointKind::command) {
       return point.name + " can only be read.";
@@ -221,6 +229,8 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
       parameters.discard();
     } else if (command == Command::reset) {
       ++wanted.resets;
+    } else if (commits_are_held_) {
+      return "An online change is under way: commit again in a second.";
     } else {
       if (auto refusal = parameters.commit(); !refusal.empty()) {
         return refusal;
@@ -234,6 +244,47 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   orders_.filling() = wanted_;
   orders_.publish();
   return {};
+}
+
+void TaskDoor::hold_commits(bool held) {
+  const std::lock_guard lock(servers_);
+  commits_are_held_ = held;
+}
+
+void TaskDoor::version_changed(const StepProgram& version, std::span<const std::optional<std::size_t>> places) {
+  const ProgramShape& shape = version.shape();
+  const std::lock_guard lock(servers_);
+  std::vector<std::optional<std::size_t>> backwards(shape.parameters.size());
+  std::vector<double> values = parameters_.committed();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    gone_[i] = !places[i];
+    if (places[i]) {
+      backwards[*places[i]] = i;
+      judged_by_.parameters[i] = shape.parameters[*places[i]];
+      values[i] = version.parameter(*places[i]);
+    }
+  }
+  judged_by_.relations = shape.relations;
+  const auto translate = [&](RelatedNumber& one) {
+    if (one.parameter) {
+      const std::size_t own = *one.parameter;
+      one = backwards[own] ? RelatedNumber{.parameter = backwards[own]}
+                           : RelatedNumber{.constant = version.parameter(own)};  // no server reaches it
+    }
+  };
+  for (ProgramRelation& relation : judged_by_.relations) {
+    std::ranges::for_each(relation.numbers, translate);
+    if (relation.count) {
+      translate(*relation.count);
+    }
+  }
+  const StagedParameters before = parameters_;
+  parameters_ = StagedParameters(judged_by_, values);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] && before.staged()[i] != before.committed()[i]) {
+      parameters_.stage(i, before.staged()[i]);
+    }
+  }
 }
 
 void TaskDoor::publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
@@ -277,6 +328,8 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.mqtt.lost),
       static_cast<double>(status.mqtt.fault),
       static_cast<double>(status.tls_fault),
+      static_cast<double>(status.version),
+      static_cast<double>(status.last_change),
   };
   at = std::ranges::copy(values, at).out;
   at = std::fill_n(at, 3, 0.0);

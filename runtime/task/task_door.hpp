@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -48,6 +49,8 @@ struct TaskStatus {
   KeptCount history{};
   KeptCount mqtt{};
   std::uint8_t tls_fault = 0;
+  std::uint64_t version = 1;     ///< of the diagram, since the start
+  std::uint8_t last_change = 0;  ///< online, as task.online_change says it
   double heartbeat = 0.0;
 };
 
@@ -65,6 +68,13 @@ class TaskDoor final : public PointDoor {
   std::string write(std::span<const PointWrite> writes) override;
   [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
   void read_live(LiveValues& into) override;
+
+  // For an online change, from a thread beside the cyclic one:
+  /// While it is under way no set of parameters is committed, which would be judged by the version that goes.
+  void hold_commits(bool held);
+  /// Another version counts. Sets are judged by it from now on; `places`: by parameter of the first version, that of
+  /// this one. What was staged stays so; a parameter that is no more takes no value.
+  void version_changed(const StepProgram& version, std::span<const std::optional<std::size_t>> places);
 
   /// Before the task runs: every cycle published goes to these as well. They must outlive the run.
   void attach(std::vector<SampleTap*> taps) { taps_ = std::move(taps); }
@@ -90,7 +100,10 @@ class TaskDoor final : public PointDoor {
   std::vector<SampleTap*> taps_{};
   std::int64_t high_lateness_ = 0;
 
-  std::mutex servers_;  ///< between servers; the cyclic thread never takes it
+  std::mutex servers_;      ///< between servers; the cyclic thread never takes it
+  ProgramShape judged_by_;  ///< the parameters of the first version, as that judges them which runs
+  std::vector<bool> gone_;  ///< by parameter: not in the version that runs
+  bool commits_are_held_ = false;
   StagedParameters parameters_;
   TaskOrders wanted_;
   Latest<TaskOrders> orders_;

@@ -55,6 +55,11 @@ void TraceSelector::feed(std::span<const std::byte> records, std::string& out) {
 
 void TraceSelector::feed_one(TraceKind kind, std::string_view record, std::string& out) {
   const bool is_step = kind == TraceKind::step;
+  if (kind == TraceKind::program) {
+    kept_.clear();  // of the program before, which another file would not replay
+    out += record;
+    return;
+  }
   if (!trigger_ || fired_) {
     out += record;
     finished_ = fired_ && is_step && --left_ == 0;
@@ -101,13 +106,15 @@ bool TraceSelector::fires(std::string_view contents) {
   return crossed;
 }
 
+TraceProgram::TraceProgram(const StepProgram& program)
+    : head(text_of(head_of(program))), parameters(parameters_of(program)), state(program.state_size()) {}
+
 Trace::Trace(const TraceSettings& settings, const StepProgram& program)
-    : head_(text_of(head_of(program))),
+    : program_(program),
+      head_(program_.head),
       ring_(settings.ring_bytes),
       selector_(head_of(program), settings.trigger),
       file_(settings.file, settings.files - 1),
-      parameters_(parameters_of(program)),
-      state_(program.state_size()),
       state_every_(settings.trigger ? std::max<std::uint64_t>(1, settings.trigger->before)
                                     : std::numeric_limits<std::uint64_t>::max()),
       waits_(settings.waits),
@@ -158,18 +165,37 @@ void Trace::before_step(std::uint64_t number, const StepProgram& program) noexce
     return;
   }
   wants_state_.store(false, std::memory_order_relaxed);
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    parameters_[i] = program.parameter(i);
+  program.save(program_.state);
+  push_state(number, program);
+}
+
+void Trace::push_state(std::uint64_t number, const StepProgram& program) noexcept {
+  if (needs_head_) {
+    const std::array<std::span<const std::byte>, 1> contents{std::as_bytes(std::span(program_.head))};
+    needs_head_ = !push(TraceKind::program, contents);
   }
-  program.save(state_);
-  const std::array<std::span<const std::byte>, 3> contents{bytes_of(number), std::as_bytes(std::span(parameters_)),
-                                                           std::span<const std::byte>(state_)};
-  needs_state_ = !push(TraceKind::state, contents);
+  for (std::size_t i = 0; i < program_.parameters.size(); ++i) {
+    program_.parameters[i] = program.parameter(i);
+  }
+  const std::array<std::span<const std::byte>, 3> contents{
+      bytes_of(number), std::as_bytes(std::span(program_.parameters)), std::span<const std::byte>(program_.state)};
+  needs_state_ = needs_head_ || !push(TraceKind::state, contents);
   since_state_ = 0;
 }
 
-void Trace::parameters_changed(std::span<const double> parameters) noexcept {
-  const std::array<std::span<const std::byte>, 1> contents{std::as_bytes(parameters)};
+void Trace::program_changed(std::uint64_t number, const StepProgram& program, std::span<const std::byte> state,
+                            TraceProgram& next) noexcept {
+  std::swap(program_, next);
+  std::ranges::copy(state, program_.state.begin());
+  needs_head_ = true;
+  push_state(number, program);
+}
+
+void Trace::parameters_changed(const StepProgram& program) noexcept {
+  for (std::size_t i = 0; i < program_.parameters.size(); ++i) {
+    program_.parameters[i] = program.parameter(i);
+  }
+  const std::array<std::span<const std::byte>, 1> contents{std::as_bytes(std::span(program_.parameters))};
   needs_state_ = !push(TraceKind::parameters, contents) || needs_state_;
 }
 
@@ -246,13 +272,23 @@ bool Trace::begin_next() {
 }
 
 void Trace::write_records(std::string_view records) {
+  const auto is_begin = [&](std::size_t at) {
+    const TraceKind kind = kind_of_record(records, at);
+    return kind == TraceKind::state || kind == TraceKind::program;
+  };
   for (std::size_t begin = 0; begin < records.size();) {
     std::size_t end = end_of_record(records, begin);
-    while (end < records.size() && kind_of_record(records, end) != TraceKind::state) {
+    if (kind_of_record(records, begin) == TraceKind::program) {
+      head_ = records.substr(begin + record_head, end - begin - record_head);
+      is_other_ = true;
+      begin = end;
+      continue;
+    }
+    while (end < records.size() && !is_begin(end)) {
       end = end_of_record(records, end);
     }
-    if (kind_of_record(records, begin) == TraceKind::state && needs_next()) {
-      (void)begin_next();
+    if (kind_of_record(records, begin) == TraceKind::state && (is_other_ || needs_next())) {
+      is_other_ = !begin_next() && is_other_;
     }
     write_part(records.substr(begin, end - begin));
     begin = end;

@@ -74,6 +74,14 @@ class TraceSelector {
   std::uint64_t left_ = 0;
 };
 
+/// What a trace needs for a program: its head, and room for parameters and state.
+struct TraceProgram {
+  explicit TraceProgram(const StepProgram& program);
+  std::string head;
+  std::vector<double> parameters;
+  std::vector<std::byte> state;
+};
+
 class Trace {
  public:
   /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does.
@@ -84,9 +92,13 @@ class Trace {
 
   // From the cyclic thread. Before the step:
   void before_step(std::uint64_t number, const StepProgram& program) noexcept;
-  void parameters_changed(std::span<const double> parameters) noexcept;
+  void parameters_changed(const StepProgram& program) noexcept;
   void was_reset() noexcept;
   // After the step:
+  /// That step, which step() tells next, was of another program, and began with these bytes as its state. It begins
+  /// another file. What stood in `next` is exchanged for what is no longer needed.
+  void program_changed(std::uint64_t number, const StepProgram& program, std::span<const std::byte> state,
+                       TraceProgram& next) noexcept;
   void step(std::uint64_t number, std::uint64_t period, Fault fault, std::span<const double> inputs,
             std::span<const double> computed, std::span<const double> outputs) noexcept;
 
@@ -102,6 +114,7 @@ class Trace {
 
  private:
   bool push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept;
+  void push_state(std::uint64_t number, const StepProgram& program) noexcept;
   void write_out(bool last);
   void write_records(std::string_view records);
   /// Records up to the next state, or from one up to the next.
@@ -111,19 +124,20 @@ class Trace {
   void write_end();
   void cut(std::uint64_t lost);
 
-  std::string head_;
+  TraceProgram program_;  ///< of the cyclic thread
+  std::string head_;      ///< of the writer
   ByteRing ring_;
   TraceSelector selector_;
   TraceOutput file_;
-  std::vector<double> parameters_;
-  std::vector<std::byte> state_;
   std::uint64_t state_every_;
   std::uint64_t since_state_ = 0;
   bool needs_state_ = true;
+  bool needs_head_ = false;
   bool waits_;
   std::atomic<std::uint64_t> dropped_{0};
   std::uint64_t file_bytes_;
   std::uint64_t kept_ = 0;            ///< steps in the file; of the writer, as the next
+  bool is_other_ = false;             ///< what follows is of another program than the file
   std::uint64_t dropped_before_ = 0;  ///< when the file was begun
   std::chrono::steady_clock::time_point next_try_{};
   std::atomic<bool> wants_state_{false};  ///< the next file begins at one

@@ -98,6 +98,8 @@ std::size_t length_of(TraceKind kind, const TraceHead& head) {
       return 20 + inputs + 2 * outputs;
     case TraceKind::end:
       return 16;
+    case TraceKind::program:
+      break;
   }
   return static_cast<std::size_t>(-1);
 }

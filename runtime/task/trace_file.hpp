@@ -33,7 +33,8 @@
 
 namespace hysteron::runtime {
 
-enum class TraceKind : char { state = 'K', parameters = 'P', reset = 'Z', step = 'R', end = 'E' };
+/// `program` stands in no file: it tells the writer the head of the next one.
+enum class TraceKind : char { program = 'H', state = 'K', parameters = 'P', reset = 'Z', step = 'R', end = 'E' };
 
 struct TraceColumn {
   std::string name{};

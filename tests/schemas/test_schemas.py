@@ -150,6 +150,18 @@ class Schemas(unittest.TestCase):
         self.printed("serve", "plant.st", "--config", "run.toml", "--virtual", "--engine", "interpreter", "--cycles", "1500")
         self.holds("history", self.printed("history", "history.sqlite", "--json"))
 
+    def test_online_change(self):
+        (self.folder / "online.toml").write_text('[task]\nscheduling = "other"\nlock_memory = false\n[outputs.Y]\nsafe = 0.0\n'
+                                                 '[online_change]\nsocket = "online-change.socket"\n')
+        command = [TOOL, "serve", "plant.st", "--config", "online.toml", "--engine", "interpreter"]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as task:
+            try:
+                self.assertIn("online change on", task.stdout.readline())
+                self.holds("online-change", self.printed("online-change", "online.toml", "--check", "--json"),
+                           self.printed("online-change", "online.toml", "--json"))
+            finally:
+                task.terminate()
+
     def test_fit(self):
         self.holds("fit", self.printed("tune", "plant.st", "--log", "log.csv", "--params", "p.toml", "--out", "tuned.toml",
                                        "--start", "2", "--report", "report", "--json", codes=(0, 1)),

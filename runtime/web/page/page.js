@@ -133,7 +133,7 @@ function buildCycles() {
     if (point.kind !== "status") return;
     const row = add(body, "tr", {});
     const isState = ["task.state", "task.fault", "task.last_fault", "task.history_fault", "task.mqtt_connected",
-                     "task.mqtt_fault", "task.tls_fault"].includes(point.name);
+                     "task.mqtt_fault", "task.tls_fault", "task.online_change"].includes(point.name);
     add(row, "th", { textContent: isState ? point.name.slice(5).replace("_", " ") : point.meaning, scope: "row", title: point.name });
     const cell = add(row, "td", { className: "number" });
     cell.dataset.value = point.name;

@@ -1,0 +1,109 @@
+// An online change: another version of the diagram takes over while the task runs, or is refused with the reason.
+//
+// All that takes long happens here, beside the cycle: what is carried over is decided by name, type and unit
+// (runtime/task/carry.hpp); both versions are compared on a step of the running task; and only a change whose outputs
+// stay within their limits is proposed to the cycle, which compares once more (runtime/task/changeable_program.hpp).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "runtime/config/run_config.hpp"
+#include "runtime/task/changeable_program.hpp"
+#include "runtime/task/task.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::runtime {
+
+struct ChangeWish {
+  bool only_check = false;
+  std::map<std::string, double> bumps{};  ///< by output: a limit for this change alone, in its unit
+  std::vector<std::string> as_given{};  ///< parameters that are not carried over, but taken as the new version has them
+};
+
+/// What an output does, or would do, in the first step of the other version.
+struct OutputChange {
+  std::string name{};
+  std::string unit{};
+  Bump bump{};
+  double limit = 0.0;
+  std::string origin{};  ///< of the limit
+};
+
+struct ChangeReport {
+  std::string program{};
+  std::uint64_t version = 0;  ///< that runs now
+  bool is_done = false;       ///< else it was only looked at
+  std::vector<OutputChange> outputs{};
+  std::size_t parameters = 0;  ///< of the other version
+  std::size_t parameters_carried = 0;
+  std::size_t states = 0;
+  std::size_t states_carried = 0;
+  std::vector<std::string> left{};          ///< what is not carried over, with the reason: there is the running version
+  std::vector<std::string> other_values{};  ///< parameters carried over that the other version gives other values
+  std::vector<std::string> without_register{};  ///< parameters that servers reach after a restart alone
+  double step_time = 0.0;                       ///< of the other version, beside the task, in ns
+  bool is_retained = true;  ///< where values are retained: those of the other version are on the disk
+};
+
+/// How far an output may jump, where the run file says it: bump under [outputs.NAME]; else 1 % of the range between low
+/// and high; else, without a range, not at all.
+struct OutputLimit {
+  BumpLimit limit{};
+  std::string origin{};
+};
+[[nodiscard]] std::vector<OutputLimit> bump_limits(const RunConfig& config, const ProgramShape& shape);
+
+class OnlineChange {
+ public:
+  /// Program, task and what it is begun with must outlive it.
+  OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits);
+
+  /// The task runs from now on. Each may be null.
+  void begin(Retainer* retainer, const Trace* trace);
+  /// The task ends: who waits for it is refused, and so is who comes.
+  void end() noexcept { has_ended_.store(true); }
+
+  /// Changes to another version of the diagram, as it begins. Throws InputError HY850 where its interface is another,
+  /// HY851 where an output would jump, HY853 where it cannot be now, HY855 where parameters do not go together. Then
+  /// the running version goes on as if nothing had been.
+  ChangeReport change_to(std::unique_ptr<StepProgram> next, const ChangeWish& wish);
+  /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
+  /// have is carried back. A second time is forward again. Throws as change_to, HY853 too where there is none.
+  ChangeReport change_back(const ChangeWish& wish);
+  /// Says on standard error, and in task.online_change, that a change was refused: here, or before it came here.
+  void tell_refused(const InputError& refused) const;
+
+ private:
+  struct Plan;
+
+  ChangeReport carry_out(ProgramVersion& next, const Plan& begin, const ChangeWish& wish);
+  [[nodiscard]] StepImage image();
+  void plan(Plan& plan, const ChangeWish& wish) const;
+  void rehearse(Plan& plan) const;
+  [[nodiscard]] ChangeVerdict propose(Plan& plan);
+  /// Tells of the version that runs now, once its values are on the disk.
+  void tell_changed(ChangeReport& report, ChangeOutcome outcome);
+  /// Begins a change; throws where it cannot be now.
+  [[nodiscard]] std::unique_lock<std::mutex> one_at_a_time();
+  template <class Ready>
+  [[nodiscard]] bool wait_for(const Ready& ready) const;
+  [[noreturn]] void refuse_for_now(const std::string& why) const;
+
+  ChangeableProgram* program_;
+  Task* task_;
+  std::vector<OutputLimit> limits_;
+  Retainer* retainer_ = nullptr;
+  const Trace* trace_ = nullptr;
+  std::uint64_t retained_before_ = 0;  ///< how often the version to come was retained when it was proposed
+  std::mutex under_way_{};
+  std::atomic<bool> has_begun_{false};
+  std::atomic<bool> has_ended_{false};
+};
+
+}  // namespace hysteron::runtime

@@ -1,0 +1,444 @@
+// An online change of a task that runs: what is traced, retained, staged and counted follows, or nothing changes at
+// all.
+#include "runtime/host/online_change.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <thread>
+
+#include "runtime/task/staged_parameters.hpp"
+#include "support/errors.hpp"
+#include "tests/runtime/task/accumulator.hpp"
+#include "tests/runtime/task/integrators.hpp"
+#include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+using hysteron::test::soon;
+using test::Integrator;
+using test::integrators;
+using test::value;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Virtual time that leaves others their turn; a step can take some of it.
+class PacedClock final : public Clock {
+ public:
+  [[nodiscard]] std::int64_t now() noexcept override { return now_; }
+  void sleep_until(std::int64_t time) noexcept override {
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+    now_ = std::max(now_, time);
+  }
+  [[nodiscard]] std::int64_t own_cpu() noexcept override { return 0; }
+  [[nodiscard]] std::int64_t stolen() noexcept override { return 0; }
+  void pass(std::int64_t time) noexcept { now_ += time; }
+
+ private:
+  std::int64_t now_ = 0;
+};
+
+TaskSettings settings() {
+  return {.watchdog = {.time = 500'000'000}, .inputs = {{}}, .outputs = {{.low = -50.0, .high = 50.0}}};
+}
+
+/// A task in a thread of its own, with what is asked for attached.
+class Plant {
+ public:
+  explicit Plant(std::unique_ptr<StepProgram> first, double most = 1e300)
+      : program_(std::move(first)),
+        task_(program_, settings()),
+        change_(program_, task_, {{.limit = {.most = most, .low = -50.0, .high = 50.0}, .origin = "a test"}}) {}
+  ~Plant() { end(); }
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
+  Plant(Plant&&) = delete;
+  Plant& operator=(Plant&&) = delete;
+
+  void keep_in(const hysteron::test::ScratchFolder& folder) {
+    files_ = std::make_unique<RetainFolder>(folder.path() / "kept");
+    files_->open();
+    std::vector<std::byte> state(program_.state_size());
+    program_.save(state);
+    retainer_ = std::make_unique<Retainer>(*files_, program_, Recovery{}, state);
+    trace_ = std::make_unique<Trace>(TraceSettings{.file = folder / "run.trace", .waits = true}, program_);
+  }
+  void start() {
+    task_.attach({.retainer = retainer_.get(), .trace = trace_.get(), .changes = &program_});
+    thread_ = std::thread([this] { (void)task_.run(clock_, stop_); });
+    change_.begin(retainer_.get(), trace_.get());
+    run(20);
+  }
+  /// So many cycles more.
+  void run(double cycles) {
+    const double now = value(door(), "task.cycles");
+    ASSERT_TRUE(soon([&] { return value(door(), "task.cycles") >= now + cycles; }));
+  }
+  void end() {
+    stop_ = true;
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+    change_.end();
+  }
+  void finish_trace() { trace_->finish(); }
+  [[nodiscard]] std::string write(std::initializer_list<std::pair<const char*, double>> values) {
+    std::vector<PointWrite> writes;
+    for (const auto& [name, number] : values) {
+      writes.push_back({test::point(door(), name), number});
+    }
+    return door().write(writes);
+  }
+
+  [[nodiscard]] TaskDoor& door() { return task_.door(); }
+  [[nodiscard]] OnlineChange& change() { return change_; }
+  [[nodiscard]] Task& task() { return task_; }
+  [[nodiscard]] PacedClock& clock() { return clock_; }
+  [[nodiscard]] RetainFolder& files() { return *files_; }
+
+ private:
+  std::unique_ptr<RetainFolder> files_{};
+  ChangeableProgram program_;
+  std::unique_ptr<Retainer> retainer_{};
+  std::unique_ptr<Trace> trace_{};
+  PacedClock clock_;
+  Task task_;
+  OnlineChange change_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_{};
+};
+
+/// What refuses it: HY850: The input X is gone.
+template <class Work>
+std::string refusal(const Work& work) {
+  try {
+    (void)work();
+  } catch (const InputError& refused) {
+    std::string text;
+    for (const Diagnostic& one : refused.diagnostics().all()) {
+      text += fmt::format("{}HY{}: {}", text.empty() ? "" : " ", one.number, one.cause);
+    }
+    return text;
+  }
+  return "";
+}
+
+ReplayResult replayed(const std::string& file, std::unique_ptr<StepProgram> program) {
+  ReplayResult result;
+  EXPECT_EQ(replay(hysteron::test::contents_of(file), *program, result), "");
+  EXPECT_EQ(result.different, 0U) << file;
+  EXPECT_EQ(result.without_state, 0U) << file;
+  EXPECT_EQ(result.dropped, 0U) << file;
+  EXPECT_TRUE(result.complete) << file;
+  return result;
+}
+
+RetainedValues newest(RetainFolder& files) {
+  RetainedValues found;
+  for (const std::size_t slot : {0U, 1U}) {
+    if (const auto bytes = files.read(slot)) {
+      const Slot read = decode_slot(*bytes);
+      EXPECT_EQ(read.status, SlotStatus::whole);
+      found = read.values.sequence >= found.sequence ? read.values : found;
+    }
+  }
+  return found;
+}
+
+const std::vector<Integrator> first{{"A", 0.001}, {"B", -0.001}};
+const std::vector<Integrator> second{{"B", 7.0}, {"NEW", 0.0}, {"A", 7.0}};
+
+/// The trace is the oracle: each version alone gives every recorded output again, from the very step of the change on.
+TEST(OnlineChange, EveryStepIsThatOfOneVersionAndNoneIsLost) {
+  const hysteron::test::ScratchFolder folder;
+  Plant plant(integrators(first));
+  plant.keep_in(folder);
+  plant.start();
+  const ChangeReport there = plant.change().change_to(integrators(second), {});
+  EXPECT_TRUE(there.is_done);
+  EXPECT_EQ(there.version, 2U);
+  EXPECT_EQ(there.parameters_carried, 2U);
+  EXPECT_EQ(there.states_carried, 2U);
+  EXPECT_THAT(there.left, ElementsAre("NEW.K (new)", "NEW.Y (new)"));
+  EXPECT_THAT(there.other_values, ElementsAre("B.K = -0.001 (7 in the diagram)", "A.K = 0.001 (7 in the diagram)"));
+  EXPECT_THAT(there.without_register, ElementsAre("NEW.K"));
+  plant.run(50);
+  EXPECT_EQ(value(plant.door(), "task.version"), 2.0);
+  EXPECT_EQ(value(plant.door(), "task.online_change"), 1.0);
+  const ChangeReport back = plant.change().change_back({});
+  EXPECT_EQ(back.version, 3U);
+  plant.run(50);
+  EXPECT_EQ(value(plant.door(), "task.online_change"), 3.0);
+  plant.end();
+  plant.finish_trace();
+  const auto cycles = static_cast<std::uint64_t>(value(plant.door(), "task.cycles"));
+  const std::uint64_t steps = replayed(folder / "run.trace.2", integrators(first)).steps +
+                              replayed(folder / "run.trace.1", integrators(second)).steps +
+                              replayed(folder / "run.trace", integrators(first)).steps;
+  EXPECT_EQ(steps, cycles);
+  EXPECT_EQ(value(plant.door(), "task.trace_dropped"), 0.0);
+}
+
+/// A crash may come at once: what is on the disk when the change is told is of the new version.
+TEST(OnlineChange, WhatIsRetainedIsOfTheNewVersionBeforeItIsTold) {
+  const hysteron::test::ScratchFolder folder;
+  Plant plant(integrators(first));
+  plant.keep_in(folder);
+  plant.start();
+  ASSERT_EQ(plant.write({{"A.K", 0.5}, {"task.commit", 1.0}}), "");
+  plant.run(5);
+  EXPECT_TRUE(plant.change().change_to(integrators(second), {}).is_retained);
+  const RetainedValues values = newest(plant.files());
+  EXPECT_EQ(values.layout, integrators(second)->shape().layout);
+  EXPECT_THAT(values.parameters, ElementsAre(-0.001, 0.0, 0.5));
+  EXPECT_TRUE(plant.change().change_back({}).is_retained);
+  EXPECT_EQ(newest(plant.files()).layout, integrators(first)->shape().layout);
+  EXPECT_THAT(newest(plant.files()).parameters, ElementsAre(0.5, -0.001));
+  // Twice more, so that a version goes whose values the retaining thread may still have in hand.
+  (void)plant.change().change_to(integrators(second), {});
+  (void)plant.change().change_to(integrators(first), {});
+  EXPECT_EQ(newest(plant.files()).layout, integrators(first)->shape().layout);
+}
+
+TEST(OnlineChange, ACheckSaysTheSameAndChangesNothing) {
+  Plant plant(integrators({{"A", 1.0}, {"B", 0.0}}), 1e9);
+  plant.start();
+  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
+  plant.run(5);
+  const double y = value(plant.door(), "Y");
+  const ChangeReport report = plant.change().change_to(integrators({{"B", 0.0}}), {.only_check = true});
+  EXPECT_FALSE(report.is_done);
+  EXPECT_EQ(report.version, 1U);
+  EXPECT_EQ(report.outputs.at(0).bump.before, y);
+  EXPECT_EQ(report.outputs.at(0).bump.after, 0.0);
+  EXPECT_EQ(report.outputs.at(0).bump.size, std::min(y, 50.0));
+  plant.run(5);
+  EXPECT_EQ(value(plant.door(), "Y"), y);
+  EXPECT_EQ(value(plant.door(), "task.version"), 1.0);
+  EXPECT_EQ(value(plant.door(), "task.online_change"), 0.0);
+}
+
+TEST(OnlineChange, AnOutputThatWouldJumpRefusesItByNameAndALimitOfThisChangeAllowsIt) {
+  Plant plant(integrators({{"A", 1.0}, {"B", 0.0}}), 0.25);
+  plant.start();
+  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
+  plant.run(5);
+  const auto to_less = [&](const ChangeWish& wish) {
+    return refusal([&] { return plant.change().change_to(integrators({{"B", 0.0}}), wish); });
+  };
+  EXPECT_THAT(to_less({}), HasSubstr("HY851: The output Y would jump by "));
+  EXPECT_THAT(to_less({}), HasSubstr("; its limit is 0.25 um (a test)."));
+  EXPECT_EQ(value(plant.door(), "task.version"), 1.0);
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "task.online_change"), 2.0);
+  EXPECT_EQ(to_less({.bumps = {{"Y", 100.0}}}), "");
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "Y"), 0.0);
+  // Back, Y jumps again: the limit of a change is that of this one alone. What was there is untouched by the refusal.
+  EXPECT_THAT(refusal([&] { return plant.change().change_back({}); }), HasSubstr("HY851: The output Y would jump"));
+  EXPECT_EQ(refusal([&] { return plant.change().change_back({.bumps = {{"Y", 100.0}}}); }), "");
+  plant.run(2);
+  EXPECT_GT(value(plant.door(), "Y"), 10.0);
+}
+
+TEST(OnlineChange, WhatGrowsWithoutBoundIsSeenBeforeItCounts) {
+  Plant plant(integrators({{"A", 0.0}}));
+  plant.start();
+  const auto why = refusal([&] {
+    return plant.change().change_to(integrators({{"A", 0.0}, {"WILD", 1e306}}), {.bumps = {{"Y", 1e307}}});
+  });
+  EXPECT_THAT(why, HasSubstr("HY851: The output Y would be no number "));
+  EXPECT_THAT(why, HasSubstr(" steps after the change."));
+}
+
+TEST(OnlineChange, AnotherInterfaceIsRefusedByWhatIsOtherInIt) {
+  Plant plant(integrators({{"A", 0.0}}));
+  plant.start();
+  const auto refused = [&](const std::function<void(ProgramShape&)>& edit) {
+    auto next = integrators({{"A", 0.0}});
+    edit(next->mutable_shape());
+    return refusal([&] { return plant.change().change_to(std::move(next), {}); });
+  };
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs.push_back({.name = "MORE", .unit = "V"}); }),
+            "HY850: The input MORE in V is new.");
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.outputs.clear(); }), "HY850: The output Y in um is gone.");
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].name = "U"; }),
+            "HY850: The input U in V stands where X in V was.");
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].unit = "mV"; }),
+            "HY850: The input X has another unit: X in V and X in mV.");
+  EXPECT_THAT(refused([](ProgramShape& shape) { shape.outputs[0].type = PointType::int32; }),
+              HasSubstr("HY850: The output Y has another type"));
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.outputs[0].high = 10.0; }),
+            "HY850: The range of the output Y was -1000000000 to 1000000000, and is -1000000000 to 10.");
+  EXPECT_EQ(refused([](ProgramShape& shape) { shape.period = 2'000'000; }),
+            "HY850: The sample time was 1000000 ns, and is 2000000 ns.");
+}
+
+TEST(OnlineChange, ATaskThatDoesNotStepRefusesItAndSaysWhy) {
+  auto program = integrators({{"A", 0.0}});
+  test::Integrators* const raw = program.get();
+  Plant plant(std::move(program));
+  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "HY853: The task has not begun yet.");
+  std::atomic<bool> hangs{false};
+  raw->in_step = [&] { plant.clock().pass(hangs ? 1'000'000'000 : 0); };
+  plant.start();
+  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }),
+            "HY853: There is no version before this one: none was changed since the start.");
+  hangs = true;
+  plant.run(5);
+  EXPECT_EQ(refusal([&] {
+              return plant.change().change_to(integrators({{"A", 0.0}}), {});
+            }),
+            "HY853: The diagram is not stepped; the last fault of the task was: hang.");
+  hangs = false;
+  ASSERT_EQ(plant.write({{"task.reset", 1.0}}), "");
+  EXPECT_EQ(refusal([&] { return plant.change().change_to(integrators({{"A", 0.0}}), {}); }), "");
+  plant.end();
+  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "HY853: The task ends.");
+}
+
+/// Outputs that are safe meanwhile are no obstacle: the diagram steps.
+TEST(OnlineChange, ALostClientIsNoObstacle) {
+  Plant plant(integrators(first));
+  plant.start();
+  plant.task().client_lost(true);
+  ASSERT_TRUE(soon([&] { return value(plant.door(), "task.state") == 2.0; }));
+  EXPECT_EQ(refusal([&] { return plant.change().change_to(integrators(second), {}); }), "");
+  EXPECT_EQ(value(plant.door(), "Y"), 0.0);
+}
+
+TEST(OnlineChange, WhatIsStagedStaysSoAndIsJudgedByTheVersionThatRuns) {
+  Plant plant(integrators({{"A", 0.0}, {"GONE", 0.0}, {"B", 0.0}}));
+  plant.start();
+  ASSERT_EQ(plant.write({{"A.K", 5.0}, {"GONE.K", 6.0}}), "");
+  auto next = integrators({{"B", 0.0}, {"A", 0.0}});
+  next->mutable_shape().parameters[1].high = 3.0;
+  EXPECT_THAT(plant.change().change_to(std::move(next), {}).left, ElementsAre("GONE.K (gone)", "GONE.Y (gone)"));
+  EXPECT_EQ(plant.write({{"task.commit", 1.0}}), "A.K must be at most 3.");
+  EXPECT_EQ(plant.write({{"GONE.K", 1.0}}),
+            "GONE.K is not in the version of the diagram that runs since an online change.");
+  EXPECT_EQ(plant.write({{"A.K", 2.5}, {"B.K", 1.5}, {"task.commit", 1.0}}), "");
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == 2.5 && value(plant.door(), "B.K") == 1.5; }));
+  EXPECT_EQ(value(plant.door(), "GONE.K"), 0.0);
+  // What came while it ran goes back with it.
+  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "");
+  EXPECT_EQ(plant.write({{"GONE.K", 1.0}, {"task.commit", 1.0}}), "");
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "GONE.K") == 1.0; }));
+  EXPECT_EQ(value(plant.door(), "A.K"), 2.5);
+}
+
+TEST(OnlineChange, AParameterIsTakenAsGivenWhereThatIsAskedForOrItsLimitsWantIt) {
+  Plant plant(integrators({{"A", 0.001}, {"B", 0.002}, {"C", 30.0}}));
+  plant.start();
+  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
+  auto next = integrators({{"A", 0.1}, {"B", 0.2}, {"C", 0.3}});
+  next->mutable_shape().parameters[2].high = 1.0;
+  EXPECT_THAT(plant.change().change_to(std::move(next), {.as_given = {"B.K"}}).left,
+              ElementsAre("C.K (30 is outside of its limits)", "B.K (as given)"));
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "A.K"), 0.001);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  EXPECT_EQ(value(plant.door(), "C.K"), 0.3);
+  // The set that a client commits next is of these values, not of those before.
+  ASSERT_EQ(plant.write({{"A.K", 0.5}, {"task.commit", 1.0}}), "");
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == 0.5; }));
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  EXPECT_EQ(refusal([&] {
+              return plant.change().change_to(integrators({{"A", 0.1}}), {.as_given = {"B.K"}});
+            }),
+            "HY730: The new version has no parameter B.K.");
+}
+
+TEST(OnlineChange, ParametersThatDoNotGoTogetherInTheNewVersionRefuseIt) {
+  Plant plant(integrators({{"LOW", 3.0}, {"HIGH", 4.0}}));
+  plant.start();
+  ASSERT_EQ(plant.write({{"X", 0.0}, {"HIGH.K", 2.0}, {"task.commit", 1.0}}), "");
+  plant.run(5);
+  const auto next = [] {
+    auto program = integrators({{"LOW", 3.0}, {"HIGH", 4.0}, {"NEW", 2.5}});
+    program->mutable_shape().relations = {{.numbers = {{.parameter = 0}, {.parameter = 1}}},
+                                          {.numbers = {{.parameter = 2}, {.parameter = 1}}}};
+    return program;
+  };
+  EXPECT_THAT(refusal([&] { return plant.change().change_to(next(), {}); }),
+              HasSubstr("HY855: The parameters carried over cannot be beside those of the new version: HIGH.K = 2 must "
+                        "be at least LOW.K = 3."));
+  EXPECT_EQ(refusal([&] { return plant.change().change_to(next(), {.as_given = {"HIGH.K"}}); }), "");
+  // NEW has no register: beside it, HIGH is judged all the same.
+  EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.0}, {"task.commit", 1.0}}), "HIGH.K = 2 must be at least 2.5.");
+  EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.75}, {"task.commit", 1.0}}), "");
+}
+
+TEST(OnlineChange, NobodyCommitsWhileItIsUnderWay) {
+  Plant plant(integrators(first));
+  plant.door().hold_commits(true);
+  EXPECT_EQ(plant.write({{"A.K", 1.0}, {"task.commit", 1.0}}),
+            "An online change is under way: commit again in a second.");
+  EXPECT_EQ(plant.write({{"A.K", 2.0}}), "");
+  plant.door().hold_commits(false);
+  EXPECT_EQ(plant.write({{"task.commit", 1.0}}), "");
+}
+
+/// Changes there and back while another thread commits: no set that was taken is lost, whichever version it met.
+TEST(OnlineChange, NoCommittedSetIsLostAmongChanges) {
+  Plant plant(integrators(first));
+  plant.start();
+  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
+  std::atomic<bool> ends{false};
+  double last = 0.0;
+  std::uint64_t taken = 0;
+  std::thread client([&] {
+    for (double gain = 1.0; !ends; gain = gain > 99.0 ? 1.0 : gain + 1.0) {
+      if (plant.write({{"A.K", gain}, {"B.K", -gain}, {"task.commit", 1.0}}).empty()) {
+        last = gain;
+        ++taken;
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+  });
+  int changed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const bool is_there = i % 2 == 0;
+    changed += refusal([&] {
+                 return is_there && i % 3 == 0 ? plant.change().change_to(integrators(second), {})
+                        : i == 0               ? plant.change().change_to(integrators(second), {})
+                                               : plant.change().change_back({});
+               }).empty()
+                   ? 1
+                   : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ends = true;
+  client.join();
+  EXPECT_EQ(changed, 20);
+  EXPECT_GT(taken, 20U);
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == last && value(plant.door(), "B.K") == -last; }))
+      << last << " " << value(plant.door(), "A.K");
+}
+
+TEST(OnlineChange, TheLimitOfAnOutputIsThatOfTheRunFileOrAPartOfItsRange) {
+  ProgramShape shape{.outputs = {{.name = "Y", .low = 0.0, .high = 40.0},
+                                 {.name = "Z"},
+                                 {.name = "ON", .type = PointType::boolean, .low = 0.0, .high = 1.0},
+                                 {.name = "U", .low = 0.0, .high = 40.0}}};
+  RunConfig config;
+  config.task.outputs = {{.low = 10.0, .high = 30.0}, {}, {}, {}};
+  config.bumps = {{3, 0.125}};
+  const auto limits = bump_limits(config, shape);
+  EXPECT_DOUBLE_EQ(limits[0].limit.most, 0.2);
+  EXPECT_EQ(limits[0].origin, "1 % of 10 to 30");
+  EXPECT_EQ(limits[1].limit.most, 0.0);
+  EXPECT_EQ(limits[1].origin, "it has no low and high");
+  EXPECT_EQ(limits[2].limit.most, 0.0);
+  EXPECT_EQ(limits[3].limit.most, 0.125);
+}
+
+}  // namespace
+}  // namespace hysteron::runtime

@@ -1,0 +1,203 @@
+#include "tool/change_channel.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "support/errors.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+using runtime::modbus::Descriptor;
+using std::chrono::milliseconds;
+using SteadyClock = std::chrono::steady_clock;
+
+/// A request is small; an answer has the text of a diagram at the most.
+constexpr std::size_t most_bytes = 64'000'000;
+constexpr milliseconds time_for_a_line{5'000};
+/// A large diagram is compiled within this.
+constexpr milliseconds time_for_an_answer{600'000};
+
+std::string problem_text(int number) {
+  return std::generic_category().message(number);
+}
+
+/// Nothing where the path is too long for one.
+std::optional<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof(address.sun_path)) {
+    return {};
+  }
+  std::memcpy(static_cast<char*>(address.sun_path), path.data(), path.size());
+  return address;
+}
+
+Descriptor new_socket() {
+  return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+}
+
+bool connect_to(const Descriptor& socket, const sockaddr_un& address) {
+  return ::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+}
+
+bool is_own_user(const Descriptor& peer) {
+  ucred who{};
+  socklen_t size = sizeof(who);
+  return ::getsockopt(peer.number(), SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.uid == ::geteuid();
+}
+
+bool send_line(const Descriptor& to, std::string line) {
+  line += '\n';
+  for (std::size_t sent = 0; sent < line.size();) {
+    const ssize_t more = ::send(to.number(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+    if (more < 0 && errno != EINTR) {
+      return false;
+    }
+    sent += static_cast<std::size_t>(more < 0 ? 0 : more);
+  }
+  return true;
+}
+
+/// Nothing where the other side ends, or is too slow, before the line does.
+std::optional<std::string> read_line(const Descriptor& from, milliseconds time) {
+  const auto until = SteadyClock::now() + time;
+  std::string text;
+  std::array<char, 65536> part{};
+  while (text.empty() || text.back() != '\n') {
+    const auto left = std::chrono::duration_cast<milliseconds>(until - SteadyClock::now()).count();
+    pollfd wait{.fd = from.number(), .events = POLLIN, .revents = 0};
+    if (left <= 0 || text.size() > most_bytes || ::poll(&wait, 1, static_cast<int>(left)) < 0) {
+      return {};
+    }
+    if (wait.revents == 0) {
+      continue;
+    }
+    const ssize_t read = ::recv(from.number(), part.data(), part.size(), 0);
+    if (read <= 0) {
+      return {};
+    }
+    text.append(part.data(), static_cast<std::size_t>(read));
+  }
+  text.pop_back();
+  return text;
+}
+
+[[noreturn]] void refuse_socket(const std::string& path, const Place& place, const std::string& why) {
+  throw InputError(error::unusable_change_socket, place, fmt::format("There can be no socket {}: {}.", path, why),
+                   "name a file of fewer than 108 bytes, in a folder that is there and that this user may write.");
+}
+
+/// What a task that is gone has left is removed.
+void clear_the_way(const std::string& path, const Place& place, const sockaddr_un& address) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) != 0) {
+    return;
+  }
+  if (!S_ISSOCK(found.st_mode)) {
+    refuse_socket(path, place, "there is a file of that name, which is none");
+  }
+  if (connect_to(new_socket(), address)) {
+    throw InputError(error::file_of_another_task, place, fmt::format("Another task that runs listens on {}.", path),
+                     "end that task first, or name another file.");
+  }
+  (void)::unlink(path.c_str());
+}
+
+}  // namespace
+
+ChangeListener::ChangeListener(const std::string& path, const Place& place, Answer answer)
+    : path_(path), answer_(std::move(answer)), socket_(new_socket()), end_(::eventfd(0, EFD_CLOEXEC)) {
+  const auto address = address_of(path);
+  if (!address) {
+    refuse_socket(path, place, "the name is too long, or empty");
+  }
+  clear_the_way(path, place, *address);
+  // Before it has a name: at no moment may another user open it.
+  if (!socket_.is_open() || !end_.is_open() || ::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0 ||
+      ::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) != 0 ||
+      ::listen(socket_.number(), 4) != 0) {
+    refuse_socket(path, place, problem_text(errno));
+  }
+  thread_ = std::thread([this] { serve(); });
+}
+
+ChangeListener::~ChangeListener() {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(end_.number(), &one, sizeof(one));
+  thread_.join();
+  (void)::unlink(path_.c_str());
+}
+
+void ChangeListener::serve() {
+  // What is compiled here must not be felt by the task where that has no real-time scheduling.
+  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
+  for (;;) {
+    std::array<pollfd, 2> wait{pollfd{.fd = socket_.number(), .events = POLLIN, .revents = 0},
+                               pollfd{.fd = end_.number(), .events = POLLIN, .revents = 0}};
+    (void)::poll(wait.data(), wait.size(), -1);
+    if (wait[1].revents != 0) {
+      return;
+    }
+    const Descriptor client(::accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (client.is_open() && is_own_user(client)) {
+      serve_one(client);
+    } else if (!client.is_open()) {
+      std::this_thread::sleep_for(milliseconds(100));  // no descriptor is left
+    }
+  }
+}
+
+void ChangeListener::serve_one(const Descriptor& client) const {
+  const timeval patience{.tv_sec = 5, .tv_usec = 0};
+  (void)::setsockopt(client.number(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));
+  if (const auto request = read_line(client, time_for_a_line)) {
+    (void)send_line(client, answer_(*request));
+  }
+}
+
+std::string ask_task(const std::string& path, const Place& place, const std::string& request) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(error::no_online_change, place,
+                     fmt::format("No task takes an online change on {}: {}.", path, why),
+                     "start the task with this run file, and give the command as its user and in its folder.");
+  };
+  const auto address = address_of(path);
+  const Descriptor socket = new_socket();
+  if (!address) {
+    refuse("the name is too long, or empty");
+  }
+  if (!socket.is_open() || !connect_to(socket, *address)) {
+    refuse(problem_text(errno));
+  }
+  if (!is_own_user(socket)) {
+    refuse("it is of another user");
+  }
+  if (!send_line(socket, request)) {
+    refuse(problem_text(errno));
+  }
+  const auto answer = read_line(socket, time_for_an_answer);
+  if (!answer) {
+    refuse("it ended before it gave an answer; its last line says whether the version had changed");
+  }
+  return *answer;
+}
+
+}  // namespace hysteron::tool

@@ -1,0 +1,46 @@
+// How `hysteron online-change` speaks with a task that runs: a socket in the file system, which no network reaches.
+//
+// Its owner alone may open it (mode 0600), and each side asks the kernel who the other is: a request counts only from
+// the user of the task, and an answer only from a task of one's own user. A request is a line of JSON, and so is the
+// answer.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "runtime/modbus/descriptor.hpp"
+#include "support/diagnostic.hpp"
+
+namespace hysteron::tool {
+
+/// The task's side; requests are answered one after the other, in a thread of their own.
+class ChangeListener {
+ public:
+  using Answer = std::function<std::string(const std::string& request)>;
+
+  /// A socket of a task that is gone is replaced. Throws InputError at `place`: HY815 where another task listens there,
+  /// HY854 where there can be no socket.
+  ChangeListener(const std::string& path, const Place& place, Answer answer);
+  /// Waits for the answer that is being made.
+  ~ChangeListener();
+  ChangeListener(const ChangeListener&) = delete;
+  ChangeListener& operator=(const ChangeListener&) = delete;
+  ChangeListener(ChangeListener&&) = delete;
+  ChangeListener& operator=(ChangeListener&&) = delete;
+
+ private:
+  void serve();
+  void serve_one(const runtime::modbus::Descriptor& client) const;
+
+  std::string path_;
+  Answer answer_;
+  runtime::modbus::Descriptor socket_{};
+  runtime::modbus::Descriptor end_{};  ///< readable once it ends
+  std::thread thread_;
+};
+
+/// The answer of the task that listens there. Throws InputError HY852 where there is none of this user.
+[[nodiscard]] std::string ask_task(const std::string& path, const Place& place, const std::string& request);
+
+}  // namespace hysteron::tool

@@ -1,0 +1,236 @@
+// hysteron online-change: changes the diagram of a task that runs, without ending it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "runtime/config/run_config.hpp"
+#include "support/atomic_file.hpp"
+#include "support/errors.hpp"
+#include "support/numbers.hpp"
+#include "support/text_file.hpp"
+#include "tool/change_channel.hpp"
+#include "tool/change_messages.hpp"
+#include "tool/commands.hpp"
+
+namespace hysteron::tool {
+namespace {
+
+constexpr std::string_view examples = R"(Examples:
+  hysteron online-change RUN.toml --check
+  hysteron online-change RUN.toml
+  hysteron online-change RUN.toml --bump U=0.5
+  hysteron online-change RUN.toml --back
+
+Edit the diagram that `hysteron serve` was started with, and its parameter file. --check says what would be carried over
+and how far each output would jump; without it the task changes to what stands in the files now, between two steps, or
+refuses with the reason. --back brings the version before back, and its files; what stood there is kept beside as
+FILE.undone. The run file names the socket of the task: socket under [online_change].
+Exit codes: 0 changed, or nothing stands against it; 2 refused: the running version goes on.
+)";
+
+struct Options {
+  std::string config{};
+  std::vector<std::string> bumps{};
+  std::vector<std::string> as_given{};
+  bool check = false;
+  bool back = false;
+  bool json = false;
+};
+
+using Socket = runtime::ChangeConfig;
+
+Socket socket_of(const std::string& file) {
+  auto socket = runtime::change_config_of(file, read_text_file(file));
+  if (!socket) {
+    throw InputError(error::no_online_change, {.file = file}, "The run file names no socket for online changes.",
+                     "write [online_change] and below it socket = \"online-change.socket\", and start the task anew.");
+  }
+  return std::move(*socket);
+}
+
+std::map<std::string, double> bumps_of(const std::vector<std::string>& words) {
+  std::map<std::string, double> bumps;
+  for (const std::string& word : words) {
+    const std::size_t sign = word.find('=');
+    const ParsedNumber number = parse_number(sign == std::string::npos ? "" : std::string_view(word).substr(sign + 1));
+    const bool is_limit = number.status == NumberStatus::Finite && number.value >= 0.0;
+    if (!is_limit || !bumps.emplace(word.substr(0, sign), number.value).second) {
+      throw InputError(error::bad_usage, {}, fmt::format("--bump does not understand \"{}\".", word),
+                       "write each output once, with a number from 0 on: --bump U=0.5.");
+    }
+  }
+  return bumps;
+}
+
+Json ask(const Socket& socket, const Options& options, std::string_view what) {
+  const Json request{{"what", what}, {"bumps", bumps_of(options.bumps)}, {"as_given", options.as_given}};
+  const Json answer = Json::parse(ask_task(socket.socket, socket.place, request.dump()), nullptr, false);
+  if (!answer.is_object()) {
+    throw InputError(error::no_online_change, socket.place, "What listens there gives no answer that is understood.",
+                     "give the command of the same version as the task.");
+  }
+  if (answer.contains("errors")) {
+    throw InputError(diagnostics_of(answer.at("errors")));
+  }
+  return answer;
+}
+
+std::string number_word(const Json& value) {
+  return value.is_null() ? "no number" : fmt::format("{:.6g}", value.get<double>());
+}
+
+std::string list_text(std::string_view title, const Json& names) {
+  std::string text;
+  for (const Json& name : names) {
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", name.get<std::string>());
+  }
+  return text.empty() ? "" : fmt::format("{}: {}\n", title, text);
+}
+
+std::string report_text(const Json& report, bool is_back) {
+  std::string text = fmt::format(
+      "{}: {}\n{} of {} parameters and {} of {} states {} carried over\n", report.at("program").get<std::string>(),
+      !report.at("changed").get<bool>()
+          ? fmt::format("nothing stands against it; version {} runs on", report.at("version").get<std::uint64_t>())
+          : fmt::format("{}version {} runs", is_back ? "back; " : "", report.at("version").get<std::uint64_t>()),
+      report.at("parameters_carried").get<std::size_t>(), report.at("parameters").get<std::size_t>(),
+      report.at("states_carried").get<std::size_t>(), report.at("states").get<std::size_t>(),
+      report.at("changed").get<bool>() ? "were" : "would be");
+  for (const Json& one : report.at("outputs")) {
+    const std::string unit = one.at("unit");
+    text += fmt::format("  {}: {} to {}{}, a bump of {:.6g}; the limit is {:.6g} ({})\n",
+                        one.at("name").get<std::string>(), number_word(one.at("before")), number_word(one.at("after")),
+                        unit.empty() ? "" : " " + unit, one.at("bump").get<double>(), one.at("limit").get<double>(),
+                        one.at("limit_from").get<std::string>());
+  }
+  text += list_text("not carried over", report.at("left"));
+  text += list_text("as they run, and not as in the files", report.at("other_values"));
+  text += list_text("without a register until a restart", report.at("without_register"));
+  text += fmt::format("a step of it takes {:.2g} us\n", report.at("step_time_ns").get<double>() * 1e-3);
+  if (!report.at("retained").get<bool>()) {
+    text += "its values are not on the disk yet: see task.write_failures\n";
+  }
+  return text;
+}
+
+std::string text_on_disk(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::exists(path, unknown) ? read_text_file(path.string()) : std::string();
+}
+
+/// FILE.undone, or the first of FILE.undone.2, … that is free.
+std::filesystem::path free_name(const std::filesystem::path& path) {
+  std::error_code unknown;
+  std::filesystem::path name = path.string() + ".undone";
+  for (int number = 2; std::filesystem::exists(name, unknown); ++number) {
+    name = fmt::format("{}.undone.{}", path.string(), number);
+  }
+  return name;
+}
+
+/// The files of the version before stand where a restart reads them, before the task is asked to run it: should this
+/// process die in between, a restart still runs what was asked for.
+class FilesBack {
+ public:
+  explicit FilesBack(const std::vector<OutputFile>& former) {
+    for (const OutputFile& one : former) {
+      std::string found = text_on_disk(one.path);
+      if (found != one.contents) {
+        kept_.push_back({.path = free_name(one.path), .contents = found});
+        as_they_were_.push_back({.path = one.path, .contents = std::move(found)});
+        former_.push_back(one);
+      }
+    }
+    std::vector<OutputFile> all = kept_;
+    all.insert(all.end(), former_.begin(), former_.end());
+    if (!all.empty()) {
+      write_files_atomically(all);
+    }
+  }
+  /// The task goes on with the version that it had.
+  void undo() const {
+    if (!as_they_were_.empty()) {
+      write_files_atomically(as_they_were_);
+    }
+    for (const OutputFile& one : kept_) {
+      std::error_code unknown;
+      std::filesystem::remove(one.path, unknown);
+    }
+  }
+  [[nodiscard]] std::string text() const {
+    std::string text;
+    for (std::size_t i = 0; i < former_.size(); ++i) {
+      text +=
+          fmt::format("{} is as before; what stood there is in {}\n", former_[i].path.string(), kept_[i].path.string());
+    }
+    return text;
+  }
+
+ private:
+  std::vector<OutputFile> former_{};
+  std::vector<OutputFile> kept_{};
+  std::vector<OutputFile> as_they_were_{};
+};
+
+int go_back(const Socket& socket, const Options& options, Console& console) {
+  // Asked first: nothing is written for a change that is refused anyway.
+  (void)ask(socket, options, "check-back");
+  const FilesBack files(files_of(ask(socket, options, "files").at("files")));
+  try {
+    const Json answer = ask(socket, options, "back");
+    console.print(options.json ? answer.at("report").dump(2) + "\n"
+                               : report_text(answer.at("report"), true) + files.text());
+  } catch (const InputError& refused) {
+    const auto& all = refused.diagnostics().all();
+    const bool is_answered =
+        std::ranges::none_of(all, [](const Diagnostic& one) { return one.number == error::no_online_change; });
+    if (is_answered) {  // else the task may have changed: the files stay as was asked for
+      files.undo();
+    }
+    throw;
+  }
+  return exit_ok;
+}
+
+int online_change(const Options& options, Console& console) {
+  const Socket socket = socket_of(options.config);
+  if (options.back && !options.check) {
+    return go_back(socket, options, console);
+  }
+  const Json answer = ask(socket, options, options.back ? "check-back" : options.check ? "check" : "change");
+  console.report(diagnostics_of(answer.at("warnings")));
+  const Json& report = answer.at("report");
+  console.print(options.json ? report.dump(2) + "\n" : report_text(report, options.back));
+  return exit_ok;
+}
+
+}  // namespace
+
+Action add_online_change(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("RUN.toml", options->config, "The run file that the task was started with.")
+      ->required()
+      ->option_text(" ");
+  app.add_flag("--check", options->check, "Says what the change would do, and does not do it.");
+  app.add_flag("--back", options->back, "Brings the version before back, and its files.");
+  app.add_option("--bump", options->bumps, "How far this output may jump at this change, in its unit; may be repeated.")
+      ->option_text("NAME=NUMBER");
+  app.add_option("--as-given", options->as_given,
+                 "A parameter that is taken as the files give it, and not carried over; may be repeated.")
+      ->option_text("NAME");
+  app.add_flag("--json", options->json, "Prints JSON.");
+  app.footer(std::string(examples));
+  return [options](Console& console) { return online_change(*options, console); };
+}
+
+}  // namespace hysteron::tool

@@ -175,6 +175,8 @@ constexpr std::array titles{
     ErrorTitle{error::malformed_web_address, "Address of the live page that is not understood"},
     ErrorTitle{error::open_web_page, "Live page open to a network without a token"},
     ErrorTitle{error::unfit_token_file, "Token file that does not serve"},
+    ErrorTitle{error::unfit_format, "Format that does not fit its point"},
+    ErrorTitle{error::unknown_exposed_point, "Exposed point that the diagram does not have"},
 };
 
 }  // namespace

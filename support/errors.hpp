@@ -182,6 +182,8 @@ inline constexpr int replay_differs = 841;
 inline constexpr int malformed_web_address = 842;
 inline constexpr int open_web_page = 843;
 inline constexpr int unfit_token_file = 844;
+inline constexpr int unfit_format = 860;
+inline constexpr int unknown_exposed_point = 861;
 }  // namespace error
 
 /// In the order of the numbers.

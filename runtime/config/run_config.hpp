@@ -100,7 +100,10 @@ struct ModbusConfig {
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;
   std::string lock_file{};
-  std::vector<modbus::GivenAddress> addresses{};  ///< of [addresses]
+  std::vector<std::string> expose{};  ///< names, or what they begin with and a star; none: all points
+  Place expose_place{};
+  bool has_discovery = true;
+  std::vector<modbus::GivenRegister> registers{};  ///< of [addresses] and [registers]
   std::string first_addresses{};                  ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
   std::optional<modbus::TlsOptions> tls{};
@@ -123,7 +126,8 @@ struct RunConfig {
   std::vector<DeviceOutput> device_outputs{};
 };
 
-/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835 and HY836;
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835, HY836
+/// and HY860;
 /// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
 

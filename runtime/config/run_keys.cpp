@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/modbus/value_bits.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::runtime {
@@ -28,8 +29,12 @@ constexpr std::array<Words, 3> on_fault_words{"value", "ramp", "hold"};
 constexpr std::array<Words, 2> loss_words{"fault", "keep"};
 constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
 constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
-constexpr std::array<Words, 9> type_words{"boolean", "int16",  "uint16", "int32", "uint32",
-                                          "int64",   "uint64", "real32", "real64"};
+constexpr auto type_words = [] {
+  std::array<Words, modbus::register_types.size()> words{};
+  std::ranges::transform(modbus::register_types, words.begin(),
+                         [](modbus::RegisterType type) { return Words(modbus::name_of(type)); });
+  return words;
+}();
 constexpr std::array<Words, 3> parity_words{"even", "odd", "none"};
 constexpr std::array<Words, 4> order_words{"abcd", "cdab", "badc", "dcba"};
 constexpr std::array<Words, 2> map_words{"compact", "openplc"};
@@ -37,6 +42,21 @@ constexpr std::array<Words, 3> mismatch_words{"refuse", "cold", "carry"};
 constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
 constexpr std::array<Words, 2> after_words{"resume", "reset"};
 constexpr std::array<Words, 2> payload_words{"json", "sparkplug-b"};
+
+// How a value lies in registers: the same keys for the server's points and for values on devices.
+constexpr RunKey type_key(Words otherwise, Words meaning) {
+  return {.name = "type", .kind = choice, .otherwise = otherwise, .meaning = meaning, .words = type_words};
+}
+constexpr RunKey scale_key{"scale", number, "1.0",
+                           "in the value's unit, what a step of the raw number is: value = scale·raw + offset"};
+constexpr RunKey offset_key{"offset", number, "0.0", "the value where the raw number is 0"};
+constexpr RunKey order_key(Words otherwise) {
+  return {.name = "word_order",
+          .kind = choice,
+          .otherwise = otherwise,
+          .meaning = "how a value of 32 or 64 bits lies in its registers",
+          .words = order_words};
+}
 
 constexpr std::array task_keys{
     RunKey{"period", time, "(the diagram's)", "for the reader: must be the sample time of the diagram", 1.0, many},
@@ -96,11 +116,14 @@ constexpr std::array output_keys{
            .otherwise = "\"holding\"",
            .meaning = "holding registers or coils",
            .words = written_area_words},
-    RunKey{.name = "type",
-           .kind = choice,
-           .otherwise = "(real64; of a coil, boolean)",
-           .meaning = "how it lies there; an integer limits the output to what it can hold",
-           .words = type_words},
+    type_key("(real64; of a coil or bit, boolean)",
+             "how it lies there; an integer limits the output to what it can hold"),
+    scale_key,
+    offset_key,
+    order_key("(the device's)"),
+    RunKey{"bit", whole, "(none)",
+           "of a holding register, 0 the lowest: a boolean; the register's bits that no output has are written as 0", 0.0,
+           15.0},
     RunKey{.name = "on_loss",
            .kind = choice,
            .otherwise = "\"fault\"",
@@ -124,11 +147,11 @@ constexpr std::array input_keys{
            .otherwise = "\"holding\"",
            .meaning = "holding or input registers, coils or discrete inputs",
            .words = area_words},
-    RunKey{.name = "type",
-           .kind = choice,
-           .otherwise = "(real64; of a coil or discrete input, boolean)",
-           .meaning = "how it lies there",
-           .words = type_words},
+    type_key("(real64; of a coil, discrete input or bit, boolean)", "how it lies there"),
+    scale_key,
+    offset_key,
+    order_key("(the device's)"),
+    RunKey{"bit", whole, "(none)", "of a register, 0 the lowest: a boolean", 0.0, 15.0},
     RunKey{.name = "on_loss",
            .kind = choice,
            .otherwise = "\"fault\"",
@@ -260,6 +283,10 @@ constexpr std::array modbus_keys{
                "`%MW`, `%MD`, `%ML`",
            .words = map_words},
     RunKey{"lock_file", text, "(none)", "keeps the addresses through edits of the diagram"},
+    RunKey{"expose", texts, "(all points)",
+           "the points on the map, as `hysteron map` lists them; `\"HYST.*\"` is all that begin with `HYST.`, `\"*\"` all"},
+    RunKey{"discovery", flag, "true",
+           "clients can read the map from holding register 40000 on, and by function 20; without it, points may lie there"},
     RunKey{.name = "heartbeat",
            .kind = choice,
            .otherwise = "\"off\"",
@@ -296,10 +323,19 @@ constexpr std::array address_keys{
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"},   RunKey{"outputs"}, RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},     RunKey{"trace"},   RunKey{"history"},
-                               RunKey{"mqtt"},    RunKey{"dead_bands"}, RunKey{"modbus"},  RunKey{"tls"},
-                               RunKey{"roles"},   RunKey{"addresses"}};
+constexpr std::array register_keys{
+    RunKey{"at", text, "(by the map and the lock file)",
+           "its address, as under `[addresses]`; `\"holding 16.3\"` is a bit of a register, 0 the lowest"},
+    type_key("(the point's)", "how it lies there; what the type does not reach is read as the nearest that it does"),
+    scale_key,
+    offset_key,
+    order_key("(the server's)"),
+};
+
+constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"},   RunKey{"outputs"},  RunKey{"inputs"},
+                               RunKey{"devices"}, RunKey{"retain"},     RunKey{"trace"},    RunKey{"history"},
+                               RunKey{"mqtt"},    RunKey{"dead_bands"}, RunKey{"modbus"},   RunKey{"tls"},
+                               RunKey{"roles"},   RunKey{"addresses"},  RunKey{"registers"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -317,6 +353,8 @@ constexpr std::array tables{
     RunTable{"[tls]", "Modbus/TCP Security instead of Modbus in the clear, with certificates on both sides.", tls_keys},
     RunTable{"[roles]", "A line for each role that the certificates of clients name.", role_keys},
     RunTable{"[addresses]", "A line for each point of the server whose address is given.", address_keys},
+    RunTable{"[registers.NAME]", "A table for each point that lies on the server in another way than as its type.",
+             register_keys},
 };
 
 std::string kind_text(const RunKey& key) {

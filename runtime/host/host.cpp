@@ -114,7 +114,10 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
   modbus::MapRequest request{.title = title,
                              .placing = config.placing,
                              .order = config.word_order,
-                             .given = config.addresses,
+                             .has_discovery = config.has_discovery,
+                             .expose = config.expose,
+                             .expose_place = config.expose_place,
+                             .given = config.registers,
                              .lock_file = config.lock_file};
   // Where that cannot be told, reading it says why.
   std::error_code unknown;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <numeric>
@@ -13,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "runtime/modbus/value_bits.hpp"
+#include "runtime/modbus/point_format.hpp"
 #include "runtime/task/exchange.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -35,13 +34,14 @@ std::uint32_t most_of(const Block& block) {
 }
 
 void check(const RemoteValue& value) {
-  if (holds_bits(value.at.area) != (value.type == PointType::boolean)) {
+  const bool is_bit = holds_bits(value.at.area) || value.at.is_bit();
+  if (is_bit != (value.format.type == PointType::boolean) || (holds_bits(value.at.area) && value.at.is_bit())) {
     throw std::invalid_argument("booleans lie among bits, other values among registers");
   }
   if (value.written && value.at.area != Area::coil && value.at.area != Area::holding_register) {
     throw std::invalid_argument("inputs of a device are not written");
   }
-  if (value.at.address + registers_of(value.type) > 0x10000) {
+  if (value.at.address + registers_of(value.format.type) > 0x10000) {
     throw std::invalid_argument("a value lies behind the last address");
   }
 }
@@ -55,15 +55,19 @@ std::vector<Block> blocks_of(const std::vector<RemoteValue>& values) {
   for (const std::size_t i : order) {
     const RemoteValue& value = values[i];
     check(value);
-    const auto width = static_cast<std::uint32_t>(registers_of(value.type));
-    const bool fits = !blocks.empty() && blocks.back().area == value.at.area &&
-                      blocks.back().written == value.written &&
-                      blocks.back().address + blocks.back().count == value.at.address &&
-                      blocks.back().count + width <= most_of(blocks.back());
+    const auto width = static_cast<std::uint32_t>(registers_of(value.format.type));
+    const std::uint32_t end = value.at.address + width;
+    const bool joins = !blocks.empty() && blocks.back().area == value.at.area &&
+                       blocks.back().written == value.written &&
+                       blocks.back().address + blocks.back().count >= value.at.address &&
+                       end - blocks.back().address <= most_of(blocks.back());
+    // What is read may share registers: bits of one, or one value in two formats. Of what is written, bits alone.
+    const bool shares = joins && blocks.back().address + blocks.back().count > value.at.address;
+    const bool fits = joins && (!shares || !value.written || value.at.is_bit());
     if (!fits) {
       blocks.push_back({.area = value.at.area, .written = value.written, .address = value.at.address});
     }
-    blocks.back().count += width;
+    blocks.back().count = std::max(blocks.back().count, end - blocks.back().address);
     blocks.back().values.push_back(i);
   }
   return blocks;
@@ -306,7 +310,7 @@ class Device::Worker {
       if (outcome == Exchange::exception) {
         cell.quality = cell.quality == Quality::never ? Quality::never : Quality::refused;
       } else if (outcome == Exchange::answered) {
-        const auto value = block.written ? std::optional(cell.sent) : decoded(block, options_.values[i], answer);
+        const auto value = block.written ? std::optional(cell.sent) : taken_from(answer, block, options_.values[i]);
         cell.quality = value ? Quality::good : Quality::refused;
         not_taken_.fetch_add(value ? 0 : 1, std::memory_order_relaxed);
         cell.value = value.value_or(cell.value);
@@ -339,39 +343,46 @@ class Device::Worker {
         return {};
       }
       cells_[i].sent = cells_[i].to_write.load(std::memory_order_relaxed);
-      const std::uint64_t pattern = bits_of(cells_[i].sent, value.type);
+      const auto code = encoded(cells_[i].sent, value.format);
+      if (!code) {
+        return {};  // what is not a number has no bits there: the device keeps what it was given last
+      }
+      const std::uint64_t pattern = code->bits << (value.at.is_bit() ? static_cast<unsigned>(value.at.bit) : 0U);
       const std::uint32_t offset = value.at.address - block.address;
       if (bits) {
         request[6 + offset / 8] |= static_cast<std::uint8_t>(pattern << offset % 8);
         continue;
       }
       std::array<std::uint16_t, 4> words{};
-      const auto used = std::span(words).first(registers_of(value.type));
-      to_registers(pattern, options_.order, used);
+      const auto used = std::span(words).first(registers_of(value.format.type));
+      to_registers(pattern, value.format.order, used);
       for (std::size_t word = 0; word < used.size(); ++word) {
-        request[6 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] >> 8U);
-        request[7 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] & 0xFFU);
+        request[6 + 2 * (offset + word)] |= static_cast<std::uint8_t>(used[word] >> 8U);
+        request[7 + 2 * (offset + word)] |= static_cast<std::uint8_t>(used[word] & 0xFFU);
       }
     }
     return request;
   }
 
   /// Nothing where it is none that may be taken.
-  [[nodiscard]] std::optional<double> decoded(const Block& block, const RemoteValue& value,
-                                              const std::vector<std::uint8_t>& answer) const {
+  [[nodiscard]] static std::optional<double> taken_from(const std::vector<std::uint8_t>& answer, const Block& block,
+                                                        const RemoteValue& value) {
     const std::uint32_t offset = value.at.address - block.address;
+    std::uint64_t bits = 0;
     if (holds_bits(block.area)) {
-      return answer[2 + offset / 8] >> offset % 8 & 1U;
+      bits = answer[2 + offset / 8] >> offset % 8 & 1U;
+    } else {
+      std::array<std::uint16_t, 4> words{};
+      const auto used = std::span(words).first(registers_of(value.format.type));
+      for (std::size_t word = 0; word < used.size(); ++word) {
+        const std::size_t at = 2 + 2 * (offset + word);
+        used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
+      }
+      bits = from_registers(used, value.format.order);
+      bits = value.at.is_bit() ? bits >> static_cast<unsigned>(value.at.bit) & 1U : bits;
     }
-    std::array<std::uint16_t, 4> words{};
-    const auto used = std::span(words).first(registers_of(value.type));
-    for (std::size_t word = 0; word < used.size(); ++word) {
-      const std::size_t at = 2 + 2 * (offset + word);
-      used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
-    }
-    const auto read = value_of(from_registers(used, options_.order), value.type);
-    const bool is_fit = read && std::isfinite(*read) && *read >= value.low && *read <= value.high;
-    return is_fit ? read : std::nullopt;
+    const auto number = taken(bits, value.format, value.low, value.high);
+    return number && holds(RegisterType(value.of), *number) ? number : std::nullopt;
   }
 
   const DeviceOptions options_;

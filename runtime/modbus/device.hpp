@@ -25,8 +25,9 @@
 namespace hysteron::runtime::modbus {
 
 struct RemoteValue {
-  Stretch at{};  ///< the count follows from the type
-  PointType type = PointType::uint16;
+  Stretch at{};  ///< the count follows from the format
+  PointFormat format{.type = PointType::uint16};
+  PointType of = PointType::real64;         ///< of the input or output: a value that is none of it is not taken
   bool written = false;                     ///< sent to the device every period, once it has a value; else read from it
   std::chrono::nanoseconds longest_age{0};  ///< beyond that it is old; 0: ten periods, or the response time
   double low = -std::numeric_limits<double>::infinity();  ///< of what is read: what is outside is not taken
@@ -38,7 +39,6 @@ struct DeviceOptions {
   std::string name{};
   std::variant<TcpLink, SerialLink> link{};
   std::uint8_t unit = 1;
-  WordOrder order = WordOrder::abcd;
   std::vector<RemoteValue> values{};
   std::chrono::nanoseconds period = std::chrono::milliseconds(5);
   std::chrono::milliseconds response{200};   ///< for a whole answer, and for a connection
@@ -82,8 +82,8 @@ struct DeviceStatus {
 
 class Device {
  public:
-  /// Begins at once. Throws std::invalid_argument where a value is written to an area that can only be read, or is no
-  /// boolean among bits.
+  /// Begins at once. A register of which bits are written is written whole, its other bits as 0. Throws
+  /// std::invalid_argument where a value is written to an area that can only be read, or is no boolean among bits.
   explicit Device(const DeviceOptions& options, DeviceWork work = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -97,7 +97,7 @@ class Device {
   /// Whether the device took this number within the longest age of the value, even where the link was lost since.
   [[nodiscard]] bool has_taken(std::size_t value, double number) const;
   [[nodiscard]] DeviceStatus status() const;
-  /// Values that were read and not taken: beyond their limits, not finite, or an integer that no double holds.
+  /// Values that were read and not taken: beyond their limits, not finite, none of their format or of their input.
   [[nodiscard]] std::uint64_t not_taken() const noexcept;
   /// The age beyond which a value is old.
   [[nodiscard]] std::chrono::nanoseconds longest_age(std::size_t value) const;

@@ -176,18 +176,6 @@ TEST(DeviceField, WhatIsOutsideOfTheLimitsOfAnInputIsNotTaken) {
   EXPECT_EQ(field.read(inputs), Fault::none);
 }
 
-TEST(DeviceField, ALimitIsAsTheTypeOnTheDeviceCanTellIt) {
-  ProgramShape limited = shape();
-  limited.inputs[0].low = -0.7;
-  limited.inputs[0].high = 0.1;
-  const std::string text = "[devices.stage]\n[outputs.Y]\nsafe = 0.0\n[inputs.X]\ndevice = \"stage\"\ntype = ";
-  const auto narrow = parse_run_config("RUN.toml", text + "\"real32\"\n", limited).devices[0].values[0];
-  EXPECT_EQ(narrow.low, static_cast<double>(-0.7F));
-  EXPECT_EQ(narrow.high, static_cast<double>(0.1F));
-  const auto wide = parse_run_config("RUN.toml", text + "\"real64\"\n", limited).devices[0].values[0];
-  EXPECT_EQ(wide.high, 0.1);
-}
-
 TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {
   const std::uint16_t port = test::free_port();
   ServedDevice stage(port);

@@ -113,8 +113,8 @@ TEST(Device, WhatCannotBeWrittenIsRefusedAtTheStart) {
   const auto with = [](RemoteValue value) { return DeviceOptions{.values = {value}}; };
   using A = Area;
   EXPECT_THROW(Device(with({.at = {A::input_register, 0, 1}, .written = true})), std::invalid_argument);
-  EXPECT_THROW(Device(with({.at = {A::coil, 0, 1}, .type = PointType::int16})), std::invalid_argument);
-  EXPECT_THROW(Device(with({.at = {A::holding_register, 0xFFFF, 2}, .type = PointType::real32})),
+  EXPECT_THROW(Device(with({.at = {A::coil, 0, 1}, .format = {.type = PointType::int16}})), std::invalid_argument);
+  EXPECT_THROW(Device(with({.at = {A::holding_register, 0xFFFF, 2}, .format = {.type = PointType::real32}})),
                std::invalid_argument);
 }
 
@@ -125,7 +125,7 @@ void expect_values_to_cross(const DeviceOptions& to, const RegisterMap& map, tes
   for (const bool written : {false, true}) {
     for (const MapEntry& entry : map.entries()) {
       if (!written || map.point_of(entry).writable) {
-        options.values.push_back({.at = entry.at, .type = map.point_of(entry).type, .written = written});
+        options.values.push_back({.at = entry.at, .format = entry.format, .written = written});
         points.push_back(entry.point);
       }
     }
@@ -155,7 +155,7 @@ TEST(Device, EveryTypeAndWordOrderOverTcp) {
   for (const WordOrder order : word_orders) {
     test::MemoryDoor door(test::points_of_every_type());
     const Server server(make_register_map(door.points(), {.title = "T", .order = order}), door, {.port = 0});
-    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .order = order, .period = milliseconds(5)},
+    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .period = milliseconds(5)},
                            server.map(), door);
   }
 }
@@ -264,7 +264,7 @@ TEST(Device, SeveralUnitsOnOneSerialLineTakeTurns) {
 }
 
 TEST(ValueBits, LimitsOfATypeComeBackAsTheyAre) {
-  for (const PointType type : point_types) {
+  for (const RegisterType type : register_types) {
     const auto [low, high] = limits_of(type);
     EXPECT_EQ(value_of(bits_of(low, type), type), low) << name_of(type);
     EXPECT_EQ(value_of(bits_of(high, type), type), high) << name_of(type);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <utility>
 
 #include "runtime/config/format_reader.hpp"
+#include "runtime/config/line_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -17,8 +19,7 @@ using Words = std::string_view;
 constexpr std::array<modbus::Area, 4> areas{modbus::Area::holding_register, modbus::Area::input_register,
                                             modbus::Area::coil, modbus::Area::discrete_input};
 constexpr std::array<modbus::Area, 2> written_areas{modbus::Area::holding_register, modbus::Area::coil};
-constexpr std::array<Words, 2> network_keys{"host", "port"};
-constexpr std::array<Words, 3> line_keys{"baud", "parity", "stop_bits"};
+constexpr std::array<Words, 3> network_keys{"host", "port", "connection"};
 constexpr std::array<Words, 8> value_keys{"register", "area",       "type", "scale",
                                           "offset",   "word_order", "bit",  "on_loss"};
 
@@ -30,36 +31,37 @@ void DeviceReader::wrong(Place place, const std::string& cause, const std::strin
 
 void DeviceReader::read_device(const std::string& name, TomlReader table) {
   modbus::DeviceOptions device{.name = name};
-  std::string line;
-  table.read("serial", line);
-  if (line.empty()) {
+  const auto is_plain = [](char c) { return c == '_' || c == '-' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  if (!std::ranges::all_of(name, is_plain)) {
+    wrong(table.place(), "The device " + name + " has a name that no register map can list.",
+          "name it by letters, digits, _ and -.");
+  }
+  std::size_t sharing = 0;
+  table.read_choice("connection", sharing);
+  device.shares_connection = sharing == 1;
+  const modbus::SerialLink line = read_line(table, *found_);
+  if (line.path.empty()) {
     modbus::TcpLink link;
     table.read("host", link.host);
     table.read_whole("port", link.port);
-    for (const Words key : line_keys) {
-      if (table.has(key)) {
-        wrong(table.place(key), std::string(key) + " is of a serial line, and none is named.",
-              "name it: serial = \"/dev/ttyUSB0\", or remove the key.");
-      }
-    }
     device.link = std::move(link);
   } else {
-    modbus::SerialLink link{.path = line};
-    table.read_whole("baud", link.baud);
-    constexpr std::array<char, 3> parities{'E', 'O', 'N'};
-    std::size_t parity = 0;
-    table.read_choice("parity", parity);
-    link.parity = parities[parity];
-    table.read_whole("stop_bits", link.stop_bits);
     for (const Words key : network_keys) {
       if (table.has(key)) {
         wrong(table.place(key), "The device is on a serial line and has a " + std::string(key) + " besides.",
               "remove the key, or serial.");
       }
     }
-    device.link = std::move(link);
+    device.link = line;
   }
   table.read_whole("unit", device.unit);
+  const bool is_serial = !line.path.empty();
+  if ((device.unit > 247 && device.unit < 255) || (is_serial && (device.unit == 0 || device.unit == 255))) {
+    found_->error(error::run_value_out_of_range, table.place("unit"),
+                  "No device is the unit " + std::to_string(device.unit) + (is_serial ? " on a serial line." : "."),
+                  is_serial ? "choose 1 to 247; 0 is all units, and none answers."
+                            : "choose 0 to 247; or 255, of a device that is no gateway.");
+  }
   std::size_t order = 0;
   table.read_choice("word_order", order);
   orders_.push_back(modbus::word_orders.at(order));
@@ -122,9 +124,7 @@ std::optional<DeviceLink> DeviceReader::read_link(const ProgramSignal& port, boo
                                                   TomlReader& table) {
   std::string name;
   table.read("device", name);
-  modbus::RemoteValue value{.of = port.type,
-                            .written = written,
-                            .longest_age = std::chrono::nanoseconds(longest_age)};
+  modbus::RemoteValue value{.of = port.type, .written = written, .longest_age = std::chrono::nanoseconds(longest_age)};
   std::size_t loss = 0;
   table.read_choice("on_loss", loss);
   const auto found = std::ranges::find(config_->devices, name, &modbus::DeviceOptions::name);
@@ -224,11 +224,11 @@ void DeviceReader::refuse_twice() {
       const modbus::Stretch& a = at(*first);
       const modbus::Stretch& b = at(*second_one);
       if (first->written && second_one->written && first->link.device == second_one->link.device && a.overlaps(b)) {
-        found_->error(error::device_register_twice, second_one->place,
-                      second_one->name + " and " + first->name + " write the same register of " +
-                          config_->devices[first->link.device].name + ", " +
-                          std::to_string(std::max(a.address, b.address)) + ".",
-                      "give each a place of its own; a real64 takes four registers, and a bit has no room beside a whole value.");
+        found_->error(
+            error::device_register_twice, second_one->place,
+            second_one->name + " and " + first->name + " write the same register of " +
+                config_->devices[first->link.device].name + ", " + std::to_string(std::max(a.address, b.address)) + ".",
+            "give each a place of its own; a real64 takes four registers, and a bit has no room beside a whole value.");
       }
     }
   }

@@ -2,17 +2,70 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include "runtime/config/format_reader.hpp"
+#include "runtime/config/line_reader.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::runtime {
+namespace {
+
+void read_milliseconds(TomlReader& table, std::string_view key, std::chrono::milliseconds& into) {
+  std::int64_t time = std::chrono::nanoseconds(into).count();
+  table.read_duration(key, time);
+  into = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
+}
+
+}  // namespace
 
 void ModbusReader::read(const toml::table* modbus, bool over_tls) {
   if (modbus != nullptr) {
     read_server({*file_, "[modbus]", *modbus, run_table("modbus").keys, *found_}, over_tls);
   }
+}
+
+void ModbusReader::read_line_of(const toml::table* rtu) {
+  const bool is_off = config_->modbus && config_->modbus->listen.empty();
+  if (rtu == nullptr) {
+    if (is_off) {
+      found_->error(error::wrong_run_value, config_->modbus->place,
+                    "The server listens on no address and no serial line.",
+                    "describe the line under [modbus_rtu], or write an address as in listen = \"127.0.0.1\".");
+    }
+    return;
+  }
+  TomlReader table(*file_, "[modbus_rtu]", *rtu, run_table("modbus_rtu").keys, *found_);
+  modbus::RtuOptions options;
+  options.line = read_line(table, *found_);
+  table.read_whole("unit", options.unit);
+  std::int64_t gap = 0;
+  table.read_duration("longest_gap", gap);
+  options.longest_gap = std::chrono::nanoseconds(gap);
+  table.read("read_only", options.read_only);
+  if (!table.has("serial")) {
+    found_->error(error::wrong_run_value, table.place(), "[modbus_rtu] needs the key serial.",
+                  "write it as in serial = \"/dev/ttyUSB0\", or remove the table.");
+  }
+  const bool is_device = std::ranges::any_of(config_->devices, [&](const modbus::DeviceOptions& device) {
+    const auto* const line = std::get_if<modbus::SerialLink>(&device.link);
+    return line != nullptr && line->path == options.line.path;
+  });
+  if (is_device) {
+    found_->error(
+        error::wrong_run_value, table.place("serial"),
+        options.line.path + " is the line of a device, whose master the task is; it cannot be a station there.",
+        "name another line, or remove the table.");
+  }
+  if (!config_->modbus) {
+    found_->error(error::wrong_run_value, table.place(), "[modbus_rtu] has no map, for there is no table [modbus].",
+                  "add [modbus]; with listen = \"off\" it serves the serial line alone.");
+    return;
+  }
+  config_->modbus->rtu = std::move(options);
 }
 
 void ModbusReader::read_points(const toml::table* addresses, const toml::table* registers) {
@@ -28,12 +81,28 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   ModbusConfig modbus;
   modbus.place = table.place();
   table.read("listen", modbus.listen);
+  if (modbus.listen == "off") {
+    modbus.listen.clear();
+    if (over_tls) {
+      found_->error(error::wrong_run_value, table.place("listen"), "[tls] has no connections to guard.",
+                    "remove [tls], or write an address for listen.");
+    }
+    for (const std::string_view key : {"port", "allow", "connections", "connections_per_address", "idle", "evict"}) {
+      if (table.has(key)) {
+        found_->error(error::wrong_run_value, table.place(key),
+                      std::string(key) + " is of a server that listens, and this one does not.",
+                      "remove the key, or write an address for listen.");
+      }
+    }
+  }
   modbus.port = over_tls ? 802 : modbus.port;
   table.read_whole("port", modbus.port);
   table.read("allow", modbus.allow);
   table.read_whole("connections", modbus.connections);
   modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
   table.read_whole("connections_per_address", modbus.connections_per_address);
+  read_milliseconds(table, "idle", modbus.idle);
+  read_milliseconds(table, "evict", modbus.evict);
   table.read("read_only", modbus.read_only);
   std::size_t order = 0;
   table.read_choice("word_order", order);
@@ -46,7 +115,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   modbus.expose_place = table.place("expose");
   if (table.has("expose") && modbus.expose.empty()) {
     found_->error(error::wrong_run_value, table.place("expose"), "expose names no point, and a server has to have one.",
-                 "name points as in expose = [\"U\", \"task.*\"], or leave the key out.");
+                  "name points as in expose = [\"U\", \"task.*\"], or leave the key out.");
   }
   table.read("discovery", modbus.has_discovery);
   read_heartbeat(table, modbus);
@@ -62,10 +131,10 @@ void ModbusReader::read_addresses(const std::string& prefix, const toml::table& 
       read_addresses(name + ".", *below);
     } else if (!node.is_string()) {
       found_->error(error::wrong_run_value, place, name + " must be an address, a text.",
-                   "write it as in " + name + " = \"%QW5\".");
+                    "write it as in " + name + " = \"%QW5\".");
     } else if (!config_->modbus) {
       found_->error(error::wrong_run_value, place, name + " has an address, and there is no server.",
-                   "add the table [modbus], or remove [addresses].");
+                    "add the table [modbus], or remove [addresses].");
     } else {
       config_->modbus->registers.push_back({.name = name, .address = node.as_string()->get(), .place = place});
     }
@@ -77,7 +146,8 @@ void ModbusReader::read_registers(const std::string& prefix, const toml::table& 
   for (const auto& [key, node] : table) {
     const auto* const own = node.as_table();
     if (own == nullptr) {
-      found_->error(error::wrong_run_value, place_of(*file_, node.source()), std::string(key.str()) + " must be a table.",
+      found_->error(error::wrong_run_value, place_of(*file_, node.source()),
+                    std::string(key.str()) + " must be a table.",
                     "write it as [registers." + prefix + std::string(key.str()) + "], and its keys below.");
       continue;
     }
@@ -96,10 +166,10 @@ void ModbusReader::read_register(const std::string& name, TomlReader table) {
   given.format = read_format(table);
   if (!config_->modbus) {
     found_->error(error::wrong_run_value, table.place(), name + " has a place on the server, and there is no server.",
-                 "add the table [modbus], or remove [registers].");
+                  "add the table [modbus], or remove [registers].");
   } else if (given.address.empty() && !given.format) {
     found_->error(error::wrong_run_value, table.place(), table.name() + " says nothing.",
-                 "write an address or a format, as in type = \"int16\", or remove the table.");
+                  "write an address or a format, as in type = \"int16\", or remove the table.");
   } else {
     config_->modbus->registers.push_back(std::move(given));
   }
@@ -109,17 +179,15 @@ void ModbusReader::read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
   std::size_t mode = 0;
   table.read_choice("heartbeat", mode);
   modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
-  std::int64_t time = std::chrono::nanoseconds(modbus.heartbeat.time).count();
-  table.read_duration("heartbeat_time", time);
-  modbus.heartbeat.time = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
+  read_milliseconds(table, "heartbeat_time", modbus.heartbeat.time);
   std::size_t after = 0;
   table.read_choice("after_loss", after);
   config_->task.reset_after_lost_client = after == 1;
   table.read("own_writes", modbus.heartbeat.own_writes);
   if (modbus.read_only && (modbus.heartbeat.mode == modbus::HeartbeatMode::write_telegram || after == 1)) {
     found_->error(error::wrong_run_value, table.place(after == 1 ? "after_loss" : "heartbeat"),
-                 "Writes of a client are waited for, and read_only refuses them.",
-                 "write heartbeat = \"any\" and after_loss = \"resume\", or read_only = false.");
+                  "Writes of a client are waited for, and read_only refuses them.",
+                  "write heartbeat = \"any\" and after_loss = \"resume\", or read_only = false.");
   }
 }
 

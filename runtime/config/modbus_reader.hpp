@@ -15,6 +15,8 @@ class ModbusReader {
 
   /// The table [modbus]; null where there is none.
   void read(const toml::table* modbus, bool over_tls);
+  /// The table [modbus_rtu], after [modbus].
+  void read_line_of(const toml::table* rtu);
   /// The tables [addresses] and [registers], after [modbus].
   void read_points(const toml::table* addresses, const toml::table* registers);
 

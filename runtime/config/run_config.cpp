@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "runtime/config/device_field.hpp"
 #include "runtime/config/device_reader.hpp"
 #include "runtime/config/history_reading.hpp"
 #include "runtime/config/modbus_reader.hpp"
@@ -70,6 +71,7 @@ class Reader {
     each_below("outputs", [&](const toml::key& key, const toml::table& table) { read_output(key, table); });
     each_below("inputs", [&](const toml::key& key, const toml::table& table) { read_input(key, table); });
     devices_.finish();
+    config_.task.field_points = device_points(config_);
     if (const auto* const table = table_at(root_, "retain")) {
       read_retain({file_, "[retain]", *table, run_table("retain").keys, found_});
     }
@@ -77,13 +79,14 @@ class Reader {
       read_trace({file_, "[trace]", *table, run_table("trace").keys, found_});
     }
     if (const auto* const table = table_at(root_, "history")) {
-      config_.history =
-          HistoryReading(shape_, found_).read({file_, "[history]", *table, run_table("history").keys, found_});
+      config_.history = HistoryReading(shape_, config_.task.field_points, found_)
+                            .read({file_, "[history]", *table, run_table("history").keys, found_});
     }
     MqttReader(file_, shape_, config_, found_).read(table_at(root_, "mqtt"), table_at(root_, "dead_bands"));
     ModbusReader modbus(file_, config_, found_);
     modbus.read(table_at(root_, "modbus"), root_.contains("tls"));
     TlsReader(file_, config_, found_).read(table_at(root_, "tls"), table_at(root_, "roles"));
+    modbus.read_line_of(table_at(root_, "modbus_rtu"));
     modbus.read_points(table_at(root_, "addresses"), table_at(root_, "registers"));
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {

@@ -2,6 +2,7 @@
 // lists them. Every key but the safe values may be left out.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/heartbeat.hpp"
+#include "runtime/modbus/server.hpp"
 #include "runtime/modbus/tls_context.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
@@ -91,11 +93,14 @@ struct MqttConfig {
 };
 
 struct ModbusConfig {
-  std::string listen = "127.0.0.1";
+  std::string listen = "127.0.0.1";  ///< empty: a serial line alone
   std::uint16_t port = 1502;
   std::vector<std::string> allow{};
   std::size_t connections = 32;
   std::size_t connections_per_address = 8;
+  std::chrono::milliseconds idle = modbus::ConnectionLimits{}.idle;
+  std::chrono::milliseconds evict = modbus::ServerOptions{}.evict;
+  std::optional<modbus::RtuOptions> rtu{};
   bool read_only = false;
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;
@@ -104,7 +109,7 @@ struct ModbusConfig {
   Place expose_place{};
   bool has_discovery = true;
   std::vector<modbus::GivenRegister> registers{};  ///< of [addresses] and [registers]
-  std::string first_addresses{};                  ///< the text that counts where the lock file is not there yet
+  std::string first_addresses{};                   ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
   std::optional<modbus::TlsOptions> tls{};
   Place place{};

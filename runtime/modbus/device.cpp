@@ -89,7 +89,7 @@ class Device::Worker {
         order_(blocks_.size()),
         failed_(blocks_.size()),
         cells_(options.values.size()),
-        link_(options.link, options.unit, options.response) {
+        link_(work_.link ? work_.link : std::make_shared<ClientLink>(options.link, options.response)) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     if (work_.own_thread) {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -101,8 +101,8 @@ class Device::Worker {
   Worker& operator=(Worker&&) = delete;
   ~Worker() {
     thread_.request_stop();
-    if (std::ranges::none_of(blocks_, &Block::written)) {
-      link_.interrupt();
+    if (std::ranges::none_of(blocks_, &Block::written) && work_.link == nullptr) {
+      link_->interrupt();
     }
   }
 
@@ -131,9 +131,19 @@ class Device::Worker {
     return longest.count() > 0 ? longest : std::max<std::chrono::nanoseconds>(10 * options_.period, options_.response);
   }
 
-  [[nodiscard]] DeviceStatus status() const {
-    const std::scoped_lock lock(mutex_);
-    return status_;
+  [[nodiscard]] DeviceStatus status() const noexcept {
+    const auto count_of = [&](Exchange outcome) {
+      return counts_[static_cast<std::size_t>(outcome)].load(std::memory_order_relaxed);
+    };
+    return {.state = state_.load(std::memory_order_relaxed),
+            .connections = connections_.load(std::memory_order_relaxed),
+            .answers = count_of(Exchange::answered),
+            .exceptions = count_of(Exchange::exception),
+            .no_link = count_of(Exchange::no_link),
+            .timeouts = count_of(Exchange::timeout),
+            .closed = count_of(Exchange::closed),
+            .wrong_answers = count_of(Exchange::wrong_answer),
+            .bad_checksums = count_of(Exchange::bad_checksum)};
   }
 
   [[nodiscard]] std::uint64_t not_taken() const noexcept { return not_taken_.load(std::memory_order_relaxed); }
@@ -145,7 +155,7 @@ class Device::Worker {
   }
 
   bool round() {
-    if ((!link_.is_open() && !connect()) || !serve_all({})) {
+    if ((!link_->is_open() && !connect()) || !serve_all({})) {
       lose();
       return false;
     }
@@ -178,7 +188,7 @@ class Device::Worker {
     auto wait = options_.first_wait;
     while (!stop.stop_requested()) {
       const auto begin = Clock::now();
-      if (!link_.is_open() && !connect()) {
+      if (!link_->is_open() && !connect()) {
         wait = pause(stop, wait);
         continue;
       }
@@ -195,7 +205,7 @@ class Device::Worker {
     attempt_ = Attempt::failed_last;
     put_in_order();
     for (const std::size_t i : order_) {
-      if (blocks_[i].written && link_.is_open()) {
+      if (blocks_[i].written && link_->is_open()) {
         (void)serve(blocks_[i]);
       }
     }
@@ -235,20 +245,19 @@ class Device::Worker {
   }
 
   bool connect() {
-    set_state(LinkState::connecting);
-    if (!link_.open()) {
+    state_.store(LinkState::connecting, std::memory_order_relaxed);
+    if (!link_->open()) {
       count(Exchange::no_link);
       return false;
     }
-    const std::scoped_lock lock(mutex_);
-    status_.state = LinkState::running;
-    ++status_.connections;
+    state_.store(LinkState::running, std::memory_order_relaxed);
+    connections_.fetch_add(1, std::memory_order_relaxed);
     recovers_ = true;
     return true;
   }
 
   void lose() {
-    set_state(LinkState::waiting);
+    state_.store(LinkState::waiting, std::memory_order_relaxed);
     for (Cell& cell : cells_) {
       cell.quality = cell.quality == Quality::never ? Quality::never : Quality::lost;
       tell(cell);
@@ -267,33 +276,8 @@ class Device::Worker {
     woken_.wait_until(lock, stop, until, [] { return false; });
   }
 
-  void set_state(LinkState state) {
-    const std::scoped_lock lock(mutex_);
-    status_.state = state;
-  }
-
   void count(Exchange outcome) {
-    const std::scoped_lock lock(mutex_);
-    switch (outcome) {
-      case Exchange::answered:
-        ++status_.answers;
-        break;
-      case Exchange::exception:
-        ++status_.exceptions;
-        break;
-      case Exchange::no_link:
-        ++status_.no_link;
-        break;
-      case Exchange::timeout:
-        ++status_.timeouts;
-        break;
-      case Exchange::closed:
-        ++status_.closed;
-        break;
-      case Exchange::wrong_answer:
-        ++status_.wrong_answers;
-        break;
-    }
+    counts_.at(static_cast<std::size_t>(outcome)).fetch_add(1, std::memory_order_relaxed);
   }
 
   Exchange serve(const Block& block) {
@@ -302,7 +286,7 @@ class Device::Worker {
       return Exchange::answered;  // not all of its values have been given yet, or another writes now
     }
     std::vector<std::uint8_t> answer;
-    const Exchange outcome = link_.exchange(request, answer);
+    const Exchange outcome = link_->exchange(options_.unit, request, answer);
     count(outcome);
     answers_ += is_sound(outcome) ? 1 : 0;
     for (const std::size_t i : block.values) {
@@ -395,14 +379,37 @@ class Device::Worker {
   std::uint64_t answers_ = 0;          ///< exceptions among them
   bool recovers_ = true;               ///< no round of this link went well yet
   Attempt attempt_ = Attempt::failed_last;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;  ///< of the sleep between two rounds
   std::condition_variable_any woken_;
   std::vector<Cell> cells_;
-  DeviceStatus status_;
+  std::atomic<LinkState> state_{LinkState::connecting};
+  std::atomic<std::uint64_t> connections_{0};
+  std::array<std::atomic<std::uint64_t>, exchange_outcomes> counts_{};
   std::atomic<std::uint64_t> not_taken_{0};
-  ClientLink link_;
+  const std::shared_ptr<ClientLink> link_;
   std::jthread thread_;
 };
+
+std::vector<std::shared_ptr<ClientLink>> shared_links(std::span<const DeviceOptions> devices) {
+  std::vector<std::shared_ptr<ClientLink>> links(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (!devices[i].shares_connection || links[i] != nullptr) {
+      continue;
+    }
+    const auto shares = [&](const DeviceOptions& other) {
+      return other.shares_connection && other.link == devices[i].link;
+    };
+    auto response = devices[i].response;
+    for (const DeviceOptions& other : devices) {
+      response = shares(other) ? std::max(response, other.response) : response;
+    }
+    const auto link = std::make_shared<ClientLink>(devices[i].link, response);
+    for (std::size_t k = i; k < devices.size(); ++k) {
+      links[k] = shares(devices[k]) ? link : links[k];
+    }
+  }
+  return links;
+}
 
 Device::Device(const DeviceOptions& options, DeviceWork work)
     : worker_(std::make_unique<Worker>(options, std::move(work))) {}
@@ -426,7 +433,7 @@ bool Device::has_taken(std::size_t value, double number) const {
 bool Device::round() {
   return worker_->round();
 }
-DeviceStatus Device::status() const {
+DeviceStatus Device::status() const noexcept {
   return worker_->status();
 }
 

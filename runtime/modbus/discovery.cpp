@@ -75,8 +75,7 @@ class WordReader {
 };
 
 bool is_plain(const RegisterMap& map, const MapEntry& entry) {
-  return !entry.at.is_bit() &&
-         entry.format == PointFormat{.type = map.point_of(entry).type, .order = map.order()};
+  return !entry.at.is_bit() && entry.format == PointFormat{.type = map.point_of(entry).type, .order = map.order()};
 }
 
 std::uint16_t number_of(RegisterType type) {
@@ -176,12 +175,9 @@ std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
 
 std::vector<std::uint16_t> make_entrance(const RegisterMap& map, std::size_t chain_size) {
   std::vector<std::uint16_t> words = head_of(map, 0);
-  const std::array<std::uint16_t, 6> rest{files_record,
-                                          2,
-                                          static_cast<std::uint16_t>(chain_size >> 16U),
-                                          static_cast<std::uint16_t>(chain_size & 0xFFFFU),
-                                          end_of_chain,
-                                          0};
+  const std::array<std::uint16_t, 6> rest{
+      files_record, 2, static_cast<std::uint16_t>(chain_size >> 16U), static_cast<std::uint16_t>(chain_size & 0xFFFFU),
+      end_of_chain, 0};
   words.insert(words.end(), rest.begin(), rest.end());
   return words;
 }
@@ -216,8 +212,7 @@ std::optional<DiscoveredMap> read_chain(std::span<const std::uint16_t> chain) {
     map.in_files = high << 16U | reader.word();
     record = reader.word();
   }
-  const bool ends =
-      map.points.size() == count && record == end_of_chain && reader.word() == 0 && !reader.failed();
+  const bool ends = map.points.size() == count && record == end_of_chain && reader.word() == 0 && !reader.failed();
   return ends ? std::optional(std::move(map)) : std::nullopt;
 }
 

@@ -15,8 +15,8 @@
 // and at the end 0xFFFF, 0.
 // Type and kind are the numbers of PointType and PointKind; access is 0x8000 where the point may be written.
 //
-// A point that lies in a format of its own has 2 instead of the first 1, a type that may also be 9 or 10, decimal digits
-// of 16 and of 32 bits, and behind its unit:
+// A point that lies in a format of its own has 2 instead of the first 1, a type that may also be 9 or 10, decimal
+// digits of 16 and of 32 bits, and behind its unit:
 //   scale, offset                           4 registers each, real64: value = scale·raw + offset
 //   word order, bit of a register or 0xFFFF 2 registers
 //

@@ -59,10 +59,10 @@ std::string address_of(const Stretch& at) {
 
 std::string discovery_text(const RegisterMap& map) {
   return map.chain().empty() ? std::string()
-         : map.is_in_files() ? fmt::format("The same table can be read over Modbus by function 20, as holding register {} says.\n",
-                                           chain_address)
-                             : fmt::format("The same table can be read over Modbus from holding register {}.\n",
-                                           chain_address);
+         : map.is_in_files()
+             ? fmt::format("The same table can be read over Modbus by function 20, as holding register {} says.\n",
+                           chain_address)
+             : fmt::format("The same table can be read over Modbus from holding register {}.\n", chain_address);
 }
 
 std::string markdown_cell(const std::string& text) {
@@ -100,8 +100,7 @@ std::string reference_number(const Stretch& at) {
 }
 
 std::string as_csv(const RegisterMap& map) {
-  std::string text =
-      "area,address,registers,type,name,unit,low,high,access,kind,meaning,bit,scale,offset,word_order\n";
+  std::string text = "area,address,registers,type,name,unit,low,high,access,kind,meaning,bit,scale,offset,word_order\n";
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name_of(entry.at.area), entry.at.address,
@@ -134,11 +133,12 @@ std::string as_json(const RegisterMap& map) {
                     {"kind", kind_name(point.kind)},
                     {"meaning", point.meaning}});
   }
-  const nlohmann::ordered_json root{{"title", map.title()},
-                                    {"hash", map.hash()},
-                                    {"word_order", name_of(map.order())},
-                                    {"discovery", map.chain().empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(chain_address)},
-                                    {"points", list}};
+  const nlohmann::ordered_json root{
+      {"title", map.title()},
+      {"hash", map.hash()},
+      {"word_order", name_of(map.order())},
+      {"discovery", map.chain().empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(chain_address)},
+      {"points", list}};
   return root.dump(2) + "\n";
 }
 
@@ -153,9 +153,8 @@ std::string as_markdown(const RegisterMap& map) {
     const auto bound = [](double value) { return std::isfinite(value) ? number_text(value) : std::string(); };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(entry.at.area),
                         address_of(entry.at), reference_number(entry.at), format_text(entry, map.order()),
-                        markdown_cell(point.name),
-                        markdown_cell(point.unit), bound(point.low), bound(point.high), access_of(point),
-                        markdown_cell(point.meaning));
+                        markdown_cell(point.name), markdown_cell(point.unit), bound(point.low), bound(point.high),
+                        access_of(point), markdown_cell(point.meaning));
   }
   return text;
 }

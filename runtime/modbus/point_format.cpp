@@ -63,8 +63,8 @@ std::string flaw_of(const PointFormat& format) {
   }
   const auto [low, high] = raw_limits(format);
   const double reach = std::max(std::abs(low), std::abs(high));
-  if (!is_real(format.type) && (!std::isfinite(format.scale * reach) ||
-                                std::abs(format.offset / format.scale) > most_steps_of_offset)) {
+  if (!is_real(format.type) &&
+      (!std::isfinite(format.scale * reach) || std::abs(format.offset / format.scale) > most_steps_of_offset)) {
     return fmt::format("has an offset of {} with steps of {}, between which a double cannot tell them apart",
                        number_text(format.offset), number_text(format.scale));
   }

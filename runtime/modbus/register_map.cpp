@@ -90,10 +90,11 @@ class Placer {
         is_known = is_known || is_meant;
       }
       if (!is_known) {
-        diagnostics_.error(error::unknown_exposed_point, request_.expose_place,
-                           fmt::format("expose names {}, which is no point.", wanted),
-                           "name pins, parameters or status values as hysteron map lists them without expose; a star at "
-                           "the end stands for any rest");
+        diagnostics_.error(
+            error::unknown_exposed_point, request_.expose_place,
+            fmt::format("expose names {}, which is no point.", wanted),
+            "name pins, parameters or status values as hysteron map lists them without expose; a star at "
+            "the end stands for any rest");
       }
     }
   }
@@ -134,8 +135,8 @@ class Placer {
     const std::uint32_t holding_end = size_of(Area::holding_register);
     for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_)) {
       const auto point = index_.find(line.name);
-      const bool stays = point != index_.end() && is_exposed_[point->second] && formats_[point->second].type == line.type &&
-                         fits(point->second, line.at);
+      const bool stays = point != index_.end() && is_exposed_[point->second] &&
+                         formats_[point->second].type == line.type && fits(point->second, line.at);
       if (stays && placed_[point->second]) {
         continue;  // an address given by hand replaces the one in the lock file
       }
@@ -194,9 +195,10 @@ class Placer {
       flaw = "lies in one register, which has no word order";
     }
     if (!flaw.empty()) {
-      diagnostics_.error(error::unfit_format, given.place, fmt::format("{} {}.", given.name, flaw),
-                         "choose a type, a scale and an offset in which each value of the point is near a step; leave out "
-                         "what does not apply");
+      diagnostics_.error(
+          error::unfit_format, given.place, fmt::format("{} {}.", given.name, flaw),
+          "choose a type, a scale and an offset in which each value of the point is near a step; leave out "
+          "what does not apply");
       return;
     }
     formats_[point] = format;
@@ -208,7 +210,8 @@ class Placer {
     if (holder != nullptr && holder->place.file == request_.lock_file) {
       refuse_overlap(line.name, line.at, line.place, *holder);
     } else if (holder == nullptr) {
-      occupancy_.take(line.at, {line.name + (index_.contains(line.name) ? " (which was there)" : " (which is gone)"), line.place});
+      occupancy_.take(
+          line.at, {line.name + (index_.contains(line.name) ? " (which was there)" : " (which is gone)"), line.place});
       retired_.push_back({line.at, line.type, line.name});
     }
   }
@@ -248,12 +251,12 @@ class Placer {
     Stretch at = parsed->at;
     const auto width = static_cast<std::uint32_t>(registers_of(type));
     if (!fits(index, at) || (!parsed->any_width && at.count != width)) {
-      diagnostics_.error(
-          error::unfit_address, given.place,
-          fmt::format("{} is {}{} and does not fit {}.", point.name, point.writable ? "a writable " : "a ",
-                      name_of(type), given.address),
-          "booleans fit coil and discrete (%QX, %IX) and a bit of a register as holding 16.3, 16 bits %IW, %QW and %MW, "
-          "32 bits %MD, 64 bits %ML; what may be written fits coil and holding alone");
+      diagnostics_.error(error::unfit_address, given.place,
+                         fmt::format("{} is {}{} and does not fit {}.", point.name,
+                                     point.writable ? "a writable " : "a ", name_of(type), given.address),
+                         "booleans fit coil and discrete (%QX, %IX) and a bit of a register as holding 16.3, 16 bits "
+                         "%IW, %QW and %MW, "
+                         "32 bits %MD, 64 bits %ML; what may be written fits coil and holding alone");
       return std::nullopt;
     }
     at.count = width;

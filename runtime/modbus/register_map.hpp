@@ -4,8 +4,8 @@
 // values are holding or input registers, aligned to their width. A lock file keeps the addresses through edits of the
 // diagram: a point that stays keeps its address, and the address of a point that went is given to nobody else.
 // A map has a hash, by which a client knows that it speaks to the diagram that it was made for. A point lies in the
-// registers as its type, unless the user gives it a format (point_format.hpp) or an address of its own. A boolean may be
-// a bit of a register, and shares that with others.
+// registers as its type, unless the user gives it a format (point_format.hpp) or an address of its own. A boolean may
+// be a bit of a register, and shares that with others.
 #pragma once
 
 #include <array>
@@ -91,8 +91,8 @@ struct MapRequest {
   std::string lock_text{};  ///< empty where there is none yet
 };
 
-/// Where the discovery chain starts, among the holding registers; the address is SunSpec's. Points lie below where there
-/// is one.
+/// Where the discovery chain starts, among the holding registers; the address is SunSpec's. Points lie below where
+/// there is one.
 inline constexpr std::uint32_t chain_address = 40000;
 
 class RegisterMap {
@@ -111,8 +111,8 @@ class RegisterMap {
   [[nodiscard]] const Point& point_of(const MapEntry& entry) const { return points_[entry.point]; }
   /// SHA-256 of names, formats, units, limits, access, addresses and the word order.
   [[nodiscard]] const std::string& hash() const { return hash_; }
-  /// In which a client can read this map (discovery.hpp), by function 20, and from chain_address on where it fits there;
-  /// empty where there is no discovery.
+  /// In which a client can read this map (discovery.hpp), by function 20, and from chain_address on where it fits
+  /// there; empty where there is no discovery.
   [[nodiscard]] std::span<const std::uint16_t> chain() const { return chain_; }
   /// The registers from chain_address on.
   [[nodiscard]] std::span<const std::uint16_t> chain_registers() const { return is_in_files() ? entrance_ : chain_; }

@@ -4,7 +4,7 @@
 // answer is, and the checksum whether it is one.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,11 +33,12 @@ inline constexpr std::size_t longest_rtu_frame = 256;
 
 /// A frame of a unit and its PDU.
 [[nodiscard]] inline std::vector<std::uint8_t> rtu_frame(std::uint8_t unit, std::span<const std::uint8_t> pdu) {
-  std::vector<std::uint8_t> frame{unit};
-  frame.insert(frame.end(), pdu.begin(), pdu.end());
-  const std::uint16_t sum = rtu_checksum(frame);
-  frame.push_back(static_cast<std::uint8_t>(sum & 0xFFU));
-  frame.push_back(static_cast<std::uint8_t>(sum >> 8U));
+  std::vector<std::uint8_t> frame(1 + pdu.size() + 2);
+  frame[0] = unit;
+  std::copy(pdu.begin(), pdu.end(), frame.begin() + 1);
+  const std::uint16_t sum = rtu_checksum(std::span(frame).first(1 + pdu.size()));
+  frame[1 + pdu.size()] = static_cast<std::uint8_t>(sum & 0xFFU);
+  frame[2 + pdu.size()] = static_cast<std::uint8_t>(sum >> 8U);
   return frame;
 }
 

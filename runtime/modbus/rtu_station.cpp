@@ -7,7 +7,8 @@ namespace hysteron::runtime::modbus {
 namespace {
 
 Served sum(const Served& a, const Served& b) {
-  return {.requests = a.requests + b.requests, .exceptions = a.exceptions + b.exceptions, .writes = a.writes + b.writes};
+  return {
+      .requests = a.requests + b.requests, .exceptions = a.exceptions + b.exceptions, .writes = a.writes + b.writes};
 }
 
 }  // namespace
@@ -89,9 +90,7 @@ Served RtuStation::answer(std::span<const std::uint8_t> frame, Instant now, Resp
   forget_output();
   output_ = is_broadcast ? std::vector<std::uint8_t>() : rtu_frame(unit_, reply.pdu());
   answer_at_ = now + timing_.silence;
-  return {.requests = 1,
-          .exceptions = reply.exception == Exception::none ? 0U : 1U,
-          .writes = reply.wrote ? 1U : 0U};
+  return {.requests = 1, .exceptions = reply.exception == Exception::none ? 0U : 1U, .writes = reply.wrote ? 1U : 0U};
 }
 
 Served RtuStation::silent(Instant now, Responder& responder, const Caller& caller) {

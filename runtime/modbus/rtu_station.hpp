@@ -68,8 +68,8 @@ class RtuStation {
   RtuTiming timing_;
   bool has_echo_;
   std::vector<std::uint8_t> input_;
-  bool is_spoiled_ = false;     ///< the rest up to a silence is no frame
-  Instant last_byte_{};         ///< of what was received
+  bool is_spoiled_ = false;  ///< the rest up to a silence is no frame
+  Instant last_byte_{};      ///< of what was received
   std::vector<std::uint8_t> output_;
   std::size_t output_sent_ = 0;
   Instant answer_at_{};

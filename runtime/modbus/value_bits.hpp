@@ -32,17 +32,10 @@ struct RegisterType {
 };
 
 /// In the order in which a run file names them and the discovery numbers them.
-inline constexpr std::array<RegisterType, 11> register_types{PointType::boolean,
-                                                             PointType::int16,
-                                                             PointType::uint16,
-                                                             PointType::int32,
-                                                             PointType::uint32,
-                                                             PointType::int64,
-                                                             PointType::uint64,
-                                                             PointType::real32,
-                                                             PointType::real64,
-                                                             {PointType::uint16, true},
-                                                             {PointType::uint32, true}};
+inline constexpr std::array<RegisterType, 11> register_types{
+    PointType::boolean, PointType::int16,          PointType::uint16,        PointType::int32,
+    PointType::uint32,  PointType::int64,          PointType::uint64,        PointType::real32,
+    PointType::real64,  {PointType::uint16, true}, {PointType::uint32, true}};
 
 /// How many registers hold a value of the type; a boolean has one where it stands among registers.
 constexpr std::size_t registers_of(RegisterType type) {

@@ -49,6 +49,7 @@ struct TaskStatus {
   KeptCount mqtt{};
   std::uint8_t tls_fault = 0;
   double heartbeat = 0.0;
+  std::span<const double> field{};  ///< as the points of the field
 };
 
 /// The names of what a task says of itself: task.state, …
@@ -56,9 +57,10 @@ struct TaskStatus {
 
 class TaskDoor final : public PointDoor {
  public:
-  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output. The program
-  /// must outlive the door.
-  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety);
+  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
+  /// `field_points`: what the field says of itself. The program must outlive the door.
+  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
+           const std::vector<Point>& field_points = {});
 
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;

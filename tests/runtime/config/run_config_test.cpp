@@ -8,39 +8,11 @@
 #include <cmath>
 
 #include "support/errors.hpp"
+#include "tests/runtime/config/run_file.hpp"
 #include "tests/support/error_page.hpp"
 
 namespace hysteron::runtime {
 namespace {
-
-ProgramShape plant() {
-  ProgramShape shape;
-  shape.name = "PLANT";
-  shape.period = 1'000'000;
-  shape.inputs = {{.name = "X"}, {.name = "Z"}};
-  shape.outputs = {{.name = "Y", .low = -10.0, .high = 10.0}};
-  return shape;
-}
-
-ProgramShape plant_of_two() {
-  ProgramShape shape = plant();
-  shape.outputs.push_back({.name = "W"});
-  return shape;
-}
-
-/// Number, line and column of every error.
-std::string errors_of(std::string_view text, const ProgramShape& shape = plant()) {
-  std::string list;
-  try {
-    (void)parse_run_config("RUN.toml", text, shape);
-  } catch (const InputError& refused) {
-    for (const Diagnostic& one : refused.diagnostics().all()) {
-      list += std::to_string(one.number) + "@" + std::to_string(one.place.line) + ":" +
-              std::to_string(one.place.column) + " ";
-    }
-  }
-  return list;
-}
 
 TEST(RunConfig, SaysEverything) {
   const auto config = parse_run_config("RUN.toml", R"(

@@ -32,22 +32,25 @@ std::vector<Point> plant_points() {
 }
 
 GivenRegister given(std::string name, std::string address, GivenFormat format) {
-  return {.name = std::move(name), .address = std::move(address), .format = format, .place = {.file = "RUN.toml", .line = 3}};
+  return {.name = std::move(name),
+          .address = std::move(address),
+          .format = format,
+          .place = {.file = "RUN.toml", .line = 3}};
 }
 
 MapRequest plant_request() {
-  return {.title = "PLANT",
-          .given = {given("TEMPERATURE", "input 100", {.type = PointType::int16, .scale = 0.1, .offset = -50.0}),
-                    given("LEVEL", "input 102", {.type = RegisterType(PointType::uint32, true), .order = WordOrder::cdab}),
-                    given("SET", "holding 7", {.type = PointType::uint16, .scale = 0.1}),
-                    given("COUNT", "holding 8", {.type = PointType::real32}),
-                    given("READY", "input 104.9", {}),
-                    given("ENABLE", "holding 10.0", {}),
-                    given("RESET", "holding 10.7", {})}};
+  return {
+      .title = "PLANT",
+      .given = {given("TEMPERATURE", "input 100", {.type = PointType::int16, .scale = 0.1, .offset = -50.0}),
+                given("LEVEL", "input 102", {.type = RegisterType(PointType::uint32, true), .order = WordOrder::cdab}),
+                given("SET", "holding 7", {.type = PointType::uint16, .scale = 0.1}),
+                given("COUNT", "holding 8", {.type = PointType::real32}), given("READY", "input 104.9", {}),
+                given("ENABLE", "holding 10.0", {}), given("RESET", "holding 10.7", {})}};
 }
 
 struct PlantBench {
-  PlantBench() : door(plant_points()), map(make_register_map(door.points(), plant_request())), responder(map, door, {}) {}
+  PlantBench()
+      : door(plant_points()), map(make_register_map(door.points(), plant_request())), responder(map, door, {}) {}
   Octets ask(const Octets& pdu) {
     const Reply reply = responder.answer(pdu, {});
     return {reply.pdu().begin(), reply.pdu().end()};
@@ -134,16 +137,19 @@ TEST(FormattedPoints, OverlapsAndUnfitFormatsAreRefusedByName) {
             "860 SET is a real64, which no boolean holds.\n");
   EXPECT_EQ(refusal(with({given("SET", "", {.type = PointType::int16, .order = WordOrder::cdab})})),
             "860 SET lies in one register, which has no word order.\n");
-  EXPECT_EQ(refusal(with({given("SET", "holding 9.3", {})})), "825 SET is a writable real64 and does not fit holding 9.3.\n");
+  EXPECT_EQ(refusal(with({given("SET", "holding 9.3", {})})),
+            "825 SET is a writable real64 and does not fit holding 9.3.\n");
   EXPECT_EQ(refusal(with({given("READY", "coil 3.1", {})})), "824 coil 3.1 is no address.\n");
   EXPECT_EQ(refusal(with({given("NONE", "", {.scale = 2.0})})), "826 A format is given to NONE, which is no point.\n");
-  EXPECT_EQ(refusal(with({given("SET", "%MD3", {.type = PointType::real32})})), "") << "the width is that of the format";
+  EXPECT_EQ(refusal(with({given("SET", "%MD3", {.type = PointType::real32})})), "")
+      << "the width is that of the format";
 }
 
 TEST(FormattedPoints, ALockFileAndTheDiscoveryTellThem) {
   const PlantBench bench;
   const std::string lock = lock_text(bench.map);
-  EXPECT_NE(lock.find("input 100 int16 TEMPERATURE\ninput 102 bcd32 LEVEL\ninput 104.9 boolean READY\n"), std::string::npos)
+  EXPECT_NE(lock.find("input 100 int16 TEMPERATURE\ninput 102 bcd32 LEVEL\ninput 104.9 boolean READY\n"),
+            std::string::npos)
       << lock;
   MapRequest again = plant_request();
   for (GivenRegister& one : again.given) {
@@ -180,8 +186,8 @@ TEST(FormattedPoints, OnlyWhatIsExposedHasAnAddressAndItComesBackToIt) {
   }
   EXPECT_EQ(names, "RESET READY SET ");
   EXPECT_EQ(read_chain(few.chain())->points.size(), 3U);
-  const RegisterMap back = make_register_map(
-      plant_points(), {.title = "T", .lock_file = "t.lock", .lock_text = lock_text(few)});
+  const RegisterMap back =
+      make_register_map(plant_points(), {.title = "T", .lock_file = "t.lock", .lock_text = lock_text(few)});
   EXPECT_EQ(lock_text(back), lock) << "nobody else had their addresses meanwhile";
   EXPECT_EQ(refusal({.title = "T", .expose = {"SET", "X*", "NONE"}}),
             "861 expose names X*, which is no point.\n861 expose names NONE, which is no point.\n");
@@ -205,8 +211,15 @@ std::vector<std::uint16_t> read_by_files(Responder& responder, std::uint32_t siz
     const std::size_t record = at % records_of_file;
     const std::size_t count = std::min({std::size_t{120}, size - at, records_of_file - record});
     const auto file = static_cast<std::uint8_t>(1 + at / records_of_file);
-    const Octets request{20, 7, 6, 0, file, static_cast<std::uint8_t>(record >> 8U),
-                         static_cast<std::uint8_t>(record & 255U), 0, static_cast<std::uint8_t>(count)};
+    const Octets request{20,
+                         7,
+                         6,
+                         0,
+                         file,
+                         static_cast<std::uint8_t>(record >> 8U),
+                         static_cast<std::uint8_t>(record & 255U),
+                         0,
+                         static_cast<std::uint8_t>(count)};
     const Reply reply = responder.answer(request, {});
     if (reply.exception != Exception::none || reply.size != 4 + 2 * count) {
       return {};
@@ -332,11 +345,12 @@ TEST(FormattedDevice, ALimitIsAsTheTypeOnTheDeviceCanTellItAndAWholeInputTakesNo
 TEST(FormattedDevice, ValuesAreWrittenAsTheDeviceHasThem) {
   RegisterDevice registers;
   const PointFormat boolean{.type = PointType::boolean};
-  Device device({.link = TcpLink{.port = registers.port()},
-                 .values = {value_at(8, {.type = PointType::int16, .scale = -0.5}, true),
-                            value_at(9, {.type = RegisterType(PointType::uint32, true), .order = WordOrder::cdab}, true),
-                            value_at(11, boolean, true, 3), value_at(11, boolean, true, 15)}},
-                {.own_thread = false});
+  Device device(
+      {.link = TcpLink{.port = registers.port()},
+       .values = {value_at(8, {.type = PointType::int16, .scale = -0.5}, true),
+                  value_at(9, {.type = RegisterType(PointType::uint32, true), .order = WordOrder::cdab}, true),
+                  value_at(11, boolean, true, 3), value_at(11, boolean, true, 15)}},
+      {.own_thread = false});
   for (const auto& [value, number] : {std::pair(std::size_t{0}, 50.2), {1, 12345678.0}, {2, 1.0}, {3, 1.0}}) {
     device.write(value, number);
   }

@@ -96,12 +96,13 @@ TEST(RegisterMapErrors, AnAreaThatIsFull) {
   }
 }
 
-TEST(RegisterMapErrors, MorePointsThanTheDiscoveryChainHolds) {
-  std::vector<Point> many(2000, {.type = PointType::int16});
+TEST(RegisterMapErrors, MorePointsThanAnAreaHolds) {
+  std::vector<Point> many(chain_address + 1, {.type = PointType::int16, .writable = true});
   for (std::size_t i = 0; i < many.size(); ++i) {
     many[i].name = "WORD" + std::to_string(i);
   }
   EXPECT_THROW((void)make_register_map(many, {.title = "T"}), InputError);
+  EXPECT_NO_THROW((void)make_register_map(many, {.title = "T", .has_discovery = false}));
 }
 
 }  // namespace

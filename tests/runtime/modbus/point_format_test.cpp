@@ -14,9 +14,9 @@
 namespace hysteron::runtime::modbus {
 namespace {
 
-constexpr std::array<RegisterType, 8> integers{
-    PointType::int16,  PointType::uint16, PointType::int32,          PointType::uint32,
-    PointType::int64, PointType::uint64, {PointType::uint16, true}, {PointType::uint32, true}};
+constexpr std::array<RegisterType, 8> integers{PointType::int16,          PointType::uint16,        PointType::int32,
+                                               PointType::uint32,         PointType::int64,         PointType::uint64,
+                                               {PointType::uint16, true}, {PointType::uint32, true}};
 
 std::vector<PointFormat> formats_of(RegisterType type) {
   std::vector<PointFormat> formats{{.type = type}};
@@ -39,14 +39,14 @@ bool comes_back(std::uint64_t bits, const PointFormat& format) {
 }
 
 TEST(PointFormat, EveryRawNumberOf16BitsComesBack) {
-  for (const RegisterType type : {RegisterType(PointType::int16), RegisterType(PointType::uint16),
-                                  RegisterType(PointType::uint16, true)}) {
+  for (const RegisterType type :
+       {RegisterType(PointType::int16), RegisterType(PointType::uint16), RegisterType(PointType::uint16, true)}) {
     for (const PointFormat& format : formats_of(type)) {
       std::size_t sound = 0;
       for (std::uint64_t bits = 0; bits <= 0xFFFF; ++bits) {
         sound += decoded(bits, format) ? 1 : 0;
-        ASSERT_TRUE(comes_back(bits, format)) << name_of(type) << ' ' << format.scale << ' ' << format.offset << ' '
-                                              << bits;
+        ASSERT_TRUE(comes_back(bits, format))
+            << name_of(type) << ' ' << format.scale << ' ' << format.offset << ' ' << bits;
       }
       EXPECT_EQ(sound, type.is_bcd ? 10'000U : 65'536U);
     }
@@ -159,14 +159,13 @@ TEST(PointFormat, ALimitIsAsTheFormatCanTellIt) {
 
 TEST(PointFormat, WhatWouldLoseRawNumbersIsRefused) {
   using Format = PointFormat;
-  for (const Format& wrong : {Format{.type = PointType::int16, .scale = 0.0},
-                              Format{.type = PointType::int16, .scale = std::nan("")},
-                              Format{.type = PointType::int16, .scale = 1e-310},
-                              Format{.type = PointType::int16, .scale = HUGE_VAL},
-                              Format{.type = PointType::int32, .scale = 1e300, .offset = -HUGE_VAL},
-                              Format{.type = PointType::uint64, .scale = 1e305},
-                              Format{.type = PointType::int16, .scale = 1e-9, .offset = 1e9},
-                              Format{.type = PointType::boolean, .scale = 2.0}}) {
+  for (const Format& wrong :
+       {Format{.type = PointType::int16, .scale = 0.0}, Format{.type = PointType::int16, .scale = std::nan("")},
+        Format{.type = PointType::int16, .scale = 1e-310}, Format{.type = PointType::int16, .scale = HUGE_VAL},
+        Format{.type = PointType::int32, .scale = 1e300, .offset = -HUGE_VAL},
+        Format{.type = PointType::uint64, .scale = 1e305},
+        Format{.type = PointType::int16, .scale = 1e-9, .offset = 1e9},
+        Format{.type = PointType::boolean, .scale = 2.0}}) {
     EXPECT_NE(flaw_of(wrong), "") << name_of(wrong.type) << ' ' << wrong.scale << ' ' << wrong.offset;
   }
   EXPECT_EQ(flaw_of({.type = PointType::int16, .scale = -0.01, .offset = 20.0}), "");

@@ -290,7 +290,9 @@ class Placer {
 
   void place_freely(std::size_t point, std::uint32_t width) {
     for (const Stretch& range : ranges_for(point, width)) {
-      for (std::uint32_t at = range.address; at + width <= range.address + range.count; at += width) {
+      // Nothing becomes free again: what was passed over for this width once is passed over.
+      std::uint32_t& at = begins_.try_emplace({range.area, range.address, width}, range.address).first->second;
+      for (; at + width <= range.address + range.count; at += width) {
         const Stretch here{range.area, at, width};
         if (occupancy_.holder_of(here) == nullptr) {
           occupancy_.take(here, {points_[point].name, {}});
@@ -311,6 +313,8 @@ class Placer {
   std::vector<PointFormat> formats_;
   std::vector<std::optional<Stretch>> placed_;
   std::vector<RetiredAddress> retired_;
+  /// Of a range by area, address and width of values: where to look for a free address.
+  std::map<std::tuple<Area, std::uint32_t, std::uint32_t>, std::uint32_t> begins_;
   Occupancy occupancy_;
   Diagnostics diagnostics_;
 };

@@ -352,6 +352,7 @@ class Server::Loop {
   void forget(Clients::iterator place, Counters::Count& why) {
     add(why);
     heartbeat_.gone(place->first);
+    std::erase(shaking_, place->first);
     clients_.erase(place);
     counters_.open.store(clients_.size(), std::memory_order_relaxed);
   }

@@ -216,9 +216,9 @@ TEST(Device, UnitsBehindAGatewayShareOneConnection) {
   const RegisterMap map = make_register_map(door.points(), {.title = "T"});
   const Server gateway(map, door, {.port = 0, .connections = 1});
   std::vector<DeviceOptions> options;
-  for (const std::uint8_t unit : {1, 2, 247, 255}) {
+  for (const int unit : {1, 2, 247, 255}) {
     options.push_back({.link = TcpLink{.port = gateway.port()},
-                       .unit = unit,
+                       .unit = static_cast<std::uint8_t>(unit),
                        .shares_connection = true,
                        .values = {{.at = {Area::holding_register, 18, 1}}},
                        .period = milliseconds(1),

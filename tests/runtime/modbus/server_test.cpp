@@ -107,9 +107,13 @@ TEST(Server, ConnectionsThatWereForgottenGiveWayToTheirOwner) {
     ASSERT_EQ(ask(*leaked.back(), test::read_one).size(), 11U);
   }
   std::unique_ptr<ClientSocket> again;
+  bool is_served = false;
   EXPECT_TRUE(test::soon([&] {
-    again = std::make_unique<ClientSocket>(bench.server.port());
-    return ask(*again, test::read_one).size() == 11U;
+    if (!is_served) {
+      again = std::make_unique<ClientSocket>(bench.server.port());
+      is_served = ask(*again, test::read_one).size() == 11U;
+    }
+    return is_served;
   })) << "not 60 s later";
   EXPECT_EQ(bench.server.status().evicted, 1U);
   EXPECT_TRUE(leaked.front()->sees_the_end()) << "who has been silent for longest";

@@ -187,6 +187,8 @@ constexpr std::array titles{
     ErrorTitle{error::online_change_not_now, "Online change that cannot be now"},
     ErrorTitle{error::unusable_change_socket, "Socket for online changes that cannot be made"},
     ErrorTitle{error::carried_parameters_unfit, "Carried parameters that do not go together in the new version"},
+    ErrorTitle{error::unfit_format, "Format that does not fit its point"},
+    ErrorTitle{error::unknown_exposed_point, "Exposed point that the diagram does not have"},
 };
 
 }  // namespace

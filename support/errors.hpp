@@ -195,6 +195,8 @@ inline constexpr int no_online_change = 852;
 inline constexpr int online_change_not_now = 853;
 inline constexpr int unusable_change_socket = 854;
 inline constexpr int carried_parameters_unfit = 855;
+inline constexpr int unfit_format = 860;
+inline constexpr int unknown_exposed_point = 861;
 }  // namespace error
 
 /// In the order of the numbers.

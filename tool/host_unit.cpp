@@ -94,7 +94,7 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   if (config.scheduling.lock_memory) {
     rights += "LimitMEMLOCK=infinity\n";
   }
-  if (config.modbus && config.modbus->port > 0 && config.modbus->port < 1024) {
+  if (config.modbus && !config.modbus->listen.empty() && config.modbus->port > 0 && config.modbus->port < 1024) {
     capabilities.emplace_back("CAP_NET_BIND_SERVICE");
   }
   rights += fmt::format("CapabilityBoundingSet={0}\nAmbientCapabilities={0}\n", fmt::join(capabilities, " "));
@@ -104,6 +104,9 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
     if (const auto* const serial = std::get_if<runtime::modbus::SerialLink>(&device.link)) {
       lines.insert(serial->path);
     }
+  }
+  if (config.modbus && config.modbus->rtu) {
+    lines.insert(config.modbus->rtu->line.path);
   }
   if (lines.empty()) {
     rights += "PrivateDevices=yes\n";

@@ -1,6 +1,10 @@
 #include "runtime/config/device_field.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <string>
+#include <tuple>
 #include <utility>
 
 namespace hysteron::runtime {
@@ -10,11 +14,45 @@ using modbus::Quality;
 using modbus::RemoteReading;
 using std::chrono::nanoseconds;
 
+struct DeviceCount {
+  const char* name;
+  const char* meaning;
+};
+
+/// In the order in which count() gives their values. The first is no count.
+constexpr std::array device_counts{
+    DeviceCount{"link", "0 connecting, 1 running, 2 waiting to connect again"},
+    DeviceCount{"connections", "links that were opened: the first, and one for each reconnect"},
+    DeviceCount{"unreachable", "attempts to open a link that failed"},
+    DeviceCount{"closed", "links that the device ended"},
+    DeviceCount{"answers", "requests that were answered"},
+    DeviceCount{"exceptions", "requests that the device refused"},
+    DeviceCount{"timeouts", "requests without a whole answer in time"},
+    DeviceCount{"wrong_answers", "answers that were not of their request"},
+    DeviceCount{"bad_checksums", "answers with a wrong checksum, on a serial line"},
+};
+
 double seconds(nanoseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
 }  // namespace
+
+std::vector<Point> device_points(const RunConfig& config) {
+  std::vector<Point> points;
+  for (const modbus::DeviceOptions& device : config.devices) {
+    for (const DeviceCount& count : device_counts) {
+      const bool counts = &count != device_counts.data();
+      points.push_back({.name = std::string("device.") + device.name + "." + count.name,
+                        .kind = PointKind::status,
+                        .type = counts ? PointType::uint64 : PointType::uint16,
+                        .unit = "1",
+                        .meaning = count.meaning,
+                        .counts = counts});
+    }
+  }
+  return points;
+}
 
 DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::function<bool()>& may_write)
     : inputs_(config.device_inputs),
@@ -23,10 +61,11 @@ DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::funct
       period_(config.task.loop.period),
       in_turn_(in_turn),
       written_(outputs_.size()) {
-  for (const modbus::DeviceOptions& options : config.devices) {
-    devices_.push_back(
-        std::make_unique<modbus::Device>(options, modbus::DeviceWork{.own_thread = !in_turn, .may_write = may_write}));
-    rounds_since_good_.emplace_back(options.values.size());
+  const auto links = modbus::shared_links(config.devices);
+  for (std::size_t i = 0; i < config.devices.size(); ++i) {
+    devices_.push_back(std::make_unique<modbus::Device>(
+        config.devices[i], modbus::DeviceWork{.own_thread = !in_turn, .may_write = may_write, .link = links[i]}));
+    rounds_since_good_.emplace_back(config.devices[i].values.size());
   }
 }
 
@@ -102,6 +141,24 @@ std::uint64_t DeviceField::not_taken() const noexcept {
   return count;
 }
 
+void DeviceField::count(std::span<double> into) const noexcept {
+  auto at = into.begin();
+  for (const auto& device : devices_) {
+    const modbus::DeviceStatus status = device->status();
+    const std::array counts{static_cast<std::uint64_t>(status.state),
+                            status.connections,
+                            status.no_link,
+                            status.closed,
+                            status.answers,
+                            status.exceptions,
+                            status.timeouts,
+                            status.wrong_answers,
+                            status.bad_checksums};
+    static_assert(std::tuple_size_v<decltype(counts)> == device_counts.size());
+    at = std::ranges::transform(counts, at, [](std::uint64_t count) { return static_cast<double>(count); }).out;
+  }
+}
+
 void DeviceField::write(std::span<const double> outputs) noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     written_[i] = outputs[outputs_[i].port];
@@ -146,8 +203,11 @@ void DeviceOutputs::task_is_gone() noexcept {
 
 bool DeviceOutputs::write(std::span<const double> values) {
   if (devices_.empty()) {
-    for (const modbus::DeviceOptions& device : options_) {
-      devices_.push_back(device.values.empty() ? nullptr : std::make_unique<modbus::Device>(device));
+    const auto links = modbus::shared_links(options_);
+    for (std::size_t i = 0; i < options_.size(); ++i) {
+      devices_.push_back(options_[i].values.empty()
+                             ? nullptr
+                             : std::make_unique<modbus::Device>(options_[i], modbus::DeviceWork{.link = links[i]}));
     }
   }
   bool all = true;

@@ -19,6 +19,9 @@
 
 namespace hysteron::runtime {
 
+/// What is said of each device: its link, and what went wrong on it.
+[[nodiscard]] std::vector<Point> device_points(const RunConfig& config);
+
 class DeviceField final : public FieldIo {
  public:
   /// `in_turn`: without threads. `may_write` is asked before every write to a device: a guard that has taken over must
@@ -29,6 +32,7 @@ class DeviceField final : public FieldIo {
   /// and refuses the value. Before that a value keeps its last number.
   Fault read(std::span<double> inputs) noexcept override;
   [[nodiscard]] std::uint64_t not_taken() const noexcept override;
+  void count(std::span<double> into) const noexcept override;
   [[nodiscard]] std::size_t faulty_port() const noexcept override { return faulty_port_; }
   void write(std::span<const double> outputs) noexcept override;
   /// In turn, it is tried once.

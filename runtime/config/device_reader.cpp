@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <utility>
 
+#include "runtime/config/format_reader.hpp"
+#include "runtime/config/line_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
@@ -18,16 +19,9 @@ using Words = std::string_view;
 constexpr std::array<modbus::Area, 4> areas{modbus::Area::holding_register, modbus::Area::input_register,
                                             modbus::Area::coil, modbus::Area::discrete_input};
 constexpr std::array<modbus::Area, 2> written_areas{modbus::Area::holding_register, modbus::Area::coil};
-constexpr std::array<Words, 2> network_keys{"host", "port"};
-constexpr std::array<Words, 3> line_keys{"baud", "parity", "stop_bits"};
-constexpr std::array<Words, 4> value_keys{"register", "area", "type", "on_loss"};
-
-/// A limit as a device can tell it: one that stands at 0.1 in a real32 has not left it.
-double as_held(double limit, PointType type) {
-  return type == PointType::real32 && std::abs(limit) <= std::numeric_limits<float>::max()
-             ? static_cast<double>(static_cast<float>(limit))
-             : limit;
-}
+constexpr std::array<Words, 3> network_keys{"host", "port", "connection"};
+constexpr std::array<Words, 8> value_keys{"register", "area",       "type", "scale",
+                                          "offset",   "word_order", "bit",  "on_loss"};
 
 }  // namespace
 
@@ -37,39 +31,40 @@ void DeviceReader::wrong(Place place, const std::string& cause, const std::strin
 
 void DeviceReader::read_device(const std::string& name, TomlReader table) {
   modbus::DeviceOptions device{.name = name};
-  std::string line;
-  table.read("serial", line);
-  if (line.empty()) {
+  const auto is_plain = [](char c) { return c == '_' || c == '-' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  if (!std::ranges::all_of(name, is_plain)) {
+    wrong(table.place(), "The device " + name + " has a name that no register map can list.",
+          "name it by letters, digits, _ and -.");
+  }
+  std::size_t sharing = 0;
+  table.read_choice("connection", sharing);
+  device.shares_connection = sharing == 1;
+  const modbus::SerialLink line = read_line(table, *found_);
+  if (line.path.empty()) {
     modbus::TcpLink link;
     table.read("host", link.host);
     table.read_whole("port", link.port);
-    for (const Words key : line_keys) {
-      if (table.has(key)) {
-        wrong(table.place(key), std::string(key) + " is of a serial line, and none is named.",
-              "name it: serial = \"/dev/ttyUSB0\", or remove the key.");
-      }
-    }
     device.link = std::move(link);
   } else {
-    modbus::SerialLink link{.path = line};
-    table.read_whole("baud", link.baud);
-    constexpr std::array<char, 3> parities{'E', 'O', 'N'};
-    std::size_t parity = 0;
-    table.read_choice("parity", parity);
-    link.parity = parities[parity];
-    table.read_whole("stop_bits", link.stop_bits);
     for (const Words key : network_keys) {
       if (table.has(key)) {
         wrong(table.place(key), "The device is on a serial line and has a " + std::string(key) + " besides.",
               "remove the key, or serial.");
       }
     }
-    device.link = std::move(link);
+    device.link = line;
   }
   table.read_whole("unit", device.unit);
+  const bool is_serial = !line.path.empty();
+  if ((device.unit > 247 && device.unit < 255) || (is_serial && (device.unit == 0 || device.unit == 255))) {
+    found_->error(error::run_value_out_of_range, table.place("unit"),
+                  "No device is the unit " + std::to_string(device.unit) + (is_serial ? " on a serial line." : "."),
+                  is_serial ? "choose 1 to 247; 0 is all units, and none answers."
+                            : "choose 0 to 247; or 255, of a device that is no gateway.");
+  }
   std::size_t order = 0;
   table.read_choice("word_order", order);
-  device.order = modbus::word_orders[order];
+  orders_.push_back(modbus::word_orders.at(order));
   std::int64_t period = device.period.count();
   table.read_duration("cycle", period);
   device.period = std::chrono::nanoseconds(period);
@@ -79,22 +74,63 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
   config_->devices.push_back(std::move(device));
 }
 
-std::optional<DeviceLink> DeviceReader::read_link(const std::string& port, bool written, std::int64_t longest_age,
+bool DeviceReader::read_place(modbus::RemoteValue& value, modbus::WordOrder usual, TomlReader& table) {
+  std::size_t area = 0;
+  table.read_choice("area", area);
+  value.at.area = value.written ? written_areas.at(area) : areas.at(area);
+  value.at.bit = read_bit(table);
+  table.read_whole("register", value.at.address);
+  const auto given = read_format(table).value_or(modbus::GivenFormat{});
+  const bool is_bit = modbus::holds_bits(value.at.area) || value.at.is_bit();
+  value.format = given.or_else(is_bit ? PointType::boolean : PointType::real64, usual);
+  const std::string type = modbus::name_of(value.format.type);
+  if (modbus::holds_bits(value.at.area) && value.at.is_bit()) {
+    wrong(table.place("bit"), "A coil or discrete input is a bit, and has none.",
+          "leave out the bit, or write area = \"holding\".");
+    return false;
+  }
+  if (is_bit != (value.format.type == PointType::boolean)) {
+    wrong(table.place(table.has("type") ? "type" : "area"),
+          "A boolean lies among coils or discrete inputs or is a bit of a register, and every other value lies among "
+          "registers.",
+          value.at.is_bit() ? "leave out the type, or the bit."
+          : is_bit          ? "leave out the type, or write area = \"holding\"."
+                            : "write area = \"coil\", bit = 0, or another type.");
+    return false;
+  }
+  value.at.count = static_cast<std::uint32_t>(modbus::registers_of(value.format.type));
+  std::string flaw = modbus::flaw_of(value.format);
+  if (given.order && value.at.count == 1) {
+    flaw = "lies in one register, which has no word order";
+  }
+  if (!flaw.empty()) {
+    found_->error(error::unfit_format, table.place(given.order && value.at.count == 1 ? "word_order" : "scale"),
+                  "What lies at register " + std::to_string(value.at.address) + " " + flaw + ".",
+                  "choose a type, a scale and an offset in which each value is near a step; leave out what does not "
+                  "apply.");
+    return false;
+  }
+  if (value.at.address + value.at.count > 0x10000) {
+    found_->error(error::run_value_out_of_range, table.place("register"),
+                  "A " + type + " from register " + std::to_string(value.at.address) +
+                      " on ends behind the last register, 65535.",
+                  "choose register " + std::to_string(0x10000 - value.at.count) + " or a lower one.");
+    return false;
+  }
+  return true;
+}
+
+std::optional<DeviceLink> DeviceReader::read_link(const ProgramSignal& port, bool written, std::int64_t longest_age,
                                                   TomlReader& table) {
   std::string name;
   table.read("device", name);
-  modbus::RemoteValue value{.written = written, .longest_age = std::chrono::nanoseconds(longest_age)};
-  std::size_t area = 0;
-  table.read_choice("area", area);
-  value.at.area = written ? written_areas[area] : areas[area];
-  const bool bits = modbus::holds_bits(value.at.area);
-  value.type = bits ? PointType::boolean : PointType::real64;
-  auto type = static_cast<std::size_t>(value.type);
-  table.read_choice("type", type);
-  value.type = modbus::point_types[type];
-  table.read_whole("register", value.at.address);
+  modbus::RemoteValue value{.of = port.type, .written = written, .longest_age = std::chrono::nanoseconds(longest_age)};
   std::size_t loss = 0;
   table.read_choice("on_loss", loss);
+  const auto found = std::ranges::find(config_->devices, name, &modbus::DeviceOptions::name);
+  const bool is_known = found != config_->devices.end();
+  const auto device = static_cast<std::size_t>(found - config_->devices.begin());
+  const bool is_sound = read_place(value, is_known ? orders_[device] : modbus::WordOrder::abcd, table);
   if (name.empty()) {
     for (const Words key : value_keys) {
       if (table.has(key)) {
@@ -106,41 +142,27 @@ std::optional<DeviceLink> DeviceReader::read_link(const std::string& port, bool 
     }
     return std::nullopt;
   }
-  const auto found = std::ranges::find(config_->devices, name, &modbus::DeviceOptions::name);
-  if (found == config_->devices.end()) {
+  if (!is_known) {
     found_->error(error::unknown_device, table.place("device"), "There is no device " + name + ".",
                   "describe it under [devices." + name + "].");
     return std::nullopt;
   }
-  if (bits != (value.type == PointType::boolean)) {
-    wrong(table.place(table.has("type") ? "type" : "area"),
-          "A boolean lies among coils or discrete inputs, and every other value among registers.",
-          bits ? "leave out the type, or write area = \"holding\"." : "write area = \"coil\", or another type.");
+  if (!is_sound) {
     return std::nullopt;
   }
-  value.at.count = static_cast<std::uint32_t>(modbus::registers_of(value.type));
-  if (value.at.address + value.at.count > 0x10000) {
-    found_->error(error::run_value_out_of_range, table.place("register"),
-                  "A " + std::string(modbus::name_of(value.type)) + " from register " +
-                      std::to_string(value.at.address) + " on ends behind the last register, 65535.",
-                  "choose register " + std::to_string(0x10000 - value.at.count) + " or a lower one.");
-    return std::nullopt;
-  }
-  const DeviceLink link{.device = static_cast<std::size_t>(found - config_->devices.begin()),
-                        .value = found->values.size(),
-                        .faults = loss == 0};
+  const DeviceLink link{.device = device, .value = found->values.size(), .faults = loss == 0};
   found->values.push_back(value);
-  values_.push_back({.name = port, .place = table.place("device"), .link = link, .written = written});
+  values_.push_back({.name = port.name, .place = table.place("device"), .link = link, .written = written});
   return link;
 }
 
 void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlReader& table) {
-  const auto link = read_link(shape_->outputs[port].name, true, longest_age, table);
+  const auto link = read_link(shape_->outputs[port], true, longest_age, table);
   if (!link) {
     return;
   }
   config_->device_outputs.push_back({.port = port, .link = *link, .place = table.place("device")});
-  const auto [low, high] = modbus::limits_of(config_->devices[link->device].values[link->value].type);
+  const auto [low, high] = modbus::limits_of(config_->devices[link->device].values[link->value].format);
   OutputSafety& output = config_->task.outputs[port];
   output.low = std::max(output.low, low);
   output.high = std::min(output.high, high);
@@ -148,11 +170,11 @@ void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlR
 
 void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlReader& table) {
   InputSettings& settings = config_->task.inputs[port];
-  const auto link = read_link(shape_->inputs[port].name, false, longest_age, table);
+  const auto link = read_link(shape_->inputs[port], false, longest_age, table);
   if (link) {
     modbus::RemoteValue& value = config_->devices[link->device].values[link->value];
-    value.low = as_held(shape_->inputs[port].low, value.type);
-    value.high = as_held(shape_->inputs[port].high, value.type);
+    value.low = shape_->inputs[port].low;
+    value.high = shape_->inputs[port].high;
     config_->device_inputs.push_back({.port = port, .link = *link});
     settings.from_device = true;
   }
@@ -201,13 +223,12 @@ void DeviceReader::refuse_twice() {
     for (auto first = values_.begin(); first != second_one; ++first) {
       const modbus::Stretch& a = at(*first);
       const modbus::Stretch& b = at(*second_one);
-      if (first->written && second_one->written && first->link.device == second_one->link.device && a.area == b.area &&
-          a.address < b.address + b.count && b.address < a.address + a.count) {
-        found_->error(error::device_register_twice, second_one->place,
-                      second_one->name + " and " + first->name + " write the same register of " +
-                          config_->devices[first->link.device].name + ", " +
-                          std::to_string(std::max(a.address, b.address)) + ".",
-                      "give each a place of its own; a real64 takes four registers.");
+      if (first->written && second_one->written && first->link.device == second_one->link.device && a.overlaps(b)) {
+        found_->error(
+            error::device_register_twice, second_one->place,
+            second_one->name + " and " + first->name + " write the same register of " +
+                config_->devices[first->link.device].name + ", " + std::to_string(std::max(a.address, b.address)) + ".",
+            "give each a place of its own; a real64 takes four registers, and a bit has no room beside a whole value.");
       }
     }
   }

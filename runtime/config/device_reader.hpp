@@ -42,8 +42,10 @@ class DeviceReader {
     Place place;
   };
 
-  std::optional<DeviceLink> read_link(const std::string& port, bool written, std::int64_t longest_age,
+  std::optional<DeviceLink> read_link(const ProgramSignal& port, bool written, std::int64_t longest_age,
                                       TomlReader& table);
+  /// Where it lies and how, checked; the device is known.
+  bool read_place(modbus::RemoteValue& value, modbus::WordOrder usual, TomlReader& table);
   void read_told(std::size_t port, std::string_view key, Tells tells, TomlReader& table);
   void wrong(Place place, const std::string& cause, const std::string& mend);
   void refuse_twice();
@@ -52,6 +54,7 @@ class DeviceReader {
   const ProgramShape* shape_;
   RunConfig* config_;
   Diagnostics* found_;
+  std::vector<modbus::WordOrder> orders_;  ///< by device, of values that name none
   std::vector<Named> values_;
   std::vector<Told> told_;
 };

@@ -13,7 +13,7 @@ HistoryConfig HistoryReading::read(TomlReader table) {
   }
   table.read("file", history.file);
   history.step = read_step(table, *shape_, *found_);
-  history.points = read_points(table, *shape_, *found_);
+  history.points = read_points(table, *shape_, field_points_, *found_);
   table.read_duration("keep", history.keep);
   std::uint64_t megabytes = history.bytes / 1'000'000;
   table.read_whole("megabytes", megabytes);

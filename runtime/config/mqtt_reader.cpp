@@ -58,9 +58,9 @@ void MqttReader::read_broker(TomlReader& table, MqttConfig& mqtt) {
   table.read("broker", mqtt.broker);
   const std::size_t colon = mqtt.broker.find(':');
   if (mqtt.broker.find('/') != std::string::npos || (colon != std::string::npos && colon == mqtt.broker.rfind(':'))) {
-    found_->error(error::wrong_run_value, table.place("broker"),
-                  "The broker " + mqtt.broker + " is no host name and no address.",
-                  "write the host alone, as in broker = \"192.168.10.5\"; its port stands in port, and ca asks for TLS.");
+    found_->error(
+        error::wrong_run_value, table.place("broker"), "The broker " + mqtt.broker + " is no host name and no address.",
+        "write the host alone, as in broker = \"192.168.10.5\"; its port stands in port, and ca asks for TLS.");
   }
   table.read("ca", mqtt.ca);
   table.read("certificate", mqtt.certificate);
@@ -139,7 +139,7 @@ void MqttReader::read_payload(TomlReader& table, MqttConfig& mqtt) {
 }
 
 void MqttReader::read_rows(TomlReader& table, MqttConfig& mqtt) {
-  mqtt.points = read_points(table, *shape_, *found_);
+  mqtt.points = read_points(table, *shape_, config_->task.field_points, *found_);
   mqtt.step = read_step(table, *shape_, *found_);
   mqtt.dead_bands.assign(mqtt.points.size(), 0.0);
   table.read("on_change", mqtt.on_change);

@@ -78,6 +78,12 @@ std::string name_of(const std::string& way, std::uint8_t unit, modbus::Area area
   return "hysteron-output-" + sha256(fmt::format("{} {} {} {}", way, unit, static_cast<int>(area), address));
 }
 
+/// These go to the device in one write, which is of this task alone.
+bool are_bits_of_one_register(const RunConfig& config, const DeviceLink& a, const DeviceLink& b) {
+  const auto at = [&](const DeviceLink& link) { return config.devices[link.device].values[link.value].at; };
+  return a.device == b.device && at(a).is_bit() && at(b).is_bit() && !at(a).overlaps(at(b));
+}
+
 /// Out of the way of devices and clients: select has room for the descriptors below FD_SETSIZE alone. Where the limits
 /// do not let it, it stays where it is.
 void move_up(modbus::Descriptor& socket) {
@@ -142,14 +148,16 @@ OutputClaims::OutputClaims(const RunConfig& config) {
     const DeviceLink& link = config.device_outputs[i].link;
     const modbus::DeviceOptions& device = config.devices[link.device];
     const modbus::RemoteValue& value = device.values[link.value];
-    const auto width = static_cast<std::uint32_t>(modbus::registers_of(value.type));
+    const auto width = static_cast<std::uint32_t>(modbus::registers_of(value.format.type));
     for (const std::string& way : ways[link.device]) {
       for (std::uint32_t address = value.at.address; address < value.at.address + width; ++address) {
         const std::string name = name_of(way, device.unit, value.at.area, address);
-        if (const auto [first, is_new] = outputs.emplace(name, i); !is_new) {
+        const auto [first, is_new] = outputs.emplace(name, i);
+        if (is_new) {
+          claims_.push_back({.name = name, .output = i, .address = address});
+        } else if (!are_bits_of_one_register(config, link, config.device_outputs[first->second].link)) {
           own_ = own_ ? own_ : Holder{.output = i, .address = address, .own = first->second};
         }
-        claims_.push_back({.name = name, .output = i, .address = address});
       }
     }
   }

@@ -8,8 +8,10 @@
 #include <tuple>
 #include <utility>
 
+#include "runtime/config/device_field.hpp"
 #include "runtime/config/device_reader.hpp"
 #include "runtime/config/history_reading.hpp"
+#include "runtime/config/modbus_reader.hpp"
 #include "runtime/config/mqtt_reader.hpp"
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
@@ -69,6 +71,7 @@ class Reader {
     each_below("outputs", [&](const toml::key& key, const toml::table& table) { read_output(key, table); });
     each_below("inputs", [&](const toml::key& key, const toml::table& table) { read_input(key, table); });
     devices_.finish();
+    config_.task.field_points = device_points(config_);
     if (const auto* const table = table_at(root_, "retain")) {
       read_retain({file_, "[retain]", *table, run_table("retain").keys, found_});
     }
@@ -79,17 +82,15 @@ class Reader {
       read_online_change({file_, "[online_change]", *table, run_table("online_change").keys, found_});
     }
     if (const auto* const table = table_at(root_, "history")) {
-      config_.history =
-          HistoryReading(shape_, found_).read({file_, "[history]", *table, run_table("history").keys, found_});
+      config_.history = HistoryReading(shape_, config_.task.field_points, found_)
+                            .read({file_, "[history]", *table, run_table("history").keys, found_});
     }
     MqttReader(file_, shape_, config_, found_).read(table_at(root_, "mqtt"), table_at(root_, "dead_bands"));
-    if (const auto* const table = table_at(root_, "modbus")) {
-      read_modbus({file_, "[modbus]", *table, run_table("modbus").keys, found_});
-    }
+    ModbusReader modbus(file_, config_, found_);
+    modbus.read(table_at(root_, "modbus"), root_.contains("tls"));
     TlsReader(file_, config_, found_).read(table_at(root_, "tls"), table_at(root_, "roles"));
-    if (const auto* const table = table_at(root_, "addresses")) {
-      read_addresses("", *table);
-    }
+    modbus.read_line_of(table_at(root_, "modbus_rtu"));
+    modbus.read_points(table_at(root_, "addresses"), table_at(root_, "registers"));
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;
@@ -215,23 +216,27 @@ class Reader {
       found_.error(error::unfit_safe_value, table.place("safe"),
                    "The safe value " + number_text(output.value) + " of " + name + why, mend);
     };
-    const auto is_held = [&](PointType type, const std::string& where, const std::string& mend) {
-      const bool held = modbus::holds(type, output.value);
-      const auto [low, high] = modbus::limits_of(type);
+    const auto is_held = [&](const modbus::PointFormat& format, const std::string& where, const std::string& mend) {
+      const bool held = modbus::holds(format, output.value);
+      const auto [low, high] = modbus::limits_of(format);
       if (!held) {
-        refuse(" is none that the type of " + where + " holds, " + modbus::name_of(type) + ".",
-               std::string("choose a ") + (type == PointType::real32 ? "" : "whole ") + "number from " +
-                   number_text(low) + " to " + number_text(high) + mend + ".");
+        refuse(" is none that the type of " + where + " holds, " + modbus::name_of(format.type) + ".",
+               std::string("choose a ") + (modbus::is_real(format.type) || format.is_scaled() ? "" : "whole ") +
+                   "number from " + number_text(low) + " to " + number_text(high) +
+                   (format.is_scaled() && !modbus::is_real(format.type)
+                        ? " in steps of " + number_text(std::abs(format.scale))
+                        : "") +
+                   mend + ".");
       }
       return held;
     };
-    if (!is_held(shape_.outputs[port].type, "the output", "")) {
+    if (!is_held({.type = shape_.outputs[port].type}, "the output", "")) {
       return;
     }
     const auto on_device = std::ranges::find(config_.device_outputs, port, &DeviceOutput::port);
     if (on_device != config_.device_outputs.end()) {
       const modbus::DeviceOptions& device = config_.devices[on_device->link.device];
-      if (!is_held(device.values[on_device->link.value].type, "its place on " + device.name, ", or another type")) {
+      if (!is_held(device.values[on_device->link.value].format, "its place on " + device.name, ", or another type")) {
         return;
       }
     }
@@ -333,64 +338,6 @@ class Reader {
     }
     config_.trace = std::move(trace);
     config_.trace_place = table.place("file");
-  }
-
-  void read_modbus(TomlReader table) {
-    ModbusConfig modbus{.place = table.place()};
-    table.read("listen", modbus.listen);
-    modbus.port = root_.contains("tls") ? 802 : modbus.port;
-    table.read_whole("port", modbus.port);
-    table.read("allow", modbus.allow);
-    table.read_whole("connections", modbus.connections);
-    modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
-    table.read_whole("connections_per_address", modbus.connections_per_address);
-    table.read("read_only", modbus.read_only);
-    std::size_t order = 0;
-    table.read_choice("word_order", order);
-    modbus.word_order = modbus::word_orders[order];
-    std::size_t placing = 0;
-    table.read_choice("map", placing);
-    modbus.placing = static_cast<modbus::Placing>(placing);
-    table.read("lock_file", modbus.lock_file);
-    read_heartbeat(table, modbus);
-    config_.modbus = std::move(modbus);
-  }
-
-  /// A name with a point in it may be quoted, or not: HYST.C1 = "%ML3" is a table in TOML.
-  void read_addresses(const std::string& prefix, const toml::table& table) {
-    for (const auto& [key, node] : table) {
-      const std::string name = prefix + std::string(key.str());
-      const Place place = place_of(file_, node.source());
-      if (const auto* const below = node.as_table()) {
-        read_addresses(name + ".", *below);
-      } else if (!node.is_string()) {
-        found_.error(error::wrong_run_value, place, name + " must be an address, a text.",
-                     "write it as in " + name + " = \"%QW5\".");
-      } else if (!config_.modbus) {
-        found_.error(error::wrong_run_value, place, name + " has an address, and there is no server.",
-                     "add the table [modbus], or remove [addresses].");
-      } else {
-        config_.modbus->addresses.push_back({.name = name, .address = node.as_string()->get(), .place = place});
-      }
-    }
-  }
-
-  void read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
-    std::size_t mode = 0;
-    table.read_choice("heartbeat", mode);
-    modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
-    std::int64_t time = std::chrono::nanoseconds(modbus.heartbeat.time).count();
-    table.read_duration("heartbeat_time", time);
-    modbus.heartbeat.time = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
-    std::size_t after = 0;
-    table.read_choice("after_loss", after);
-    config_.task.reset_after_lost_client = after == 1;
-    table.read("own_writes", modbus.heartbeat.own_writes);
-    if (modbus.read_only && (modbus.heartbeat.mode == modbus::HeartbeatMode::write_telegram || after == 1)) {
-      found_.error(error::wrong_run_value, table.place(after == 1 ? "after_loss" : "heartbeat"),
-                   "Writes of a client are waited for, and read_only refuses them.",
-                   "write heartbeat = \"any\" and after_loss = \"resume\", or read_only = false.");
-    }
   }
 
   /// In the order of the file; the library gives keys in that of their names.

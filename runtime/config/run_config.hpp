@@ -2,6 +2,7 @@
 // lists them. Every key but the safe values may be left out.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/heartbeat.hpp"
+#include "runtime/modbus/server.hpp"
 #include "runtime/modbus/tls_context.hpp"
 #include "runtime/task/guard.hpp"
 #include "runtime/task/retain.hpp"
@@ -97,17 +99,23 @@ struct MqttConfig {
 };
 
 struct ModbusConfig {
-  std::string listen = "127.0.0.1";
+  std::string listen = "127.0.0.1";  ///< empty: a serial line alone
   std::uint16_t port = 1502;
   std::vector<std::string> allow{};
   std::size_t connections = 32;
   std::size_t connections_per_address = 8;
+  std::chrono::milliseconds idle = modbus::ConnectionLimits{}.idle;
+  std::chrono::milliseconds evict = modbus::ServerOptions{}.evict;
+  std::optional<modbus::RtuOptions> rtu{};
   bool read_only = false;
   modbus::WordOrder word_order = modbus::WordOrder::abcd;
   modbus::Placing placing = modbus::Placing::compact;
   std::string lock_file{};
-  std::vector<modbus::GivenAddress> addresses{};  ///< of [addresses]
-  std::string first_addresses{};                  ///< the text that counts where the lock file is not there yet
+  std::vector<std::string> expose{};  ///< names, or what they begin with and a star; none: all points
+  Place expose_place{};
+  bool has_discovery = true;
+  std::vector<modbus::GivenRegister> registers{};  ///< of [addresses] and [registers]
+  std::string first_addresses{};                   ///< the text that counts where the lock file is not there yet
   modbus::HeartbeatOptions heartbeat{};
   std::optional<modbus::TlsOptions> tls{};
   Place place{};
@@ -131,7 +139,8 @@ struct RunConfig {
   std::vector<DeviceOutput> device_outputs{};
 };
 
-/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835 and HY836;
+/// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835, HY836
+/// and HY860;
 /// `file` stands in places.
 [[nodiscard]] RunConfig parse_run_config(const std::string& file, std::string_view text, const ProgramShape& shape);
 

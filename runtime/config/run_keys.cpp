@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/modbus/value_bits.hpp"
 #include "support/numbers.hpp"
 
 namespace hysteron::runtime {
@@ -28,15 +29,42 @@ constexpr std::array<Words, 3> on_fault_words{"value", "ramp", "hold"};
 constexpr std::array<Words, 2> loss_words{"fault", "keep"};
 constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
 constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
-constexpr std::array<Words, 9> type_words{"boolean", "int16",  "uint16", "int32", "uint32",
-                                          "int64",   "uint64", "real32", "real64"};
+constexpr auto type_words = [] {
+  std::array<Words, modbus::register_types.size()> words{};
+  std::ranges::transform(modbus::register_types, words.begin(),
+                         [](modbus::RegisterType type) { return Words(modbus::name_of(type)); });
+  return words;
+}();
 constexpr std::array<Words, 3> parity_words{"even", "odd", "none"};
 constexpr std::array<Words, 4> order_words{"abcd", "cdab", "badc", "dcba"};
 constexpr std::array<Words, 2> map_words{"compact", "openplc"};
 constexpr std::array<Words, 3> mismatch_words{"refuse", "cold", "carry"};
 constexpr std::array<Words, 3> heartbeat_words{"off", "any", "write"};
 constexpr std::array<Words, 2> after_words{"resume", "reset"};
+constexpr std::array<Words, 2> connection_words{"own", "shared"};
 constexpr std::array<Words, 2> payload_words{"json", "sparkplug-b"};
+
+// How a value lies in registers: the same keys for the server's points and for values on devices.
+constexpr RunKey type_key(Words otherwise, Words meaning) {
+  return {.name = "type", .kind = choice, .otherwise = otherwise, .meaning = meaning, .words = type_words};
+}
+constexpr RunKey scale_key{"scale", number, "1.0",
+                           "in the value's unit, what a step of the raw number is: value = scale·raw + offset"};
+constexpr RunKey offset_key{"offset", number, "0.0", "the value where the raw number is 0"};
+constexpr RunKey order_key(Words otherwise) {
+  return {.name = "word_order",
+          .kind = choice,
+          .otherwise = otherwise,
+          .meaning = "how a value of 32 or 64 bits lies in its registers",
+          .words = order_words};
+}
+
+// A serial line, of a device or of the server.
+constexpr RunKey baud_key{"baud", whole, "19200", "of the serial line", 300.0, 4e6};
+constexpr RunKey parity_key{
+    .name = "parity", .kind = choice, .otherwise = "\"even\"", .meaning = "of the serial line", .words = parity_words};
+constexpr RunKey stop_key{"stop_bits", whole, "1", "of the serial line", 1.0, 2.0};
+constexpr RunKey echo_key{"echo", flag, "false", "the line's adapter of RS-485 gives back what is sent"};
 
 constexpr std::array task_keys{
     RunKey{"period", time, "(the diagram's)", "for the reader: must be the sample time of the diagram", 1.0, many},
@@ -98,11 +126,14 @@ constexpr std::array output_keys{
            .otherwise = "\"holding\"",
            .meaning = "holding registers or coils",
            .words = written_area_words},
-    RunKey{.name = "type",
-           .kind = choice,
-           .otherwise = "(real64; of a coil, boolean)",
-           .meaning = "how it lies there; an integer limits the output to what it can hold",
-           .words = type_words},
+    type_key("(real64; of a coil or bit, boolean)",
+             "how it lies there; an integer limits the output to what it can hold"),
+    scale_key,
+    offset_key,
+    order_key("(the device's)"),
+    RunKey{"bit", whole, "(none)",
+           "of a holding register, 0 the lowest: a boolean; the register's bits that no output has are written as 0",
+           0.0, 15.0},
     RunKey{.name = "on_loss",
            .kind = choice,
            .otherwise = "\"fault\"",
@@ -126,11 +157,11 @@ constexpr std::array input_keys{
            .otherwise = "\"holding\"",
            .meaning = "holding or input registers, coils or discrete inputs",
            .words = area_words},
-    RunKey{.name = "type",
-           .kind = choice,
-           .otherwise = "(real64; of a coil or discrete input, boolean)",
-           .meaning = "how it lies there",
-           .words = type_words},
+    type_key("(real64; of a coil, discrete input or bit, boolean)", "how it lies there"),
+    scale_key,
+    offset_key,
+    order_key("(the device's)"),
+    RunKey{"bit", whole, "(none)", "of a register, 0 the lowest: a boolean", 0.0, 15.0},
     RunKey{.name = "on_loss",
            .kind = choice,
            .otherwise = "\"fault\"",
@@ -150,16 +181,27 @@ constexpr std::array input_keys{
 constexpr std::array device_keys{
     RunKey{"host", text, "\"127.0.0.1\"", "of Modbus TCP: name or address"},
     RunKey{"port", whole, "502", "of Modbus TCP", 1.0, 65535.0},
+    RunKey{.name = "connection",
+           .kind = choice,
+           .otherwise = "\"own\"",
+           .meaning =
+               "of Modbus TCP: one of its own, or shared by the devices at this host and port that say so, as the "
+               "units behind a gateway",
+           .words = connection_words},
     RunKey{"serial", text, "(none: TCP)",
            "of Modbus RTU: the serial line, as /dev/ttyUSB0; devices on one line take turns"},
-    RunKey{"baud", whole, "19200", "of the serial line", 300.0, 4e6},
-    RunKey{.name = "parity",
-           .kind = choice,
-           .otherwise = "\"even\"",
-           .meaning = "of the serial line",
-           .words = parity_words},
-    RunKey{"stop_bits", whole, "1", "of the serial line", 1.0, 2.0},
-    RunKey{"unit", whole, "1", "the unit identifier", 0.0, 247.0},
+    baud_key,
+    parity_key,
+    stop_key,
+    echo_key,
+    RunKey{"unit",
+           whole,
+           "1",
+           "the unit identifier; over TCP, many a device that is no gateway wants 255",
+           0.0,
+           255.0,
+           {},
+           "not 248 to 254; on a serial line 1 to 247"},
     RunKey{.name = "word_order",
            .kind = choice,
            .otherwise = "\"abcd\"",
@@ -197,8 +239,8 @@ constexpr std::array online_change_keys{
 constexpr std::array history_keys{
     RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
     RunKey{"points", texts, "(all inputs and outputs)",
-           "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`; the "
-           "name of a vector is each of its elements"},
+           "what is kept: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault` and "
+           "of its devices as `device.NAME.timeouts`; the name of a vector is each of its elements"},
     RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods; for `tune` and `diagnose`, one period",
            1.0, 86400.0 * s},
     RunKey{"keep", time, "\"30d\"", "older rows are deleted", 60.0 * s, 10000.0 * 86400.0 * s},
@@ -227,8 +269,8 @@ constexpr std::array mqtt_keys{
     RunKey{"group", text, "(`hysteron`)", "of Sparkplug B: the group"},
     RunKey{"node", text, "(the diagram's name)", "of Sparkplug B: the edge node"},
     RunKey{"points", texts, "(all inputs and outputs)",
-           "what is published: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault`; "
-           "the name of a vector is each of its elements"},
+           "what is published: inputs, outputs, parameters as `HYST.C1`, what the task says of itself as `task.fault` "
+           "and of its devices as `device.NAME.timeouts`; the name of a vector is each of its elements"},
     RunKey{"every", time, "\"1s\"", "from row to row: a whole number of periods", 1.0, 86400.0 * s},
     RunKey{"on_change", flag, "false", "a row has those points alone that changed, and there is none where none did"},
     RunKey{"refresh",
@@ -249,12 +291,18 @@ constexpr std::array dead_band_keys{
         "its unit"},
 };
 constexpr std::array modbus_keys{
-    RunKey{"listen", text, "\"127.0.0.1\"", "the address of the server"},
+    RunKey{"listen", text, "\"127.0.0.1\"",
+           "the address of the server; `\"off\"` with `[modbus_rtu]`, where it serves a serial line alone"},
     RunKey{"port", whole, "1502", "its port, with `[tls]` by default 802; 0: any that is free", 0.0, 65535.0},
     RunKey{"allow", texts, "[]", "the networks whose clients are served; none: all that reach the address"},
     RunKey{"connections", whole, "32", "clients at once", 1.0, 1000.0},
     RunKey{"connections_per_address", whole, "(a quarter of them)",
            "of one IPv4 address, or of the 64 bits that an IPv6 address begins with", 1.0, 1000.0},
+    RunKey{"idle", time, "\"60s\"", "a client that asks nothing for so long loses its connection", 100.0 * ms,
+           86400.0 * s},
+    RunKey{"evict", time, "\"5s\"",
+           "where no place is left, the client that has asked nothing for longest gives way, if it is so long at least",
+           100.0 * ms, 86400.0 * s},
     RunKey{"read_only", flag, "false", "writes are refused"},
     RunKey{.name = "word_order",
            .kind = choice,
@@ -269,6 +317,12 @@ constexpr std::array modbus_keys{
                "`%MW`, `%MD`, `%ML`",
            .words = map_words},
     RunKey{"lock_file", text, "(none)", "keeps the addresses through edits of the diagram"},
+    RunKey{"expose", texts, "(all points)",
+           "the points on the map, as `hysteron map` lists them; `\"HYST.*\"` is all that begin with `HYST.`, `\"*\"` "
+           "all"},
+    RunKey{"discovery", flag, "true",
+           "clients can read the map from holding register 40000 on, and by function 20; without it, points may lie "
+           "there"},
     RunKey{.name = "heartbeat",
            .kind = choice,
            .otherwise = "\"off\"",
@@ -282,6 +336,19 @@ constexpr std::array modbus_keys{
            .meaning = "the outputs return when the client is back, or when it then writes task.reset",
            .words = after_words},
     RunKey{"own_writes", flag, "false", "while a client that writes is there, no other may"},
+};
+
+constexpr std::array rtu_keys{
+    RunKey{"serial", text, "(required)",
+           "the serial line, as /dev/ttyUSB0; it is tried again for as long as it is not there"},
+    baud_key,
+    parity_key,
+    stop_key,
+    echo_key,
+    RunKey{"unit", whole, "1", "which unit on the line this is", 1.0, 247.0},
+    RunKey{"longest_gap", time, "(3.5 characters, 20ms at the least)",
+           "bytes that come later than this begin a new frame; some adapters hand bytes over every 16 ms", ms, s},
+    RunKey{"read_only", flag, "false", "writes on the line are refused"},
 };
 
 constexpr std::array tls_keys{
@@ -305,10 +372,20 @@ constexpr std::array address_keys{
            "meaning, or an area and a number, `\"holding 16\"`"},
 };
 
-constexpr std::array file_keys{RunKey{"task"},    RunKey{"watchdog"}, RunKey{"outputs"},    RunKey{"inputs"},
-                               RunKey{"devices"}, RunKey{"retain"},   RunKey{"trace"},      RunKey{"online_change"},
-                               RunKey{"history"}, RunKey{"mqtt"},     RunKey{"dead_bands"}, RunKey{"modbus"},
-                               RunKey{"tls"},     RunKey{"roles"},    RunKey{"addresses"}};
+constexpr std::array register_keys{
+    RunKey{"at", text, "(by the map and the lock file)",
+           "its address, as under `[addresses]`; `\"holding 16.3\"` is a bit of a register, 0 the lowest"},
+    type_key("(the point's)", "how it lies there; what the type does not reach is read as the nearest that it does"),
+    scale_key,
+    offset_key,
+    order_key("(the server's)"),
+};
+
+constexpr std::array file_keys{RunKey{"task"},          RunKey{"watchdog"}, RunKey{"outputs"},    RunKey{"inputs"},
+                               RunKey{"devices"},       RunKey{"retain"},   RunKey{"trace"},      RunKey{"history"},
+                               RunKey{"online_change"}, RunKey{"mqtt"},     RunKey{"dead_bands"}, RunKey{"modbus"},
+                               RunKey{"tls"},           RunKey{"roles"},    RunKey{"addresses"},  RunKey{"registers"},
+                               RunKey{"modbus_rtu"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -325,9 +402,13 @@ constexpr std::array tables{
     RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",
              dead_band_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
+    RunTable{"[modbus_rtu]", "The map of `[modbus]` on a serial line as well, by Modbus RTU; without the table, not.",
+             rtu_keys},
     RunTable{"[tls]", "Modbus/TCP Security instead of Modbus in the clear, with certificates on both sides.", tls_keys},
     RunTable{"[roles]", "A line for each role that the certificates of clients name.", role_keys},
     RunTable{"[addresses]", "A line for each point of the server whose address is given.", address_keys},
+    RunTable{"[registers.NAME]", "A table for each point that lies on the server in another way than as its type.",
+             register_keys},
 };
 
 std::string kind_text(const RunKey& key) {

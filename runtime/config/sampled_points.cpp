@@ -14,8 +14,8 @@ namespace {
 constexpr std::int64_t usual_step = 1'000'000'000;
 constexpr std::size_t most_points = 1000;
 
-/// What may be named: inputs and outputs, parameters, and what the task says of itself.
-std::vector<std::string> all_points(const ProgramShape& shape) {
+/// What may be named: inputs and outputs, parameters, and what the task says of itself and of its devices.
+std::vector<std::string> all_points(const ProgramShape& shape, std::span<const Point> field_points) {
   std::vector<std::string> names;
   for (const auto* const signals : {&shape.inputs, &shape.outputs, &shape.parameters}) {
     for (const ProgramSignal& signal : *signals) {
@@ -24,6 +24,9 @@ std::vector<std::string> all_points(const ProgramShape& shape) {
   }
   for (const char* const status : status_names()) {
     names.emplace_back(status);
+  }
+  for (const Point& point : field_points) {
+    names.push_back(point.name);
   }
   return names;
 }
@@ -45,8 +48,9 @@ std::uint64_t read_step(TomlReader& table, const ProgramShape& shape, Diagnostic
   return static_cast<std::uint64_t>(every / period);
 }
 
-std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shape, Diagnostics& found) {
-  std::vector<std::string> all = all_points(shape);
+std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shape, std::span<const Point> field_points,
+                                     Diagnostics& found) {
+  std::vector<std::string> all = all_points(shape, field_points);
   if (!table.has("points")) {
     all.resize(shape.inputs.size() + shape.outputs.size());
     return all;
@@ -63,7 +67,7 @@ std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shap
       const auto near = nearest_name(name, all);
       found.error(error::unknown_port_in_run_file, table.place("points"), shape.name + " has no point " + name + ".",
                   near.empty() ? "name inputs, outputs, parameters as HYST.C1, or what the task says of itself, as "
-                                 "task.fault."
+                                 "task.fault, and of its devices, as device.NAME.timeouts."
                                : "did you mean " + std::string(near) + "?");
     }
     for (const std::string& one : known) {

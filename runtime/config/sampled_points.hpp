@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace hysteron::runtime {
 [[nodiscard]] std::uint64_t read_step(TomlReader& table, const ProgramShape& shape, Diagnostics& found);
 
 /// The points that are named, in the words of the door, whatever case they are written in: inputs, outputs,
-/// parameters, and what the task says of itself. Inputs and outputs where none are named.
-[[nodiscard]] std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shape, Diagnostics& found);
+/// parameters, and what the task says of itself and of its devices. Inputs and outputs where none are named.
+[[nodiscard]] std::vector<std::string> read_points(TomlReader& table, const ProgramShape& shape,
+                                                   std::span<const Point> field_points, Diagnostics& found);
 
 }  // namespace hysteron::runtime

@@ -114,7 +114,10 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
   modbus::MapRequest request{.title = title,
                              .placing = config.placing,
                              .order = config.word_order,
-                             .given = config.addresses,
+                             .has_discovery = config.has_discovery,
+                             .expose = config.expose,
+                             .expose_place = config.expose_place,
+                             .given = config.registers,
                              .lock_file = config.lock_file};
   // Where that cannot be told, reading it says why.
   std::error_code unknown;
@@ -146,11 +149,14 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .allow = config.allow,
                             .connections = config.connections,
                             .connections_per_address = config.connections_per_address,
+                            .evict = config.evict,
                             .read_only = config.read_only,
+                            .rtu = config.rtu,
+                            .limits = {.idle = config.idle},
                             .heartbeat = config.heartbeat,
                             .client_lost = [&task](bool lost) { task.client_lost(lost); },
                             .tls = tls,
-                            .client_refused = [](const std::string& line) { tell("Modbus", line); },
+                            .tell = [](const std::string& line) { tell("Modbus", line); },
                             .place = config.place});
   write_lock_file(config, planned);
   return server;
@@ -308,7 +314,8 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& 
 }  // namespace
 
 modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
-  TaskDoor door(program, device_inputs(config.task), config.task.outputs);
+  const TaskSettings& task = config.task;
+  TaskDoor door(program, device_inputs(task), task.outputs, task.field_points);
   const ModbusConfig modbus = config.modbus.value_or(ModbusConfig{});
   PlannedMap planned = planned_map(modbus, program.shape().name, door);
   write_lock_file(modbus, planned);
@@ -414,9 +421,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                        ? std::make_shared<const modbus::TlsContext>(*config.modbus->tls, modbus::OutOfDate::taken)
                        : nullptr;
   const auto server = config.modbus ? serve_modbus(*config.modbus, shape.name, task, tls) : nullptr;
-  how += server ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
+  how += server && server->port() != 0 ? fmt::format("; Modbus on {}:{}", config.modbus->listen, server->port()) : "";
   how += tls ? fmt::format(" over TLS, certificate until {}", tls->valid_until()) : "";
   how += tls && tls->fault_at(std::time(nullptr)) != modbus::TlsFault::none ? " (no client comes in)" : "";
+  how += server && config.modbus->rtu
+             ? fmt::format("; Modbus RTU on {}, unit {}", config.modbus->rtu->line.path, config.modbus->rtu->unit)
+             : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
   const auto change = online_change(options, config, task);
   auto changer = change ? options.take_changes(*change, how) : nullptr;

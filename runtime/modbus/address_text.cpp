@@ -95,11 +95,24 @@ std::optional<ParsedAddress> parse_address(std::string_view text) {
     return std::nullopt;
   }
   const auto area = area_named(text.substr(0, space));
-  const auto number = parse_count(text.substr(space + 1));
+  const auto dot = text.find('.', space);
+  const auto number = parse_count(text.substr(space + 1, dot == std::string_view::npos ? dot : dot - space - 1));
   if (!area || !number || *number > 0xFFFF) {
     return std::nullopt;
   }
-  return ParsedAddress{.at = {*area, *number, 1}, .any_width = true};
+  if (dot == std::string_view::npos) {
+    return ParsedAddress{.at = {*area, *number, 1}, .any_width = true};
+  }
+  const auto bit = parse_count(text.substr(dot + 1));
+  if (!bit || *bit > 15 || holds_bits(*area)) {
+    return std::nullopt;
+  }
+  return ParsedAddress{.at = {*area, *number, 1, static_cast<std::int8_t>(*bit)}, .any_width = true};
+}
+
+std::string address_text(const Stretch& at) {
+  const std::string bit = at.is_bit() ? "." + std::to_string(at.bit) : "";
+  return std::string(name_of(at.area)) + " " + std::to_string(at.address) + bit;
 }
 
 }  // namespace hysteron::runtime::modbus

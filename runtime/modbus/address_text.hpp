@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "runtime/modbus/register_map.hpp"
@@ -27,6 +28,9 @@ struct ParsedAddress {
 
 /// Empty where the text is no address, or one outside of its area.
 [[nodiscard]] std::optional<ParsedAddress> parse_address(std::string_view text);
+
+/// As an area and a number: holding 16, or the bit holding 16.3.
+[[nodiscard]] std::string address_text(const Stretch& at);
 
 /// coil, discrete, holding, input.
 [[nodiscard]] std::optional<Area> area_named(std::string_view name);

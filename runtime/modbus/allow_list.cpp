@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cstring>
 
+#include "support/errors.hpp"
+
 namespace hysteron::runtime::modbus {
 namespace {
 
@@ -106,6 +108,23 @@ bool Network::contains(const AddressBytes& address) const {
     }
   }
   return true;
+}
+
+std::vector<Network> networks_of(const std::vector<std::string>& texts, const Place& place) {
+  Diagnostics diagnostics;
+  std::vector<Network> list;
+  for (const std::string& text : texts) {
+    if (const auto network = Network::parse(text)) {
+      list.push_back(*network);
+    } else {
+      diagnostics.error(error::malformed_allow_list, place, text + " is no network.",
+                        "write an address and the bits that count, with zeros behind them: 192.168.10.0/24");
+    }
+  }
+  if (diagnostics.has_errors()) {
+    throw InputError(diagnostics);
+  }
+  return list;
 }
 
 bool is_allowed(const std::vector<Network>& list, const sockaddr_storage& peer) {

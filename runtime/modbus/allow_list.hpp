@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "support/diagnostic.hpp"
+
 namespace hysteron::runtime::modbus {
 
 /// An IPv4 or IPv6 address as 16 bytes; IPv4 as ::ffff:a.b.c.d, so that a socket of either family is judged alike.
@@ -32,6 +34,9 @@ class Network {
   AddressBytes address_{};
   unsigned length_ = 128;
 };
+
+/// Throws InputError HY830 with all that are none.
+[[nodiscard]] std::vector<Network> networks_of(const std::vector<std::string>& texts, const Place& place);
 
 /// An empty list allows everyone who can reach the port.
 [[nodiscard]] bool is_allowed(const std::vector<Network>& list, const sockaddr_storage& peer);

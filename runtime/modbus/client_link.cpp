@@ -1,9 +1,11 @@
 #include "runtime/modbus/client_link.hpp"
 
 #include <modbus/modbus.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/select.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +15,7 @@
 #include <thread>
 
 #include "runtime/modbus/frame.hpp"
+#include "runtime/modbus/rtu_frame.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -66,11 +69,12 @@ void ClientLink::Free::operator()(void* context) const {
   ::modbus_free(static_cast<modbus_t*>(context));
 }
 
-ClientLink::ClientLink(const std::variant<TcpLink, SerialLink>& to, std::uint8_t unit,
-                       std::chrono::milliseconds response)
-    : context_(new_context(to)), serial_(std::holds_alternative<SerialLink>(to)), unit_(unit), response_(response) {
+ClientLink::ClientLink(const std::variant<TcpLink, SerialLink>& to, std::chrono::milliseconds response)
+    : context_(new_context(to)),
+      serial_(std::holds_alternative<SerialLink>(to)),
+      has_echo_(serial_ && std::get<SerialLink>(to).has_echo),
+      response_(response) {
   if (context_ != nullptr) {
-    ::modbus_set_slave(of(context_), unit);
     const auto microseconds = static_cast<std::uint32_t>(std::chrono::microseconds(response).count());
     ::modbus_set_response_timeout(of(context_), microseconds / 1'000'000, microseconds % 1'000'000);
     ::modbus_set_byte_timeout(of(context_), 0, 0);  // the response time is for the whole answer, however it drips
@@ -82,6 +86,11 @@ ClientLink::~ClientLink() {
 }
 
 bool ClientLink::open() {
+  const std::scoped_lock turn(turns_);
+  return open_ || connect();
+}
+
+bool ClientLink::connect() {
   if (context_ == nullptr || ::modbus_connect(of(context_)) != 0) {
     return false;
   }
@@ -110,15 +119,17 @@ void ClientLink::interrupt() {
   }
 }
 
-Exchange ClientLink::exchange(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer) {
-  if (!open_) {
+Exchange ClientLink::exchange(std::uint8_t unit, std::span<const std::uint8_t> request,
+                              std::vector<std::uint8_t>& answer) {
+  const std::scoped_lock lock(turns_);
+  if (!open_ && !connect()) {
     return Exchange::no_link;
   }
   std::optional<Turn> turn;
   if (serial_) {
     turn.emplace(::modbus_get_socket(of(context_)), response_);
   }
-  const Exchange outcome = transfer(request, answer);
+  const Exchange outcome = transfer(unit, request, answer);
   turn.reset();
   if (outcome != Exchange::answered && outcome != Exchange::exception) {
     close();
@@ -126,13 +137,41 @@ Exchange ClientLink::exchange(std::span<const std::uint8_t> request, std::vector
   return outcome;
 }
 
-Exchange ClientLink::send(std::span<const std::uint8_t> request) {
+/// What an adapter of RS-485 gives back. Other bytes: two spoke at once.
+Exchange ClientLink::take_echo(std::span<const std::uint8_t> sent) {
+  using Clock = std::chrono::steady_clock;
+  const int line = ::modbus_get_socket(of(context_));
+  const auto longest = Clock::now() + response_;
+  std::array<std::uint8_t, longest_rtu_frame> bytes{};
+  for (std::size_t got = 0; got < sent.size();) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(longest - Clock::now()).count();
+    pollfd one{line, POLLIN, 0};
+    if (left <= 0 || ::poll(&one, 1, static_cast<int>(left)) <= 0) {
+      return Exchange::timeout;
+    }
+    const ssize_t count = ::read(line, bytes.data(), sent.size() - got);
+    if (count <= 0) {
+      return Exchange::closed;
+    }
+    const auto part = std::span(bytes).first(static_cast<std::size_t>(count));
+    if (!std::equal(part.begin(), part.end(), sent.begin() + static_cast<std::ptrdiff_t>(got))) {
+      return Exchange::wrong_answer;
+    }
+    got += part.size();
+  }
+  return Exchange::answered;
+}
+
+Exchange ClientLink::send(std::uint8_t unit, std::span<const std::uint8_t> request) {
   if (serial_) {
-    ::modbus_flush(of(context_));  // noise between two transactions
-    std::vector<std::uint8_t> raw{unit_};
-    raw.insert(raw.end(), request.begin(), request.end());
-    return ::modbus_send_raw_request(of(context_), raw.data(), static_cast<int>(raw.size())) > 0 ? Exchange::answered
-                                                                                                 : Exchange::closed;
+    ::modbus_set_slave(of(context_), unit);  // or libmodbus passes its answer over
+    ::modbus_flush(of(context_));            // noise between two transactions
+    const std::vector<std::uint8_t> frame = rtu_frame(unit, request);
+    const auto without_checksum = static_cast<int>(frame.size() - 2);
+    if (::modbus_send_raw_request(of(context_), frame.data(), without_checksum) <= 0) {
+      return Exchange::closed;
+    }
+    return has_echo_ ? take_echo(frame) : Exchange::answered;
   }
   const int socket = ::modbus_get_socket(of(context_));
   char unasked = 0;
@@ -140,15 +179,16 @@ Exchange ClientLink::send(std::span<const std::uint8_t> request) {
   if (pending >= 0) {
     return pending == 0 ? Exchange::closed : Exchange::wrong_answer;
   }
-  const auto header = header_of({.transaction = ++transaction_, .unit = unit_}, request.size());
+  const auto header = header_of({.transaction = ++transaction_, .unit = unit}, request.size());
   std::vector<std::uint8_t> frame(header.begin(), header.end());
   frame.insert(frame.end(), request.begin(), request.end());
   const ssize_t sent = ::send(socket, frame.data(), frame.size(), MSG_NOSIGNAL);
   return sent == static_cast<ssize_t>(frame.size()) ? Exchange::answered : Exchange::closed;
 }
 
-Exchange ClientLink::transfer(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer) {
-  if (const Exchange flaw = send(request); flaw != Exchange::answered) {
+Exchange ClientLink::transfer(std::uint8_t unit, std::span<const std::uint8_t> request,
+                              std::vector<std::uint8_t>& answer) {
+  if (const Exchange flaw = send(unit, request); flaw != Exchange::answered) {
     return flaw;
   }
   const auto sent = std::chrono::steady_clock::now();
@@ -156,6 +196,7 @@ Exchange ClientLink::transfer(std::span<const std::uint8_t> request, std::vector
   const int size = ::modbus_receive_confirmation(of(context_), bytes.data());
   if (size < 0) {
     return errno == ETIMEDOUT                                      ? Exchange::timeout
+           : errno == EMBBADCRC                                    ? Exchange::bad_checksum
            : errno == ECONNRESET || errno == EBADF || errno == EIO ? Exchange::closed
                                                                    : Exchange::wrong_answer;
   }
@@ -165,14 +206,14 @@ Exchange ClientLink::transfer(std::span<const std::uint8_t> request, std::vector
   }
   const std::span<const std::uint8_t> got(bytes.data(), static_cast<std::size_t>(size));
   if (serial_) {
-    if (got.size() < 5 || got[0] != unit_) {
+    if (got.size() < 5 || got[0] != unit) {
       return Exchange::wrong_answer;
     }
     answer.assign(got.begin() + 1, got.end() - 2);
   } else {
     const FrameScan scan = scan_frame(got);
     if (scan.status != FrameStatus::complete || scan.size != got.size() || scan.frame.transaction != transaction_ ||
-        scan.frame.unit != unit_) {
+        scan.frame.unit != unit) {
       return Exchange::wrong_answer;
     }
     answer.assign(scan.frame.pdu.begin(), scan.frame.pdu.end());

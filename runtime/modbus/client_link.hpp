@@ -3,10 +3,13 @@
 // libmodbus opens the link, keeps its timeouts and, on a serial line, its checksums. The answer is checked here, to the
 // byte: transaction, protocol, length, unit, function and size. Its own client takes a late answer for the next one and
 // then stays off by one for ever; here whatever is not the exact answer ends the connection. Several devices may hang
-// on one serial line, and of several processes: exchanges take turns.
+// on one serial line, and of several processes: exchanges take turns. Units behind a gateway may share one connection:
+// then each exchange is one of them, and the next opens the connection again where one ended it.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -29,6 +32,7 @@ struct SerialLink {
   char parity = 'E';
   int data_bits = 8;
   int stop_bits = 1;
+  bool has_echo = false;  ///< the adapter gives back what is sent
   friend bool operator==(const SerialLink&, const SerialLink&) = default;
 };
 
@@ -42,11 +46,14 @@ enum class Exchange : std::uint8_t {
   timeout,       ///< no whole answer in time
   closed,        ///< ended by the device
   wrong_answer,  ///< bytes that are not the answer
+  bad_checksum,  ///< on a serial line: bytes that were damaged on their way
 };
+
+inline constexpr std::size_t exchange_outcomes = 7;
 
 class ClientLink {
  public:
-  ClientLink(const std::variant<TcpLink, SerialLink>& to, std::uint8_t unit, std::chrono::milliseconds response);
+  ClientLink(const std::variant<TcpLink, SerialLink>& to, std::chrono::milliseconds response);
   ClientLink(const ClientLink&) = delete;
   ClientLink& operator=(const ClientLink&) = delete;
   ClientLink(ClientLink&&) = delete;
@@ -54,12 +61,12 @@ class ClientLink {
   ~ClientLink();
 
   [[nodiscard]] bool is_open() const { return open_; }
-  /// False where the device is not there within the response time.
+  /// False where the device is not there within the response time. Nothing to do where it is open.
   bool open();
   void close();
-  /// Sends a request and waits for its answer, at most the response time. All but answered and exception close the
-  /// link.
-  Exchange exchange(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
+  /// Sends a request to a unit and waits for its answer, at most the response time. All but answered and exception
+  /// close the link. One that another user of the link closed is opened first.
+  Exchange exchange(std::uint8_t unit, std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
   /// From another thread: ends a wait for an answer at once.
   void interrupt();
 
@@ -67,15 +74,18 @@ class ClientLink {
   struct Free {
     void operator()(void* context) const;
   };
-  Exchange transfer(std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
-  [[nodiscard]] Exchange send(std::span<const std::uint8_t> request);
+  bool connect();
+  Exchange transfer(std::uint8_t unit, std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
+  [[nodiscard]] Exchange send(std::uint8_t unit, std::span<const std::uint8_t> request);
+  [[nodiscard]] Exchange take_echo(std::span<const std::uint8_t> sent);
 
   std::unique_ptr<void, Free> context_;
   bool serial_;
-  std::uint8_t unit_;
+  bool has_echo_;
   std::chrono::milliseconds response_;
   std::uint16_t transaction_ = 0;
-  bool open_ = false;
+  std::atomic<bool> open_{false};
+  std::mutex turns_;        ///< of those who use the link
   std::mutex socket_lock_;  ///< of open, close and interrupt
   bool interrupted_ = false;
 };

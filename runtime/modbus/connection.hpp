@@ -63,6 +63,9 @@ class Connection {
   [[nodiscard]] std::span<const std::uint8_t> output() const { return std::span(output_).subspan(output_sent_); }
   void sent(std::size_t count, Instant now);
 
+  /// Since when the client has asked nothing; its connection where it never did.
+  [[nodiscard]] Instant silent_since() const { return last_request_; }
+
   /// Why the connection must end at this instant, if it must.
   [[nodiscard]] std::optional<Ending> due(Instant now) const;
   /// The next instant at which `due` may change by itself.

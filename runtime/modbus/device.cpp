@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <numeric>
@@ -13,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "runtime/modbus/value_bits.hpp"
+#include "runtime/modbus/point_format.hpp"
 #include "runtime/task/exchange.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -35,13 +34,14 @@ std::uint32_t most_of(const Block& block) {
 }
 
 void check(const RemoteValue& value) {
-  if (holds_bits(value.at.area) != (value.type == PointType::boolean)) {
+  const bool is_bit = holds_bits(value.at.area) || value.at.is_bit();
+  if (is_bit != (value.format.type == PointType::boolean) || (holds_bits(value.at.area) && value.at.is_bit())) {
     throw std::invalid_argument("booleans lie among bits, other values among registers");
   }
   if (value.written && value.at.area != Area::coil && value.at.area != Area::holding_register) {
     throw std::invalid_argument("inputs of a device are not written");
   }
-  if (value.at.address + registers_of(value.type) > 0x10000) {
+  if (value.at.address + registers_of(value.format.type) > 0x10000) {
     throw std::invalid_argument("a value lies behind the last address");
   }
 }
@@ -55,15 +55,19 @@ std::vector<Block> blocks_of(const std::vector<RemoteValue>& values) {
   for (const std::size_t i : order) {
     const RemoteValue& value = values[i];
     check(value);
-    const auto width = static_cast<std::uint32_t>(registers_of(value.type));
-    const bool fits = !blocks.empty() && blocks.back().area == value.at.area &&
-                      blocks.back().written == value.written &&
-                      blocks.back().address + blocks.back().count == value.at.address &&
-                      blocks.back().count + width <= most_of(blocks.back());
+    const auto width = static_cast<std::uint32_t>(registers_of(value.format.type));
+    const std::uint32_t end = value.at.address + width;
+    const bool joins = !blocks.empty() && blocks.back().area == value.at.area &&
+                       blocks.back().written == value.written &&
+                       blocks.back().address + blocks.back().count >= value.at.address &&
+                       end - blocks.back().address <= most_of(blocks.back());
+    // What is read may share registers: bits of one, or one value in two formats. Of what is written, bits alone.
+    const bool shares = joins && blocks.back().address + blocks.back().count > value.at.address;
+    const bool fits = joins && (!shares || !value.written || value.at.is_bit());
     if (!fits) {
       blocks.push_back({.area = value.at.area, .written = value.written, .address = value.at.address});
     }
-    blocks.back().count += width;
+    blocks.back().count = std::max(blocks.back().count, end - blocks.back().address);
     blocks.back().values.push_back(i);
   }
   return blocks;
@@ -85,7 +89,7 @@ class Device::Worker {
         order_(blocks_.size()),
         failed_(blocks_.size()),
         cells_(options.values.size()),
-        link_(options.link, options.unit, options.response) {
+        link_(work_.link ? work_.link : std::make_shared<ClientLink>(options.link, options.response)) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     if (work_.own_thread) {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -97,8 +101,8 @@ class Device::Worker {
   Worker& operator=(Worker&&) = delete;
   ~Worker() {
     thread_.request_stop();
-    if (std::ranges::none_of(blocks_, &Block::written)) {
-      link_.interrupt();
+    if (std::ranges::none_of(blocks_, &Block::written) && work_.link == nullptr) {
+      link_->interrupt();
     }
   }
 
@@ -127,9 +131,19 @@ class Device::Worker {
     return longest.count() > 0 ? longest : std::max<std::chrono::nanoseconds>(10 * options_.period, options_.response);
   }
 
-  [[nodiscard]] DeviceStatus status() const {
-    const std::scoped_lock lock(mutex_);
-    return status_;
+  [[nodiscard]] DeviceStatus status() const noexcept {
+    const auto count_of = [&](Exchange outcome) {
+      return counts_[static_cast<std::size_t>(outcome)].load(std::memory_order_relaxed);
+    };
+    return {.state = state_.load(std::memory_order_relaxed),
+            .connections = connections_.load(std::memory_order_relaxed),
+            .answers = count_of(Exchange::answered),
+            .exceptions = count_of(Exchange::exception),
+            .no_link = count_of(Exchange::no_link),
+            .timeouts = count_of(Exchange::timeout),
+            .closed = count_of(Exchange::closed),
+            .wrong_answers = count_of(Exchange::wrong_answer),
+            .bad_checksums = count_of(Exchange::bad_checksum)};
   }
 
   [[nodiscard]] std::uint64_t not_taken() const noexcept { return not_taken_.load(std::memory_order_relaxed); }
@@ -141,7 +155,7 @@ class Device::Worker {
   }
 
   bool round() {
-    if ((!link_.is_open() && !connect()) || !serve_all({})) {
+    if ((!link_->is_open() && !connect()) || !serve_all({})) {
       lose();
       return false;
     }
@@ -174,7 +188,7 @@ class Device::Worker {
     auto wait = options_.first_wait;
     while (!stop.stop_requested()) {
       const auto begin = Clock::now();
-      if (!link_.is_open() && !connect()) {
+      if (!link_->is_open() && !connect()) {
         wait = pause(stop, wait);
         continue;
       }
@@ -191,7 +205,7 @@ class Device::Worker {
     attempt_ = Attempt::failed_last;
     put_in_order();
     for (const std::size_t i : order_) {
-      if (blocks_[i].written && link_.is_open()) {
+      if (blocks_[i].written && link_->is_open()) {
         (void)serve(blocks_[i]);
       }
     }
@@ -231,20 +245,19 @@ class Device::Worker {
   }
 
   bool connect() {
-    set_state(LinkState::connecting);
-    if (!link_.open()) {
+    state_.store(LinkState::connecting, std::memory_order_relaxed);
+    if (!link_->open()) {
       count(Exchange::no_link);
       return false;
     }
-    const std::scoped_lock lock(mutex_);
-    status_.state = LinkState::running;
-    ++status_.connections;
+    state_.store(LinkState::running, std::memory_order_relaxed);
+    connections_.fetch_add(1, std::memory_order_relaxed);
     recovers_ = true;
     return true;
   }
 
   void lose() {
-    set_state(LinkState::waiting);
+    state_.store(LinkState::waiting, std::memory_order_relaxed);
     for (Cell& cell : cells_) {
       cell.quality = cell.quality == Quality::never ? Quality::never : Quality::lost;
       tell(cell);
@@ -263,33 +276,8 @@ class Device::Worker {
     woken_.wait_until(lock, stop, until, [] { return false; });
   }
 
-  void set_state(LinkState state) {
-    const std::scoped_lock lock(mutex_);
-    status_.state = state;
-  }
-
   void count(Exchange outcome) {
-    const std::scoped_lock lock(mutex_);
-    switch (outcome) {
-      case Exchange::answered:
-        ++status_.answers;
-        break;
-      case Exchange::exception:
-        ++status_.exceptions;
-        break;
-      case Exchange::no_link:
-        ++status_.no_link;
-        break;
-      case Exchange::timeout:
-        ++status_.timeouts;
-        break;
-      case Exchange::closed:
-        ++status_.closed;
-        break;
-      case Exchange::wrong_answer:
-        ++status_.wrong_answers;
-        break;
-    }
+    counts_.at(static_cast<std::size_t>(outcome)).fetch_add(1, std::memory_order_relaxed);
   }
 
   Exchange serve(const Block& block) {
@@ -298,7 +286,7 @@ class Device::Worker {
       return Exchange::answered;  // not all of its values have been given yet, or another writes now
     }
     std::vector<std::uint8_t> answer;
-    const Exchange outcome = link_.exchange(request, answer);
+    const Exchange outcome = link_->exchange(options_.unit, request, answer);
     count(outcome);
     answers_ += is_sound(outcome) ? 1 : 0;
     for (const std::size_t i : block.values) {
@@ -306,7 +294,7 @@ class Device::Worker {
       if (outcome == Exchange::exception) {
         cell.quality = cell.quality == Quality::never ? Quality::never : Quality::refused;
       } else if (outcome == Exchange::answered) {
-        const auto value = block.written ? std::optional(cell.sent) : decoded(block, options_.values[i], answer);
+        const auto value = block.written ? std::optional(cell.sent) : taken_from(answer, block, options_.values[i]);
         cell.quality = value ? Quality::good : Quality::refused;
         not_taken_.fetch_add(value ? 0 : 1, std::memory_order_relaxed);
         cell.value = value.value_or(cell.value);
@@ -339,39 +327,46 @@ class Device::Worker {
         return {};
       }
       cells_[i].sent = cells_[i].to_write.load(std::memory_order_relaxed);
-      const std::uint64_t pattern = bits_of(cells_[i].sent, value.type);
+      const auto code = encoded(cells_[i].sent, value.format);
+      if (!code) {
+        return {};  // what is not a number has no bits there: the device keeps what it was given last
+      }
+      const std::uint64_t pattern = code->bits << (value.at.is_bit() ? static_cast<unsigned>(value.at.bit) : 0U);
       const std::uint32_t offset = value.at.address - block.address;
       if (bits) {
         request[6 + offset / 8] |= static_cast<std::uint8_t>(pattern << offset % 8);
         continue;
       }
       std::array<std::uint16_t, 4> words{};
-      const auto used = std::span(words).first(registers_of(value.type));
-      to_registers(pattern, options_.order, used);
+      const auto used = std::span(words).first(registers_of(value.format.type));
+      to_registers(pattern, value.format.order, used);
       for (std::size_t word = 0; word < used.size(); ++word) {
-        request[6 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] >> 8U);
-        request[7 + 2 * (offset + word)] = static_cast<std::uint8_t>(used[word] & 0xFFU);
+        request[6 + 2 * (offset + word)] |= static_cast<std::uint8_t>(used[word] >> 8U);
+        request[7 + 2 * (offset + word)] |= static_cast<std::uint8_t>(used[word] & 0xFFU);
       }
     }
     return request;
   }
 
   /// Nothing where it is none that may be taken.
-  [[nodiscard]] std::optional<double> decoded(const Block& block, const RemoteValue& value,
-                                              const std::vector<std::uint8_t>& answer) const {
+  [[nodiscard]] static std::optional<double> taken_from(const std::vector<std::uint8_t>& answer, const Block& block,
+                                                        const RemoteValue& value) {
     const std::uint32_t offset = value.at.address - block.address;
+    std::uint64_t bits = 0;
     if (holds_bits(block.area)) {
-      return answer[2 + offset / 8] >> offset % 8 & 1U;
+      bits = answer[2 + offset / 8] >> offset % 8 & 1U;
+    } else {
+      std::array<std::uint16_t, 4> words{};
+      const auto used = std::span(words).first(registers_of(value.format.type));
+      for (std::size_t word = 0; word < used.size(); ++word) {
+        const std::size_t at = 2 + 2 * (offset + word);
+        used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
+      }
+      bits = from_registers(used, value.format.order);
+      bits = value.at.is_bit() ? bits >> static_cast<unsigned>(value.at.bit) & 1U : bits;
     }
-    std::array<std::uint16_t, 4> words{};
-    const auto used = std::span(words).first(registers_of(value.type));
-    for (std::size_t word = 0; word < used.size(); ++word) {
-      const std::size_t at = 2 + 2 * (offset + word);
-      used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
-    }
-    const auto read = value_of(from_registers(used, options_.order), value.type);
-    const bool is_fit = read && std::isfinite(*read) && *read >= value.low && *read <= value.high;
-    return is_fit ? read : std::nullopt;
+    const auto number = taken(bits, value.format, value.low, value.high);
+    return number && holds(RegisterType(value.of), *number) ? number : std::nullopt;
   }
 
   const DeviceOptions options_;
@@ -384,14 +379,37 @@ class Device::Worker {
   std::uint64_t answers_ = 0;          ///< exceptions among them
   bool recovers_ = true;               ///< no round of this link went well yet
   Attempt attempt_ = Attempt::failed_last;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;  ///< of the sleep between two rounds
   std::condition_variable_any woken_;
   std::vector<Cell> cells_;
-  DeviceStatus status_;
+  std::atomic<LinkState> state_{LinkState::connecting};
+  std::atomic<std::uint64_t> connections_{0};
+  std::array<std::atomic<std::uint64_t>, exchange_outcomes> counts_{};
   std::atomic<std::uint64_t> not_taken_{0};
-  ClientLink link_;
+  const std::shared_ptr<ClientLink> link_;
   std::jthread thread_;
 };
+
+std::vector<std::shared_ptr<ClientLink>> shared_links(std::span<const DeviceOptions> devices) {
+  std::vector<std::shared_ptr<ClientLink>> links(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (!devices[i].shares_connection || links[i] != nullptr) {
+      continue;
+    }
+    const auto shares = [&](const DeviceOptions& other) {
+      return other.shares_connection && other.link == devices[i].link;
+    };
+    auto response = devices[i].response;
+    for (const DeviceOptions& other : devices) {
+      response = shares(other) ? std::max(response, other.response) : response;
+    }
+    const auto link = std::make_shared<ClientLink>(devices[i].link, response);
+    for (std::size_t k = i; k < devices.size(); ++k) {
+      links[k] = shares(devices[k]) ? link : links[k];
+    }
+  }
+  return links;
+}
 
 Device::Device(const DeviceOptions& options, DeviceWork work)
     : worker_(std::make_unique<Worker>(options, std::move(work))) {}
@@ -415,7 +433,7 @@ bool Device::has_taken(std::size_t value, double number) const {
 bool Device::round() {
   return worker_->round();
 }
-DeviceStatus Device::status() const {
+DeviceStatus Device::status() const noexcept {
   return worker_->status();
 }
 

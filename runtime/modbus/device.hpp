@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,8 +26,9 @@
 namespace hysteron::runtime::modbus {
 
 struct RemoteValue {
-  Stretch at{};  ///< the count follows from the type
-  PointType type = PointType::uint16;
+  Stretch at{};  ///< the count follows from the format
+  PointFormat format{.type = PointType::uint16};
+  PointType of = PointType::real64;         ///< of the input or output: a value that is none of it is not taken
   bool written = false;                     ///< sent to the device every period, once it has a value; else read from it
   std::chrono::nanoseconds longest_age{0};  ///< beyond that it is old; 0: ten periods, or the response time
   double low = -std::numeric_limits<double>::infinity();  ///< of what is read: what is outside is not taken
@@ -38,7 +40,7 @@ struct DeviceOptions {
   std::string name{};
   std::variant<TcpLink, SerialLink> link{};
   std::uint8_t unit = 1;
-  WordOrder order = WordOrder::abcd;
+  bool shares_connection = false;  ///< over TCP, with the other devices at this host and port that share it
   std::vector<RemoteValue> values{};
   std::chrono::nanoseconds period = std::chrono::milliseconds(5);
   std::chrono::milliseconds response{200};   ///< for a whole answer, and for a connection
@@ -49,8 +51,9 @@ struct DeviceOptions {
 
 /// Who works for a device, and whether it may write.
 struct DeviceWork {
-  bool own_thread = true;             ///< else the owner calls round()
-  std::function<bool()> may_write{};  ///< asked before every write, in the thread that writes; none: it may
+  bool own_thread = true;              ///< else the owner calls round()
+  std::function<bool()> may_write{};   ///< asked before every write, in the thread that writes; none: it may
+  std::shared_ptr<ClientLink> link{};  ///< that it shares with others; none: one of its own
 };
 
 enum class Quality : std::uint8_t {
@@ -78,12 +81,16 @@ struct DeviceStatus {
   std::uint64_t timeouts = 0;
   std::uint64_t closed = 0;
   std::uint64_t wrong_answers = 0;
+  std::uint64_t bad_checksums = 0;
 };
+
+/// By device, the link that it shares with others; null where it has its own.
+[[nodiscard]] std::vector<std::shared_ptr<ClientLink>> shared_links(std::span<const DeviceOptions> devices);
 
 class Device {
  public:
-  /// Begins at once. Throws std::invalid_argument where a value is written to an area that can only be read, or is no
-  /// boolean among bits.
+  /// Begins at once. A register of which bits are written is written whole, its other bits as 0. Throws
+  /// std::invalid_argument where a value is written to an area that can only be read, or is no boolean among bits.
   explicit Device(const DeviceOptions& options, DeviceWork work = {});
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -96,8 +103,9 @@ class Device {
   void write(std::size_t value, double number);
   /// Whether the device took this number within the longest age of the value, even where the link was lost since.
   [[nodiscard]] bool has_taken(std::size_t value, double number) const;
-  [[nodiscard]] DeviceStatus status() const;
-  /// Values that were read and not taken: beyond their limits, not finite, or an integer that no double holds.
+  /// From any thread; nobody is waited for.
+  [[nodiscard]] DeviceStatus status() const noexcept;
+  /// Values that were read and not taken: beyond their limits, not finite, none of their format or of their input.
   [[nodiscard]] std::uint64_t not_taken() const noexcept;
   /// The age beyond which a value is old.
   [[nodiscard]] std::chrono::nanoseconds longest_age(std::size_t value) const;

@@ -1,5 +1,6 @@
 #include "runtime/modbus/discovery.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -12,6 +13,9 @@ namespace {
 constexpr std::array<std::uint16_t, 2> magic{0x4859, 0x5354};  // HYST
 constexpr std::uint16_t version = 1;
 constexpr std::uint16_t point_record = 1;
+constexpr std::uint16_t formatted_record = 2;
+constexpr std::uint16_t files_record = 3;
+constexpr std::uint16_t whole_register = 0xFFFF;
 constexpr std::uint16_t end_of_chain = 0xFFFF;
 constexpr std::uint16_t may_be_written = 0x8000;
 constexpr std::array<std::uint16_t, 4> area_digits{0, 1, 4, 3};  // as Area: coil, discrete, holding, input
@@ -70,8 +74,30 @@ class WordReader {
   bool failed_ = false;
 };
 
-std::optional<DiscoveredPoint> read_point(WordReader& reader) {
-  DiscoveredPoint found;
+bool is_plain(const RegisterMap& map, const MapEntry& entry) {
+  return !entry.at.is_bit() && entry.format == PointFormat{.type = map.point_of(entry).type, .order = map.order()};
+}
+
+std::uint16_t number_of(RegisterType type) {
+  return static_cast<std::uint16_t>(std::ranges::find(register_types, type) - register_types.begin());
+}
+
+/// Scale, offset, word order and bit; false where they are none.
+bool read_format(WordReader& reader, DiscoveredPoint& found) {
+  found.format.scale = reader.real();
+  found.format.offset = reader.real();
+  const std::uint16_t order = reader.word();
+  const std::uint16_t bit = reader.word();
+  if (order >= word_orders.size() || (bit > 15 && bit != whole_register)) {
+    return false;
+  }
+  found.format.order = word_orders.at(order);
+  found.at.bit = bit == whole_register ? no_bit : static_cast<std::int8_t>(bit);
+  return true;
+}
+
+std::optional<DiscoveredPoint> read_point(WordReader& reader, bool is_formatted, WordOrder order) {
+  DiscoveredPoint found{.format = {.order = order}};
   const std::uint16_t length = reader.word();
   const std::size_t before = reader.left();
   const std::uint16_t digit = reader.word();
@@ -83,14 +109,16 @@ std::optional<DiscoveredPoint> read_point(WordReader& reader) {
   found.point.name = reader.text();
   found.point.unit = reader.text();
   const std::uint16_t kind = access & 0xFFU;
-  if (reader.failed() || before - reader.left() != length || type >= point_types.size() ||
+  if ((is_formatted && !read_format(reader, found)) || reader.failed() || before - reader.left() != length ||
+      type >= (is_formatted ? register_types.size() : point_types.size()) ||
       kind > static_cast<std::uint16_t>(PointKind::command)) {
     return std::nullopt;
   }
-  found.point.type = static_cast<PointType>(type);
+  found.format.type = register_types.at(type);
+  found.point.type = found.format.type.type;
   found.point.kind = static_cast<PointKind>(kind);
   found.point.writable = (access & may_be_written) != 0;
-  found.at.count = static_cast<std::uint32_t>(registers_of(found.point.type));
+  found.at.count = static_cast<std::uint32_t>(registers_of(found.format.type));
   for (const Area area : areas) {
     if (area_digits[static_cast<std::size_t>(area)] == digit) {
       found.at.area = area;
@@ -100,9 +128,7 @@ std::optional<DiscoveredPoint> read_point(WordReader& reader) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
+std::vector<std::uint16_t> head_of(const RegisterMap& map, std::size_t points) {
   std::vector<std::uint16_t> words(magic.begin(), magic.end());
   words.push_back(version);
   words.push_back(static_cast<std::uint16_t>(map.order()));
@@ -112,25 +138,47 @@ std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
     std::from_chars(digits, digits + 4, four_digits, 16);
     words.push_back(four_digits);
   }
-  words.push_back(static_cast<std::uint16_t>(map.entries().size()));
+  words.push_back(static_cast<std::uint16_t>(points));
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
+  std::vector<std::uint16_t> words = head_of(map, map.entries().size());
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
     std::vector<std::uint16_t> record;
     record.push_back(area_digits[static_cast<std::size_t>(entry.at.area)]);
     record.push_back(static_cast<std::uint16_t>(entry.at.address));
-    record.push_back(static_cast<std::uint16_t>(point.type));
+    record.push_back(number_of(entry.format.type));
     record.push_back(
         static_cast<std::uint16_t>((point.writable ? may_be_written : 0U) | static_cast<unsigned>(point.kind)));
     put_real(record, point.low);
     put_real(record, point.high);
     put_text(record, point.name);
     put_text(record, point.unit);
-    words.push_back(point_record);
+    if (!is_plain(map, entry)) {
+      put_real(record, entry.format.scale);
+      put_real(record, entry.format.offset);
+      record.push_back(static_cast<std::uint16_t>(entry.format.order));
+      record.push_back(entry.at.is_bit() ? static_cast<std::uint16_t>(entry.at.bit) : whole_register);
+    }
+    words.push_back(is_plain(map, entry) ? point_record : formatted_record);
     words.push_back(static_cast<std::uint16_t>(record.size()));
     words.insert(words.end(), record.begin(), record.end());
   }
   words.push_back(end_of_chain);
   words.push_back(0);
+  return words;
+}
+
+std::vector<std::uint16_t> make_entrance(const RegisterMap& map, std::size_t chain_size) {
+  std::vector<std::uint16_t> words = head_of(map, 0);
+  const std::array<std::uint16_t, 6> rest{
+      files_record, 2, static_cast<std::uint16_t>(chain_size >> 16U), static_cast<std::uint16_t>(chain_size & 0xFFFFU),
+      end_of_chain, 0};
+  words.insert(words.end(), rest.begin(), rest.end());
   return words;
 }
 
@@ -151,17 +199,20 @@ std::optional<DiscoveredMap> read_chain(std::span<const std::uint16_t> chain) {
     }
   }
   const std::size_t count = reader.word();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (reader.word() != point_record) {
-      return std::nullopt;
-    }
-    auto point = read_point(reader);
+  std::uint16_t record = reader.word();
+  for (; (record == point_record || record == formatted_record) && !reader.failed(); record = reader.word()) {
+    auto point = read_point(reader, record == formatted_record, map.order);
     if (!point) {
       return std::nullopt;
     }
     map.points.push_back(std::move(*point));
   }
-  const bool ends = reader.word() == end_of_chain && reader.word() == 0 && !reader.failed();
+  if (record == files_record && reader.word() == 2) {
+    const std::uint32_t high = reader.word();
+    map.in_files = high << 16U | reader.word();
+    record = reader.word();
+  }
+  const bool ends = map.points.size() == count && record == end_of_chain && reader.word() == 0 && !reader.failed();
   return ends ? std::optional(std::move(map)) : std::nullopt;
 }
 

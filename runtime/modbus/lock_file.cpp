@@ -13,16 +13,7 @@
 namespace hysteron::runtime::modbus {
 namespace {
 
-std::optional<PointType> type_named(std::string_view name) {
-  for (const PointType type : point_types) {
-    if (name_of(type) == name) {
-      return type;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<LockLine> parse_line(const std::string& text) {
+std::optional<LockLine> parse_line(const std::string& text, std::uint32_t holding_end) {
   std::istringstream words(text);
   std::string area;
   std::string number;
@@ -33,20 +24,21 @@ std::optional<LockLine> parse_line(const std::string& text) {
     return std::nullopt;
   }
   const auto parsed = parse_address(area + " " + number);
-  const auto known = type_named(type);
-  if (!parsed || !known || holds_bits(parsed->at.area) != (*known == PointType::boolean)) {
+  const auto known = register_type_named(type);
+  if (!parsed || !known || (holds_bits(parsed->at.area) || parsed->at.is_bit()) != (*known == PointType::boolean)) {
     return std::nullopt;
   }
   line.type = *known;
   line.at = parsed->at;
   line.at.count = static_cast<std::uint32_t>(registers_of(*known));
-  const std::uint32_t end = line.at.area == Area::holding_register ? chain_address : 0x10000;
+  const std::uint32_t end = line.at.area == Area::holding_register ? holding_end : 0x10000;
   return line.at.address + line.at.count <= end ? std::optional(line) : std::nullopt;
 }
 
 }  // namespace
 
-std::vector<LockLine> read_lock(const std::string& file, const std::string& text, Diagnostics& diagnostics) {
+std::vector<LockLine> read_lock(const std::string& file, const std::string& text, std::uint32_t holding_end,
+                                Diagnostics& diagnostics) {
   std::vector<LockLine> lines;
   std::map<std::string, Place> seen;
   std::istringstream stream(text);
@@ -60,7 +52,7 @@ std::vector<LockLine> read_lock(const std::string& file, const std::string& text
       continue;
     }
     const Place place{.file = file, .line = number, .column = 1, .length = static_cast<std::uint32_t>(line.size())};
-    auto parsed = parse_line(line);
+    auto parsed = parse_line(line, holding_end);
     if (!parsed) {
       diagnostics.error(error::lock_file_syntax, place, "The line is no address of a lock file.",
                         "write area, number, type and name, as in: holding 16 real64 HYST.C1; or delete the line, and "
@@ -83,14 +75,13 @@ std::vector<LockLine> read_lock(const std::string& file, const std::string& text
 std::string lock_text(const RegisterMap& map) {
   std::string text = fmt::format("# Addresses of {}. Keep this file with the diagram.\n", map.title());
   for (const MapEntry& entry : map.entries()) {
-    const Point& point = map.point_of(entry);
-    text += fmt::format("{} {} {} {}\n", name_of(entry.at.area), entry.at.address, name_of(point.type), point.name);
+    text += fmt::format("{} {} {}\n", address_text(entry.at), name_of(entry.format.type), map.point_of(entry).name);
   }
   if (!map.retired().empty()) {
     text += "# Of points that are gone; nobody else gets these.\n";
   }
   for (const RetiredAddress& gone : map.retired()) {
-    text += fmt::format("{} {} {} {}\n", name_of(gone.at.area), gone.at.address, name_of(gone.type), gone.name);
+    text += fmt::format("{} {} {}\n", address_text(gone.at), name_of(gone.type), gone.name);
   }
   return text;
 }

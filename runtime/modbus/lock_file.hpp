@@ -3,6 +3,7 @@
 //   # Addresses of PIEZO_FF. Keep this file with the diagram.
 //   holding 0 real64 HYST.C1
 //   coil 0 boolean task.commit
+//   holding 4.3 boolean READY
 #pragma once
 
 #include <string>
@@ -14,13 +15,14 @@ namespace hysteron::runtime::modbus {
 
 struct LockLine {
   std::string name{};
-  PointType type = PointType::boolean;
+  RegisterType type = PointType::boolean;
   Stretch at{};
   Place place{};
 };
 
-/// The lines of a lock file that are sound; the others become errors HY820 to HY822.
+/// The lines of a lock file that are sound; the others become errors HY820 to HY822. Holding registers end before
+/// `holding_end`.
 [[nodiscard]] std::vector<LockLine> read_lock(const std::string& file, const std::string& text,
-                                              Diagnostics& diagnostics);
+                                              std::uint32_t holding_end, Diagnostics& diagnostics);
 
 }  // namespace hysteron::runtime::modbus

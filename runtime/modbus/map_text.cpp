@@ -35,6 +35,36 @@ std::string access_of(const Point& point) {
   return point.writable ? "read write" : "read";
 }
 
+/// Of what has one.
+std::string_view order_of(const MapEntry& entry) {
+  return entry.at.count > 1 ? name_of(entry.format.order) : std::string_view();
+}
+
+/// The type as a reader of a table wants it: int16, 0.01·raw - 5, CDAB where that is not the order of the map.
+std::string format_text(const MapEntry& entry, WordOrder usual) {
+  const PointFormat& format = entry.format;
+  std::string text = name_of(format.type);
+  if (format.is_scaled()) {
+    text += fmt::format(", {}·raw", number_text(format.scale));
+    text += format.offset == 0.0 ? ""
+            : format.offset > 0  ? fmt::format(" + {}", number_text(format.offset))
+                                 : fmt::format(" - {}", number_text(-format.offset));
+  }
+  return text + (entry.at.count > 1 && format.order != usual ? fmt::format(", {}", name_of(format.order)) : "");
+}
+
+std::string address_of(const Stretch& at) {
+  return at.is_bit() ? fmt::format("{}.{}", at.address, at.bit) : std::to_string(at.address);
+}
+
+std::string discovery_text(const RegisterMap& map) {
+  return map.chain().empty() ? std::string()
+         : map.is_in_files()
+             ? fmt::format("The same table can be read over Modbus by function 20, as holding register {} says.\n",
+                           chain_address)
+             : fmt::format("The same table can be read over Modbus from holding register {}.\n", chain_address);
+}
+
 std::string markdown_cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -65,16 +95,19 @@ std::string namespace_of(const std::string& title) {
 
 std::string reference_number(const Stretch& at) {
   constexpr std::array<int, 4> digits{0, 1, 4, 3};
-  return fmt::format("{}{:05}", digits[static_cast<std::size_t>(at.area)], at.address + 1);
+  const std::string bit = at.is_bit() ? fmt::format(".{}", at.bit) : "";
+  return fmt::format("{}{:05}{}", digits[static_cast<std::size_t>(at.area)], at.address + 1, bit);
 }
 
 std::string as_csv(const RegisterMap& map) {
-  std::string text = "area,address,registers,type,name,unit,low,high,access,kind,meaning\n";
+  std::string text = "area,address,registers,type,name,unit,low,high,access,kind,meaning,bit,scale,offset,word_order\n";
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", name_of(entry.at.area), entry.at.address, entry.at.count,
-                        name_of(point.type), csv_cell(point.name), csv_cell(point.unit), number_text(point.low),
-                        number_text(point.high), access_of(point), kind_name(point.kind), csv_cell(point.meaning));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name_of(entry.at.area), entry.at.address,
+                        entry.at.count, name_of(entry.format.type), csv_cell(point.name), csv_cell(point.unit),
+                        number_text(point.low), number_text(point.high), access_of(point), kind_name(point.kind),
+                        csv_cell(point.meaning), entry.at.is_bit() ? std::to_string(entry.at.bit) : "",
+                        number_text(entry.format.scale), number_text(entry.format.offset), order_of(entry));
   }
   return text;
 }
@@ -88,7 +121,11 @@ std::string as_json(const RegisterMap& map) {
                     {"address", entry.at.address},
                     {"registers", entry.at.count},
                     {"reference", reference_number(entry.at)},
-                    {"type", name_of(point.type)},
+                    {"bit", entry.at.is_bit() ? nlohmann::ordered_json(int{entry.at.bit}) : nullptr},
+                    {"type", name_of(entry.format.type)},
+                    {"scale", entry.format.scale},
+                    {"offset", entry.format.offset},
+                    {"word_order", entry.at.count > 1 ? nlohmann::ordered_json(order_of(entry)) : nullptr},
                     {"unit", point.unit},
                     {"low", number_or_null<nlohmann::ordered_json>(point.low)},
                     {"high", number_or_null<nlohmann::ordered_json>(point.high)},
@@ -96,28 +133,28 @@ std::string as_json(const RegisterMap& map) {
                     {"kind", kind_name(point.kind)},
                     {"meaning", point.meaning}});
   }
-  const nlohmann::ordered_json root{{"title", map.title()},
-                                    {"hash", map.hash()},
-                                    {"word_order", name_of(map.order())},
-                                    {"discovery", chain_address},
-                                    {"points", list}};
+  const nlohmann::ordered_json root{
+      {"title", map.title()},
+      {"hash", map.hash()},
+      {"word_order", name_of(map.order())},
+      {"discovery", map.chain().empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(chain_address)},
+      {"points", list}};
   return root.dump(2) + "\n";
 }
 
 std::string as_markdown(const RegisterMap& map) {
   std::string text = fmt::format(
-      "# Registers of {}\n\nMap `{}`. Word order {}: values of 32 and 64 bits take two and four registers.\n"
-      "The same table can be read over Modbus from holding register {}.\n\n"
+      "# Registers of {}\n\nMap `{}`. Word order {}: values of 32 and 64 bits take two and four registers.\n{}\n"
       "| area | address | reference | type | name | unit | from | to | access | meaning |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
-      map.title(), map.hash(), name_of(map.order()), chain_address);
+      map.title(), map.hash(), name_of(map.order()), discovery_text(map));
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
     const auto bound = [](double value) { return std::isfinite(value) ? number_text(value) : std::string(); };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(entry.at.area),
-                        entry.at.address, reference_number(entry.at), name_of(point.type), markdown_cell(point.name),
-                        markdown_cell(point.unit), bound(point.low), bound(point.high), access_of(point),
-                        markdown_cell(point.meaning));
+                        address_of(entry.at), reference_number(entry.at), format_text(entry, map.order()),
+                        markdown_cell(point.name), markdown_cell(point.unit), bound(point.low), bound(point.high),
+                        access_of(point), markdown_cell(point.meaning));
   }
   return text;
 }
@@ -146,6 +183,10 @@ struct Register {{
   std::string_view type;
   std::string_view unit;
   bool writable;
+  double scale;  // value = scale * raw + offset
+  double offset;
+  std::string_view word_order;
+  int bit;  // of a boolean in a register; else -1
 }};
 
 inline constexpr std::array<Register, {4}> registers{{{{
@@ -153,8 +194,10 @@ inline constexpr std::array<Register, {4}> registers{{{{
       map.title(), map.hash(), name_of(map.order()), namespace_of(map.title()), map.entries().size());
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
-    text += fmt::format("    {{{}, Area::{}, {}, {}, \"{}\", {}, {}}},\n", cpp_text(point.name), name_of(entry.at.area),
-                        entry.at.address, entry.at.count, name_of(point.type), cpp_text(point.unit), point.writable);
+    text += fmt::format("    {{{}, Area::{}, {}, {}, \"{}\", {}, {}, {}, {}, \"{}\", {}}},\n", cpp_text(point.name),
+                        name_of(entry.at.area), entry.at.address, entry.at.count, name_of(entry.format.type),
+                        cpp_text(point.unit), point.writable, number_text(entry.format.scale),
+                        number_text(entry.format.offset), order_of(entry), static_cast<int>(entry.at.bit));
   }
   text += fmt::format(R"(}}}};
 

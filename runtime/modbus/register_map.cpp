@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/discovery.hpp"
@@ -21,17 +23,13 @@ constexpr std::size_t index_of(Area area) {
   return static_cast<std::size_t>(area);
 }
 
-/// Addresses of an area that points may have; the discovery chain has the rest of the holding registers.
-constexpr std::uint32_t size_of(Area area) {
-  return area == Area::holding_register ? chain_address : 0x10000;
-}
+constexpr std::uint32_t area_size = 0x10000;
 
 std::string text_of(const Stretch& at) {
-  return at.count == 1 ? fmt::format("{} {}", name_of(at.area), at.address)
-                       : fmt::format("{} {} to {}", name_of(at.area), at.address, at.address + at.count - 1);
+  return at.count == 1 ? address_text(at) : fmt::format("{} to {}", address_text(at), at.address + at.count - 1);
 }
 
-/// Who has which address.
+/// Who has which address. Bits of one register stand beside one another, sixteen to an address.
 class Occupancy {
  public:
   struct Holder {
@@ -42,13 +40,14 @@ class Occupancy {
   /// The holder of the first address that is taken; none where the stretch is free.
   [[nodiscard]] const Holder* holder_of(const Stretch& at) const {
     const auto& taken = taken_[index_of(at.area)];
-    auto next = taken.lower_bound(at.address);
-    if (next != taken.end() && next->first < at.address + at.count) {
+    const auto [begin, end] = sixteenths(at);
+    auto next = taken.lower_bound(begin);
+    if (next != taken.end() && next->first < end) {
       return &next->second.second;
     }
     if (next != taken.begin()) {
       --next;
-      if (next->first + next->second.first > at.address) {
+      if (next->second.first > begin) {
         return &next->second.second;
       }
     }
@@ -56,10 +55,16 @@ class Occupancy {
   }
 
   void take(const Stretch& at, Holder holder) {
-    taken_[index_of(at.area)].emplace(at.address, std::pair{at.count, std::move(holder)});
+    const auto [begin, end] = sixteenths(at);
+    taken_[index_of(at.area)].emplace(begin, std::pair{end, std::move(holder)});
   }
 
  private:
+  static std::pair<std::uint32_t, std::uint32_t> sixteenths(const Stretch& at) {
+    const std::uint32_t begin = 16 * at.address + (at.is_bit() ? static_cast<std::uint32_t>(at.bit) : 0U);
+    return {begin, at.is_bit() ? begin + 1 : begin + 16 * at.count};
+  }
+
   std::array<std::map<std::uint32_t, std::pair<std::uint32_t, Holder>>, 4> taken_;
 };
 
@@ -69,29 +74,69 @@ class Placer {
       : points_(points), request_(request), placed_(points.size()) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       index_.emplace(points[i].name, i);
+      formats_.push_back({.type = points[i].type, .order = request.order});
+    }
+    is_exposed_.resize(points.size(), request.expose.empty());
+  }
+
+  void choose_exposed() {
+    for (const std::string& wanted : request_.expose) {
+      const bool is_prefix = wanted.ends_with('*');
+      const std::string_view begin = std::string_view(wanted).substr(0, wanted.size() - (is_prefix ? 1 : 0));
+      bool is_known = false;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const bool is_meant = is_prefix ? points_[i].name.starts_with(begin) : points_[i].name == begin;
+        is_exposed_[i] = is_exposed_[i] || is_meant;
+        is_known = is_known || is_meant;
+      }
+      if (!is_known) {
+        diagnostics_.error(
+            error::unknown_exposed_point, request_.expose_place,
+            fmt::format("expose names {}, which is no point.", wanted),
+            "name pins, parameters or status values as hysteron map lists them without expose; a star at "
+            "the end stands for any rest");
+      }
     }
   }
 
   void place_given() {
-    for (const GivenAddress& given : request_.given) {
+    std::vector<std::pair<const GivenRegister*, std::size_t>> known;
+    for (const GivenRegister& given : request_.given) {
       const auto point = index_.find(given.name);
       if (point == index_.end()) {
         diagnostics_.error(error::address_of_unknown_point, given.place,
-                           fmt::format("The address {} is given to {}, which is no point.", given.address, given.name),
+                           fmt::format("{} is given to {}, which is no point.",
+                                       given.address.empty() ? "A format" : "The address " + given.address, given.name),
                            "name a pin, parameter or status of the running diagram, written as hysteron map lists it");
         continue;
       }
-      if (const auto at = given_stretch(points_[point->second], given)) {
-        take(point->second, *at, given.place);
+      if (!is_exposed_[point->second]) {
+        diagnostics_.error(error::address_of_unknown_point, given.place,
+                           fmt::format("{} has a place on the map, and expose does not name it.", given.name),
+                           "add it to expose, or remove its place");
+        continue;
+      }
+      if (given.format) {
+        set_format(point->second, given);
+      }
+      known.emplace_back(&given, point->second);
+    }
+    for (const auto& [given, point] : known) {  // the width of each is known now
+      if (given->address.empty()) {
+        continue;
+      }
+      if (const auto at = given_stretch(point, *given)) {
+        take(point, *at, given->place);
       }
     }
   }
 
   void place_locked() {
-    for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, diagnostics_)) {
+    const std::uint32_t holding_end = size_of(Area::holding_register);
+    for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_)) {
       const auto point = index_.find(line.name);
-      const bool stays = point != index_.end() && points_[point->second].type == line.type &&
-                         fits(points_[point->second], line.at.area);
+      const bool stays = point != index_.end() && is_exposed_[point->second] &&
+                         formats_[point->second].type == line.type && fits(point->second, line.at);
       if (stays && placed_[point->second]) {
         continue;  // an address given by hand replaces the one in the lock file
       }
@@ -107,7 +152,7 @@ class Placer {
   void place_rest() {
     for (const std::uint32_t width : {4U, 2U, 1U}) {
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (!placed_[i] && registers_of(points_[i].type) == width) {
+        if (is_exposed_[i] && !placed_[i] && registers_of(formats_[i].type) == width) {
           place_freely(i, width);
         }
       }
@@ -120,16 +165,43 @@ class Placer {
   [[nodiscard]] std::vector<MapEntry> entries() const {
     std::vector<MapEntry> list;
     for (std::size_t i = 0; i < placed_.size(); ++i) {
-      list.push_back({i, placed_[i].value_or(Stretch{})});
+      if (placed_[i]) {
+        list.push_back({i, *placed_[i], formats_[i]});
+      }
     }
-    std::ranges::sort(list, {}, [](const MapEntry& entry) { return std::pair(entry.at.area, entry.at.address); });
+    std::ranges::sort(list, {},
+                      [](const MapEntry& entry) { return std::tuple(entry.at.area, entry.at.address, entry.at.bit); });
     return list;
   }
 
  private:
-  static bool fits(const Point& point, Area area) {
-    return holds_bits(area) == (point.type == PointType::boolean) &&
-           (!point.writable || area == Area::coil || area == Area::holding_register);
+  /// Addresses of an area that points may have; the discovery chain has the rest of the holding registers.
+  [[nodiscard]] std::uint32_t size_of(Area area) const {
+    return area == Area::holding_register && request_.has_discovery ? chain_address : area_size;
+  }
+
+  [[nodiscard]] bool fits(std::size_t point, const Stretch& at) const {
+    return (holds_bits(at.area) || at.is_bit()) == (formats_[point].type == PointType::boolean) &&
+           (!points_[point].writable || at.area == Area::coil || at.area == Area::holding_register);
+  }
+
+  void set_format(std::size_t point, const GivenRegister& given) {
+    const PointFormat format = given.format->or_else(points_[point].type, request_.order);
+    std::string flaw = flaw_of(format);
+    if (format.type == PointType::boolean && points_[point].type != PointType::boolean) {
+      flaw = fmt::format("is a {}, which no boolean holds", name_of(points_[point].type));
+    }
+    if (given.format->order && registers_of(format.type) == 1) {
+      flaw = "lies in one register, which has no word order";
+    }
+    if (!flaw.empty()) {
+      diagnostics_.error(
+          error::unfit_format, given.place, fmt::format("{} {}.", given.name, flaw),
+          "choose a type, a scale and an offset in which each value of the point is near a step; leave out "
+          "what does not apply");
+      return;
+    }
+    formats_[point] = format;
   }
 
   /// Keeps an address from being given anew. One that was given by hand is a point's, whoever had it before.
@@ -138,7 +210,8 @@ class Placer {
     if (holder != nullptr && holder->place.file == request_.lock_file) {
       refuse_overlap(line.name, line.at, line.place, *holder);
     } else if (holder == nullptr) {
-      occupancy_.take(line.at, {line.name + " (which is gone)", line.place});
+      occupancy_.take(
+          line.at, {line.name + (index_.contains(line.name) ? " (which was there)" : " (which is gone)"), line.place});
       retired_.push_back({line.at, line.type, line.name});
     }
   }
@@ -165,23 +238,25 @@ class Placer {
     placed_[point] = at;
   }
 
-  std::optional<Stretch> given_stretch(const Point& point, const GivenAddress& given) {
+  std::optional<Stretch> given_stretch(std::size_t index, const GivenRegister& given) {
+    const Point& point = points_[index];
+    const RegisterType type = formats_[index].type;
     const auto parsed = parse_address(given.address);
     if (!parsed) {
       diagnostics_.error(error::malformed_address, given.place, fmt::format("{} is no address.", given.address),
                          "write %QX0.0 to %QX99.7, %IX, %IW0 to %IW1023, %QW, %MW, %MD, %ML, or an area and a number: "
-                         "holding 16, input 3, coil 0, discrete 7");
+                         "holding 16, input 3, coil 0, discrete 7; of a bit in a register: holding 16.3");
       return std::nullopt;
     }
     Stretch at = parsed->at;
-    const auto width = static_cast<std::uint32_t>(registers_of(point.type));
-    if (!fits(point, at.area) || (!parsed->any_width && at.count != width)) {
-      diagnostics_.error(
-          error::unfit_address, given.place,
-          fmt::format("{} is {}{} and does not fit {}.", point.name, point.writable ? "a writable " : "a ",
-                      name_of(point.type), given.address),
-          "booleans fit coil and discrete (%QX, %IX), 16 bits %IW, %QW and %MW, 32 bits %MD, 64 bits %ML; what may be "
-          "written fits coil and holding alone");
+    const auto width = static_cast<std::uint32_t>(registers_of(type));
+    if (!fits(index, at) || (!parsed->any_width && at.count != width)) {
+      diagnostics_.error(error::unfit_address, given.place,
+                         fmt::format("{} is {}{} and does not fit {}.", point.name,
+                                     point.writable ? "a writable " : "a ", name_of(type), given.address),
+                         "booleans fit coil and discrete (%QX, %IX) and a bit of a register as holding 16.3, 16 bits "
+                         "%IW, %QW and %MW, "
+                         "32 bits %MD, 64 bits %ML; what may be written fits coil and holding alone");
       return std::nullopt;
     }
     at.count = width;
@@ -195,8 +270,9 @@ class Placer {
     return at;
   }
 
-  [[nodiscard]] std::vector<Stretch> ranges_for(const Point& point, std::uint32_t width) const {
-    const bool boolean = point.type == PointType::boolean;
+  [[nodiscard]] std::vector<Stretch> ranges_for(std::size_t index, std::uint32_t width) const {
+    const Point& point = points_[index];
+    const bool boolean = formats_[index].type == PointType::boolean;
     if (request_.placing == Placing::compact) {
       const Area area = boolean ? (point.writable ? Area::coil : Area::discrete_input)
                                 : (point.writable ? Area::holding_register : Area::input_register);
@@ -213,8 +289,10 @@ class Placer {
   }
 
   void place_freely(std::size_t point, std::uint32_t width) {
-    for (const Stretch& range : ranges_for(points_[point], width)) {
-      for (std::uint32_t at = range.address; at + width <= range.address + range.count; at += width) {
+    for (const Stretch& range : ranges_for(point, width)) {
+      // Nothing becomes free again: what was passed over for this width once is passed over.
+      std::uint32_t& at = begins_.try_emplace({range.area, range.address, width}, range.address).first->second;
+      for (; at + width <= range.address + range.count; at += width) {
         const Stretch here{range.area, at, width};
         if (occupancy_.holder_of(here) == nullptr) {
           occupancy_.take(here, {points_[point].name, {}});
@@ -231,8 +309,12 @@ class Placer {
   std::span<const Point> points_;
   const MapRequest& request_;
   std::map<std::string, std::size_t, std::less<>> index_;
+  std::vector<bool> is_exposed_;
+  std::vector<PointFormat> formats_;
   std::vector<std::optional<Stretch>> placed_;
   std::vector<RetiredAddress> retired_;
+  /// Of a range by area, address and width of values: where to look for a free address.
+  std::map<std::tuple<Area, std::uint32_t, std::uint32_t>, std::uint32_t> begins_;
   Occupancy occupancy_;
   Diagnostics diagnostics_;
 };
@@ -244,19 +326,25 @@ std::span<const MapEntry> RegisterMap::entries_in(Area area) const {
   return std::span(entries_).subspan(first_[i], first_[i + 1] - first_[i]);
 }
 
-const MapEntry* RegisterMap::find(Area area, std::uint32_t address) const {
+std::span<const MapEntry> RegisterMap::covering(Area area, std::uint32_t address) const {
   const auto list = entries_in(area);
   const auto after =
       std::ranges::upper_bound(list, address, {}, [](const MapEntry& entry) { return entry.at.address; });
-  if (after == list.begin()) {
-    return nullptr;
+  auto first = after;
+  while (first != list.begin() && (first - 1)->at.address + (first - 1)->at.count > address) {
+    --first;
   }
-  const MapEntry& entry = *(after - 1);
-  return address < entry.at.address + entry.at.count ? &entry : nullptr;
+  return {first, after};
+}
+
+const MapEntry* RegisterMap::find(Area area, std::uint32_t address) const {
+  const auto found = covering(area, address);
+  return found.empty() ? nullptr : found.data();
 }
 
 RegisterMap make_register_map(std::span<const Point> points, const MapRequest& request) {
   Placer placer(points, request);
+  placer.choose_exposed();
   placer.place_given();
   placer.place_locked();
   placer.place_rest();
@@ -276,10 +364,11 @@ RegisterMap make_register_map(std::span<const Point> points, const MapRequest& r
   }
   map.first_[4] = map.entries_.size();
   map.hash_ = sha256(fmt::format("{}\n{}", name_of(map.order_), as_csv(map)));
-  map.chain_ = make_chain(map);
-  if (chain_address + map.chain_.size() > 0x10000) {
-    throw InputError(error::no_address_left, {.file = request.lock_file},
-                     fmt::format("{} points do not fit the discovery chain.", points.size()), "expose fewer points");
+  if (request.has_discovery) {
+    map.chain_ = make_chain(map);
+    if (chain_address + map.chain_.size() > area_size) {
+      map.entrance_ = make_entrance(map, map.chain_.size());
+    }
   }
   return map;
 }

@@ -1,9 +1,8 @@
 #include "runtime/modbus/responder.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "runtime/modbus/value_bits.hpp"
+#include "runtime/modbus/discovery.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -88,6 +87,8 @@ Exception Responder::serve(Pdu pdu, const Caller& caller, Reply& reply) {
       return write_coils(pdu, caller, reply);
     case 16:
       return write_registers(pdu, caller, reply);
+    case 20:
+      return read_files(pdu, reply);
     case 22:
       return mask_register(pdu, caller, reply);
     case 23:
@@ -117,7 +118,11 @@ Exception Responder::read_bits(Pdu pdu, Area area, Reply& reply) {
   const MapEntry* entry = map_.find(area, address);
   std::fill_n(reply.bytes.begin() + 2, (count + 7) / 8, std::uint8_t{0});
   for (std::uint32_t i = 0; i < count; ++i, ++entry) {  // every bit has its entry, so they follow each other
-    if (bits_of(now_.values[entry->point], PointType::boolean) != 0) {
+    const auto bit = bits_now(*entry);
+    if (!bit) {
+      return Exception::device_failure;
+    }
+    if (*bit != 0) {
       reply.bytes[2 + i / 8] |= static_cast<std::uint8_t>(1U << i % 8);
     }
   }
@@ -140,8 +145,7 @@ Exception Responder::read_words(Pdu pdu, Area area, Reply& reply) {
   door_.read(now_);
   put(reply, pdu[0]);
   put(reply, static_cast<std::uint8_t>(2 * count));
-  put_words(area, address, count, reply);
-  return Exception::none;
+  return put_words(area, address, count, reply);
 }
 
 Exception Responder::write_one_coil(Pdu pdu, const Caller& caller, Reply& reply) {
@@ -153,8 +157,8 @@ Exception Responder::write_one_coil(Pdu pdu, const Caller& caller, Reply& reply)
     return flaw;
   }
   writes_.clear();
-  const std::size_t point = map_.find(Area::coil, address)->point;
-  if (const auto flaw = collect(map_.points()[point], point, word_at(pdu, 3)); flaw != Exception::none) {
+  const std::uint64_t bit = word_at(pdu, 3) == 0 ? 0 : 1;
+  if (const auto flaw = collect(*map_.find(Area::coil, address), bit); flaw != Exception::none) {
     return flaw;
   }
   echo(reply, pdu, 5);
@@ -193,7 +197,7 @@ Exception Responder::write_coils(Pdu pdu, const Caller& caller, Reply& reply) {
   const MapEntry* entry = map_.find(Area::coil, address);
   for (std::uint32_t i = 0; i < count; ++i, ++entry) {
     const auto bit = static_cast<std::uint64_t>(pdu[6 + i / 8]) >> i % 8 & 1U;
-    if (const auto flaw = collect(map_.point_of(*entry), entry->point, bit); flaw != Exception::none) {
+    if (const auto flaw = collect(*entry, bit); flaw != Exception::none) {
       return flaw;
     }
   }
@@ -230,13 +234,16 @@ Exception Responder::mask_register(Pdu pdu, const Caller& caller, Reply& reply) 
     return flaw;
   }
   door_.read(now_);
-  const std::size_t point = map_.find(Area::holding_register, address)->point;
-  const Point& about = map_.points()[point];
+  const auto entries = map_.covering(Area::holding_register, address);
+  const auto now = register_bits(entries);
+  if (!now) {
+    return Exception::device_failure;
+  }
   const std::uint64_t keep = word_at(pdu, 3);
   const std::uint64_t set = word_at(pdu, 5);
   writes_.clear();
-  const std::uint64_t bits = (bits_of(now_.values[point], about.type) & keep) | (set & ~keep);
-  if (const auto flaw = collect(about, point, bits & 0xFFFFU); flaw != Exception::none) {
+  const std::uint64_t bits = (*now & keep) | (set & ~keep);
+  if (const auto flaw = collect_register(entries, bits & 0xFFFFU); flaw != Exception::none) {
     return flaw;
   }
   echo(reply, pdu, 7);
@@ -271,7 +278,40 @@ Exception Responder::write_and_read(Pdu pdu, const Caller& caller, Reply& reply)
   door_.read(now_);
   put(reply, pdu[0]);
   put(reply, static_cast<std::uint8_t>(2 * read_count));
-  put_words(Area::holding_register, read_address, read_count, reply);
+  return put_words(Area::holding_register, read_address, read_count, reply);
+}
+
+/// The chain of the discovery, as files of 10000 records.
+Exception Responder::read_files(Pdu pdu, Reply& reply) const {
+  constexpr std::size_t request_size = 7;  // reference type, file, record, length
+  constexpr std::uint8_t reference_type = 6;
+  if (pdu.size() < 2 + request_size || pdu[1] != pdu.size() - 2 || pdu[1] % request_size != 0) {
+    return Exception::illegal_value;
+  }
+  std::size_t size = 2;
+  for (Pdu rest = pdu.subspan(2); !rest.empty(); rest = rest.subspan(request_size)) {
+    size += 2 + std::size_t{2} * word_at(rest, 5);
+    if (word_at(rest, 5) == 0 || size > longest_pdu) {
+      return Exception::illegal_value;
+    }
+  }
+  put(reply, pdu[0]);
+  put(reply, static_cast<std::uint8_t>(size - 2));
+  for (Pdu rest = pdu.subspan(2); !rest.empty(); rest = rest.subspan(request_size)) {
+    const std::size_t record = word_at(rest, 3);
+    const std::size_t count = word_at(rest, 5);
+    const std::size_t first = records_of_file * (std::size_t{word_at(rest, 1)} - 1) + record;
+    const bool is_there = rest[0] == reference_type && word_at(rest, 1) > 0 && record + count <= records_of_file &&
+                          first + count <= map_.chain().size();
+    if (!is_there) {
+      return Exception::illegal_address;
+    }
+    put(reply, static_cast<std::uint8_t>(1 + 2 * count));
+    put(reply, reference_type);
+    for (const std::uint16_t word : map_.chain().subspan(first, count)) {
+      put_word(reply, word);
+    }
+  }
   return Exception::none;
 }
 
@@ -319,7 +359,7 @@ Exception Responder::identify(Pdu pdu, Reply& reply) const {
 
 bool Responder::covered(Area area, std::uint32_t address, std::uint32_t count) const {
   const std::uint32_t end = address + count;
-  const auto chain_end = chain_address + static_cast<std::uint32_t>(map_.chain().size());
+  const auto chain_end = chain_address + static_cast<std::uint32_t>(map_.chain_registers().size());
   for (std::uint32_t at = address; at < end;) {
     if (const MapEntry* entry = map_.find(area, at)) {
       at = entry->at.address + entry->at.count;
@@ -332,33 +372,67 @@ bool Responder::covered(Area area, std::uint32_t address, std::uint32_t count) c
   return true;
 }
 
-void Responder::put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) const {
+std::optional<std::uint64_t> Responder::bits_now(const MapEntry& entry) {
+  const auto code = encoded(now_.values[entry.point], entry.format);
+  if (!code) {
+    return std::nullopt;
+  }
+  if (code->is_saturated) {
+    ++saturated_;
+    saturated_point_ = entry.point;
+  }
+  return code->bits;
+}
+
+std::optional<std::uint64_t> Responder::register_bits(std::span<const MapEntry> entries) {
+  std::uint64_t all = 0;
+  for (const MapEntry& entry : entries) {
+    const auto bits = bits_now(entry);
+    if (!bits) {
+      return std::nullopt;
+    }
+    all |= entry.at.is_bit() ? *bits << static_cast<unsigned>(entry.at.bit) : *bits;
+  }
+  return all;
+}
+
+Exception Responder::put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) {
   for (std::uint32_t at = address; at < address + count;) {
-    const MapEntry* entry = map_.find(area, at);
-    if (entry == nullptr) {
-      put_word(reply, map_.chain()[at - chain_address]);
+    const auto entries = map_.covering(area, at);
+    if (entries.empty()) {
+      put_word(reply, map_.chain_registers()[at - chain_address]);
       ++at;
       continue;
     }
+    const auto bits = register_bits(entries);
+    if (!bits) {
+      return Exception::device_failure;
+    }
+    const Stretch& where = entries.front().at;
     std::array<std::uint16_t, 4> words{};
-    const auto used = std::span(words).first(entry->at.count);
-    to_registers(bits_of(now_.values[entry->point], map_.point_of(*entry).type), map_.order(), used);
-    for (; at < std::min(address + count, entry->at.address + entry->at.count); ++at) {
-      put_word(reply, words[at - entry->at.address]);
+    to_registers(*bits, entries.front().format.order, std::span(words).first(where.count));
+    for (; at < std::min(address + count, where.address + where.count); ++at) {
+      put_word(reply, words[at - where.address]);
     }
   }
+  return Exception::none;
 }
 
 Exception Responder::writable(Area area, std::uint32_t address, std::uint32_t count, const Caller& caller) const {
   const std::uint32_t end = address + count;
   bool permitted = true;
   for (std::uint32_t at = address; at < end;) {
-    const MapEntry* entry = map_.find(area, at);
-    if (entry == nullptr || !map_.point_of(*entry).writable || entry->at.address != at || at + entry->at.count > end) {
+    const auto entries = map_.covering(area, at);
+    if (entries.empty() || entries.front().at.address != at || at + entries.front().at.count > end) {
       return Exception::illegal_address;
     }
-    permitted = permitted && caller.rights.write(map_.point_of(*entry).right);
-    at += entry->at.count;
+    for (const MapEntry& entry : entries) {
+      if (!map_.point_of(entry).writable) {
+        return Exception::illegal_address;
+      }
+      permitted = permitted && caller.rights.write(map_.point_of(entry).right);
+    }
+    at += entries.front().at.count;
   }
   return permitted ? Exception::none : Exception::illegal_function;
 }
@@ -366,26 +440,42 @@ Exception Responder::writable(Area area, std::uint32_t address, std::uint32_t co
 Exception Responder::collect_words(std::uint32_t address, Pdu data) {
   const auto end = address + static_cast<std::uint32_t>(data.size() / 2);
   for (std::uint32_t at = address; at < end;) {
-    const MapEntry& entry = *map_.find(Area::holding_register, at);
+    const auto entries = map_.covering(Area::holding_register, at);
+    const std::uint32_t width = entries.front().at.count;
     std::array<std::uint16_t, 4> words{};
-    for (std::uint32_t i = 0; i < entry.at.count; ++i) {
+    for (std::uint32_t i = 0; i < width; ++i) {
       words[i] = word_at(data, std::size_t{2} * (at - address + i));
     }
-    const std::uint64_t bits = from_registers(std::span(words).first(entry.at.count), map_.order());
-    if (const auto flaw = collect(map_.point_of(entry), entry.point, bits); flaw != Exception::none) {
+    const std::uint64_t bits = from_registers(std::span(words).first(width), entries.front().format.order);
+    if (const auto flaw = collect_register(entries, bits); flaw != Exception::none) {
       return flaw;
     }
-    at += entry.at.count;
+    at += width;
   }
   return Exception::none;
 }
 
-Exception Responder::collect(const Point& point, std::size_t index, std::uint64_t bits) {
-  const auto value = value_of(bits, point.type);
-  if (!value || !std::isfinite(*value) || *value < point.low || *value > point.high) {
+Exception Responder::collect_register(std::span<const MapEntry> entries, std::uint64_t bits) {
+  if (!entries.front().at.is_bit()) {
+    return collect(entries.front(), bits);
+  }
+  for (const MapEntry& entry : entries) {
+    const auto bit = std::uint64_t{1} << static_cast<unsigned>(entry.at.bit);
+    if (const auto flaw = collect(entry, (bits & bit) != 0 ? 1 : 0); flaw != Exception::none) {
+      return flaw;
+    }
+    bits &= ~bit;
+  }
+  return bits == 0 ? Exception::none : Exception::illegal_value;  // no 1 is lost in silence
+}
+
+Exception Responder::collect(const MapEntry& entry, std::uint64_t bits) {
+  const Point& point = map_.point_of(entry);
+  const auto value = taken(bits, entry.format, point.low, point.high);
+  if (!value || !holds(RegisterType(point.type), *value)) {
     return Exception::illegal_value;
   }
-  writes_.push_back({index, *value});
+  writes_.push_back({entry.point, *value});
   return Exception::none;
 }
 

@@ -6,14 +6,16 @@
 //   03 the request has not the form of its function: its length, its quantity, its byte count, a coil's value
 //   02 an address is no point's, may not be written, or the request would write a part of a wide value
 //   01 the client may write, but not one of these points
-//   03 a value is outside of its point's limits, or not a finite number
+//   03 a value is outside of its point's limits, not a finite number or none of its format, or a bit is no point's
 //   06 another client owns the writes
-//   04 the program refuses
+//   04 the program refuses; or a value to be read is not a number, and lies where only numbers can
+// A value beyond what its format reaches is read as the nearest that it has, and counted.
 // All values of one answer are of one cycle. A part of a wide value may be read; two reads may be of two cycles.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -82,6 +84,11 @@ class Responder {
   /// The answer to a PDU of at least one byte.
   [[nodiscard]] Reply answer(std::span<const std::uint8_t> pdu, const Caller& caller);
 
+  /// Values read that were beyond what their format reaches.
+  [[nodiscard]] std::uint64_t saturated() const { return saturated_; }
+  /// The point of the newest of them.
+  [[nodiscard]] std::size_t saturated_point() const { return saturated_point_; }
+
   /// Why the door refused since the last call; for logs. Empty where it did not.
   [[nodiscard]] std::string take_refusal() { return std::exchange(refusal_, {}); }
 
@@ -97,13 +104,19 @@ class Responder {
   Exception write_registers(Pdu pdu, const Caller& caller, Reply& reply);
   Exception mask_register(Pdu pdu, const Caller& caller, Reply& reply);
   Exception write_and_read(Pdu pdu, const Caller& caller, Reply& reply);
+  Exception read_files(Pdu pdu, Reply& reply) const;
   Exception identify(Pdu pdu, Reply& reply) const;
 
   [[nodiscard]] bool covered(Area area, std::uint32_t address, std::uint32_t count) const;
-  void put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply) const;
+  Exception put_words(Area area, std::uint32_t address, std::uint32_t count, Reply& reply);
+  /// The bits of a point now; nothing where it has none.
+  std::optional<std::uint64_t> bits_now(const MapEntry& entry);
+  /// The bits that lie at the address of these entries: of one wide value, or of the booleans of one register.
+  std::optional<std::uint64_t> register_bits(std::span<const MapEntry> entries);
   [[nodiscard]] Exception writable(Area area, std::uint32_t address, std::uint32_t count, const Caller& caller) const;
   Exception collect_words(std::uint32_t address, Pdu data);
-  Exception collect(const Point& point, std::size_t index, std::uint64_t bits);
+  Exception collect_register(std::span<const MapEntry> entries, std::uint64_t bits);
+  Exception collect(const MapEntry& entry, std::uint64_t bits);
   Exception hand_over(const Caller& caller, Reply& reply);
 
   const RegisterMap& map_;
@@ -112,6 +125,8 @@ class Responder {
   Snapshot now_;
   std::vector<PointWrite> writes_;
   std::string refusal_;
+  std::uint64_t saturated_ = 0;
+  std::size_t saturated_point_ = 0;
 };
 
 }  // namespace hysteron::runtime::modbus

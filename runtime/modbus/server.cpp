@@ -22,14 +22,14 @@
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "runtime/modbus/transport.hpp"
-#include "support/errors.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
 
 constexpr std::uint64_t listening_mark = 0;
 constexpr std::uint64_t stop_mark = 1;
-constexpr std::uint64_t first_client = 2;
+constexpr std::uint64_t line_mark = 2;
+constexpr std::uint64_t first_client = 3;
 constexpr int accepted_a_turn = 16;  // so that a storm of connections leaves time for those that are served
 constexpr milliseconds accept_pause{100};
 
@@ -37,29 +37,13 @@ constexpr milliseconds accept_pause{100};
 struct Counters {
   using Count = std::atomic<std::uint64_t>;
   Count open{0}, accepted{0}, refused_full{0}, refused_share{0}, refused_address{0}, requests{0}, exceptions{0},
-      writes{0}, closed_by_client{0}, client_lost{0};
+      writes{0}, closed_by_client{0}, client_lost{0}, evicted{0}, saturated{0};
+  Count line_frames{0}, line_broken{0}, line_broadcasts{0}, line_echo_lost{0};
   std::array<Count, endings> ended{};
 };
 
 void add(std::atomic<std::uint64_t>& count, std::uint64_t more = 1) {
   count.store(count.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
-}
-
-std::vector<Network> networks(const ServerOptions& options) {
-  Diagnostics diagnostics;
-  std::vector<Network> list;
-  for (const std::string& text : options.allow) {
-    if (const auto network = Network::parse(text)) {
-      list.push_back(*network);
-    } else {
-      diagnostics.error(error::malformed_allow_list, options.place, fmt::format("{} is no network.", text),
-                        "write an address and the bits that count, with zeros behind them: 192.168.10.0/24");
-    }
-  }
-  if (diagnostics.has_errors()) {
-    throw InputError(diagnostics);
-  }
-  return list;
 }
 
 }  // namespace
@@ -71,15 +55,18 @@ class Server::Loop {
         options_(std::move(options)),
         map_(std::move(map)),
         responder_(map_, door, options_.identity),
-        allow_(networks(options_)),
+        allow_(networks_of(options_.allow, options_.place)),
         heartbeat_(options_.heartbeat),
-        listening_(listen_on(options_.listen, options_.port, options_.place)),
-        port_(port_of(listening_)),
+        listening_(options_.listen.empty() ? Descriptor() : listen_on(options_.listen, options_.port, options_.place)),
+        port_(listening_.is_open() ? port_of(listening_) : std::uint16_t{0}),
         stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
-    if (!stop_.is_open() || !epoll_.is_open() || !watch(listening_, listening_mark, EPOLLIN) ||
-        !watch(stop_, stop_mark, EPOLLIN)) {
+    if (!stop_.is_open() || !epoll_.is_open() || !watch(stop_, stop_mark, EPOLLIN) ||
+        (listening_.is_open() && !watch(listening_, listening_mark, EPOLLIN))) {
       throw std::system_error(errno, std::system_category(), "Modbus server");
+    }
+    if (options_.rtu) {
+      line_.emplace(*options_.rtu, options_.tell);
     }
     thread_ = std::thread([this] { run(); });
   }
@@ -135,6 +122,8 @@ class Server::Loop {
         }
         if (event.data.u64 == listening_mark) {
           accept_some(now);
+        } else if (event.data.u64 == line_mark) {
+          serve_line((event.events & ~std::uint32_t{EPOLLOUT}) != 0, now);
         } else if (const auto client = clients_.find(event.data.u64); client == clients_.end()) {
           continue;
         } else if (client->second.transport->is_in_handshake()) {
@@ -146,6 +135,7 @@ class Server::Loop {
       serve_one_handshake(now);
       serve_what_is_buffered(now);
       end_what_is_due(now);
+      follow_line(now);
       follow_heartbeat(now);
       if (listen_again_ && now >= *listen_again_) {
         listen_again_.reset();
@@ -170,6 +160,9 @@ class Server::Loop {
     if (listen_again_) {
       earlier(*listen_again_);
     }
+    if (const auto deadline = line_ ? line_->next_deadline() : std::nullopt) {
+      earlier(*deadline);
+    }
     if (!next) {
       return -1;
     }
@@ -192,16 +185,20 @@ class Server::Loop {
       }
       if (!is_allowed(allow_, peer)) {
         add(counters_.refused_address);
-      } else if (clients_.size() >= options_.connections) {
+        continue;
+      }
+      const bool is_full = clients_.size() >= options_.connections;
+      const bool has_share = has_its_share(peer);
+      if (!(is_full || has_share) || make_room(peer, has_share, now)) {
+        take(std::move(socket), peer, now);
+      } else if (is_full) {
         add(counters_.refused_full);
-      } else if (has_its_share(peer)) {
+      } else {
         add(counters_.refused_share);
         tell_of_refusal(
-            peer,
+            address_text(peer),
             fmt::format("a connection beyond the {} of connections_per_address.", options_.connections_per_address),
             now);
-      } else {
-        take(std::move(socket), peer, now);
       }
     }
   }
@@ -210,6 +207,65 @@ class Server::Loop {
     const auto count =
         std::ranges::count(clients_, origin_of(peer), [](const auto& client) { return client.second.origin; });
     return options_.connections_per_address > 0 && static_cast<std::size_t>(count) >= options_.connections_per_address;
+  }
+
+  /// A place for a client: of one at its own address, where that has its share, else of anyone. Who owns the writes
+  /// keeps it.
+  bool make_room(const sockaddr_storage& peer, bool of_its_own, Instant now) {
+    const auto origin = origin_of(peer);
+    auto longest = clients_.end();
+    for (auto place = clients_.begin(); place != clients_.end(); ++place) {
+      const Client& client = place->second;
+      const bool may_go = now - client.connection.silent_since() >= options_.evict &&
+                          !heartbeat_.owns_writes(place->first) && (!of_its_own || client.origin == origin);
+      if (may_go &&
+          (longest == clients_.end() || client.connection.silent_since() < longest->second.connection.silent_since())) {
+        longest = place;
+      }
+    }
+    if (longest == clients_.end()) {
+      return false;
+    }
+    forget(longest, counters_.evicted);
+    return true;
+  }
+
+  /// The serial line: opened where that is due, and served where a silence on it has lasted.
+  void follow_line(Instant now) {
+    if (!line_) {
+      return;
+    }
+    if (line_->open_when_due(now)) {
+      line_watched_ = EPOLLIN;
+      (void)watch(line_->descriptor(), line_mark, line_watched_);
+    }
+    if (const auto deadline = line_->next_deadline(); line_->is_open() && deadline && now >= *deadline) {
+      serve_line(false, now);
+    }
+  }
+
+  void serve_line(bool is_readable, Instant now) {
+    if (!line_ || !line_->is_open()) {
+      return;
+    }
+    const Rights all{};
+    const Caller caller{.rights = options_.read_only || line_->read_only() ? all.without_writes() : all,
+                        .other_owns_writes = heartbeat_.other_owns_writes(line_mark)};
+    count(line_mark, line_->serve(is_readable, now, responder_, caller), now);
+    tell_what_was_met("the serial line " + options_.rtu->line.path, now);
+    const RtuCounts& counts = line_->counts();
+    counters_.line_frames.store(counts.frames, std::memory_order_relaxed);
+    counters_.line_broken.store(counts.broken, std::memory_order_relaxed);
+    counters_.line_broadcasts.store(counts.broadcasts, std::memory_order_relaxed);
+    counters_.line_echo_lost.store(counts.echo_lost, std::memory_order_relaxed);
+    if (!line_->is_open()) {
+      heartbeat_.gone(line_mark);
+      return;
+    }
+    const std::uint32_t events = std::uint32_t{EPOLLIN} | (line_->is_blocked() ? std::uint32_t{EPOLLOUT} : 0U);
+    if (std::exchange(line_watched_, events) != events) {
+      change_watch(line_->descriptor(), line_mark, events);
+    }
   }
 
   void take(Descriptor socket, const sockaddr_storage& peer, Instant now) {
@@ -273,9 +329,7 @@ class Server::Loop {
         break;
       }
     }
-    if (const std::string why = responder_.take_refusal(); !why.empty()) {
-      tell_of_refusal(client.peer, "by the program: " + why, now);
-    }
+    tell_what_was_met(address_text(client.peer), now);
     const bool has_output = !client.connection.output().empty() || client.transport->has_output();
     const bool wants_input = client.connection.wants_input() > 0 && client.transport->wants_input();
     const std::uint32_t events =
@@ -298,6 +352,7 @@ class Server::Loop {
   void forget(Clients::iterator place, Counters::Count& why) {
     add(why);
     heartbeat_.gone(place->first);
+    std::erase(shaking_, place->first);
     clients_.erase(place);
     counters_.open.store(clients_.size(), std::memory_order_relaxed);
   }
@@ -309,7 +364,7 @@ class Server::Loop {
       if (const auto ending = below ? below : place->second.connection.due(now)) {
         if (*ending == Ending::tls_failed || *ending == Ending::handshake_late) {
           const std::string failure = place->second.transport->failure();
-          tell_of_refusal(place->second.peer,
+          tell_of_refusal(address_text(place->second.peer),
                           "by TLS: " + (failure.empty() ? "the handshake took too long." : failure + "."), now);
         }
         forget(place, counters_.ended.at(static_cast<std::size_t>(*ending)));
@@ -317,14 +372,31 @@ class Server::Loop {
     }
   }
 
+  /// What the answers to a client met.
+  void tell_what_was_met(const std::string& client, Instant now) {
+    if (const std::string why = responder_.take_refusal(); !why.empty()) {
+      tell_of_refusal(client, "by the program: " + why, now);
+    }
+    const std::uint64_t saturated = responder_.saturated();
+    if (saturated != counters_.saturated.load(std::memory_order_relaxed) && options_.tell &&
+        (!told_saturated_ || now >= *told_saturated_ + std::chrono::minutes(1))) {
+      options_.tell(fmt::format(
+          "{} is beyond what its registers hold, and clients read the nearest value that they do. Give it another type "
+          "or scale under [registers].",
+          map_.points()[responder_.saturated_point()].name));
+      told_saturated_ = now;
+    }
+    counters_.saturated.store(saturated, std::memory_order_relaxed);
+  }
+
   /// Once a second: whoever is refused cannot fill a log.
-  void tell_of_refusal(const sockaddr_storage& peer, const std::string& why, Instant now) {
-    if (!options_.client_refused || (told_ && now < *told_ + std::chrono::seconds(1))) {
+  void tell_of_refusal(const std::string& client, const std::string& why, Instant now) {
+    if (!options_.tell || (told_ && now < *told_ + std::chrono::seconds(1))) {
       ++untold_;
       return;
     }
-    options_.client_refused(fmt::format("{} is refused {}{}", address_text(peer), why,
-                                        untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
+    options_.tell(
+        fmt::format("{} is refused {}{}", client, why, untold_ > 0 ? fmt::format(" {} others before.", untold_) : ""));
     told_ = now;
     untold_ = 0;
   }
@@ -351,12 +423,15 @@ class Server::Loop {
   Descriptor stop_;
   Descriptor epoll_;
   Clients clients_;
+  std::optional<RtuLine> line_;
+  std::uint32_t line_watched_ = EPOLLIN;
   std::uint64_t next_mark_ = first_client;
   std::optional<Instant> listen_again_;
   std::vector<std::uint64_t> shaking_;  ///< in a handshake, with bytes to read, in this turn
   std::uint64_t last_shaken_ = 0;
   std::optional<Instant> told_;  ///< when a refusal was told last
   std::uint64_t untold_ = 0;
+  std::optional<Instant> told_saturated_;
   std::thread thread_;
 };
 
@@ -395,6 +470,12 @@ ServerStatus Server::status() const {
           .wrong_length = ended(Ending::wrong_length),
           .handshake_late = ended(Ending::handshake_late),
           .tls_failed = ended(Ending::tls_failed),
+          .evicted = now.evicted,
+          .saturated = now.saturated,
+          .line = {.frames = now.line_frames,
+                   .broken = now.line_broken,
+                   .broadcasts = now.line_broadcasts,
+                   .echo_lost = now.line_echo_lost},
           .client_lost = now.client_lost != 0};
 }
 

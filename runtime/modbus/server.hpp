@@ -1,7 +1,9 @@
-// The Modbus TCP server: one thread, one bounded event loop, beside the cyclic task and never in its way.
+// The Modbus server, over TCP and on a serial line: one thread, one bounded event loop, beside the cyclic task and
+// never in its way.
 //
 // No client can hold up another: nothing in the loop waits for a client, every connection has bounded buffers and
 // deadlines (connection.hpp), there are at most `connections` of them, and one turn takes at most one buffer of each.
+// Where no place is left, who has been silent for longest gives way.
 // It listens on loopback unless told otherwise. With a TLS context it is Modbus/TCP Security: handshakes and records
 // have deadlines of their own (tls_session.hpp), and one turn takes at most one step of one handshake, because that is
 // dear.
@@ -11,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,27 +21,31 @@
 #include "runtime/modbus/heartbeat.hpp"
 #include "runtime/modbus/register_map.hpp"
 #include "runtime/modbus/responder.hpp"
+#include "runtime/modbus/rtu_line.hpp"
 #include "runtime/modbus/tls_context.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::modbus {
 
 struct ServerOptions {
-  std::string listen = "127.0.0.1";  ///< a numeric address
+  std::string listen = "127.0.0.1";  ///< a numeric address; empty: a serial line alone
   std::uint16_t port = 1502;         ///< 0 takes any that is free
   std::vector<std::string> allow{};  ///< networks in CIDR notation; none: whoever can reach the port
   std::size_t connections = 32;
   std::size_t connections_per_address = 0;  ///< 0: as many as connections
+  milliseconds evict{5'000};  ///< silence after which a client gives way to one for whom there is no place
   bool read_only = false;
+  std::optional<RtuOptions> rtu{};
   ConnectionLimits limits{};
   HeartbeatOptions heartbeat{};
   Identity identity{};
   /// Called in the server's thread when the client is lost, and when it is back. Must return at once.
   std::function<void(bool lost)> client_lost{};
   std::shared_ptr<const TlsContext> tls{};  ///< none: in the clear
-  /// Called in the server's thread with a line on a client that TLS refused or that has too many connections, or on a
-  /// request that the program refused, once a second at the most. Must return at once.
-  std::function<void(const std::string& line)> client_refused{};
+  /// Called in the server's thread with a line on a client that TLS refused or that has too many connections, on a
+  /// request that the program refused, on a point beyond its format, on a serial line that is lost or back. Each kind
+  /// once a second at the most. Must return at once.
+  std::function<void(const std::string& line)> tell{};
   Place place{};  ///< of these settings, for errors
 };
 
@@ -60,6 +67,9 @@ struct ServerStatus {
   std::uint64_t wrong_length = 0;
   std::uint64_t handshake_late = 0;
   std::uint64_t tls_failed = 0;
+  std::uint64_t evicted = 0;    ///< silent, and gave way to another
+  std::uint64_t saturated = 0;  ///< values that were read and are beyond what their format reaches
+  RtuCounts line{};
   bool client_lost = false;
 };
 

@@ -1,5 +1,6 @@
 #include "runtime/modbus/value_bits.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -27,10 +28,44 @@ std::uint64_t integer_bits(double value) {
   return static_cast<Unsigned>(static_cast<Integer>(whole));
 }
 
+constexpr std::uint64_t most_of_bcd(RegisterType type) {
+  return registers_of(type) == 1 ? 9'999 : 99'999'999;
+}
+
+std::uint64_t decimal_bits(double value, RegisterType type) {
+  std::uint64_t number = std::min(integer_bits<std::uint32_t>(value), most_of_bcd(type));
+  std::uint64_t bits = 0;
+  for (unsigned shift = 0; number > 0; shift += 4, number /= 10) {
+    bits |= number % 10 << shift;
+  }
+  return bits;
+}
+
+std::optional<double> decimal_value(std::uint64_t bits, RegisterType type) {
+  double number = 0.0;
+  for (auto digit = static_cast<unsigned>(4 * registers_of(type)); digit-- > 0;) {
+    const std::uint64_t one = bits >> 4 * digit & 0xFU;
+    if (one > 9) {
+      return std::nullopt;
+    }
+    number = 10.0 * number + static_cast<double>(one);
+  }
+  return number;
+}
+
 }  // namespace
 
-std::uint64_t bits_of(double value, PointType type) {
-  switch (type) {
+std::optional<RegisterType> register_type_named(std::string_view name) {
+  const auto* const found =
+      std::ranges::find_if(register_types, [&](RegisterType type) { return name_of(type) == name; });
+  return found == register_types.end() ? std::nullopt : std::optional(*found);
+}
+
+std::uint64_t bits_of(double value, RegisterType type) {
+  if (type.is_bcd) {
+    return decimal_bits(value, type);
+  }
+  switch (type.type) {
     case PointType::boolean:
       return value != 0.0 && !std::isnan(value) ? 1 : 0;
     case PointType::int16:
@@ -53,9 +88,12 @@ std::uint64_t bits_of(double value, PointType type) {
   return 0;
 }
 
-std::pair<double, double> limits_of(PointType type) {
+std::pair<double, double> limits_of(RegisterType type) {
   constexpr double exact = 0x1p53;
-  switch (type) {
+  if (type.is_bcd) {
+    return {0.0, static_cast<double>(most_of_bcd(type))};
+  }
+  switch (type.type) {
     case PointType::boolean:
       return {0.0, 1.0};
     case PointType::int16:
@@ -78,15 +116,17 @@ std::pair<double, double> limits_of(PointType type) {
   return {0.0, 0.0};
 }
 
-bool holds(PointType type, double value) {
+bool holds(RegisterType type, double value) {
   const auto [low, high] = limits_of(type);
-  const bool is_real = type == PointType::real32 || type == PointType::real64;
-  return value >= low && value <= high && (is_real || value == std::trunc(value));
+  return value >= low && value <= high && (is_real(type) || value == std::trunc(value));
 }
 
-std::optional<double> value_of(std::uint64_t bits, PointType type) {
+std::optional<double> value_of(std::uint64_t bits, RegisterType type) {
   constexpr std::int64_t exact = std::int64_t{1} << 53U;
-  switch (type) {
+  if (type.is_bcd) {
+    return decimal_value(bits, type);
+  }
+  switch (type.type) {
     case PointType::boolean:
       return bits != 0 ? 1.0 : 0.0;
     case PointType::int16:

@@ -1,13 +1,16 @@
-// The bits in which a point's value travels, by its type.
+// The bits in which a number travels, by the type that lies in the registers: the types of points, and binary-coded
+// decimals of four and eight digits, which have a decimal digit in every four bits.
 //
 // A door gives every value as a double. Integers are exact to 2^53 and are rounded to the nearest, saturated at the
-// bounds of the type; a value that is not a number becomes 0 in an integer and stays one in a real.
+// bounds of the type; a value that is not a number becomes 0 in an integer and stays one in a real. A scale, and what
+// may not be written so, is of point_format.hpp.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "runtime/point.hpp"
@@ -18,9 +21,25 @@ inline constexpr std::array<PointType, 9> point_types{PointType::boolean, PointT
                                                       PointType::int32,   PointType::uint32, PointType::int64,
                                                       PointType::uint64,  PointType::real32, PointType::real64};
 
+/// A type that lies in registers; every type of a point is one.
+struct RegisterType {
+  PointType type = PointType::real64;
+  bool is_bcd = false;  ///< of uint16 and uint32: decimal digits
+
+  constexpr RegisterType(PointType of = PointType::real64, bool bcd = false)  // NOLINT(google-explicit-constructor)
+      : type(of), is_bcd(bcd) {}
+  friend bool operator==(const RegisterType&, const RegisterType&) = default;
+};
+
+/// In the order in which a run file names them and the discovery numbers them.
+inline constexpr std::array<RegisterType, 11> register_types{
+    PointType::boolean, PointType::int16,          PointType::uint16,        PointType::int32,
+    PointType::uint32,  PointType::int64,          PointType::uint64,        PointType::real32,
+    PointType::real64,  {PointType::uint16, true}, {PointType::uint32, true}};
+
 /// How many registers hold a value of the type; a boolean has one where it stands among registers.
-constexpr std::size_t registers_of(PointType type) {
-  switch (type) {
+constexpr std::size_t registers_of(RegisterType type) {
+  switch (type.type) {
     case PointType::boolean:
     case PointType::int16:
     case PointType::uint16:
@@ -37,8 +56,15 @@ constexpr std::size_t registers_of(PointType type) {
   return 1;
 }
 
-constexpr const char* name_of(PointType type) {
-  switch (type) {
+constexpr bool is_real(RegisterType type) {
+  return type.type == PointType::real32 || type.type == PointType::real64;
+}
+
+constexpr const char* name_of(RegisterType type) {
+  if (type.is_bcd) {
+    return registers_of(type) == 1 ? "bcd16" : "bcd32";
+  }
+  switch (type.type) {
     case PointType::boolean:
       return "boolean";
     case PointType::int16:
@@ -61,16 +87,19 @@ constexpr const char* name_of(PointType type) {
   return "";
 }
 
+[[nodiscard]] std::optional<RegisterType> register_type_named(std::string_view name);
+
 /// The bits of a value, in the low 16·registers_of(type) bits.
-[[nodiscard]] std::uint64_t bits_of(double value, PointType type);
+[[nodiscard]] std::uint64_t bits_of(double value, RegisterType type);
 
 /// The lowest and the highest number that a type holds, and a double exactly.
-[[nodiscard]] std::pair<double, double> limits_of(PointType type);
+[[nodiscard]] std::pair<double, double> limits_of(RegisterType type);
 
 /// Whether the type holds a number, but for the rounding of a real.
-[[nodiscard]] bool holds(PointType type, double value);
+[[nodiscard]] bool holds(RegisterType type, double value);
 
-/// The value of bits; empty where an integer is beyond ±2^53 and a double would not hold it exactly.
-[[nodiscard]] std::optional<double> value_of(std::uint64_t bits, PointType type);
+/// The value of bits; empty where an integer is beyond ±2^53 and a double would not hold it exactly, and where a
+/// decimal digit is above 9.
+[[nodiscard]] std::optional<double> value_of(std::uint64_t bits, RegisterType type);
 
 }  // namespace hysteron::runtime::modbus

@@ -23,6 +23,8 @@ class FieldIo {
   virtual Fault read(std::span<double> inputs) noexcept = 0;
   /// Values that devices gave and that were not taken, since the start.
   [[nodiscard]] virtual std::uint64_t not_taken() const noexcept { return 0; }
+  /// The values of the points of TaskSettings::field_points.
+  virtual void count(std::span<double> /*into*/) const noexcept {}
   /// Whose value the fault is that read() or delivery() gave last: of the inputs, and then of the outputs.
   [[nodiscard]] virtual std::size_t faulty_port() const noexcept { return no_port; }
   virtual void write(std::span<const double> outputs) noexcept = 0;

@@ -29,13 +29,15 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
     : program_(&program),
       settings_(fitting(settings, program.shape())),
       attachments_(attachments),
-      door_(program, device_inputs(settings), settings.outputs),
+      door_(program, device_inputs(settings), settings.outputs, settings.field_points),
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
       watchdog_(settings.watchdog),
+      field_counts_(settings.field_points.size()),
       computed_(program.shape().outputs.size()),
       writes_seen_(program.shape().inputs.size(), 0),
       ages_(program.shape().inputs.size(), 0) {
   settings_.loop.period = program.shape().period;
+  status_.field = field_counts_;
   for (const ProgramSignal& input : program.shape().inputs) {
     inputs_.push_back(input.preset);
     last_good_.push_back(input.preset);
@@ -208,6 +210,9 @@ void Task::publish(const LoopStatistics& statistics) noexcept {
   status_.not_taken = attachments_.field == nullptr ? 0 : attachments_.field->not_taken();
   status_.faults = faults_.newest().count;
   status_.last_fault = faults_.newest().last;
+  if (attachments_.field != nullptr) {
+    attachments_.field->count(field_counts_);
+  }
   door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
 }
 

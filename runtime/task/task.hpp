@@ -36,6 +36,7 @@ struct TaskSettings {
   std::int64_t longest_delivery = 10'000'000'000;  ///< at the end: for devices to take the safe values, once reached
   /// After a lost client the outputs stay safe until task.reset, not only until it is back.
   bool reset_after_lost_client = false;
+  std::vector<Point> field_points{};  ///< what the field says of itself (FieldIo::count)
 };
 
 /// By input: whether a device gives it.
@@ -114,6 +115,7 @@ class Task final : private CycleBody {
   TaskStatus status_{};
   FaultLog faults_{};
   std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found
+  std::vector<double> field_counts_;
   std::vector<double> inputs_;
   std::vector<double> last_good_;
   std::vector<double> computed_;

@@ -71,9 +71,9 @@ constexpr auto names_of_statuses = [] {
   return names;
 }();
 
-std::size_t width_of(const ProgramShape& shape) {
-  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + command_count +
-         shape.inner.size();
+std::size_t width_of(const ProgramShape& shape, std::size_t field_points) {
+  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + field_points +
+         command_count + shape.inner.size();
 }
 
 TaskOrders first_orders(const StepProgram& program) {
@@ -104,10 +104,11 @@ std::span<const char* const> status_names() {
   return names_of_statuses;
 }
 
-TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety)
+TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
+                   const std::vector<Point>& field_points)
     : device_inputs_(std::move(device_inputs)),
-      snapshots_(width_of(program.shape())),
-      published_(width_of(program.shape())),
+      snapshots_(width_of(program.shape(), field_points.size())),
+      published_(width_of(program.shape(), field_points.size())),
       judged_by_({.parameters = program.shape().parameters, .relations = program.shape().relations}),
       gone_(program.shape().parameters.size(), false),
       parameters_(judged_by_, parameters_of(program)),
@@ -134,6 +135,9 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
          .unit = status.unit,
          .meaning = status.meaning,
          .counts = status.counts});
+  }
+  for (const Point& point : field_points) {
+    add(point);
   }
   first_command_ = points_.size();
   add_command("task.commit", WriteRight::parameters,
@@ -332,6 +336,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.last_change),
   };
   at = std::ranges::copy(values, at).out;
+  at = std::ranges::copy(status.field, at).out;
   at = std::fill_n(at, 3, 0.0);
   *at++ = status.heartbeat;
   program.inner_values(std::span(at, published_.end()));

@@ -52,6 +52,7 @@ struct TaskStatus {
   std::uint64_t version = 1;     ///< of the diagram, since the start
   std::uint8_t last_change = 0;  ///< online, as task.online_change says it
   double heartbeat = 0.0;
+  std::span<const double> field{};  ///< as the points of the field
 };
 
 /// The names of what a task says of itself: task.state, …
@@ -59,9 +60,10 @@ struct TaskStatus {
 
 class TaskDoor final : public PointDoor {
  public:
-  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output. The program
-  /// must outlive the door.
-  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety);
+  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
+  /// `field_points`: what the field says of itself. The program must outlive the door.
+  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
+           const std::vector<Point>& field_points = {});
 
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;

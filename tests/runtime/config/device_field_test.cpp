@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "runtime/modbus/server.hpp"
 #include "tests/runtime/modbus/free_port.hpp"
@@ -176,16 +178,36 @@ TEST(DeviceField, WhatIsOutsideOfTheLimitsOfAnInputIsNotTaken) {
   EXPECT_EQ(field.read(inputs), Fault::none);
 }
 
-TEST(DeviceField, ALimitIsAsTheTypeOnTheDeviceCanTellIt) {
-  ProgramShape limited = shape();
-  limited.inputs[0].low = -0.7;
-  limited.inputs[0].high = 0.1;
-  const std::string text = "[devices.stage]\n[outputs.Y]\nsafe = 0.0\n[inputs.X]\ndevice = \"stage\"\ntype = ";
-  const auto narrow = parse_run_config("RUN.toml", text + "\"real32\"\n", limited).devices[0].values[0];
-  EXPECT_EQ(narrow.low, static_cast<double>(-0.7F));
-  EXPECT_EQ(narrow.high, static_cast<double>(0.1F));
-  const auto wide = parse_run_config("RUN.toml", text + "\"real64\"\n", limited).devices[0].values[0];
-  EXPECT_EQ(wide.high, 0.1);
+TEST(DeviceField, SaysWhatWentWrongWithEachDevice) {
+  const std::uint16_t port = test::free_port();
+  ServedDevice stage(port);
+  const RunConfig config = config_of(port);
+  const std::vector<Point> points = device_points(config);
+  DeviceField field(config, true);
+  Inputs inputs{};
+  const auto count_of = [&](const std::string& name) {
+    std::vector<double> counts(points.size());
+    field.count(counts);
+    const auto found = std::ranges::find(points, "device.stage." + name, &Point::name);
+    return counts.at(static_cast<std::size_t>(found - points.begin()));
+  };
+  (void)field.read(inputs);
+  EXPECT_EQ(count_of("link"), 2.0) << "waiting";
+  EXPECT_EQ(count_of("unreachable"), 1.0);
+  stage.start();
+  (void)field.read(inputs);
+  EXPECT_EQ(count_of("link"), 1.0);
+  EXPECT_EQ(count_of("connections"), 1.0);
+  EXPECT_EQ(count_of("answers"), 1.0) << "nothing is written yet";
+  stage.refuse("not now");
+  field.write(std::array{0.5});
+  (void)field.read(inputs);
+  EXPECT_EQ(count_of("exceptions"), 1.0);
+  stage.stop();
+  (void)field.read(inputs);
+  EXPECT_EQ(count_of("closed"), 1.0);
+  EXPECT_EQ(count_of("link"), 2.0);
+  EXPECT_EQ(count_of("timeouts") + count_of("wrong_answers") + count_of("bad_checksums"), 0.0);
 }
 
 TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {

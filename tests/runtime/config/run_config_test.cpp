@@ -8,39 +8,11 @@
 #include <cmath>
 
 #include "support/errors.hpp"
+#include "tests/runtime/config/run_file.hpp"
 #include "tests/support/error_page.hpp"
 
 namespace hysteron::runtime {
 namespace {
-
-ProgramShape plant() {
-  ProgramShape shape;
-  shape.name = "PLANT";
-  shape.period = 1'000'000;
-  shape.inputs = {{.name = "X"}, {.name = "Z"}};
-  shape.outputs = {{.name = "Y", .low = -10.0, .high = 10.0}};
-  return shape;
-}
-
-ProgramShape plant_of_two() {
-  ProgramShape shape = plant();
-  shape.outputs.push_back({.name = "W"});
-  return shape;
-}
-
-/// Number, line and column of every error.
-std::string errors_of(std::string_view text, const ProgramShape& shape = plant()) {
-  std::string list;
-  try {
-    (void)parse_run_config("RUN.toml", text, shape);
-  } catch (const InputError& refused) {
-    for (const Diagnostic& one : refused.diagnostics().all()) {
-      list += std::to_string(one.number) + "@" + std::to_string(one.place.line) + ":" +
-              std::to_string(one.place.column) + " ";
-    }
-  }
-  return list;
-}
 
 TEST(RunConfig, SaysEverything) {
   const auto config = parse_run_config("RUN.toml", R"(
@@ -257,14 +229,14 @@ age_of = "y"
   EXPECT_EQ(std::get<modbus::SerialLink>(drive.link),
             (modbus::SerialLink{.path = "/dev/ttyS3", .baud = 115200, .parity = 'N', .stop_bits = 2}));
   EXPECT_EQ(drive.unit, 17);
-  EXPECT_EQ(drive.order, modbus::WordOrder::cdab);
+  EXPECT_EQ(drive.values.at(0).format.order, modbus::WordOrder::cdab);
   const auto x = std::ranges::find(config.device_inputs, Tells::value, &DeviceInput::tells);
   EXPECT_EQ(drive.values.at(x->link.value).at, (modbus::Stretch{modbus::Area::discrete_input, 7, 1}));
-  EXPECT_EQ(drive.values.at(x->link.value).type, PointType::boolean);
+  EXPECT_EQ(drive.values.at(x->link.value).format.type, PointType::boolean);
   EXPECT_EQ(drive.values.at(x->link.value).longest_age, std::chrono::seconds(3));
   const DeviceOutput& y = config.device_outputs.at(0);
   EXPECT_EQ(drive.values.at(y.link.value).at, (modbus::Stretch{modbus::Area::holding_register, 100, 1}));
-  EXPECT_EQ(drive.values.at(y.link.value).type, PointType::int16);
+  EXPECT_EQ(drive.values.at(y.link.value).format.type, PointType::int16);
   EXPECT_FALSE(y.link.faults);
   EXPECT_EQ(config.task.outputs[0].low, -32768.0) << "it cannot hold less";
   EXPECT_EQ(config.task.outputs[0].high, 10.0);
@@ -302,7 +274,7 @@ TEST(RunConfig, AddressesMayBeGiven) {
       "RUN.toml", server + "X = \"%QW5\"\n\"HYST.C1\" = \"holding 16\"\ntask.commit = \"%QW7\"\n", plant());
   EXPECT_EQ(config.modbus->placing, modbus::Placing::openplc);
   std::map<std::string, std::string> given;
-  for (const modbus::GivenAddress& one : config.modbus->addresses) {
+  for (const modbus::GivenRegister& one : config.modbus->registers) {
     given[one.name] = one.address + "@" + std::to_string(one.place.line);
   }
   EXPECT_EQ(given, (std::map<std::string, std::string>{

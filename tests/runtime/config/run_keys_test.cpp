@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -27,15 +28,16 @@ ProgramShape keyed_plant() {
 /// A run file that reads a key, up to the line of that key.
 std::string before(const RunTable& table, std::string_view key) {
   const std::string_view name = table.name;
-  const bool serial = key == "baud" || key == "parity" || key == "stop_bits";
+  const bool serial = key == "baud" || key == "parity" || key == "stop_bits" || key == "echo";
   const std::string others = name == "[outputs.NAME]" ? "" : "[outputs.Y]\nsafe = 0.0\n";
   const std::string device = "[devices.stage]\n";
+  constexpr std::array<std::string_view, 8> placed{"register", "area",       "type", "scale",
+                                                   "offset",   "word_order", "bit",  "on_loss"};
+  const bool on_device = std::ranges::find(placed, key) != placed.end();
   if (name == "[outputs.NAME]") {
-    const bool on_device = key == "register" || key == "area" || key == "type" || key == "on_loss";
     return device + "[outputs.Y]\n" + (key == "safe" ? "" : "safe = 0.0\n") + (on_device ? "device = \"stage\"\n" : "");
   }
   if (name == "[inputs.NAME]") {
-    const bool on_device = key == "register" || key == "area" || key == "type" || key == "on_loss";
     return others + device + "[inputs.X]\n" + (on_device ? "device = \"stage\"\n" : "");
   }
   if (name == "[devices.NAME]") {
@@ -69,6 +71,12 @@ std::string before(const RunTable& table, std::string_view key) {
     }
     return text + (name == "[roles]" ? "[roles]\n" : "");
   }
+  if (name == "[modbus_rtu]") {
+    return others + "[modbus]\n[modbus_rtu]\n" + (key == "serial" ? "" : "serial = \"/dev/ttyS0\"\n");
+  }
+  if (name == "[registers.NAME]") {
+    return others + "[modbus]\n[registers.X]\n" + (key == "at" ? "" : "at = \"holding 7\"\n");
+  }
   return others + (name == "[addresses]" ? "[modbus]\n" : "") + std::string(name) + "\n";
 }
 
@@ -98,11 +106,12 @@ std::string described(const RunConfig& c) {
       put(tcp->host, tcp->port);
     } else {
       const auto& line = std::get<modbus::SerialLink>(device.link);
-      put(line.path, line.baud, line.parity, line.stop_bits);
+      put(line.path, line.baud, line.parity, line.stop_bits, line.has_echo);
     }
-    put(device.unit, static_cast<int>(device.order), device.period.count(), device.response.count());
+    put(device.unit, device.shares_connection, device.period.count(), device.response.count());
     for (const modbus::RemoteValue& value : device.values) {
-      put(static_cast<int>(value.at.area), value.at.address, value.at.count, static_cast<int>(value.type),
+      put(static_cast<int>(value.at.area), value.at.address, value.at.count, modbus::name_of(value.format.type),
+          static_cast<int>(value.format.order), value.format.scale, value.format.offset, value.at.bit,
           value.longest_age.count());
     }
   }
@@ -127,7 +136,16 @@ std::string described(const RunConfig& c) {
   if (c.modbus) {
     put(c.modbus->listen, c.modbus->port, c.modbus->allow.size(), c.modbus->connections, c.modbus->read_only,
         static_cast<int>(c.modbus->word_order), static_cast<int>(c.modbus->placing), c.modbus->lock_file,
+        c.modbus->expose.size(), c.modbus->has_discovery, c.modbus->idle.count(), c.modbus->evict.count(),
         static_cast<int>(c.modbus->heartbeat.mode), c.modbus->heartbeat.time.count(), c.modbus->heartbeat.own_writes);
+    if (const auto& rtu = c.modbus->rtu) {
+      put(rtu->line.path, rtu->line.baud, rtu->line.parity, rtu->line.stop_bits, rtu->line.has_echo, rtu->unit,
+          rtu->longest_gap.count(), rtu->read_only);
+    }
+    for (const modbus::GivenRegister& given : c.modbus->registers) {
+      const modbus::GivenFormat format = given.format.value_or(modbus::GivenFormat{});
+      put(given.name, given.address, format.scale, format.offset, format.type.has_value(), format.order.has_value());
+    }
     if (const auto& tls = c.modbus->tls) {
       const modbus::Rights& rights = tls->without_role;
       put(tls->certificate, tls->key, tls->clients, tls->roles.size(), rights.read, rights.inputs, rights.parameters,

@@ -127,7 +127,7 @@ class HostProcess {
     for (const std::string& name : names) {
       for (const auto& entry : map.entries()) {
         if (map.point_of(entry).name == name) {
-          options.values.push_back({.at = entry.at, .type = map.point_of(entry).type});
+          options.values.push_back({.at = entry.at, .format = entry.format});
         }
       }
     }

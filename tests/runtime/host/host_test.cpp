@@ -209,11 +209,11 @@ TEST(Host, ServesOpenPlcsAddresses) {
   // X is an LREAL, so %ML0; the first words that clients read and write are task.state and task.commit.
   const auto at = [](std::string_view address) { return modbus::parse_address(address)->at; };
   modbus::Device screen({.link = modbus::TcpLink{.port = host.port()},
-                         .values = {{.at = at("%ML0"), .type = PointType::real64, .written = true},
-                                    {.at = at("%ML7"), .type = PointType::real64},
-                                    {.at = at("%IW0"), .type = PointType::uint16},
-                                    {.at = at("%QW0"), .type = PointType::uint16},
-                                    {.at = at("%MW3"), .type = PointType::uint16}},
+                         .values = {{.at = at("%ML0"), .format = {.type = PointType::real64}, .written = true},
+                                    {.at = at("%ML7"), .format = {.type = PointType::real64}},
+                                    {.at = at("%IW0"), .format = {.type = PointType::uint16}},
+                                    {.at = at("%QW0"), .format = {.type = PointType::uint16}},
+                                    {.at = at("%MW3"), .format = {.type = PointType::uint16}}},
                          .response = milliseconds(2000)});
   screen.write(0, 0.75);
   EXPECT_TRUE(test::soon([&] { return screen.read(1).value == 1.5 && stage.taken() == 1.5; }));

@@ -1,17 +1,14 @@
 // The client role against a device that does everything wrong, and over a serial line.
 #include "runtime/modbus/device.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <termios.h>
 
 #include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
+#include <set>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -19,6 +16,7 @@
 #include "runtime/modbus/value_bits.hpp"
 #include "tests/runtime/modbus/bad_device.hpp"
 #include "tests/runtime/modbus/memory_door.hpp"
+#include "tests/runtime/modbus/serial_device.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -113,8 +111,8 @@ TEST(Device, WhatCannotBeWrittenIsRefusedAtTheStart) {
   const auto with = [](RemoteValue value) { return DeviceOptions{.values = {value}}; };
   using A = Area;
   EXPECT_THROW(Device(with({.at = {A::input_register, 0, 1}, .written = true})), std::invalid_argument);
-  EXPECT_THROW(Device(with({.at = {A::coil, 0, 1}, .type = PointType::int16})), std::invalid_argument);
-  EXPECT_THROW(Device(with({.at = {A::holding_register, 0xFFFF, 2}, .type = PointType::real32})),
+  EXPECT_THROW(Device(with({.at = {A::coil, 0, 1}, .format = {.type = PointType::int16}})), std::invalid_argument);
+  EXPECT_THROW(Device(with({.at = {A::holding_register, 0xFFFF, 2}, .format = {.type = PointType::real32}})),
                std::invalid_argument);
 }
 
@@ -125,7 +123,7 @@ void expect_values_to_cross(const DeviceOptions& to, const RegisterMap& map, tes
   for (const bool written : {false, true}) {
     for (const MapEntry& entry : map.entries()) {
       if (!written || map.point_of(entry).writable) {
-        options.values.push_back({.at = entry.at, .type = map.point_of(entry).type, .written = written});
+        options.values.push_back({.at = entry.at, .format = entry.format, .written = written});
         points.push_back(entry.point);
       }
     }
@@ -155,83 +153,15 @@ TEST(Device, EveryTypeAndWordOrderOverTcp) {
   for (const WordOrder order : word_orders) {
     test::MemoryDoor door(test::points_of_every_type());
     const Server server(make_register_map(door.points(), {.title = "T", .order = order}), door, {.port = 0});
-    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .order = order, .period = milliseconds(5)},
-                           server.map(), door);
+    expect_values_to_cross({.link = TcpLink{.port = server.port()}, .period = milliseconds(5)}, server.map(), door);
   }
 }
-
-/// CRC of a serial frame, bit by bit as in the specification.
-std::uint16_t crc_of(std::span<const std::uint8_t> bytes) {
-  std::uint16_t crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = static_cast<std::uint16_t>((crc & 1U) != 0 ? crc >> 1U ^ 0xA001U : crc >> 1U);
-    }
-  }
-  return crc;
-}
-
-/// A serial device at the other end of a pseudo-terminal, which answers whole requests by the server's own answers.
-class SerialDevice {
- public:
-  explicit SerialDevice(Responder& responder) : responder_(responder), master_(::posix_openpt(O_RDWR | O_NOCTTY)) {
-    if (!master_.is_open() || ::grantpt(master_.number()) != 0 || ::unlockpt(master_.number()) != 0) {
-      throw std::runtime_error("no pseudo-terminal");
-    }
-    std::array<char, 128> name{};
-    ::ptsname_r(master_.number(), name.data(), name.size());
-    path_ = name.data();
-    keep_open_ = Descriptor(::open(path_.c_str(), O_RDWR | O_NOCTTY));  // or the master hangs up between two clients
-    termios raw{};
-    ::tcgetattr(keep_open_.number(), &raw);
-    ::cfmakeraw(&raw);
-    ::tcsetattr(keep_open_.number(), TCSANOW, &raw);
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  void run(const std::stop_token& stop) {
-    std::vector<std::uint8_t> frame;
-    while (!stop.stop_requested()) {
-      pollfd one{master_.number(), POLLIN, 0};
-      if (::poll(&one, 1, 20) <= 0) {
-        frame.clear();
-        continue;
-      }
-      std::array<std::uint8_t, 256> bytes{};
-      const ssize_t got = ::read(master_.number(), bytes.data(), bytes.size());
-      frame.insert(frame.end(), bytes.begin(), bytes.begin() + std::max<ssize_t>(got, 0));
-      const bool whole = frame.size() >= 4 && crc_of(frame) == 0;  // the CRC of a frame with its CRC
-      if (!whole) {
-        continue;
-      }
-      const Reply reply = responder_.answer(std::span(frame).subspan(1, frame.size() - 3), {});
-      std::vector<std::uint8_t> answer{frame[0]};
-      answer.insert(answer.end(), reply.pdu().begin(), reply.pdu().end());
-      const std::uint16_t crc = crc_of(answer);
-      answer.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
-      answer.push_back(static_cast<std::uint8_t>(crc >> 8U));
-      frame.clear();
-      if (::write(master_.number(), answer.data(), answer.size()) < 0) {
-        return;
-      }
-    }
-  }
-
-  Responder& responder_;
-  Descriptor master_;
-  Descriptor keep_open_;
-  std::string path_;
-  std::jthread thread_;
-};
 
 TEST(Device, EveryTypeOverASerialLine) {
   test::MemoryDoor door(test::points_of_every_type());
   const RegisterMap map = make_register_map(door.points(), {.title = "T"});
   Responder responder(map, door, {});
-  const SerialDevice line(responder);
+  const test::SerialDevice line(responder);
   expect_values_to_cross({.link = SerialLink{.path = line.path(), .baud = 115200},
                           .unit = 7,
                           .period = milliseconds(5),
@@ -239,11 +169,107 @@ TEST(Device, EveryTypeOverASerialLine) {
                          map, door);
 }
 
+/// A device on a serial line that is in such trouble.
+struct TroubledLine {
+  explicit TroubledLine(test::LineTrouble trouble, bool has_echo) : line(responder, trouble) {
+    options = {
+        .link = SerialLink{.path = line.path(), .baud = 115200, .has_echo = has_echo},
+        .unit = 7,
+        .values = {{.at = {Area::holding_register, 0, 4}, .format = {.type = PointType::int64}},
+                   {.at = {Area::holding_register, 4, 4}, .format = {.type = PointType::uint64}, .written = true}},
+        .response = milliseconds(1000)};
+  }
+  test::MemoryDoor door{test::points_of_every_type()};
+  RegisterMap map{make_register_map(door.points(), {.title = "T"})};
+  Responder responder{map, door, {}};
+  test::SerialDevice line;
+  DeviceOptions options;
+};
+
+TEST(Device, AnEchoIsTakenAwayAndADamagedOneIsAWrongAnswer) {
+  TroubledLine sound({.has_echo = true}, true);
+  Device device(sound.options, {.own_thread = false});
+  device.write(1, 815.0);
+  EXPECT_TRUE(device.round());
+  EXPECT_TRUE(device.round());
+  EXPECT_EQ(device.status().answers, 4U);
+  EXPECT_EQ(sound.door.writes(), 2U);
+  TroubledLine damaged({.has_echo = true, .bad_echo = true}, true);
+  Device unlucky(damaged.options, {.own_thread = false});
+  EXPECT_FALSE(unlucky.round());
+  EXPECT_EQ(unlucky.status().wrong_answers, 1U);
+  TroubledLine unexpected({.has_echo = true}, false);
+  Device surprised(unexpected.options, {.own_thread = false});
+  EXPECT_FALSE(surprised.round()) << "what was sent is no answer";
+}
+
+TEST(Device, AWrongChecksumIsCountedAsSuch) {
+  TroubledLine line({.bad_checksum = true}, false);
+  Device device(line.options, {.own_thread = false});
+  EXPECT_FALSE(device.round());
+  EXPECT_EQ(device.status().bad_checksums, 1U);
+  EXPECT_EQ(device.status().answers, 0U);
+}
+
+TEST(Device, UnitsBehindAGatewayShareOneConnection) {
+  test::MemoryDoor door(test::points_of_every_type());
+  const RegisterMap map = make_register_map(door.points(), {.title = "T"});
+  const Server gateway(map, door, {.port = 0, .connections = 1});
+  std::vector<DeviceOptions> options;
+  for (const int unit : {1, 2, 247, 255}) {
+    options.push_back({.link = TcpLink{.port = gateway.port()},
+                       .unit = static_cast<std::uint8_t>(unit),
+                       .shares_connection = true,
+                       .values = {{.at = {Area::holding_register, 18, 1}}},
+                       .period = milliseconds(1),
+                       .response = milliseconds(5000)});
+  }
+  const auto links = shared_links(options);
+  EXPECT_EQ(std::set(links.begin(), links.end()).size(), 1U);
+  options.push_back({.link = TcpLink{.port = gateway.port()}});
+  EXPECT_EQ(shared_links(options).back(), nullptr) << "it has not asked to share";
+  options.back().shares_connection = true;
+  options.back().link = TcpLink{.host = "localhost", .port = gateway.port()};
+  EXPECT_NE(shared_links(options).back(), shared_links(options).front()) << "another address";
+  std::vector<std::unique_ptr<Device>> units;
+  for (std::size_t i = 0; i < 4; ++i) {
+    units.push_back(std::make_unique<Device>(options[i], DeviceWork{.link = links[i]}));
+  }
+  for (const auto& unit : units) {
+    EXPECT_TRUE(soon([&] { return unit->status().answers >= 50; }));
+    const DeviceStatus status = unit->status();
+    EXPECT_EQ(status.timeouts + status.wrong_answers + status.closed + status.no_link, 0U);
+  }
+  EXPECT_EQ(gateway.status().accepted, 1U);
+  EXPECT_EQ(gateway.status().refused_full, 0U);
+}
+
+TEST(Device, AUnitThatDoesNotAnswerDoesNotSpoilWhatOthersOnItsConnectionRead) {
+  BadServer gateway(response);
+  DeviceOptions options = one_register(gateway.port());
+  options.shares_connection = true;
+  const std::vector<DeviceOptions> both{options, options};
+  const auto links = shared_links(both);
+  const Device first(both[0], {.link = links[0]});
+  const Device second(both[1], {.link = links[1]});
+  ASSERT_TRUE(soon([&] { return first.status().answers > 10 && second.status().answers > 10; }));
+  for (const Fault fault : {Fault::never, Fault::late, Fault::duplicate, Fault::none}) {
+    gateway.set(fault);
+    std::this_thread::sleep_for(3 * response);
+    for (const Device* const device : {&first, &second}) {
+      const RemoteReading reading = device->read(0);
+      EXPECT_TRUE(reading.quality != Quality::good || reading.value == test::right_value);
+    }
+  }
+  EXPECT_TRUE(soon([&] { return first.read(0).quality == Quality::good && second.read(0).quality == Quality::good; }));
+  EXPECT_EQ(first.read(0).value, test::right_value);
+}
+
 TEST(Device, SeveralUnitsOnOneSerialLineTakeTurns) {
   test::MemoryDoor door(test::points_of_every_type());
   const RegisterMap map = make_register_map(door.points(), {.title = "T"});
   Responder responder(map, door, {});
-  const SerialDevice line(responder);
+  const test::SerialDevice line(responder);
   std::vector<std::unique_ptr<Device>> units;
   for (std::uint8_t unit = 3; unit <= 5; ++unit) {
     units.push_back(
@@ -264,7 +290,7 @@ TEST(Device, SeveralUnitsOnOneSerialLineTakeTurns) {
 }
 
 TEST(ValueBits, LimitsOfATypeComeBackAsTheyAre) {
-  for (const PointType type : point_types) {
+  for (const RegisterType type : register_types) {
     const auto [low, high] = limits_of(type);
     EXPECT_EQ(value_of(bits_of(low, type), type), low) << name_of(type);
     EXPECT_EQ(value_of(bits_of(high, type), type), high) << name_of(type);

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "runtime/config/modbus_reader.hpp"
 #include "runtime/modbus/register_map.hpp"
 #include "support/errors.hpp"
 #include "tests/support/error_page.hpp"
@@ -28,12 +29,18 @@ MapRequest request_of(const test::FencedBlock& block) {
     request.lock_text = block.text;
     return request;
   }
-  const auto table = toml::parse(block.text);
-  for (const auto& [name, address] : *table["addresses"].as_table()) {
-    request.given.push_back({.name = std::string(name.str()),
-                             .address = address.value<std::string>().value(),
-                             .place = {.file = "run.toml", .line = address.source().begin.line}});
-  }
+  const auto file = toml::parse(block.text);
+  RunConfig config;
+  Diagnostics found;
+  ModbusReader reader("run.toml", config, found);
+  const auto* const server = file["modbus"].as_table();
+  const toml::table empty;
+  reader.read(server == nullptr ? &empty : server, false);
+  reader.read_points(file["addresses"].as_table(), file["registers"].as_table());
+  EXPECT_FALSE(found.has_errors());
+  request.given = config.modbus->registers;
+  request.expose = config.modbus->expose;
+  request.expose_place = config.modbus->expose_place;
   return request;
 }
 
@@ -51,15 +58,16 @@ TEST_P(MapErrorPages, FailAndMend) {
     EXPECT_FALSE(only.place.file.empty());
     EXPECT_FALSE(only.mend.empty());
   }
-  EXPECT_EQ(make_register_map(points(), request_of(page.mended)).entries().size(), points().size());
+  const MapRequest mended = request_of(page.mended);
+  EXPECT_EQ(make_register_map(points(), mended).entries().size(), mended.expose.empty() ? points().size() : 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modbus, MapErrorPages, ::testing::Range(820, 827),
+INSTANTIATE_TEST_SUITE_P(Modbus, MapErrorPages, ::testing::Values(820, 821, 822, 823, 824, 825, 826, 860, 861),
                          [](const auto& page) { return "HY" + std::to_string(page.param); });
 
 TEST(RegisterMapErrors, AreFoundTogether) {
   const MapRequest request{.title = "T",
-                           .given = {{"NONE", "%QW0", {}}, {"GAIN", "?", {}}, {"MODE", "%QX0.0", {}}},
+                           .given = {{"NONE", "%QW0"}, {"GAIN", "?"}, {"MODE", "%QX0.0"}},
                            .lock_file = "t.lock",
                            .lock_text = "what\nholding 0 int16 A\nholding 0 int16 B\n"};
   try {
@@ -88,12 +96,13 @@ TEST(RegisterMapErrors, AnAreaThatIsFull) {
   }
 }
 
-TEST(RegisterMapErrors, MorePointsThanTheDiscoveryChainHolds) {
-  std::vector<Point> many(2000, {.type = PointType::int16});
+TEST(RegisterMapErrors, MorePointsThanAnAreaHolds) {
+  std::vector<Point> many(chain_address + 1, {.type = PointType::int16, .writable = true});
   for (std::size_t i = 0; i < many.size(); ++i) {
     many[i].name = "WORD" + std::to_string(i);
   }
   EXPECT_THROW((void)make_register_map(many, {.title = "T"}), InputError);
+  EXPECT_NO_THROW((void)make_register_map(many, {.title = "T", .has_discovery = false}));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Oracle {
       }
     }
     std::size_t at = runtime::modbus::chain_address;
-    for (const std::uint16_t word : map.chain()) {
+    for (const std::uint16_t word : map.chain_registers()) {
       cells_[holding][at].word = word;
       cells_[holding][at++].chain = true;
     }
@@ -43,6 +43,9 @@ class Oracle {
   /// The exact answer; the memory changes where the request writes.
   Bytes answer(const Bytes& pdu) {
     const int function = pdu[0];
+    if (function == 20) {
+      return files(pdu);
+    }
     const auto form = forms().find(function);
     if (form == forms().end()) {
       return exception(function, 1);
@@ -112,6 +115,38 @@ class Oracle {
         {23, {2, 1, 125, 5, 121, 10, 10}}, {43, {0, 0, 0, 0, 0, 0, 4}},
     };
     return table;
+  }
+
+  /// Function 20: every part names its file, its first record and how many.
+  [[nodiscard]] Bytes files(const Bytes& pdu) const {
+    const std::size_t bytes = pdu.size() < 2 ? 0 : pdu[1];
+    if (bytes == 0 || bytes % 7 != 0 || bytes + 2 != pdu.size()) {
+      return exception(20, 3);
+    }
+    Bytes answer{20, 0};
+    bool is_there = true;
+    bool is_fit = true;
+    for (std::size_t part = 2; part < pdu.size(); part += 7) {
+      const std::size_t file = word(pdu, part + 1);
+      const std::size_t record = word(pdu, part + 3);
+      const std::size_t count = word(pdu, part + 5);
+      is_fit = is_fit && count > 0;
+      is_there = is_there && pdu[part] == 6 && file > 0 && record + count <= 10000;
+      answer.push_back(static_cast<std::uint8_t>(2 * count + 1));
+      answer.push_back(6);
+      for (std::size_t i = 0; i < count && answer.size() <= 300; ++i) {
+        const std::size_t at = 10000 * file + record + i - 10000;
+        is_there = is_there && at < map_.chain().size();
+        const std::uint16_t one = is_there ? map_.chain()[at] : std::uint16_t{0};
+        answer.push_back(static_cast<std::uint8_t>(one / 256));
+        answer.push_back(static_cast<std::uint8_t>(one % 256));
+      }
+    }
+    if (!is_fit || answer.size() > 253) {
+      return exception(20, 3);
+    }
+    answer[1] = static_cast<std::uint8_t>(answer.size() - 2);
+    return is_there ? answer : exception(20, 2);
   }
 
   static std::size_t word(const Bytes& pdu, std::size_t at) { return pdu[at] * 256U + pdu[at + 1]; }

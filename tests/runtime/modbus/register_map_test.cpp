@@ -188,7 +188,7 @@ TEST(RegisterMap, AGivenAddressReplacesTheOneInTheLockFile) {
   const std::vector<Point> points{{.name = "X", .type = PointType::int16, .writable = true},
                                   {.name = "Y", .type = PointType::int16, .writable = true}};
   const RegisterMap map = make_register_map(points, {.title = "T",
-                                                     .given = {{"X", "%QW9", {}}},
+                                                     .given = {{"X", "%QW9"}},
                                                      .lock_file = "t.lock",
                                                      .lock_text = "holding 0 int16 X\nholding 1 int16 Y\n"});
   EXPECT_EQ(addresses(map).at("X").address, 9U);
@@ -232,7 +232,7 @@ TEST(Discovery, ATornChainIsNone) {
 TEST(MapText, CsvQuotesAndJsonParses) {
   const RegisterMap map = make_register_map(test::points_of_every_type(), {.title = "T"});
   EXPECT_THAT(as_csv(map), HasSubstr("\nholding,0,4,int64,I64.W,um/V,-1000000000000000,1000000000000000,read write,"
-                                     "parameter,\"a value, \"\"so\"\" to say\"\n"));
+                                     "parameter,\"a value, \"\"so\"\" to say\",,1,0,ABCD\n"));
   const auto json = nlohmann::json::parse(as_json(map));
   EXPECT_EQ(json["hash"], map.hash());
   EXPECT_EQ(json["points"].size(), map.points().size());

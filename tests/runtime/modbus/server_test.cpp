@@ -61,7 +61,7 @@ TEST(Server, AnswersAndCounts) {
 TEST(Server, SaysWhyTheProgramRefusedARequest) {
   std::mutex mutex;
   std::vector<std::string> lines;
-  ServerBench bench({.client_refused = [&](const std::string& line) {
+  ServerBench bench({.tell = [&](const std::string& line) {
     const std::scoped_lock lock(mutex);
     lines.push_back(line);
   }});
@@ -99,10 +99,75 @@ TEST(Server, TheThirtyThirdIsRefusedWithoutHarm) {
       << "a place that is free is given again";
 }
 
+TEST(Server, ConnectionsThatWereForgottenGiveWayToTheirOwner) {
+  ServerBench bench({.connections_per_address = 8, .evict = milliseconds(300)});
+  std::vector<std::unique_ptr<ClientSocket>> leaked;
+  for (int i = 0; i < 8; ++i) {
+    leaked.push_back(std::make_unique<ClientSocket>(bench.server.port()));
+    ASSERT_EQ(ask(*leaked.back(), test::read_one).size(), 11U);
+  }
+  std::unique_ptr<ClientSocket> again;
+  bool is_served = false;
+  EXPECT_TRUE(test::soon([&] {
+    if (!is_served) {
+      again = std::make_unique<ClientSocket>(bench.server.port());
+      is_served = ask(*again, test::read_one).size() == 11U;
+    }
+    return is_served;
+  })) << "not 60 s later";
+  EXPECT_EQ(bench.server.status().evicted, 1U);
+  EXPECT_TRUE(leaked.front()->sees_the_end()) << "who has been silent for longest";
+  EXPECT_EQ(bench.server.status().idle, 0U);
+  EXPECT_EQ(bench.server.status().open, 8U);
+}
+
+TEST(Server, WhoAsksAndWhoOwnsTheWritesKeepTheirPlaces) {
+  ServerBench bench({.connections = 2, .evict = milliseconds(200), .heartbeat = {.own_writes = true}});
+  const ClientSocket owner(bench.server.port());
+  ASSERT_EQ(ask(owner, write_one), write_one);
+  const ClientSocket busy(bench.server.port());
+  const auto until = std::chrono::steady_clock::now() + milliseconds(600);
+  while (std::chrono::steady_clock::now() < until) {
+    EXPECT_EQ(ask(busy, test::read_one).size(), 11U);
+    EXPECT_TRUE(ClientSocket(bench.server.port()).sees_the_end());
+  }
+  EXPECT_EQ(ask(owner, write_one), write_one);
+  EXPECT_EQ(bench.server.status().evicted, 0U);
+}
+
+TEST(Server, IdleIsWhatTheOptionsSay) {
+  ServerBench bench({.limits = {.idle = milliseconds(150)}});
+  const ClientSocket client(bench.server.port());
+  EXPECT_TRUE(client.sees_the_end());
+  EXPECT_EQ(bench.server.status().idle, 1U);
+}
+
+TEST(Server, AValueBeyondItsFormatIsToldOnceAMinute) {
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  test::MemoryDoor door({{.name = "FLOW"}});
+  const Server server(
+      make_register_map(door.points(),
+                        {.title = "T", .given = {{.name = "FLOW", .format = GivenFormat{.type = PointType::int16}}}}),
+      door, {.port = 0, .tell = [&](const std::string& line) {
+               const std::scoped_lock lock(mutex);
+               lines.push_back(line);
+             }});
+  door.set(0, 40000.0);
+  const ClientSocket client(server.port());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(ask(client, framed(5, {4, 0, 0, 0, 1})), framed(5, {4, 2, 0x7F, 0xFF}));
+  }
+  EXPECT_EQ(server.status().saturated, 3U);
+  const std::scoped_lock lock(mutex);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(lines.front().starts_with("FLOW is beyond what its registers hold")) << lines.front();
+}
+
 TEST(Server, OneAddressHasItsShareAndLeavesTheRestToOthers) {
   std::mutex mutex;
   std::vector<std::string> lines;
-  ServerBench bench({.connections = 8, .connections_per_address = 3, .client_refused = [&](const std::string& line) {
+  ServerBench bench({.connections = 8, .connections_per_address = 3, .tell = [&](const std::string& line) {
                        const std::scoped_lock lock(mutex);
                        lines.push_back(line);
                      }});

@@ -40,7 +40,7 @@ class TlsServer : public ::testing::Test {
   explicit TlsServer(ServerOptions options = {}) {
     options.port = 0;
     options.tls = std::make_shared<const TlsContext>(files_.options());
-    options.client_refused = [this](const std::string& line) {
+    options.tell = [this](const std::string& line) {
       const std::scoped_lock lock(mutex_);
       told_ += line + "\n";
     };

@@ -51,7 +51,7 @@ class ServedTask {
     for (const modbus::MapEntry& entry : server_.map().entries()) {
       if (server_.map().point_of(entry).name == name) {
         value.at = entry.at;
-        value.type = server_.map().point_of(entry).type;
+        value.format = entry.format;
       }
     }
     auto device = std::make_unique<modbus::Device>(modbus::DeviceOptions{

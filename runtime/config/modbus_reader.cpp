@@ -1,0 +1,194 @@
+#include "runtime/config/modbus_reader.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "runtime/config/format_reader.hpp"
+#include "runtime/config/line_reader.hpp"
+#include "support/errors.hpp"
+
+namespace hysteron::runtime {
+namespace {
+
+void read_milliseconds(TomlReader& table, std::string_view key, std::chrono::milliseconds& into) {
+  std::int64_t time = std::chrono::nanoseconds(into).count();
+  table.read_duration(key, time);
+  into = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
+}
+
+}  // namespace
+
+void ModbusReader::read(const toml::table* modbus, bool over_tls) {
+  if (modbus != nullptr) {
+    read_server({*file_, "[modbus]", *modbus, run_table("modbus").keys, *found_}, over_tls);
+  }
+}
+
+void ModbusReader::read_line_of(const toml::table* rtu) {
+  const bool is_off = config_->modbus && config_->modbus->listen.empty();
+  if (rtu == nullptr) {
+    if (is_off) {
+      found_->error(error::wrong_run_value, config_->modbus->place,
+                    "The server listens on no address and no serial line.",
+                    "describe the line under [modbus_rtu], or write an address as in listen = \"127.0.0.1\".");
+    }
+    return;
+  }
+  TomlReader table(*file_, "[modbus_rtu]", *rtu, run_table("modbus_rtu").keys, *found_);
+  modbus::RtuOptions options;
+  options.line = read_line(table, *found_);
+  table.read_whole("unit", options.unit);
+  std::int64_t gap = 0;
+  table.read_duration("longest_gap", gap);
+  options.longest_gap = std::chrono::nanoseconds(gap);
+  table.read("read_only", options.read_only);
+  if (!table.has("serial")) {
+    found_->error(error::wrong_run_value, table.place(), "[modbus_rtu] needs the key serial.",
+                  "write it as in serial = \"/dev/ttyUSB0\", or remove the table.");
+  }
+  const bool is_device = std::ranges::any_of(config_->devices, [&](const modbus::DeviceOptions& device) {
+    const auto* const line = std::get_if<modbus::SerialLink>(&device.link);
+    return line != nullptr && line->path == options.line.path;
+  });
+  if (is_device) {
+    found_->error(
+        error::wrong_run_value, table.place("serial"),
+        options.line.path + " is the line of a device, whose master the task is; it cannot be a station there.",
+        "name another line, or remove the table.");
+  }
+  if (!config_->modbus) {
+    found_->error(error::wrong_run_value, table.place(), "[modbus_rtu] has no map, for there is no table [modbus].",
+                  "add [modbus]; with listen = \"off\" it serves the serial line alone.");
+    return;
+  }
+  config_->modbus->rtu = std::move(options);
+}
+
+void ModbusReader::read_points(const toml::table* addresses, const toml::table* registers) {
+  if (addresses != nullptr) {
+    read_addresses("", *addresses);
+  }
+  if (registers != nullptr) {
+    read_registers("", *registers);
+  }
+}
+
+void ModbusReader::read_server(TomlReader table, bool over_tls) {
+  ModbusConfig modbus;
+  modbus.place = table.place();
+  table.read("listen", modbus.listen);
+  if (modbus.listen == "off") {
+    modbus.listen.clear();
+    if (over_tls) {
+      found_->error(error::wrong_run_value, table.place("listen"), "[tls] has no connections to guard.",
+                    "remove [tls], or write an address for listen.");
+    }
+    for (const std::string_view key : {"port", "allow", "connections", "connections_per_address", "idle", "evict"}) {
+      if (table.has(key)) {
+        found_->error(error::wrong_run_value, table.place(key),
+                      std::string(key) + " is of a server that listens, and this one does not.",
+                      "remove the key, or write an address for listen.");
+      }
+    }
+  }
+  modbus.port = over_tls ? 802 : modbus.port;
+  table.read_whole("port", modbus.port);
+  table.read("allow", modbus.allow);
+  table.read_whole("connections", modbus.connections);
+  modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
+  table.read_whole("connections_per_address", modbus.connections_per_address);
+  read_milliseconds(table, "idle", modbus.idle);
+  read_milliseconds(table, "evict", modbus.evict);
+  table.read("read_only", modbus.read_only);
+  std::size_t order = 0;
+  table.read_choice("word_order", order);
+  modbus.word_order = modbus::word_orders[order];
+  std::size_t placing = 0;
+  table.read_choice("map", placing);
+  modbus.placing = static_cast<modbus::Placing>(placing);
+  table.read("lock_file", modbus.lock_file);
+  table.read("expose", modbus.expose);
+  modbus.expose_place = table.place("expose");
+  if (table.has("expose") && modbus.expose.empty()) {
+    found_->error(error::wrong_run_value, table.place("expose"), "expose names no point, and a server has to have one.",
+                  "name points as in expose = [\"U\", \"task.*\"], or leave the key out.");
+  }
+  table.read("discovery", modbus.has_discovery);
+  read_heartbeat(table, modbus);
+  config_->modbus = std::move(modbus);
+}
+
+/// A name with a point in it may be quoted, or not: HYST.C1 = "%ML3" is a table in TOML.
+void ModbusReader::read_addresses(const std::string& prefix, const toml::table& table) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    const Place place = place_of(*file_, node.source());
+    if (const auto* const below = node.as_table()) {
+      read_addresses(name + ".", *below);
+    } else if (!node.is_string()) {
+      found_->error(error::wrong_run_value, place, name + " must be an address, a text.",
+                    "write it as in " + name + " = \"%QW5\".");
+    } else if (!config_->modbus) {
+      found_->error(error::wrong_run_value, place, name + " has an address, and there is no server.",
+                    "add the table [modbus], or remove [addresses].");
+    } else {
+      config_->modbus->registers.push_back({.name = name, .address = node.as_string()->get(), .place = place});
+    }
+  }
+}
+
+/// [registers.HYST.C1] is the table of HYST.C1: a table of tables alone is a part of names.
+void ModbusReader::read_registers(const std::string& prefix, const toml::table& table) {
+  for (const auto& [key, node] : table) {
+    const auto* const own = node.as_table();
+    if (own == nullptr) {
+      found_->error(error::wrong_run_value, place_of(*file_, node.source()),
+                    std::string(key.str()) + " must be a table.",
+                    "write it as [registers." + prefix + std::string(key.str()) + "], and its keys below.");
+      continue;
+    }
+    const std::string name = prefix + std::string(key.str());
+    if (!own->empty() && std::ranges::all_of(*own, [](const auto& one) { return one.second.is_table(); })) {
+      read_registers(name + ".", *own);
+    } else {
+      read_register(name, {*file_, "[registers." + name + "]", *own, run_table("registers").keys, *found_});
+    }
+  }
+}
+
+void ModbusReader::read_register(const std::string& name, TomlReader table) {
+  modbus::GivenRegister given{.name = name, .place = table.place()};
+  table.read("at", given.address);
+  given.format = read_format(table);
+  if (!config_->modbus) {
+    found_->error(error::wrong_run_value, table.place(), name + " has a place on the server, and there is no server.",
+                  "add the table [modbus], or remove [registers].");
+  } else if (given.address.empty() && !given.format) {
+    found_->error(error::wrong_run_value, table.place(), table.name() + " says nothing.",
+                  "write an address or a format, as in type = \"int16\", or remove the table.");
+  } else {
+    config_->modbus->registers.push_back(std::move(given));
+  }
+}
+
+void ModbusReader::read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
+  std::size_t mode = 0;
+  table.read_choice("heartbeat", mode);
+  modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
+  read_milliseconds(table, "heartbeat_time", modbus.heartbeat.time);
+  std::size_t after = 0;
+  table.read_choice("after_loss", after);
+  config_->task.reset_after_lost_client = after == 1;
+  table.read("own_writes", modbus.heartbeat.own_writes);
+  if (modbus.read_only && (modbus.heartbeat.mode == modbus::HeartbeatMode::write_telegram || after == 1)) {
+    found_->error(error::wrong_run_value, table.place(after == 1 ? "after_loss" : "heartbeat"),
+                  "Writes of a client are waited for, and read_only refuses them.",
+                  "write heartbeat = \"any\" and after_loss = \"resume\", or read_only = false.");
+  }
+}
+
+}  // namespace hysteron::runtime

@@ -106,4 +106,9 @@ class OnlineChange {
   std::atomic<bool> has_ended_{false};
 };
 
+/// For a task with [online_change]; null without it, or where the program is none whose version may change: then a line
+/// says that the table has no effect.
+[[nodiscard]] std::unique_ptr<OnlineChange> online_change(const RunConfig& config, ChangeableProgram* program,
+                                                          Task& task);
+
 }  // namespace hysteron::runtime

@@ -97,6 +97,14 @@ void set_parameters(StepProgram& program, std::span<const double> values) {
   }
 }
 
+/// No number where there is none of that name.
+double parameter_named(const StepProgram& program, const std::string& name) {
+  const auto& parameters = program.shape().parameters;
+  const auto found = std::ranges::find(parameters, name, &ProgramSignal::name);
+  return found == parameters.end() ? not_a_number
+                                   : program.parameter(static_cast<std::size_t>(found - parameters.begin()));
+}
+
 void refuse_bump(Diagnostics& found, const OutputChange& output, const char* when) {
   const std::string unit = output.unit.empty() ? "" : " " + output.unit;
   if (!std::isfinite(output.bump.after)) {
@@ -391,6 +399,13 @@ void OnlineChange::tell_refused(const InputError& refused) const {
   }
 }
 
+void OnlineChange::keep_as_given(const std::vector<std::string>& names) {
+  as_given_.clear();
+  for (const std::string& name : names) {
+    as_given_[name] = parameter_named(program_->version().program(), name);
+  }
+}
+
 void OnlineChange::tell_changed(ChangeReport& report, ChangeOutcome outcome) {
   ProgramVersion& version = program_->version();
   program_->tell(outcome);
@@ -418,6 +433,7 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
       const HeldCommits held(task_->door());
       report = carry_out(*next, {.next = *next, .given = given}, wish);
       gone = program_->keep(std::move(next));
+      keep_as_given(wish.as_given);
       task_->door().version_changed(program_->version().program(), program_->version().parameters());
     }
     tell_changed(report, ChangeOutcome::changed);
@@ -433,7 +449,8 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
   }
 }
 
-ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
+ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
+  ChangeWish wish = asked;
   try {
     const auto lock = one_at_a_time();
     ProgramVersion* const former = program_->former();
@@ -441,6 +458,12 @@ ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
       refuse_for_now("There is no version before this one: none was changed since the start.");
     }
     StepProgram& program = former->program();
+    for (const auto& [name, value] : as_given_) {
+      if (parameter_named(program_->version().program(), name) == value &&
+          !std::isnan(parameter_named(program, name))) {
+        wish.as_given.push_back(name);
+      }
+    }
     const Plan begin{.next = *former, .given = parameters_of(program), .own_state = state_of(program)};
     const auto as_it_was = [&] {
       set_parameters(program, begin.given);
@@ -457,6 +480,7 @@ ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
         const HeldCommits held(task_->door());
         report = carry_out(*former, begin, wish);
         program_->keep_former();
+        keep_as_given(wish.as_given);
         task_->door().version_changed(program, former->parameters());
       }
       tell_changed(report, ChangeOutcome::back);

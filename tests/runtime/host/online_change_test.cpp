@@ -352,6 +352,19 @@ TEST(OnlineChange, AParameterIsTakenAsGivenWhereThatIsAskedForOrItsLimitsWantIt)
   ASSERT_EQ(plant.write({{"A.K", 0.5}, {"task.commit", 1.0}}), "");
   EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == 0.5; }));
   EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  // Back, what was taken as given is as before, and what a client has committed stays; forward again, the same.
+  EXPECT_THAT(plant.change().change_back({}).left, ElementsAre("B.K (as given)"));
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "A.K"), 0.5);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.002);
+  (void)plant.change().change_back({});
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  ASSERT_EQ(plant.write({{"B.K", 0.7}, {"task.commit", 1.0}}), "");
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "B.K") == 0.7; }));
+  EXPECT_THAT(plant.change().change_back({}).left, IsEmpty());
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.7);
   EXPECT_EQ(refusal([&] {
               return plant.change().change_to(integrators({{"A", 0.1}}), {.as_given = {"B.K"}});
             }),

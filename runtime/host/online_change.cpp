@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -51,11 +52,10 @@ void require_same_signals(const char* kind, const std::vector<ProgramSignal>& ha
     } else if (has[i].name != next[i].name) {
       refuse(fmt::format("The {} {} stands where {} was.", kind, signal_text(next[i]), signal_text(has[i])));
       return;  // all behind it are shifted
-    } else if (has[i].unit != next[i].unit || has[i].type != next[i].type) {
-      refuse(fmt::format("The {} {} has another {}: {} and {}.", kind, has[i].name,
-                         has[i].unit != next[i].unit ? "unit" : "type",
-                         has[i].unit != next[i].unit ? signal_text(has[i]) : "the running version's",
-                         has[i].unit != next[i].unit ? signal_text(next[i]) : "the new one's"));
+    } else if (has[i].unit != next[i].unit) {
+      refuse(fmt::format("The {} {} has another unit: {}.", kind, signal_text(has[i]), next[i].unit));
+    } else if (has[i].type != next[i].type) {
+      refuse(fmt::format("The {} {} has another type.", kind, has[i].name));
     } else if (has[i].low != next[i].low || has[i].high != next[i].high) {
       refuse(fmt::format("The range of the {} {} was {} to {}, and is {} to {}.", kind, has[i].name,
                          number_text(has[i].low), number_text(has[i].high), number_text(next[i].low),
@@ -121,18 +121,10 @@ void refuse_bump(Diagnostics& found, const OutputChange& output, const char* whe
 }
 
 /// While it lives, nobody commits parameters.
-class HeldCommits {
- public:
-  explicit HeldCommits(TaskDoor& door) : door_(&door) { door_->hold_commits(true); }
-  ~HeldCommits() { door_->hold_commits(false); }
-  HeldCommits(const HeldCommits&) = delete;
-  HeldCommits& operator=(const HeldCommits&) = delete;
-  HeldCommits(HeldCommits&&) = delete;
-  HeldCommits& operator=(HeldCommits&&) = delete;
-
- private:
-  TaskDoor* door_;
-};
+std::shared_ptr<void> held_commits(TaskDoor& door) {
+  door.hold_commits(true);
+  return {&door, [](void* held) { static_cast<TaskDoor*>(held)->hold_commits(false); }};
+}
 
 }  // namespace
 
@@ -430,7 +422,7 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     std::unique_ptr<ProgramVersion> gone;
     ChangeReport report;
     {
-      const HeldCommits held(task_->door());
+      const auto held = held_commits(task_->door());
       report = carry_out(*next, {.next = *next, .given = given}, wish);
       gone = program_->keep(std::move(next));
       keep_as_given(wish.as_given);
@@ -477,7 +469,7 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       }
       ChangeReport report;
       {
-        const HeldCommits held(task_->door());
+        const auto held = held_commits(task_->door());
         report = carry_out(*former, begin, wish);
         program_->keep_former();
         keep_as_given(wish.as_given);

@@ -274,7 +274,7 @@ TEST(OnlineChange, AnotherInterfaceIsRefusedByWhatIsOtherInIt) {
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].name = "U"; }),
             "HY850: The input U in V stands where X in V was.");
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].unit = "mV"; }),
-            "HY850: The input X has another unit: X in V and X in mV.");
+            "HY850: The input X in V has another unit: mV.");
   EXPECT_THAT(refused([](ProgramShape& shape) { shape.outputs[0].type = PointType::int32; }),
               HasSubstr("HY850: The output Y has another type"));
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.outputs[0].high = 10.0; }),

@@ -20,7 +20,6 @@
 namespace hysteron::runtime {
 namespace {
 
-using std::chrono::nanoseconds;
 using SteadyClock = std::chrono::steady_clock;
 
 /// Of the range of an output: what a control valve may not even notice. The EnTech Control Valve Dynamic Specification
@@ -38,8 +37,8 @@ std::string signal_text(const ProgramSignal& signal) {
 /// What of a signal must stay, as its registers and devices were planned with it.
 void require_same_signals(const char* kind, const std::vector<ProgramSignal>& has,
                           const std::vector<ProgramSignal>& next, Diagnostics& found) {
-  const auto refuse = [&](std::string cause) {
-    found.error(error::other_interface, {}, std::move(cause),
+  const auto refuse = [&](const std::string& cause) {
+    found.error(error::other_interface, {}, cause,
                 fmt::format("leave the {}s as they are, or end the task and start it with the new version: retained "
                             "values are carried over.",
                             kind));
@@ -105,7 +104,7 @@ double parameter_named(const StepProgram& program, const std::string& name) {
                                    : program.parameter(static_cast<std::size_t>(found - parameters.begin()));
 }
 
-void refuse_bump(Diagnostics& found, const OutputChange& output, const char* when) {
+void refuse_bump(Diagnostics& found, const OutputChange& output, const std::string& when) {
   const std::string unit = output.unit.empty() ? "" : " " + output.unit;
   if (!std::isfinite(output.bump.after)) {
     found.error(error::bump_too_large, {}, fmt::format("The output {} would be no number{}.", output.name, when),
@@ -171,7 +170,8 @@ void OnlineChange::begin(Retainer* retainer, const Trace* trace) {
 
 template <class Ready>
 bool OnlineChange::wait_for(const Ready& ready) const {
-  const auto patience = std::max<nanoseconds>(std::chrono::seconds(2), nanoseconds(5 * program_->shape().period));
+  const auto patience = std::max<std::chrono::nanoseconds>(std::chrono::seconds(2),
+                                                           std::chrono::nanoseconds(5 * program_->shape().period));
   const auto until = SteadyClock::now() + patience;
   while (!ready()) {
     if (has_ended_.load() || SteadyClock::now() > until) {
@@ -196,8 +196,7 @@ StepImage OnlineChange::image() {
                   .inputs = std::vector<double>(shape.inputs.size()),
                   .outputs = std::vector<double>(shape.outputs.size())};
   program_->ask_for_image(image);
-  const auto is_there = [&] { return program_->has_image(); };
-  if (!wait_for(is_there) && program_->withdraw_image()) {
+  if (!wait_for([&] { return program_->has_image(); }) && program_->withdraw_image()) {
     const FaultReport faults = task_->faults();
     refuse_for_now(has_ended_.load() ? "The task ends."
                                      : fmt::format("The diagram is not stepped; the last fault of the task was: {}.",
@@ -231,7 +230,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
       --carried.parameters_taken;
     }
   }
-  if (const std::string why = refusal_of(shape, carried.parameters, plan.given); !why.empty()) {
+  if (const auto why = refusal_of(shape, carried.parameters, plan.given); !why.empty()) {
     throw InputError(error::carried_parameters_unfit, {},
                      "The parameters carried over cannot be beside those of the new version: " + why,
                      "change them in the running task first, or take them as the diagram has them: --as-given NAME.");
@@ -313,9 +312,9 @@ void OnlineChange::rehearse(Plan& plan) const {
     next.step(plan.image.inputs, change.outputs);
     const auto bad = std::ranges::find_if(change.outputs, [](double value) { return !std::isfinite(value); });
     if (bad != change.outputs.end()) {
-      OutputChange output = plan.report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
+      OutputChange& output = plan.report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
       output.bump.after = *bad;
-      refuse_bump(found, output, fmt::format(" {} steps after the change", step).c_str());
+      refuse_bump(found, output, fmt::format(" {} steps after the change", step));
       throw InputError(std::move(found));
     }
   }
@@ -490,14 +489,12 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
 }
 
 std::unique_ptr<OnlineChange> online_change(const RunConfig& config, ChangeableProgram* program, Task& task) {
-  if (!config.online_change) {
-    return nullptr;
-  }
-  if (program == nullptr) {
+  if (config.online_change && program == nullptr) {
     tell("Online change", "[online_change] has no effect here: only `hysteron serve` can compile a new version.");
-    return nullptr;
   }
-  return std::make_unique<OnlineChange>(*program, task, bump_limits(config, program->shape()));
+  return config.online_change && program != nullptr
+             ? std::make_unique<OnlineChange>(*program, task, bump_limits(config, program->shape()))
+             : nullptr;
 }
 
 }  // namespace hysteron::runtime

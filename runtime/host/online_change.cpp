@@ -170,9 +170,8 @@ void OnlineChange::begin(Retainer* retainer, const Trace* trace) {
 
 template <class Ready>
 bool OnlineChange::wait_for(const Ready& ready) const {
-  const auto patience = std::max<std::chrono::nanoseconds>(std::chrono::seconds(2),
-                                                           std::chrono::nanoseconds(5 * program_->shape().period));
-  const auto until = SteadyClock::now() + patience;
+  const std::chrono::nanoseconds five_periods(5 * program_->shape().period);
+  const auto until = SteadyClock::now() + std::max<std::chrono::nanoseconds>(std::chrono::seconds(2), five_periods);
   while (!ready()) {
     if (has_ended_.load() || SteadyClock::now() > until) {
       return false;

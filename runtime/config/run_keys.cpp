@@ -118,7 +118,7 @@ constexpr std::array output_keys{
     RunKey{"high", number, "(the diagram's)", "the output is never above"},
     RunKey{"slew", number, "(none)", "the largest change a second", above_zero},
     RunKey{"bump", number, "(1 % of `low` to `high`; where it has none of both, 0)",
-           "at an online change: how far it may jump, in its unit", 0.0},
+           "at an online change: how far it may jump, in its unit", 0.0, many},
     RunKey{"device", text, "(none)", "the device that takes it, as named under [devices]"},
     RunKey{"register", whole, "0", "where it lies there: the first register, or the coil", 0.0, 65535.0},
     RunKey{.name = "area",

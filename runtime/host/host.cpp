@@ -264,17 +264,6 @@ class CertificateCare {
   std::optional<modbus::TlsRenewal> renewal_;
 };
 
-/// Where the run file has the table and the program can change.
-std::unique_ptr<OnlineChange> online_change(const HostOptions& options, const RunConfig& config, Task& task) {
-  if (config.online_change && options.changeable == nullptr) {
-    tell("Online change", "[online_change] has no effect here: only `hysteron serve` can compile a new version.");
-  }
-  return config.online_change && options.changeable != nullptr
-             ? std::make_unique<OnlineChange>(*options.changeable, task,
-                                              bump_limits(config, options.changeable->shape()))
-             : nullptr;
-}
-
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
 void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, CertificateCare& certificate,
               nanoseconds period) {
@@ -428,7 +417,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
              ? fmt::format("; Modbus RTU on {}, unit {}", config.modbus->rtu->line.path, config.modbus->rtu->unit)
              : "";
   const auto companion = options.beside ? options.beside(task.door(), how) : nullptr;
-  const auto change = online_change(options, config, task);
+  const auto change = online_change(config, options.changeable, task);
   auto changer = change ? options.take_changes(*change, how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;

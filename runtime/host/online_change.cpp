@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -18,7 +20,6 @@
 namespace hysteron::runtime {
 namespace {
 
-using std::chrono::nanoseconds;
 using SteadyClock = std::chrono::steady_clock;
 
 /// Of the range of an output: what a control valve may not even notice. The EnTech Control Valve Dynamic Specification
@@ -36,8 +37,8 @@ std::string signal_text(const ProgramSignal& signal) {
 /// What of a signal must stay, as its registers and devices were planned with it.
 void require_same_signals(const char* kind, const std::vector<ProgramSignal>& has,
                           const std::vector<ProgramSignal>& next, Diagnostics& found) {
-  const auto refuse = [&](std::string cause) {
-    found.error(error::other_interface, {}, std::move(cause),
+  const auto refuse = [&](const std::string& cause) {
+    found.error(error::other_interface, {}, cause,
                 fmt::format("leave the {}s as they are, or end the task and start it with the new version: retained "
                             "values are carried over.",
                             kind));
@@ -50,11 +51,10 @@ void require_same_signals(const char* kind, const std::vector<ProgramSignal>& ha
     } else if (has[i].name != next[i].name) {
       refuse(fmt::format("The {} {} stands where {} was.", kind, signal_text(next[i]), signal_text(has[i])));
       return;  // all behind it are shifted
-    } else if (has[i].unit != next[i].unit || has[i].type != next[i].type) {
-      refuse(fmt::format("The {} {} has another {}: {} and {}.", kind, has[i].name,
-                         has[i].unit != next[i].unit ? "unit" : "type",
-                         has[i].unit != next[i].unit ? signal_text(has[i]) : "the running version's",
-                         has[i].unit != next[i].unit ? signal_text(next[i]) : "the new one's"));
+    } else if (has[i].unit != next[i].unit) {
+      refuse(fmt::format("The {} {} has another unit: {}.", kind, signal_text(has[i]), next[i].unit));
+    } else if (has[i].type != next[i].type) {
+      refuse(fmt::format("The {} {} has another type.", kind, has[i].name));
     } else if (has[i].low != next[i].low || has[i].high != next[i].high) {
       refuse(fmt::format("The range of the {} {} was {} to {}, and is {} to {}.", kind, has[i].name,
                          number_text(has[i].low), number_text(has[i].high), number_text(next[i].low),
@@ -83,13 +83,28 @@ std::vector<std::byte> state_of(const StepProgram& program) {
   return state;
 }
 
+/// Of this thread, in ns: what others compute meanwhile does not count.
+std::int64_t own_cpu_time() {
+  timespec time{};
+  (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
 void set_parameters(StepProgram& program, std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     program.set_parameter(i, values[i]);
   }
 }
 
-void refuse_bump(Diagnostics& found, const OutputChange& output, const char* when) {
+/// No number where there is none of that name.
+double parameter_named(const StepProgram& program, const std::string& name) {
+  const auto& parameters = program.shape().parameters;
+  const auto found = std::ranges::find(parameters, name, &ProgramSignal::name);
+  return found == parameters.end() ? not_a_number
+                                   : program.parameter(static_cast<std::size_t>(found - parameters.begin()));
+}
+
+void refuse_bump(Diagnostics& found, const OutputChange& output, const std::string& when) {
   const std::string unit = output.unit.empty() ? "" : " " + output.unit;
   if (!std::isfinite(output.bump.after)) {
     found.error(error::bump_too_large, {}, fmt::format("The output {} would be no number{}.", output.name, when),
@@ -105,18 +120,10 @@ void refuse_bump(Diagnostics& found, const OutputChange& output, const char* whe
 }
 
 /// While it lives, nobody commits parameters.
-class HeldCommits {
- public:
-  explicit HeldCommits(TaskDoor& door) : door_(&door) { door_->hold_commits(true); }
-  ~HeldCommits() { door_->hold_commits(false); }
-  HeldCommits(const HeldCommits&) = delete;
-  HeldCommits& operator=(const HeldCommits&) = delete;
-  HeldCommits(HeldCommits&&) = delete;
-  HeldCommits& operator=(HeldCommits&&) = delete;
-
- private:
-  TaskDoor* door_;
-};
+std::shared_ptr<void> held_commits(TaskDoor& door) {
+  door.hold_commits(true);
+  return {&door, [](void* held) { static_cast<TaskDoor*>(held)->hold_commits(false); }};
+}
 
 }  // namespace
 
@@ -163,8 +170,8 @@ void OnlineChange::begin(Retainer* retainer, const Trace* trace) {
 
 template <class Ready>
 bool OnlineChange::wait_for(const Ready& ready) const {
-  const auto patience = std::max<nanoseconds>(std::chrono::seconds(2), nanoseconds(5 * program_->shape().period));
-  const auto until = SteadyClock::now() + patience;
+  const std::chrono::nanoseconds five_periods(5 * program_->shape().period);
+  const auto until = SteadyClock::now() + std::max<std::chrono::nanoseconds>(std::chrono::seconds(2), five_periods);
   while (!ready()) {
     if (has_ended_.load() || SteadyClock::now() > until) {
       return false;
@@ -188,8 +195,7 @@ StepImage OnlineChange::image() {
                   .inputs = std::vector<double>(shape.inputs.size()),
                   .outputs = std::vector<double>(shape.outputs.size())};
   program_->ask_for_image(image);
-  const auto is_there = [&] { return program_->has_image(); };
-  if (!wait_for(is_there) && program_->withdraw_image()) {
+  if (!wait_for([&] { return program_->has_image(); }) && program_->withdraw_image()) {
     const FaultReport faults = task_->faults();
     refuse_for_now(has_ended_.load() ? "The task ends."
                                      : fmt::format("The diagram is not stepped; the last fault of the task was: {}.",
@@ -223,7 +229,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
       --carried.parameters_taken;
     }
   }
-  if (const std::string why = refusal_of(shape, carried.parameters, plan.given); !why.empty()) {
+  if (const auto why = refusal_of(shape, carried.parameters, plan.given); !why.empty()) {
     throw InputError(error::carried_parameters_unfit, {},
                      "The parameters carried over cannot be beside those of the new version: " + why,
                      "change them in the running task first, or take them as the diagram has them: --as-given NAME.");
@@ -258,7 +264,12 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
       carried.left.push_back(shape.state[one.field].name + " (not finite)");
     }
   }
-  change.limits.clear();
+  for (const auto& [name, most] : wish.bumps) {
+    if (std::ranges::find(shape.outputs, name, &ProgramSignal::name) == shape.outputs.end()) {
+      throw InputError(error::bad_usage, {}, fmt::format("There is no output {} whose jump could be limited.", name),
+                       "write a name as `hysteron map` lists it.");
+    }
+  }
   for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
     const auto own = wish.bumps.find(shape.outputs[i].name);
     BumpLimit limit = limits_[i].limit;
@@ -295,19 +306,18 @@ void OnlineChange::rehearse(Plan& plan) const {
   if (found.has_errors()) {
     throw InputError(std::move(found));
   }
-  const auto began = SteadyClock::now();
+  const std::int64_t began = own_cpu_time();
   for (std::size_t step = 1; step <= rehearsed_steps; ++step) {
     next.step(plan.image.inputs, change.outputs);
     const auto bad = std::ranges::find_if(change.outputs, [](double value) { return !std::isfinite(value); });
     if (bad != change.outputs.end()) {
-      OutputChange output = plan.report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
+      OutputChange& output = plan.report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
       output.bump.after = *bad;
-      refuse_bump(found, output, fmt::format(" {} steps after the change", step).c_str());
+      refuse_bump(found, output, fmt::format(" {} steps after the change", step));
       throw InputError(std::move(found));
     }
   }
-  const nanoseconds time = SteadyClock::now() - began;
-  plan.report.step_time = static_cast<double>(time.count()) / static_cast<double>(rehearsed_steps);
+  plan.report.step_time = static_cast<double>(own_cpu_time() - began) / static_cast<double>(rehearsed_steps);
   if (plan.report.step_time > static_cast<double>(program_->shape().period)) {
     refuse_for_now(fmt::format("A step of the new version takes {:.0f} us, and the period is {:.0f} us.",
                                plan.report.step_time * 1e-3, static_cast<double>(program_->shape().period) * 1e-3));
@@ -379,6 +389,13 @@ void OnlineChange::tell_refused(const InputError& refused) const {
   }
 }
 
+void OnlineChange::keep_as_given(const std::vector<std::string>& names) {
+  as_given_.clear();
+  for (const std::string& name : names) {
+    as_given_[name] = parameter_named(program_->version().program(), name);
+  }
+}
+
 void OnlineChange::tell_changed(ChangeReport& report, ChangeOutcome outcome) {
   ProgramVersion& version = program_->version();
   program_->tell(outcome);
@@ -403,9 +420,10 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     std::unique_ptr<ProgramVersion> gone;
     ChangeReport report;
     {
-      const HeldCommits held(task_->door());
+      const auto held = held_commits(task_->door());
       report = carry_out(*next, {.next = *next, .given = given}, wish);
       gone = program_->keep(std::move(next));
+      keep_as_given(wish.as_given);
       task_->door().version_changed(program_->version().program(), program_->version().parameters());
     }
     tell_changed(report, ChangeOutcome::changed);
@@ -421,7 +439,8 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
   }
 }
 
-ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
+ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
+  ChangeWish wish = asked;
   try {
     const auto lock = one_at_a_time();
     ProgramVersion* const former = program_->former();
@@ -429,6 +448,12 @@ ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
       refuse_for_now("There is no version before this one: none was changed since the start.");
     }
     StepProgram& program = former->program();
+    for (const auto& [name, value] : as_given_) {
+      if (parameter_named(program_->version().program(), name) == value &&
+          !std::isnan(parameter_named(program, name))) {
+        wish.as_given.push_back(name);
+      }
+    }
     const Plan begin{.next = *former, .given = parameters_of(program), .own_state = state_of(program)};
     const auto as_it_was = [&] {
       set_parameters(program, begin.given);
@@ -442,9 +467,10 @@ ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
       }
       ChangeReport report;
       {
-        const HeldCommits held(task_->door());
+        const auto held = held_commits(task_->door());
         report = carry_out(*former, begin, wish);
         program_->keep_former();
+        keep_as_given(wish.as_given);
         task_->door().version_changed(program, former->parameters());
       }
       tell_changed(report, ChangeOutcome::back);
@@ -459,6 +485,15 @@ ChangeReport OnlineChange::change_back(const ChangeWish& wish) {
     }
     throw;
   }
+}
+
+std::unique_ptr<OnlineChange> online_change(const RunConfig& config, ChangeableProgram* program, Task& task) {
+  if (config.online_change && program == nullptr) {
+    tell("Online change", "[online_change] has no effect here: only `hysteron serve` can compile a new version.");
+  }
+  return config.online_change && program != nullptr
+             ? std::make_unique<OnlineChange>(*program, task, bump_limits(config, program->shape()))
+             : nullptr;
 }
 
 }  // namespace hysteron::runtime

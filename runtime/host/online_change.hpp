@@ -74,7 +74,8 @@ class OnlineChange {
   /// the running version goes on as if nothing had been.
   ChangeReport change_to(std::unique_ptr<StepProgram> next, const ChangeWish& wish);
   /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
-  /// have is carried back. A second time is forward again. Throws as change_to, HY853 too where there is none.
+  /// have is carried back, but for parameters that were taken as given and that nobody has changed since: they are as
+  /// before. A second time is forward again. Throws as change_to, HY853 too where there is none.
   ChangeReport change_back(const ChangeWish& wish);
   /// Says on standard error, and in task.online_change, that a change was refused: here, or before it came here.
   void tell_refused(const InputError& refused) const;
@@ -87,6 +88,8 @@ class OnlineChange {
   void plan(Plan& plan, const ChangeWish& wish) const;
   void rehearse(Plan& plan) const;
   [[nodiscard]] ChangeVerdict propose(Plan& plan);
+  /// Remembers parameters that were not carried over.
+  void keep_as_given(const std::vector<std::string>& names);
   /// Tells of the version that runs now, once its values are on the disk.
   void tell_changed(ChangeReport& report, ChangeOutcome outcome);
   /// Begins a change; throws where it cannot be now.
@@ -100,10 +103,16 @@ class OnlineChange {
   std::vector<OutputLimit> limits_;
   Retainer* retainer_ = nullptr;
   const Trace* trace_ = nullptr;
-  std::uint64_t retained_before_ = 0;  ///< how often the version to come was retained when it was proposed
+  std::map<std::string, double> as_given_{};  ///< parameters that were taken so, as the running version then had them
+  std::uint64_t retained_before_ = 0;         ///< how often the version to come was retained when it was proposed
   std::mutex under_way_{};
   std::atomic<bool> has_begun_{false};
   std::atomic<bool> has_ended_{false};
 };
+
+/// For a task with [online_change]; null without it, or where the program is none whose version may change: then a line
+/// says that the table has no effect.
+[[nodiscard]] std::unique_ptr<OnlineChange> online_change(const RunConfig& config, ChangeableProgram* program,
+                                                          Task& task);
 
 }  // namespace hysteron::runtime

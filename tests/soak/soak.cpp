@@ -9,6 +9,7 @@
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/history/history_kill.hpp"
+#include "tests/runtime/host/many_changes.hpp"
 #include "tests/runtime/modbus/bad_device.hpp"
 #include "tests/runtime/modbus/exact_answers.hpp"
 #include "tests/runtime/task/dying_task.hpp"
@@ -137,6 +138,15 @@ Counted linked_sets(std::uint64_t count) {
           result.torn == 0 && result.committed == count};
 }
 
+Counted online_changes(std::uint64_t count) {
+  const auto result = rt::test::change_many_times(count);
+  return {count,
+          fmt::format("{} refused, {} sets committed meanwhile, the last {}; longest cycle {:.1f} us",
+                      count - result.changed, result.committed, result.last_counts ? "counts" : "LOST",
+                      static_cast<double>(result.longest_cycle) * 1e-3),
+          result.changed == count && result.version == count + 1 && result.last_counts};
+}
+
 Counted exact_answers(std::uint64_t /*all*/) {
   std::uint64_t answers = 0;
   std::uint64_t exceptions = 0;
@@ -219,14 +229,16 @@ std::vector<Row> rows() {
     list.push_back({name, name + " → safe outputs", 1000,
                     [i](std::uint64_t count) { return mishap(static_cast<rt::test::Mishap>(i), count); }});
   }
-  list.insert(list.end(), {{"retain_kills", "SIGKILL while retaining", 1000, retain_kills},
-                           {"history_kills", "SIGKILL while a history is written", 1000, history_kills},
-                           {"retain_damage", "every truncation and single-bit flip of a slot", 1, retain_damage},
-                           {"linked_sets", "linked parameter sets against a running loop", 1'000'000, linked_sets},
-                           {"exact_answers", "every function code × every PDU length", 1, exact_answers},
-                           {"every_cut", "every way to cut a 12-byte request", 1, every_cut},
-                           {"bad_servers", "client role against a scripted bad server", 1000, bad_servers},
-                           {"clients", "word orders × types against other people's clients", 1, clients}});
+  list.insert(list.end(),
+              {{"retain_kills", "SIGKILL while retaining", 1000, retain_kills},
+               {"history_kills", "SIGKILL while a history is written", 1000, history_kills},
+               {"retain_damage", "every truncation and single-bit flip of a slot", 1, retain_damage},
+               {"linked_sets", "linked parameter sets against a running loop", 1'000'000, linked_sets},
+               {"online_changes", "online changes there and back against a client that commits", 1000, online_changes},
+               {"exact_answers", "every function code × every PDU length", 1, exact_answers},
+               {"every_cut", "every way to cut a 12-byte request", 1, every_cut},
+               {"bad_servers", "client role against a scripted bad server", 1000, bad_servers},
+               {"clients", "word orders × types against other people's clients", 1, clients}});
   return list;
 }
 

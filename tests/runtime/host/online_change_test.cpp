@@ -13,6 +13,7 @@
 
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
+#include "tests/runtime/host/many_changes.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/integrators.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -238,6 +239,7 @@ TEST(OnlineChange, AnOutputThatWouldJumpRefusesItByNameAndALimitOfThisChangeAllo
   EXPECT_EQ(value(plant.door(), "task.version"), 1.0);
   plant.run(2);
   EXPECT_EQ(value(plant.door(), "task.online_change"), 2.0);
+  EXPECT_EQ(to_less({.bumps = {{"Z", 100.0}}}), "HY730: There is no output Z whose jump could be limited.");
   EXPECT_EQ(to_less({.bumps = {{"Y", 100.0}}}), "");
   plant.run(2);
   EXPECT_EQ(value(plant.door(), "Y"), 0.0);
@@ -272,7 +274,7 @@ TEST(OnlineChange, AnotherInterfaceIsRefusedByWhatIsOtherInIt) {
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].name = "U"; }),
             "HY850: The input U in V stands where X in V was.");
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs[0].unit = "mV"; }),
-            "HY850: The input X has another unit: X in V and X in mV.");
+            "HY850: The input X in V has another unit: mV.");
   EXPECT_THAT(refused([](ProgramShape& shape) { shape.outputs[0].type = PointType::int32; }),
               HasSubstr("HY850: The output Y has another type"));
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.outputs[0].high = 10.0; }),
@@ -350,6 +352,19 @@ TEST(OnlineChange, AParameterIsTakenAsGivenWhereThatIsAskedForOrItsLimitsWantIt)
   ASSERT_EQ(plant.write({{"A.K", 0.5}, {"task.commit", 1.0}}), "");
   EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == 0.5; }));
   EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  // Back, what was taken as given is as before, and what a client has committed stays; forward again, the same.
+  EXPECT_THAT(plant.change().change_back({}).left, ElementsAre("B.K (as given)"));
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "A.K"), 0.5);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.002);
+  (void)plant.change().change_back({});
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.2);
+  ASSERT_EQ(plant.write({{"B.K", 0.7}, {"task.commit", 1.0}}), "");
+  EXPECT_TRUE(soon([&] { return value(plant.door(), "B.K") == 0.7; }));
+  EXPECT_THAT(plant.change().change_back({}).left, IsEmpty());
+  plant.run(2);
+  EXPECT_EQ(value(plant.door(), "B.K"), 0.7);
   EXPECT_EQ(refusal([&] {
               return plant.change().change_to(integrators({{"A", 0.1}}), {.as_given = {"B.K"}});
             }),
@@ -386,41 +401,24 @@ TEST(OnlineChange, NobodyCommitsWhileItIsUnderWay) {
   EXPECT_EQ(plant.write({{"task.commit", 1.0}}), "");
 }
 
-/// Changes there and back while another thread commits: no set that was taken is lost, whichever version it met.
 TEST(OnlineChange, NoCommittedSetIsLostAmongChanges) {
-  Plant plant(integrators(first));
-  plant.start();
-  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
-  std::atomic<bool> ends{false};
-  double last = 0.0;
-  std::uint64_t taken = 0;
-  std::thread client([&] {
-    for (double gain = 1.0; !ends; gain = gain > 99.0 ? 1.0 : gain + 1.0) {
-      if (plant.write({{"A.K", gain}, {"B.K", -gain}, {"task.commit", 1.0}}).empty()) {
-        last = gain;
-        ++taken;
-      }
-      std::this_thread::sleep_for(std::chrono::microseconds(50));
-    }
-  });
-  int changed = 0;
-  for (int i = 0; i < 20; ++i) {
-    const bool is_there = i % 2 == 0;
-    changed += refusal([&] {
-                 return is_there && i % 3 == 0 ? plant.change().change_to(integrators(second), {})
-                        : i == 0               ? plant.change().change_to(integrators(second), {})
-                                               : plant.change().change_back({});
-               }).empty()
-                   ? 1
-                   : 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  ends = true;
-  client.join();
-  EXPECT_EQ(changed, 20);
-  EXPECT_GT(taken, 20U);
-  EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == last && value(plant.door(), "B.K") == -last; }))
-      << last << " " << value(plant.door(), "A.K");
+  const auto result = test::change_many_times(20);
+  EXPECT_EQ(result.changed, 20U);
+  EXPECT_EQ(result.version, 21U);
+  EXPECT_GT(result.committed, 0U);
+  EXPECT_TRUE(result.last_counts);
+}
+
+TEST(OnlineChange, AProgramOfOneVersionHasNoneAndSaysSo) {
+  test::Accumulator program;
+  Task task(program, {.inputs = {{}}, .outputs = {{}, {}}});
+  EXPECT_EQ(online_change({}, nullptr, task), nullptr);
+  RunConfig config;
+  config.online_change = ChangeConfig{.socket = "online-change.socket"};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(online_change(config, nullptr, task), nullptr);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("[online_change] has no effect here: only `hysteron serve` can compile a new version."));
 }
 
 TEST(OnlineChange, TheLimitOfAnOutputIsThatOfTheRunFileOrAPartOfItsRange) {

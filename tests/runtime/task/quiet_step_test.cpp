@@ -1,6 +1,7 @@
 // A running cycle allocates nothing, meets no missing page after its warm-up, and calls nothing of the system but sleep
 // and clock: held by the allocator's own count, the kernel's, and a filter of system calls that kills at the first
 // other.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -15,6 +16,7 @@
 #include <memory>
 #include <thread>
 
+#include "runtime/host/online_change.hpp"
 #include "runtime/host/running_history.hpp"
 #include "runtime/mqtt/json_dialect.hpp"
 #include "runtime/mqtt/mqtt.hpp"
@@ -33,15 +35,32 @@ namespace {
 constexpr std::uint64_t warm_up = 200;
 constexpr std::uint64_t cycles = 1000;
 
-/// A task with everything attached that has a thread of its own.
-void run_task(const std::string& folder, const std::function<void(std::uint64_t)>& in_step, bool orders) {
-  test::Accumulator program;
+thread_local bool is_cyclic_thread = false;
+
+/// A version that tells of its steps in the cyclic thread: it is tried beside it, too.
+std::unique_ptr<StepProgram> telling(const std::function<void()>& in_step) {
+  auto program = std::make_unique<test::Accumulator>();
+  program->during_step = [&in_step](std::span<double> /*outputs*/) {
+    if (is_cyclic_thread) {
+      in_step();
+    }
+  };
+  return program;
+}
+
+/// A task with everything attached that has a thread of its own, and whose version changes now and then.
+void run_task(const std::string& folder, const std::function<void(std::uint64_t)>& in_cycle, bool orders) {
+  std::uint64_t cycle = 0;
+  const std::function<void()> in_step = [&] { in_cycle(cycle++); };
+  ChangeableProgram program(telling(in_step));
   RetainFolder files(folder);
   Retainer retainer(files, program, {});
   Trace trace({.file = folder + ".trace"}, program);
   KeptCounter published;
   Task task(program, {.loop = {.cycles = warm_up + cycles}, .inputs = {{}}, .outputs = {{}, {}}, .retain_every = 10},
-            {.retainer = &retainer, .trace = &trace, .mqtt = &published});
+            {.retainer = &retainer, .trace = &trace, .mqtt = &published, .changes = &program});
+  OnlineChange change(program, task, std::vector<OutputLimit>(2, {.limit = {.most = 1e300}}));
+  change.begin(&retainer, &trace);
   // A broker that is not there: rows wait, and the oldest are lost.
   SampleTap tap({0, 1, test::point(task.door(), "task.fault")}, 1, 1000, published);
   MqttSettings settings{
@@ -54,19 +73,20 @@ void run_task(const std::string& folder, const std::function<void(std::uint64_t)
   Mqtt mqtt(settings, std::make_unique<JsonDialect>("quiet", 1, settings.rows.points), tap, published,
             clocks_beside(task.door()));
   task.door().attach({&tap});
-  std::uint64_t cycle = 0;
-  program.during_step = [&](std::span<double> /*outputs*/) { in_step(cycle++); };
   std::atomic<bool> stop{false};
   std::atomic<bool> done{false};
   std::thread cyclic([&] {
+    is_cyclic_thread = true;
     default_floating_point();
     touch_stack();
     test::bring_pages_in();
     MonotonicClock clock;
     (void)task.run(clock, stop);
+    change.end();
     done.store(true);
   });
   double value = 0.0;
+  int changes = 0;
   while (!done.load()) {
     if (orders) {
       value += 1.0;
@@ -76,9 +96,15 @@ void run_task(const std::string& folder, const std::function<void(std::uint64_t)
       EXPECT_EQ(task.door().write(set), "");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    try {
+      changes += change.change_to(telling(in_step), {}).is_done ? 1 : 0;
+    } catch (const InputError& refused) {
+      EXPECT_THAT(refused.what(), testing::StartsWith("The task ")) << "it ends, or has not begun a step";
+    }
   }
   cyclic.join();
   mqtt.finish();
+  EXPECT_GT(changes, 0);
   EXPECT_EQ(published.read().lost, warm_up + cycles) << "each cycle was a row";
 }
 

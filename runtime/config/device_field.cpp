@@ -48,7 +48,8 @@ std::vector<Point> device_points(const RunConfig& config) {
                         .type = counts ? PointType::uint64 : PointType::uint16,
                         .unit = "1",
                         .meaning = count.meaning,
-                        .counts = counts});
+                        .counts = counts,
+                        .comes_last = true});
     }
   }
   return points;

@@ -148,12 +148,15 @@ class Placer {
     }
   }
 
-  /// Wide values first: so each is aligned, and no hole is left.
+  /// Wide values first: so each is aligned, and no hole is left. But what comes last comes last.
   void place_rest() {
-    for (const std::uint32_t width : {4U, 2U, 1U}) {
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (is_exposed_[i] && !placed_[i] && registers_of(formats_[i].type) == width) {
-          place_freely(i, width);
+    for (const bool comes_last : {false, true}) {
+      for (const std::uint32_t width : {4U, 2U, 1U}) {
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+          const bool is_now = points_[i].comes_last == comes_last && registers_of(formats_[i].type) == width;
+          if (is_exposed_[i] && !placed_[i] && is_now) {
+            place_freely(i, width);
+          }
         }
       }
     }

@@ -210,6 +210,17 @@ TEST(DeviceField, SaysWhatWentWrongWithEachDevice) {
   EXPECT_EQ(count_of("timeouts") + count_of("wrong_answers") + count_of("bad_checksums"), 0.0);
 }
 
+TEST(DeviceField, WhatIsSaidOfDevicesMovesNoOtherAddress) {
+  std::vector<Point> points{{.name = "U"}, {.name = "task.state", .type = PointType::uint16}};
+  const std::string before = modbus::lock_text(modbus::make_register_map(points, {.title = "T"}));
+  for (const Point& point : device_points(config_of(1))) {
+    points.push_back(point);
+  }
+  points.push_back({.name = "task.reset", .type = PointType::uint16});
+  const std::string after = modbus::lock_text(modbus::make_register_map(points, {.title = "T"}));
+  EXPECT_TRUE(after.starts_with(before + "input 5 uint16 task.reset\n")) << after;
+}
+
 TEST(DeviceField, InTurnEveryCycleWritesAndThenReads) {
   const std::uint16_t port = test::free_port();
   ServedDevice stage(port);

@@ -51,6 +51,11 @@ class Builder {
                          fmt::format("{} marks no parameter for fitting.", name_of_file()),
                          "name those that may change in a table [fit.INSTANCE], as in C1 = {min = 0.0}.");
     }
+    if (!may_be_fixed && file_.goal.is_given()) {
+      diagnostics_.error(error::goal_lacks, file_.goal.place,
+                         "The file has a [goal] for a control loop, and a fit to records was asked for.",
+                         "take [goal] out of the file to fit the records, or tune for it by hysteron tune.");
+    }
     find_outputs();
     for (const records::Record& record : records_) {
       settle_sample_time(record, problem_.program, diagnostics_);

@@ -100,8 +100,11 @@ class GoalReader : private SettingsReader {
  private:
   void read_limits(const toml::key& key, const toml::node& node) {
     const auto* const table = as_table(key, node);
+    if (table == nullptr) {
+      return;
+    }
     const auto known = keys_of({}, limit_keys);
-    for (const auto& [name, value] : table == nullptr ? toml::table() : *table) {
+    for (const auto& [name, value] : *table) {
       if (known_key(name, value, known, "[goal.limits]")) {
         read_number(name, value, *std::ranges::find(limit_keys, name.str(), &NumberKey::name));
       }

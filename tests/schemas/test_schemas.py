@@ -178,7 +178,7 @@ class Schemas(unittest.TestCase):
                    (self.folder / "goal_report/report.json").read_text(encoding="utf-8"))
         rows, y, u = [], 0.0, 0.7
         for k in range(3000):
-            u = 0.7 if y < -0.05 else -0.3 if y > 0.05 else u
+            u = 1.2 if y < -0.05 else -0.3 if y > 0.05 else u
             rows.append((0.01 * k, u if k >= 50 else 0.0, y))
             y += 0.01 * (rows[max(0, k - 30)][1] - y)
         (self.folder / "relay.csv").write_text("t,U,Y\n" + "".join(f"{t:.2f},{u},{y:.6f}\n" for t, u, y in rows))

@@ -24,6 +24,8 @@ constexpr double kept_by = 1e-4;
 /// From which excess on a place counts from the beginning.
 constexpr double near_limit = -0.3;
 constexpr int most_exchanges = 12;
+/// Of the excess, by which a further round has to make it smaller.
+constexpr double least_gain = 1e-3;
 constexpr int most_spread_points = 200;
 constexpr double least_share = 0.01;  // of a contradiction
 constexpr double is_active = 0.01;
@@ -194,6 +196,7 @@ class GoalSearch {
   FitStatus descend(VectorXd x) {
     FitStatus status = FitStatus::Stalled;
     for (int round = 0; round < most_exchanges && !cancelled_; ++round) {
+      const double excess_before = best_.excess;
       const ConstrainedResult ended = solve_once(x, round > 0);
       status = ended.status;
       x = ended.x.head(start_.size());
@@ -203,7 +206,8 @@ class GoalSearch {
       if (!take(x, false)) {
         return FitStatus::Stalled;
       }
-      if (!add_places(-0.5 * kept_by)) {
+      const bool stands_still = is_feasibility_ && round > 0 && best_.excess > (1.0 - least_gain) * excess_before;
+      if (!add_places(-0.5 * kept_by) || stands_still) {
         break;
       }
     }
@@ -258,7 +262,8 @@ class GoalSearch {
       }
       return true;
     };
-    ConstrainedOptions options{.barrier = is_near ? 1e-4 : 1e-1};
+    // What cannot be reached shows early; a search for it only creeps.
+    ConstrainedOptions options{.max_iterations = is_feasibility_ ? 60 : 150, .barrier = is_near ? 1e-4 : 1e-1};
     const int before = result_.iterations;
     options.progress = [&](int iteration) {
       result_.iterations = before + iteration;

@@ -25,7 +25,7 @@
 namespace hysteron::tool {
 namespace {
 
-constexpr std::string_view examples = R"(Examples:
+constexpr std::string_view online_change_examples = R"(Examples:
   hysteron online-change RUN.toml --check
   hysteron online-change RUN.toml
   hysteron online-change RUN.toml --bump U=0.5
@@ -38,7 +38,7 @@ FILE.undone. The run file names the socket of the task: socket under [online_cha
 Exit codes: 0 changed, or nothing stands against it; 2 refused: the running version goes on.
 )";
 
-struct Options {
+struct OnlineChangeOptions {
   std::string config{};
   std::vector<std::string> bumps{};
   std::vector<std::string> as_given{};
@@ -72,7 +72,7 @@ std::map<std::string, double> bumps_of(const std::vector<std::string>& words) {
   return bumps;
 }
 
-Json ask(const Socket& socket, const Options& options, std::string_view what) {
+Json ask(const Socket& socket, const OnlineChangeOptions& options, std::string_view what) {
   const Json request{{"what", what}, {"bumps", bumps_of(options.bumps)}, {"as_given", options.as_given}};
   const Json answer = Json::parse(ask_task(socket.socket, socket.place, request.dump()), nullptr, false);
   if (!answer.is_object()) {
@@ -97,7 +97,7 @@ std::string list_text(std::string_view title, const Json& names) {
   return text.empty() ? "" : fmt::format("{}: {}\n", title, text);
 }
 
-std::string report_text(const Json& report, bool is_back) {
+std::string change_text(const Json& report, bool is_back) {
   std::string text = fmt::format(
       "{}: {}\n{} of {} parameters and {} of {} states {} carried over\n", report.at("program").get<std::string>(),
       !report.at("changed").get<bool>()
@@ -182,14 +182,14 @@ class FilesBack {
   std::vector<OutputFile> as_they_were_{};
 };
 
-int go_back(const Socket& socket, const Options& options, Console& console) {
+int go_back(const Socket& socket, const OnlineChangeOptions& options, Console& console) {
   // Asked first: nothing is written for a change that is refused anyway.
   (void)ask(socket, options, "check-back");
   const FilesBack files(files_of(ask(socket, options, "files").at("files")));
   try {
     const Json answer = ask(socket, options, "back");
     console.print(options.json ? answer.at("report").dump(2) + "\n"
-                               : report_text(answer.at("report"), true) + files.text());
+                               : change_text(answer.at("report"), true) + files.text());
   } catch (const InputError& refused) {
     const auto& all = refused.diagnostics().all();
     const bool is_answered =
@@ -202,7 +202,7 @@ int go_back(const Socket& socket, const Options& options, Console& console) {
   return exit_ok;
 }
 
-int online_change(const Options& options, Console& console) {
+int online_change(const OnlineChangeOptions& options, Console& console) {
   const Socket socket = socket_of(options.config);
   if (options.back && !options.check) {
     return go_back(socket, options, console);
@@ -210,14 +210,14 @@ int online_change(const Options& options, Console& console) {
   const Json answer = ask(socket, options, options.back ? "check-back" : options.check ? "check" : "change");
   console.report(diagnostics_of(answer.at("warnings")));
   const Json& report = answer.at("report");
-  console.print(options.json ? report.dump(2) + "\n" : report_text(report, options.back));
+  console.print(options.json ? report.dump(2) + "\n" : change_text(report, options.back));
   return exit_ok;
 }
 
 }  // namespace
 
 Action add_online_change(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<OnlineChangeOptions>();
   app.add_option("RUN.toml", options->config, "The run file that the task was started with.")
       ->required()
       ->option_text(" ");
@@ -229,7 +229,7 @@ Action add_online_change(CLI::App& app) {
                  "A parameter that is taken as the files give it, and not carried over; may be repeated.")
       ->option_text("NAME");
   app.add_flag("--json", options->json, "Prints JSON.");
-  app.footer(std::string(examples));
+  app.footer(std::string(online_change_examples));
   return [options](Console& console) { return online_change(*options, console); };
 }
 

@@ -27,7 +27,7 @@ std::vector<OutputFile> files_of(const DiagramOptions& options) {
   return files;
 }
 
-bool are_same(const std::vector<OutputFile>& a, const std::vector<OutputFile>& b) {
+bool are_same_files(const std::vector<OutputFile>& a, const std::vector<OutputFile>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const OutputFile& one, const OutputFile& other) {
     return one.path == other.path && one.contents == other.contents;
   });
@@ -38,7 +38,7 @@ bool are_same(const std::vector<OutputFile>& a, const std::vector<OutputFile>& b
 LoadedVersion load_version(const DiagramOptions& options, Diagnostics& warnings) {
   auto files = files_of(options);
   Program diagram = load_diagram(options, warnings);
-  if (!are_same(files, files_of(options))) {
+  if (!are_same_files(files, files_of(options))) {
     throw InputError(error::online_change_not_now, {.file = options.file},
                      "The diagram or its parameters were written while they were read.",
                      "ask again once they are whole.");

@@ -22,8 +22,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Of the range of an output: what a control valve may not even notice. The EnTech Control Valve Dynamic Specification
-/// (version 3.0, 1998) grants a valve 1 % of dead band.
+/// Of the range of an output: what the EnTech Control Valve Dynamic Specification (version 3.0, 1998) counts as a small
+/// step of a valve's input, "1% and less".
 constexpr double part_of_range = 0.01;
 /// How long the other version is stepped before it may count: far enough for what grows without bound to show.
 constexpr std::size_t rehearsed_steps = 1000;

@@ -27,7 +27,7 @@ using test::soon;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr std::string_view run_file = R"([task]
+constexpr std::string_view online_run_file = R"([task]
 scheduling = "other"
 lock_memory = false
 missed = "skip"
@@ -115,7 +115,7 @@ TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
   for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
     const test::Workbench bench;
     bench.write("stage.st", stage(false));
-    bench.write("run.toml", run_file);
+    bench.write("run.toml", online_run_file);
     Served task(bench, engine == tool::Engine::compiled ? "--engine compiled" : "--engine interpreter");
     ASSERT_TRUE(task.has_begun()) << task.told();
     EXPECT_THAT(task.said(), HasSubstr("; online change on online-change.socket; "));
@@ -154,7 +154,7 @@ TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
 TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
   const test::Workbench bench;
   bench.write("stage.st", stage(false));
-  bench.write("run.toml", run_file);
+  bench.write("run.toml", online_run_file);
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", stage(true, "0.3"));
@@ -179,7 +179,7 @@ TEST(OnlineChangeCommand, ACrashJustAfterItLosesNothing) {
 TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
   const test::Workbench bench;
   bench.write("stage.st", stage(false));
-  bench.write("run.toml", run_file);
+  bench.write("run.toml", online_run_file);
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   bench.write("stage.st", "FUNCTION_BLOCK STAGE\n  VAR_OUTPUT U : LREAL; END_VAR\n  U := 1.0\nEND_FUNCTION_BLOCK\n");
@@ -209,7 +209,7 @@ TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
 TEST(OnlineChangeCommand, NobodyElseIsHeard) {
   const test::Workbench bench;
   bench.write("stage.st", stage(false));
-  bench.write("run.toml", run_file);
+  bench.write("run.toml", online_run_file);
   Served task(bench, "--engine interpreter");
   ASSERT_TRUE(task.has_begun()) << task.told();
   struct stat found {};

@@ -46,7 +46,7 @@ class PacedClock final : public Clock {
   std::int64_t now_ = 0;
 };
 
-TaskSettings settings() {
+TaskSettings plant_settings() {
   return {.watchdog = {.time = 500'000'000}, .inputs = {{}}, .outputs = {{.low = -50.0, .high = 50.0}}};
 }
 
@@ -55,7 +55,7 @@ class Plant {
  public:
   explicit Plant(std::unique_ptr<StepProgram> first, double most = 1e300)
       : program_(std::move(first)),
-        task_(program_, settings()),
+        task_(program_, plant_settings()),
         change_(program_, task_, {{.limit = {.most = most, .low = -50.0, .high = 50.0}, .origin = "a test"}}) {}
   ~Plant() { end(); }
   Plant(const Plant&) = delete;
@@ -118,7 +118,7 @@ class Plant {
 
 /// What refuses it: HY850: The input X is gone.
 template <class Work>
-std::string refusal(const Work& work) {
+std::string refusal_by(const Work& work) {
   try {
     (void)work();
   } catch (const InputError& refused) {
@@ -131,7 +131,7 @@ std::string refusal(const Work& work) {
   return "";
 }
 
-ReplayResult replayed(const std::string& file, std::unique_ptr<StepProgram> program) {
+ReplayResult steps_replayed(const std::string& file, std::unique_ptr<StepProgram> program) {
   ReplayResult result;
   EXPECT_EQ(replay(hysteron::test::contents_of(file), *program, result), "");
   EXPECT_EQ(result.different, 0U) << file;
@@ -141,7 +141,7 @@ ReplayResult replayed(const std::string& file, std::unique_ptr<StepProgram> prog
   return result;
 }
 
-RetainedValues newest(RetainFolder& files) {
+RetainedValues newest_kept(RetainFolder& files) {
   RetainedValues found;
   for (const std::size_t slot : {0U, 1U}) {
     if (const auto bytes = files.read(slot)) {
@@ -153,16 +153,16 @@ RetainedValues newest(RetainFolder& files) {
   return found;
 }
 
-const std::vector<Integrator> first{{"A", 0.001}, {"B", -0.001}};
-const std::vector<Integrator> second{{"B", 7.0}, {"NEW", 0.0}, {"A", 7.0}};
+const std::vector<Integrator> parts_before{{"A", 0.001}, {"B", -0.001}};
+const std::vector<Integrator> parts_after{{"B", 7.0}, {"NEW", 0.0}, {"A", 7.0}};
 
 /// The trace is the oracle: each version alone gives every recorded output again, from the very step of the change on.
 TEST(OnlineChange, EveryStepIsThatOfOneVersionAndNoneIsLost) {
   const hysteron::test::ScratchFolder folder;
-  Plant plant(integrators(first));
+  Plant plant(integrators(parts_before));
   plant.keep_in(folder);
   plant.start();
-  const ChangeReport there = plant.change().change_to(integrators(second), {});
+  const ChangeReport there = plant.change().change_to(integrators(parts_after), {});
   EXPECT_TRUE(there.is_done);
   EXPECT_EQ(there.version, 2U);
   EXPECT_EQ(there.parameters_carried, 2U);
@@ -180,9 +180,9 @@ TEST(OnlineChange, EveryStepIsThatOfOneVersionAndNoneIsLost) {
   plant.end();
   plant.finish_trace();
   const auto cycles = static_cast<std::uint64_t>(value(plant.door(), "task.cycles"));
-  const std::uint64_t steps = replayed(folder / "run.trace.2", integrators(first)).steps +
-                              replayed(folder / "run.trace.1", integrators(second)).steps +
-                              replayed(folder / "run.trace", integrators(first)).steps;
+  const std::uint64_t steps = steps_replayed(folder / "run.trace.2", integrators(parts_before)).steps +
+                              steps_replayed(folder / "run.trace.1", integrators(parts_after)).steps +
+                              steps_replayed(folder / "run.trace", integrators(parts_before)).steps;
   EXPECT_EQ(steps, cycles);
   EXPECT_EQ(value(plant.door(), "task.trace_dropped"), 0.0);
 }
@@ -190,22 +190,22 @@ TEST(OnlineChange, EveryStepIsThatOfOneVersionAndNoneIsLost) {
 /// A crash may come at once: what is on the disk when the change is told is of the new version.
 TEST(OnlineChange, WhatIsRetainedIsOfTheNewVersionBeforeItIsTold) {
   const hysteron::test::ScratchFolder folder;
-  Plant plant(integrators(first));
+  Plant plant(integrators(parts_before));
   plant.keep_in(folder);
   plant.start();
   ASSERT_EQ(plant.write({{"A.K", 0.5}, {"task.commit", 1.0}}), "");
   plant.run(5);
-  EXPECT_TRUE(plant.change().change_to(integrators(second), {}).is_retained);
-  const RetainedValues values = newest(plant.files());
-  EXPECT_EQ(values.layout, integrators(second)->shape().layout);
+  EXPECT_TRUE(plant.change().change_to(integrators(parts_after), {}).is_retained);
+  const RetainedValues values = newest_kept(plant.files());
+  EXPECT_EQ(values.layout, integrators(parts_after)->shape().layout);
   EXPECT_THAT(values.parameters, ElementsAre(-0.001, 0.0, 0.5));
   EXPECT_TRUE(plant.change().change_back({}).is_retained);
-  EXPECT_EQ(newest(plant.files()).layout, integrators(first)->shape().layout);
-  EXPECT_THAT(newest(plant.files()).parameters, ElementsAre(0.5, -0.001));
+  EXPECT_EQ(newest_kept(plant.files()).layout, integrators(parts_before)->shape().layout);
+  EXPECT_THAT(newest_kept(plant.files()).parameters, ElementsAre(0.5, -0.001));
   // Twice more, so that a version goes whose values the retaining thread may still have in hand.
-  (void)plant.change().change_to(integrators(second), {});
-  (void)plant.change().change_to(integrators(first), {});
-  EXPECT_EQ(newest(plant.files()).layout, integrators(first)->shape().layout);
+  (void)plant.change().change_to(integrators(parts_after), {});
+  (void)plant.change().change_to(integrators(parts_before), {});
+  EXPECT_EQ(newest_kept(plant.files()).layout, integrators(parts_before)->shape().layout);
 }
 
 TEST(OnlineChange, ACheckSaysTheSameAndChangesNothing) {
@@ -232,7 +232,7 @@ TEST(OnlineChange, AnOutputThatWouldJumpRefusesItByNameAndALimitOfThisChangeAllo
   ASSERT_EQ(plant.write({{"X", 0.0}}), "");
   plant.run(5);
   const auto to_less = [&](const ChangeWish& wish) {
-    return refusal([&] { return plant.change().change_to(integrators({{"B", 0.0}}), wish); });
+    return refusal_by([&] { return plant.change().change_to(integrators({{"B", 0.0}}), wish); });
   };
   EXPECT_THAT(to_less({}), HasSubstr("HY851: The output Y would jump by "));
   EXPECT_THAT(to_less({}), HasSubstr("; its limit is 0.25 um (a test)."));
@@ -244,8 +244,8 @@ TEST(OnlineChange, AnOutputThatWouldJumpRefusesItByNameAndALimitOfThisChangeAllo
   plant.run(2);
   EXPECT_EQ(value(plant.door(), "Y"), 0.0);
   // Back, Y jumps again: the limit of a change is that of this one alone. What was there is untouched by the refusal.
-  EXPECT_THAT(refusal([&] { return plant.change().change_back({}); }), HasSubstr("HY851: The output Y would jump"));
-  EXPECT_EQ(refusal([&] { return plant.change().change_back({.bumps = {{"Y", 100.0}}}); }), "");
+  EXPECT_THAT(refusal_by([&] { return plant.change().change_back({}); }), HasSubstr("HY851: The output Y would jump"));
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_back({.bumps = {{"Y", 100.0}}}); }), "");
   plant.run(2);
   EXPECT_GT(value(plant.door(), "Y"), 10.0);
 }
@@ -253,7 +253,7 @@ TEST(OnlineChange, AnOutputThatWouldJumpRefusesItByNameAndALimitOfThisChangeAllo
 TEST(OnlineChange, WhatGrowsWithoutBoundIsSeenBeforeItCounts) {
   Plant plant(integrators({{"A", 0.0}}));
   plant.start();
-  const auto why = refusal([&] {
+  const auto why = refusal_by([&] {
     return plant.change().change_to(integrators({{"A", 0.0}, {"WILD", 1e306}}), {.bumps = {{"Y", 1e307}}});
   });
   EXPECT_THAT(why, HasSubstr("HY851: The output Y would be no number "));
@@ -266,7 +266,7 @@ TEST(OnlineChange, AnotherInterfaceIsRefusedByWhatIsOtherInIt) {
   const auto refused = [&](const std::function<void(ProgramShape&)>& edit) {
     auto next = integrators({{"A", 0.0}});
     edit(next->mutable_shape());
-    return refusal([&] { return plant.change().change_to(std::move(next), {}); });
+    return refusal_by([&] { return plant.change().change_to(std::move(next), {}); });
   };
   EXPECT_EQ(refused([](ProgramShape& shape) { shape.inputs.push_back({.name = "MORE", .unit = "V"}); }),
             "HY850: The input MORE in V is new.");
@@ -287,32 +287,32 @@ TEST(OnlineChange, ATaskThatDoesNotStepRefusesItAndSaysWhy) {
   auto program = integrators({{"A", 0.0}});
   test::Integrators* const raw = program.get();
   Plant plant(std::move(program));
-  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "HY853: The task has not begun yet.");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_back({}); }), "HY853: The task has not begun yet.");
   std::atomic<bool> hangs{false};
   raw->in_step = [&] { plant.clock().pass(hangs ? 1'000'000'000 : 0); };
   plant.start();
-  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }),
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_back({}); }),
             "HY853: There is no version before this one: none was changed since the start.");
   hangs = true;
   plant.run(5);
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refusal_by([&] {
               return plant.change().change_to(integrators({{"A", 0.0}}), {});
             }),
             "HY853: The diagram is not stepped; the last fault of the task was: hang.");
   hangs = false;
   ASSERT_EQ(plant.write({{"task.reset", 1.0}}), "");
-  EXPECT_EQ(refusal([&] { return plant.change().change_to(integrators({{"A", 0.0}}), {}); }), "");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_to(integrators({{"A", 0.0}}), {}); }), "");
   plant.end();
-  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "HY853: The task ends.");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_back({}); }), "HY853: The task ends.");
 }
 
 /// Outputs that are safe meanwhile are no obstacle: the diagram steps.
 TEST(OnlineChange, ALostClientIsNoObstacle) {
-  Plant plant(integrators(first));
+  Plant plant(integrators(parts_before));
   plant.start();
   plant.task().client_lost(true);
   ASSERT_TRUE(soon([&] { return value(plant.door(), "task.state") == 2.0; }));
-  EXPECT_EQ(refusal([&] { return plant.change().change_to(integrators(second), {}); }), "");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_to(integrators(parts_after), {}); }), "");
   EXPECT_EQ(value(plant.door(), "Y"), 0.0);
 }
 
@@ -330,7 +330,7 @@ TEST(OnlineChange, WhatIsStagedStaysSoAndIsJudgedByTheVersionThatRuns) {
   EXPECT_TRUE(soon([&] { return value(plant.door(), "A.K") == 2.5 && value(plant.door(), "B.K") == 1.5; }));
   EXPECT_EQ(value(plant.door(), "GONE.K"), 0.0);
   // What came while it ran goes back with it.
-  EXPECT_EQ(refusal([&] { return plant.change().change_back({}); }), "");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_back({}); }), "");
   EXPECT_EQ(plant.write({{"GONE.K", 1.0}, {"task.commit", 1.0}}), "");
   EXPECT_TRUE(soon([&] { return value(plant.door(), "GONE.K") == 1.0; }));
   EXPECT_EQ(value(plant.door(), "A.K"), 2.5);
@@ -365,7 +365,7 @@ TEST(OnlineChange, AParameterIsTakenAsGivenWhereThatIsAskedForOrItsLimitsWantIt)
   EXPECT_THAT(plant.change().change_back({}).left, IsEmpty());
   plant.run(2);
   EXPECT_EQ(value(plant.door(), "B.K"), 0.7);
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refusal_by([&] {
               return plant.change().change_to(integrators({{"A", 0.1}}), {.as_given = {"B.K"}});
             }),
             "HY730: The new version has no parameter B.K.");
@@ -382,17 +382,17 @@ TEST(OnlineChange, ParametersThatDoNotGoTogetherInTheNewVersionRefuseIt) {
                                           {.numbers = {{.parameter = 2}, {.parameter = 1}}}};
     return program;
   };
-  EXPECT_THAT(refusal([&] { return plant.change().change_to(next(), {}); }),
+  EXPECT_THAT(refusal_by([&] { return plant.change().change_to(next(), {}); }),
               HasSubstr("HY855: The parameters carried over cannot be beside those of the new version: HIGH.K = 2 must "
                         "be at least LOW.K = 3."));
-  EXPECT_EQ(refusal([&] { return plant.change().change_to(next(), {.as_given = {"HIGH.K"}}); }), "");
+  EXPECT_EQ(refusal_by([&] { return plant.change().change_to(next(), {.as_given = {"HIGH.K"}}); }), "");
   // NEW has no register: beside it, HIGH is judged all the same.
   EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.0}, {"task.commit", 1.0}}), "HIGH.K = 2 must be at least 2.5.");
   EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.75}, {"task.commit", 1.0}}), "");
 }
 
 TEST(OnlineChange, NobodyCommitsWhileItIsUnderWay) {
-  Plant plant(integrators(first));
+  Plant plant(integrators(parts_before));
   plant.door().hold_commits(true);
   EXPECT_EQ(plant.write({{"A.K", 1.0}, {"task.commit", 1.0}}),
             "An online change is under way: commit again in a second.");

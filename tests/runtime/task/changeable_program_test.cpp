@@ -21,7 +21,7 @@ using test::integrators;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> random_inputs(std::size_t steps, unsigned seed) {
   std::mt19937 random(seed);
@@ -33,16 +33,16 @@ std::vector<double> random_inputs(std::size_t steps, unsigned seed) {
   return inputs;
 }
 
-double step(StepProgram& program, double input) {
+double one_step(StepProgram& program, double input) {
   std::vector<double> outputs(1);
   program.step(std::vector<double>{input}, outputs);
   return outputs[0];
 }
 
-std::vector<double> run(StepProgram& program, std::span<const double> inputs) {
+std::vector<double> all_steps(StepProgram& program, std::span<const double> inputs) {
   std::vector<double> outputs;
   for (const double input : inputs) {
-    outputs.push_back(step(program, input));
+    outputs.push_back(one_step(program, input));
   }
   return outputs;
 }
@@ -97,7 +97,7 @@ TEST(ChangeableProgram, AChangeToTheSameVersionChangesNoBit) {
   const auto inputs = random_inputs(400, 1);
   const std::vector<Integrator> parts{{"A", 0.3}, {"B", -1.7}};
   auto plain = integrators(parts);
-  const auto expected = run(*plain, inputs);
+  const auto expected = all_steps(*plain, inputs);
   for (const std::size_t at : {1U, 2U, 57U, 398U}) {
     ChangeableProgram program(integrators(parts));
     std::vector<double> outputs;
@@ -107,7 +107,7 @@ TEST(ChangeableProgram, AChangeToTheSameVersionChangesNoBit) {
         change.emplace(program, integrators(parts), 0.0);
         program.propose(change->proposed);
       }
-      outputs.push_back(step(program, inputs[k]));
+      outputs.push_back(one_step(program, inputs[k]));
       if (k == at) {
         settle(program, *change);
         EXPECT_THAT(change->left, IsEmpty());
@@ -124,7 +124,7 @@ TEST(ChangeableProgram, AChangeHasTheBitsOfARestartThatLostNothing) {
   for (const std::size_t at : {1U, 100U, 299U}) {
     auto old = integrators({{"A", 0.3}, {"GONE", 2.0}, {"B", -1.7}, {"C", 1.0, "mm"}});
     const std::vector<Integrator> after{{"B", 5.0}, {"NEW", 0.01}, {"A", 5.0}, {"C", 1.0, "um"}};
-    auto expected = run(*old, std::span(inputs).first(at));
+    auto expected = all_steps(*old, std::span(inputs).first(at));
     auto next = integrators(after);
     std::vector<std::byte> state(old->state_size());
     std::vector<std::byte> into(next->state_size());
@@ -138,7 +138,7 @@ TEST(ChangeableProgram, AChangeHasTheBitsOfARestartThatLostNothing) {
       next->set_parameter(i, carried.parameters[i]);
     }
     for (const double input : std::span(inputs).subspan(at)) {
-      expected.push_back(step(*next, input));
+      expected.push_back(one_step(*next, input));
     }
 
     ChangeableProgram program(integrators({{"A", 0.3}, {"GONE", 2.0}, {"B", -1.7}, {"C", 1.0, "mm"}}));
@@ -149,7 +149,7 @@ TEST(ChangeableProgram, AChangeHasTheBitsOfARestartThatLostNothing) {
         change.emplace(program, integrators(after));
         program.propose(change->proposed);
       }
-      outputs.push_back(step(program, inputs[k]));
+      outputs.push_back(one_step(program, inputs[k]));
       if (k == at) {
         EXPECT_EQ(change->left, carried.left);
         settle(program, *change);
@@ -162,7 +162,7 @@ TEST(ChangeableProgram, AChangeHasTheBitsOfARestartThatLostNothing) {
 TEST(ChangeableProgram, AChangeAndTheChangeBackChangeNoBitOfWhatBothHave) {
   const auto inputs = random_inputs(200, 3);
   auto plain = integrators({{"A", 0.3}, {"B", 1.5}});
-  const auto expected = run(*plain, inputs);
+  const auto expected = all_steps(*plain, inputs);
   ChangeableProgram program(integrators({{"A", 0.3}, {"B", 1.5}}));
   std::vector<double> outputs;
   std::optional<Change> there;
@@ -175,7 +175,7 @@ TEST(ChangeableProgram, AChangeAndTheChangeBackChangeNoBitOfWhatBothHave) {
       back.emplace(program, *program.former());
       program.propose(back->proposed);
     }
-    outputs.push_back(step(program, inputs[k]));
+    outputs.push_back(one_step(program, inputs[k]));
     if (k == 51) {
       settle(program, *there);
     } else if (k == 121) {
@@ -193,16 +193,16 @@ TEST(ChangeableProgram, AnOutputThatWouldJumpKeepsTheOldVersion) {
   const auto inputs = random_inputs(100, 4);
   for (const bool is_allowed : {false, true}) {
     auto plain = integrators({{"A", 1.0}, {"B", 2.0}});
-    const auto expected = run(*plain, inputs);
+    const auto expected = all_steps(*plain, inputs);
     ChangeableProgram program(integrators({{"A", 1.0}, {"B", 2.0}}));
-    std::vector<double> outputs = run(program, std::span(inputs).first(40));
+    std::vector<double> outputs = all_steps(program, std::span(inputs).first(40));
     // Without B, Y loses what B had summed, and its part of the step itself.
     auto alone = integrators({{"A", 1.0}});
-    const double jump = std::abs(run(*alone, std::span(inputs).first(42)).back() - expected[41]);
+    const double jump = std::abs(all_steps(*alone, std::span(inputs).first(42)).back() - expected[41]);
     Change change(program, integrators({{"A", 1.0}}), is_allowed ? jump * 1.001 : jump * 0.999);
     program.propose(change.proposed);
     for (const double input : std::span(inputs).subspan(40)) {
-      outputs.push_back(step(program, input));
+      outputs.push_back(one_step(program, input));
       if (program.taken() != nullptr) {
         program.conclude();
       }
@@ -220,22 +220,22 @@ TEST(ChangeableProgram, ValuesAreComparedAsTheTaskLimitsThem) {
   EXPECT_EQ(bump_of(9.5, 30.0, limit).size, 0.5);
   EXPECT_EQ(bump_of(12.0, 30.0, limit).size, 0.0);
   EXPECT_EQ(bump_of(-5.0, 3.0, limit).size, 3.0);
-  EXPECT_FALSE(bump_of(1.0, nan, limit).is_within(limit));
-  EXPECT_FALSE(bump_of(nan, std::numeric_limits<double>::infinity(), limit).is_within(limit));
+  EXPECT_FALSE(bump_of(1.0, no_number, limit).is_within(limit));
+  EXPECT_FALSE(bump_of(no_number, std::numeric_limits<double>::infinity(), limit).is_within(limit));
   // What was no number is safe on its way out already: any number is better.
-  EXPECT_TRUE(bump_of(nan, 3.0, limit).is_within(limit));
+  EXPECT_TRUE(bump_of(no_number, 3.0, limit).is_within(limit));
   EXPECT_TRUE(bump_of(1.0, 1.0, {}).is_within({}));
   EXPECT_FALSE(bump_of(1.0, std::nextafter(1.0, 2.0), {}).is_within({}));
 }
 
 TEST(ChangeableProgram, AStateThatIsNotFiniteStaysBehind) {
   ChangeableProgram program(integrators({{"A", 1.0}, {"B", 1.0}}));
-  (void)step(program, 1.0);
-  (void)step(program, std::numeric_limits<double>::infinity());
+  (void)one_step(program, 1.0);
+  (void)one_step(program, std::numeric_limits<double>::infinity());
   Change change(program, integrators({{"A", 1.0}, {"B", 1.0}}), 0.0);
   program.propose(change.proposed);
-  (void)step(program, 0.0);
-  EXPECT_EQ(step(program, 0.25), 0.5);
+  (void)one_step(program, 0.0);
+  EXPECT_EQ(one_step(program, 0.25), 0.5);
   settle(program, change);
 }
 
@@ -243,9 +243,9 @@ TEST(ChangeableProgram, ParametersThatCameAfterThePlanWithholdTheChange) {
   ChangeableProgram program(integrators({{"A", 1.0}}));
   Change change(program, integrators({{"A", 1.0}}), 0.0);
   program.propose(change.proposed);
-  (void)step(program, 1.0);
+  (void)one_step(program, 1.0);
   program.set_parameter(0, 2.0);
-  EXPECT_EQ(step(program, 1.0), 3.0);
+  EXPECT_EQ(one_step(program, 1.0), 3.0);
   EXPECT_EQ(program.taken(), nullptr);
   ASSERT_TRUE(program.is_decided());
   EXPECT_EQ(change.proposed.verdict, ChangeVerdict::other_values);
@@ -255,11 +255,11 @@ TEST(ChangeableProgram, ParametersThatCameAfterThePlanWithholdTheChange) {
 /// What servers reach stays in its place; what is no more keeps its value, and does nothing.
 TEST(ChangeableProgram, ParametersAndInnerSignalsKeepTheirPlaces) {
   ChangeableProgram program(integrators({{"A", 1.0}, {"B", 2.0}, {"C", 3.0, "mm"}}));
-  (void)step(program, 1.0);
+  (void)one_step(program, 1.0);
   Change change(program, integrators({{"C", 30.0, "mm"}, {"NEW", 5.0}, {"A", 10.0}}));
   program.propose(change.proposed);
-  (void)step(program, 1.0);
-  (void)step(program, 1.0);
+  (void)one_step(program, 1.0);
+  (void)one_step(program, 1.0);
   settle(program, change);
   EXPECT_THAT(parameters_of(program), ElementsAre(1.0, 2.0, 3.0));
   program.set_parameter(0, -1.0);
@@ -281,35 +281,35 @@ TEST(ChangeableProgram, AProposalThatNoStepTookUpCanBeWithdrawn) {
     Change change(program, integrators({{"A", 1.0}, {"B", 7.0}}));
     program.propose(change.proposed);
     for (int i = 0; i < steps; ++i) {
-      (void)step(program, 0.0);
+      (void)one_step(program, 0.0);
     }
     EXPECT_TRUE(program.withdraw());
   }
-  EXPECT_EQ(step(program, 1.0), 1.0);
-  EXPECT_EQ(step(program, 1.0), 2.0);
+  EXPECT_EQ(one_step(program, 1.0), 1.0);
+  EXPECT_EQ(one_step(program, 1.0), 2.0);
   EXPECT_EQ(program.taken(), nullptr);
   EXPECT_EQ(program.version_number(), 1U);
 }
 
 TEST(ChangeableProgram, AnImageIsWhatAStepBeganWithAndGave) {
   ChangeableProgram program(integrators({{"A", 2.0}}));
-  (void)step(program, 1.0);
+  (void)one_step(program, 1.0);
   StepImage image{.parameters = {0.0}, .state = std::vector<std::byte>(16), .inputs = {0.0}, .outputs = {0.0}};
   EXPECT_FALSE(program.has_image());
   program.ask_for_image(image);
   EXPECT_FALSE(program.has_image());
-  (void)step(program, 3.0);
-  (void)step(program, 100.0);
+  (void)one_step(program, 3.0);
+  (void)one_step(program, 100.0);
   ASSERT_TRUE(program.has_image());
   auto again = integrators({{"A", 0.0}});
   again->restore(image.state);
   again->set_parameter(0, image.parameters[0]);
   EXPECT_THAT(image.inputs, ElementsAre(3.0));
   EXPECT_THAT(image.outputs, ElementsAre(8.0));
-  EXPECT_EQ(step(*again, image.inputs[0]), image.outputs[0]);
+  EXPECT_EQ(one_step(*again, image.inputs[0]), image.outputs[0]);
   program.ask_for_image(image);
   EXPECT_TRUE(program.withdraw_image());
-  (void)step(program, 5.0);
+  (void)one_step(program, 5.0);
   EXPECT_FALSE(program.has_image());
 }
 

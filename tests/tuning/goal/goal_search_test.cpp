@@ -15,23 +15,22 @@ namespace {
 
 using loops::integrator;
 using loops::problem_of;
+using loops::ts;
 using std::numbers::pi;
-
-constexpr double ts = 0.01;
 
 /// The gain at which the loop of an integrator is the wished lag: 1 − TS·K = e^(−TS/T), T = settling/ln 50.
 double gain_for(double settling) {
   return (1.0 - std::exp(-ts * std::log(50.0) / settling)) / ts;
 }
 
-std::string settings(double start, const std::string& goal, const std::string& fit = "{min = 0.0}") {
+std::string settings_of_gain(double start, const std::string& goal, const std::string& fit = "{min = 0.0}") {
   return fmt::format("[parameters.P]\nK = {}\n[fit.P]\nK = {}\n[goal]\norder = 1\nloop = \"P.XOUT\"\n{}", start, fit,
                      goal);
 }
 
 TEST(GoalSearch, FindsTheGainThatMeetsTheWishExactly) {
   for (const double start : {0.3, 4.0, 60.0}) {
-    const GoalProblem problem = problem_of(integrator(), settings(start, "settling_time = 0.5\n"));
+    const GoalProblem problem = problem_of(integrator(), settings_of_gain(start, "settling_time = 0.5\n"));
     const GoalResult result = tune_for_goal(problem);
     EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
     EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5)) << start;
@@ -43,7 +42,7 @@ TEST(GoalSearch, FindsTheGainThatMeetsTheWishExactly) {
 /// The largest effort of the step is K·1, at once: a limit on it is a limit on K.
 TEST(GoalSearch, KeepsALimitOnTheEffortAndReachesIt) {
   const GoalProblem problem =
-      problem_of(integrator(), settings(2.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"));
+      problem_of(integrator(), settings_of_gain(2.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
   EXPECT_LE(result.x[0], 5.0);
@@ -60,7 +59,7 @@ TEST(GoalSearch, ReachesThePhaseMarginAndNoLess) {
   const double allowed = 2.0 * std::sin(0.5 * w) / ts;
   for (const double start : {1.0, 14.0}) {
     const GoalProblem problem = problem_of(
-        integrator(delays), settings(start, "settling_time = 0.3\n[goal.limits]\nphase_margin_deg = 65.0\n"));
+        integrator(delays), settings_of_gain(start, "settling_time = 0.3\n[goal.limits]\nphase_margin_deg = 65.0\n"));
     const GoalResult result = tune_for_goal(problem);
     EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
     EXPECT_GE(result.limits[0].value, margin);
@@ -70,7 +69,7 @@ TEST(GoalSearch, ReachesThePhaseMarginAndNoLess) {
 
 TEST(GoalSearch, ReachesALimitOnTheSensitivity) {
   const GoalProblem problem =
-      problem_of(integrator(6), settings(1.0, "settling_time = 0.3\n[goal.limits]\nsensitivity = 1.5\n"));
+      problem_of(integrator(6), settings_of_gain(1.0, "settling_time = 0.3\n[goal.limits]\nsensitivity = 1.5\n"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
   EXPECT_LE(result.limits[0].value, 1.5);
@@ -117,7 +116,7 @@ TEST(GoalSearch, OfSeveralPlantsTheWorstCounts) {
 
 TEST(GoalSearch, LeavesAnUnstableStart) {
   const GoalProblem problem =
-      problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 0.1, max = 300.0}"));
+      problem_of(integrator(), settings_of_gain(250.0, "settling_time = 0.5\n", "{min = 0.1, max = 300.0}"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.start_state, LoopState::Unstable);
   EXPECT_FALSE(result.plants[0].before);
@@ -125,7 +124,7 @@ TEST(GoalSearch, LeavesAnUnstableStart) {
   EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
 }
 
-int refused(const std::function<void()>& run) {
+int number_of_refusal(const std::function<void()>& run) {
   try {
     run();
   } catch (const InputError& error) {
@@ -135,22 +134,23 @@ int refused(const std::function<void()>& run) {
 }
 
 TEST(GoalSearch, SaysThatNothingIsStable) {
-  EXPECT_EQ(refused([] {
-              (void)tune_for_goal(
-                  problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 220.0, max = 300.0}")));
+  EXPECT_EQ(number_of_refusal([] {
+              (void)tune_for_goal(problem_of(
+                  integrator(), settings_of_gain(250.0, "settling_time = 0.5\n", "{min = 220.0, max = 300.0}")));
             }),
             error::no_stable_loop);
 }
 
 TEST(GoalSearch, SaysThatNoLoopPasses) {
   const std::string beside = "[fit.P]\nK = {}\n[goal]\nsettling_time = 1.0\nloop = \"BESIDE.XOUT\"\n";
-  EXPECT_EQ(refused([&] { (void)tune_for_goal(problem_of(integrator(), beside)); }), error::no_loop_there);
+  EXPECT_EQ(number_of_refusal([&] { (void)tune_for_goal(problem_of(integrator(), beside)); }), error::no_loop_there);
 }
 
 /// Below 0 < TS·K < 2 the effort is at least the lower bound of K: a limit under it cannot be kept.
 TEST(GoalSearch, NamesTheLimitThatCannotBeKept) {
   const GoalProblem problem = problem_of(
-      integrator(), settings(8.0, "settling_time = 0.5\n[goal.limits]\neffort = 2.0\n", "{min = 4.0, max = 20.0}"));
+      integrator(),
+      settings_of_gain(8.0, "settling_time = 0.5\n[goal.limits]\neffort = 2.0\n", "{min = 4.0, max = 20.0}"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Contradiction);
   EXPECT_FALSE(result.limits[0].is_kept);

@@ -13,12 +13,11 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+using loops::ts;
 using std::numbers::pi;
 
-constexpr double ts = 0.01;
-
 /// L = TS·K·z⁻ᵈ/(z − 1): |L| = TS·K/(2·sin(w/2)), arg L = −90° − (d + ½)·w, w = ω·TS.
-struct Integrator {
+struct KnownIntegrator {
   double gain;
   int delays;
   [[nodiscard]] double crossover() const { return 2.0 * std::asin(0.5 * ts * gain); }
@@ -29,10 +28,10 @@ struct Integrator {
   }
 };
 
-class MarginsOfIntegrators : public ::testing::TestWithParam<Integrator> {};
+class MarginsOfIntegrators : public ::testing::TestWithParam<KnownIntegrator> {};
 
 TEST_P(MarginsOfIntegrators, AreThoseOfTheClosedForm) {
-  const Integrator known = GetParam();
+  const KnownIntegrator known = GetParam();
   const auto settings = fmt::format(
       "[parameters.P]\nK = {}\n[fit.P]\nK = {{min = 0.0}}\n[goal]\nsettling_time = 1.0\nloop = \"P.XOUT\"\n",
       known.gain);
@@ -50,8 +49,8 @@ TEST_P(MarginsOfIntegrators, AreThoseOfTheClosedForm) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MarginsOfIntegrators,
-                         ::testing::Values(Integrator{1.0, 0}, Integrator{20.0, 1}, Integrator{5.0, 7},
-                                           Integrator{60.0, 0}, Integrator{14.0, 4}));
+                         ::testing::Values(KnownIntegrator{1.0, 0}, KnownIntegrator{20.0, 1}, KnownIntegrator{5.0, 7},
+                                           KnownIntegrator{60.0, 0}, KnownIntegrator{14.0, 4}));
 
 /// A gain behind a delay, L = K/z: S = 1/(1 + K/z), |S| is largest at the Nyquist frequency, 1/(1 − K).
 TEST(Margins, OfAGainBehindADelay) {

@@ -1,6 +1,6 @@
 // The numbers of all diagnostics and their titles. Each has a page docs/errors/HYnnn.md with a failing text and its
 // mend. 1xx syntax, 2xx names, types and wires, 3xx units, 4xx loops, rates and scheduling, 5xx records, of them 53x
-// and 54x goals, relays and robots, 6xx parameter files, 7xx tuning, tests and the command line, 8xx the runtime and Modbus.
+// and 54x goals and relays, 6xx parameter files, 7xx tuning, tests and the command line, 8xx the runtime and Modbus.
 #pragma once
 
 #include <span>
@@ -97,7 +97,6 @@ inline constexpr int no_stable_loop = 532;
 inline constexpr int limits_contradict = 533;
 inline constexpr int plant_sets_tuned = 534;
 inline constexpr int no_limit_cycle = 535;
-inline constexpr int nothing_maps = 536;
 inline constexpr int parameter_file_syntax = 601;
 inline constexpr int duplicate_key = 602;
 inline constexpr int unknown_key = 603;

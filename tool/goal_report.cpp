@@ -106,7 +106,7 @@ Figure over_frequency(const GoalResult& result) {
     sensitivity.curves.push_back(std::move(size));
     open_loop.curves.push_back(std::move(loop));
   }
-  return {.title = "Over the frequency", .panels = {std::move(sensitivity), std::move(open_loop)}, .over_time = false};
+  return {.title = "Over the frequency", .panels = {std::move(sensitivity), std::move(open_loop)}};
 }
 
 std::string table_html(const std::string& title, const TextTable& table) {

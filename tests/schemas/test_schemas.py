@@ -176,7 +176,7 @@ class Schemas(unittest.TestCase):
                    self.printed("tune", "loop.st", "--params", "goal.toml", "--out", "goal_tuned.toml", "--start", "2",
                                 "--report", "goal_report", "--json"),
                    (self.folder / "goal_report/report.json").read_text(encoding="utf-8"))
-        rows, y, u = [], 0.0, 0.7
+        rows, y, u = [], 0.0, 1.2
         for k in range(3000):
             u = 1.2 if y < -0.05 else -0.3 if y > 0.05 else u
             rows.append((0.01 * k, u if k >= 50 else 0.0, y))

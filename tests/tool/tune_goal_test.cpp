@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::string_view loop = R"(FUNCTION_BLOCK LOOP  (* @ts 10ms *)
+constexpr std::string_view loop_to_tune = R"(FUNCTION_BLOCK LOOP  (* @ts 10ms *)
   VAR_INPUT
     SP : LREAL;  (* @unit mm *)
   END_VAR
@@ -36,22 +36,22 @@ constexpr std::string_view loop = R"(FUNCTION_BLOCK LOOP  (* @ts 10ms *)
 END_FUNCTION_BLOCK
 )";
 
-constexpr std::string_view goal =
+constexpr std::string_view goal_of_loop =
     "# the controller of the axis\n[fit.P]\nK = {min = 0.0}\n\n[goal]\norder = 1.0\nsettling_time = 0.5\nloop = "
     "\"P.XOUT\"\n";
 
 struct LoopBench : test::Workbench {
   explicit LoopBench(std::string_view settings) {
-    write("loop.st", loop);
+    write("loop.st", loop_to_tune);
     write("p.toml", settings);
   }
 };
 
-constexpr const char* tune = "hysteron tune loop.st --params p.toml --out tuned.toml";
+constexpr const char* tune_loop = "hysteron tune loop.st --params p.toml --out tuned.toml";
 
 TEST(TuneGoal, NeedsNoRecordAndWritesTheTunedFile) {
-  const LoopBench bench(std::string(goal) + "\n[goal.limits]\neffort = 5.0\n");
-  const auto done = bench.shell(std::string(tune) + " --report report");
+  const LoopBench bench(std::string(goal_of_loop) + "\n[goal.limits]\neffort = 5.0\n");
+  const auto done = bench.shell(std::string(tune_loop) + " --report report");
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(done.err, "");
   EXPECT_THAT(done.out, AllOf(HasSubstr("P.K"), HasSubstr("at its limit"), HasSubstr("phase margin"),
@@ -75,7 +75,7 @@ TEST(TuneGoal, SaysWhichLimitsAreBrokenAndWritesTheLeastBroken) {
   const LoopBench bench(
       "[parameters.P]\nK = 8.0\n[fit.P]\nK = {min = 4.0, max = 20.0}\n[goal]\nsettling_time = 0.5\nloop = \"P.XOUT\"\n"
       "[goal.limits]\neffort = 2.0\n");
-  const auto done = bench.shell(tune);
+  const auto done = bench.shell(tune_loop);
   EXPECT_EQ(done.code, 1);
   EXPECT_THAT(done.err, AllOf(HasSubstr("HY533 error: p.toml:9:10"), HasSubstr("effort = 2"),
                               HasSubstr("P.K is on its lower bound")));
@@ -84,7 +84,7 @@ TEST(TuneGoal, SaysWhichLimitsAreBrokenAndWritesTheLeastBroken) {
 
 TEST(TuneGoal, TakesPlantsBesideItsFile) {
   const LoopBench bench("");
-  bench.write("axis/p.toml", std::string(goal) + "plants = [\"light.toml\", \"heavy.toml\"]\n");
+  bench.write("axis/p.toml", std::string(goal_of_loop) + "plants = [\"light.toml\", \"heavy.toml\"]\n");
   bench.write("axis/light.toml", "[parameters.BODY]\nK = 2.0\n");
   bench.write("axis/heavy.toml", "[parameters.BODY]\nK = 0.5\n");
   const auto done = bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml --json");
@@ -93,7 +93,7 @@ TEST(TuneGoal, TakesPlantsBesideItsFile) {
   bench.write("axis/heavy.toml", "[parameters.BODI]\nK = 0.5\n");
   EXPECT_THAT(bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml").err,
               AllOf(HasSubstr("HY603 error: axis/heavy.toml:2"), HasSubstr("BODY")));
-  bench.write("axis/p.toml", std::string(goal) + "plants = [\"none.toml\"]\n");
+  bench.write("axis/p.toml", std::string(goal_of_loop) + "plants = [\"none.toml\"]\n");
   EXPECT_THAT(bench.shell("hysteron tune loop.st --params axis/p.toml --out tuned.toml").err,
               AllOf(HasSubstr("HY100 error: axis/none.toml"), HasSubstr("named as a plant here")));
 }
@@ -109,15 +109,15 @@ TEST(TuneGoal, FollowsARecord) {
                        "cut -d, -f2 y.csv | sed 's/Y/WISH/' | paste -d, sp.csv - > log.csv")
                 .code,
             0);
-  const auto done = bench.shell(std::string(tune) + " --log log.csv --json");
+  const auto done = bench.shell(std::string(tune_loop) + " --log log.csv --json");
   ASSERT_EQ(done.code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out.substr(done.out.find('{')));
   EXPECT_NEAR(json["parameters"][0]["value"].get<double>(), 7.0, 1e-3);
-  EXPECT_THAT(bench.shell(tune).err, HasSubstr("HY530 error: p.toml:3"));
+  EXPECT_THAT(bench.shell(tune_loop).err, HasSubstr("HY530 error: p.toml:3"));
 }
 
 TEST(TuneGoal, RefusesWhatTheDiagramDoesNotHave) {
-  const auto said = [](const std::string& settings) { return LoopBench(settings).shell(tune).err; };
+  const auto said = [](const std::string& settings) { return LoopBench(settings).shell(tune_loop).err; };
   const std::string fit = "[fit.P]\nK = {}\n[goal]\nsettling_time = 0.5\n";
   EXPECT_THAT(said(fit + "output = \"YY\"\n"), AllOf(HasSubstr("HY603"), HasSubstr("Y")));
   EXPECT_THAT(said(fit + "input = \"SQ\"\n"), AllOf(HasSubstr("HY603"), HasSubstr("the inputs are SP.")));

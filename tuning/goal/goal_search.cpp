@@ -194,11 +194,9 @@ class GoalSearch {
 
   /// Rounds of Ipopt, each with the places that the one before has brought up.
   FitStatus descend(VectorXd x) {
-    FitStatus status = FitStatus::Stalled;
     for (int round = 0; round < most_exchanges && !cancelled_; ++round) {
       const double excess_before = best_.excess;
       const ConstrainedResult ended = solve_once(x, round > 0);
-      status = ended.status;
       x = ended.x.head(start_.size());
       if (is_feasibility_ && best_.excess <= 0.0) {
         return FitStatus::Converged;
@@ -208,10 +206,10 @@ class GoalSearch {
       }
       const bool stands_still = is_feasibility_ && round > 0 && best_.excess > (1.0 - least_gain) * excess_before;
       if (!add_places(-0.5 * kept_by) || stands_still) {
-        break;
+        return ended.status;
       }
     }
-    return status;
+    return cancelled_ ? FitStatus::Cancelled : FitStatus::IterationLimit;  // limits still move from place to place
   }
 
   [[nodiscard]] bool has_bound_on_cost() const {

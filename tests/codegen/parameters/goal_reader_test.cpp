@@ -10,7 +10,7 @@
 namespace hysteron::parameters {
 namespace {
 
-constexpr std::string_view whole = R"([fit.PID]
+constexpr std::string_view whole_goal = R"([fit.PID]
 KP = {min = 0.0}
 
 [goal]
@@ -39,7 +39,7 @@ sensitivity = 1.7
 )";
 
 TEST(GoalReader, ReadsAllOfIt) {
-  const GoalSettings goal = parse_parameter_file("p.toml", whole).goal;
+  const GoalSettings goal = parse_parameter_file("p.toml", whole_goal).goal;
   ASSERT_TRUE(goal.is_given());
   EXPECT_EQ(goal.place.line, 4U);
   EXPECT_EQ(goal.input->text, "SP");
@@ -67,8 +67,8 @@ TEST(GoalReader, ReadsAllOfIt) {
 }
 
 TEST(GoalReader, IsWrittenAsItWasRead) {
-  const std::string text = parameter_text(parse_parameter_file("p.toml", whole));
-  EXPECT_EQ(text, whole);
+  const std::string text = parameter_text(parse_parameter_file("p.toml", whole_goal));
+  EXPECT_EQ(text, whole_goal);
   constexpr std::string_view recorded = "[goal]\nsignal = \"record\"\nwished = \"Y wished\"\n";
   EXPECT_EQ(parameter_text(parse_parameter_file("p.toml", recorded)), recorded);
 }
@@ -77,12 +77,12 @@ TEST(GoalReader, AFileWithoutIsAsBefore) {
   EXPECT_FALSE(parse_parameter_file("p.toml", "[parameters.P]\nK = 1.0\n").goal.is_given());
 }
 
-struct Refused {
+struct RefusedGoal {
   std::string_view goal;
   int number;
 };
 
-class GoalRefusals : public ::testing::TestWithParam<Refused> {};
+class GoalRefusals : public ::testing::TestWithParam<RefusedGoal> {};
 
 TEST_P(GoalRefusals, AreSaid) {
   const auto& [goal, number] = GetParam();
@@ -94,34 +94,35 @@ TEST_P(GoalRefusals, AreSaid) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, GoalRefusals,
-    ::testing::Values(Refused{"", error::goal_lacks}, Refused{"loop = \"P.XOUT\"\n", error::goal_lacks},
-                      Refused{"settling_time = 1.0\nrise_time = 1.0\n", error::contradicting_range},
-                      Refused{"settling_time = 1.0\nwished = \"Y\"\nsignal = \"record\"\n", error::contradicting_range},
-                      Refused{"wished = \"Y\"\n", error::contradicting_range},
-                      Refused{"settling_time = 0.0\n", error::contradicting_range},
-                      Refused{"settling_time = -1.0\n", error::contradicting_range},
-                      Refused{"settling_time = inf\n", error::parameter_not_finite},
-                      Refused{"settling_time = \"1 s\"\n", error::wrong_value_type},
-                      Refused{"settling_tim = 1.0\n", error::unknown_key},
-                      Refused{"settling_time = 1.0\nsize = 0\n", error::contradicting_range},
-                      Refused{"settling_time = 1.0\norder = 3\n", error::contradicting_range},
-                      Refused{"settling_time = 1.0\norder = 1\ndamping = 0.7\n", error::contradicting_range},
-                      Refused{"settling_time = 1.0\nsignal = \"sine\"\n", error::wrong_value_type},
-                      Refused{"settling_time = 1.0\nsignal = \"record\"\nsize = 1.0\n", error::contradicting_range},
-                      Refused{"settling_time = 1.0\nloop = \"a b\"\n", error::wrong_value_type},
-                      Refused{"settling_time = 1.0\nplants = \"a.toml\"\n", error::wrong_value_type},
-                      Refused{"settling_time = 1.0\nplants = [\"a.toml\", \"a.toml\"]\n", error::duplicate_key},
-                      Refused{"settling_time = 1.0\nlimits = 3\n", error::wrong_value_type},
-                      Refused{"settling_time = 1.0\neffort_weight = 0.1\n", error::goal_lacks},
-                      Refused{"settling_time = 1.0\n[goal.limits]\nphase_margin_deg = 50\n", error::goal_lacks},
-                      Refused{"settling_time = 1.0\n[goal.limits]\neffort = 5\n", error::goal_lacks},
-                      Refused{"settling_time = 1.0\n[goal.limits]\nphase_margin = 50\n", error::unknown_key},
-                      Refused{"settling_time = 1.0\nloop = \"P.XOUT\"\n[goal.limits]\nsensitivity = 1.0\n",
-                              error::contradicting_range},
-                      Refused{"settling_time = 1.0\nloop = \"P.XOUT\"\n[goal.limits]\nphase_margin_deg = 180\n",
-                              error::contradicting_range},
-                      Refused{"settling_time = 1.0\nsignal = \"ramp\"\n[goal.limits]\novershoot_percent = 5\n",
-                              error::contradicting_range}));
+    ::testing::Values(RefusedGoal{"", error::goal_lacks}, RefusedGoal{"loop = \"P.XOUT\"\n", error::goal_lacks},
+                      RefusedGoal{"settling_time = 1.0\nrise_time = 1.0\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\nwished = \"Y\"\nsignal = \"record\"\n",
+                                  error::contradicting_range},
+                      RefusedGoal{"wished = \"Y\"\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 0.0\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = -1.0\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = inf\n", error::parameter_not_finite},
+                      RefusedGoal{"settling_time = \"1 s\"\n", error::wrong_value_type},
+                      RefusedGoal{"settling_tim = 1.0\n", error::unknown_key},
+                      RefusedGoal{"settling_time = 1.0\nsize = 0\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\norder = 3\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\norder = 1\ndamping = 0.7\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\nsignal = \"sine\"\n", error::wrong_value_type},
+                      RefusedGoal{"settling_time = 1.0\nsignal = \"record\"\nsize = 1.0\n", error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\nloop = \"a b\"\n", error::wrong_value_type},
+                      RefusedGoal{"settling_time = 1.0\nplants = \"a.toml\"\n", error::wrong_value_type},
+                      RefusedGoal{"settling_time = 1.0\nplants = [\"a.toml\", \"a.toml\"]\n", error::duplicate_key},
+                      RefusedGoal{"settling_time = 1.0\nlimits = 3\n", error::wrong_value_type},
+                      RefusedGoal{"settling_time = 1.0\neffort_weight = 0.1\n", error::goal_lacks},
+                      RefusedGoal{"settling_time = 1.0\n[goal.limits]\nphase_margin_deg = 50\n", error::goal_lacks},
+                      RefusedGoal{"settling_time = 1.0\n[goal.limits]\neffort = 5\n", error::goal_lacks},
+                      RefusedGoal{"settling_time = 1.0\n[goal.limits]\nphase_margin = 50\n", error::unknown_key},
+                      RefusedGoal{"settling_time = 1.0\nloop = \"P.XOUT\"\n[goal.limits]\nsensitivity = 1.0\n",
+                                  error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\nloop = \"P.XOUT\"\n[goal.limits]\nphase_margin_deg = 180\n",
+                                  error::contradicting_range},
+                      RefusedGoal{"settling_time = 1.0\nsignal = \"ramp\"\n[goal.limits]\novershoot_percent = 5\n",
+                                  error::contradicting_range}));
 
 }  // namespace
 }  // namespace hysteron::parameters

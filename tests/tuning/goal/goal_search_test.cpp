@@ -13,37 +13,34 @@
 namespace hysteron {
 namespace {
 
-using loops::integrator;
-using loops::problem_of;
 using std::numbers::pi;
-
-constexpr double ts = 0.01;
 
 /// The gain at which the loop of an integrator is the wished lag: 1 − TS·K = e^(−TS/T), T = settling/ln 50.
 double gain_for(double settling) {
-  return (1.0 - std::exp(-ts * std::log(50.0) / settling)) / ts;
+  return (1.0 - std::exp(-loops::ts * std::log(50.0) / settling)) / loops::ts;
 }
 
-std::string settings(double start, const std::string& goal, const std::string& fit = "{min = 0.0}") {
+std::string settings_of_gain(double start, const std::string& goal, const std::string& fit = "{min = 0.0}") {
   return fmt::format("[parameters.P]\nK = {}\n[fit.P]\nK = {}\n[goal]\norder = 1\nloop = \"P.XOUT\"\n{}", start, fit,
                      goal);
 }
 
 TEST(GoalSearch, FindsTheGainThatMeetsTheWishExactly) {
   for (const double start : {0.3, 4.0, 60.0}) {
-    const GoalProblem problem = problem_of(integrator(), settings(start, "settling_time = 0.5\n"));
+    const GoalProblem problem =
+        loops::problem_of(loops::integrator(), settings_of_gain(start, "settling_time = 0.5\n"));
     const GoalResult result = tune_for_goal(problem);
     EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
     EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5)) << start;
     EXPECT_LT(result.plants[0].after.error, 1e-4);
-    EXPECT_NEAR(result.plants[0].after.settling_time, 0.5, 2.0 * ts);
+    EXPECT_NEAR(result.plants[0].after.settling_time, 0.5, 2.0 * loops::ts);
   }
 }
 
 /// The largest effort of the step is K·1, at once: a limit on it is a limit on K.
 TEST(GoalSearch, KeepsALimitOnTheEffortAndReachesIt) {
-  const GoalProblem problem =
-      problem_of(integrator(), settings(2.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"));
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(), settings_of_gain(2.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
   EXPECT_LE(result.x[0], 5.0);
@@ -57,10 +54,11 @@ TEST(GoalSearch, ReachesThePhaseMarginAndNoLess) {
   constexpr int delays = 6;
   constexpr double margin = 65.0;
   const double w = (90.0 - margin) / 180.0 * pi / (delays + 0.5);
-  const double allowed = 2.0 * std::sin(0.5 * w) / ts;
+  const double allowed = 2.0 * std::sin(0.5 * w) / loops::ts;
   for (const double start : {1.0, 14.0}) {
-    const GoalProblem problem = problem_of(
-        integrator(delays), settings(start, "settling_time = 0.3\n[goal.limits]\nphase_margin_deg = 65.0\n"));
+    const GoalProblem problem =
+        loops::problem_of(loops::integrator(delays),
+                          settings_of_gain(start, "settling_time = 0.3\n[goal.limits]\nphase_margin_deg = 65.0\n"));
     const GoalResult result = tune_for_goal(problem);
     EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
     EXPECT_GE(result.limits[0].value, margin);
@@ -69,16 +67,16 @@ TEST(GoalSearch, ReachesThePhaseMarginAndNoLess) {
 }
 
 TEST(GoalSearch, ReachesALimitOnTheSensitivity) {
-  const GoalProblem problem =
-      problem_of(integrator(6), settings(1.0, "settling_time = 0.3\n[goal.limits]\nsensitivity = 1.5\n"));
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(6), settings_of_gain(1.0, "settling_time = 0.3\n[goal.limits]\nsensitivity = 1.5\n"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
   EXPECT_LE(result.limits[0].value, 1.5);
   // |1 + L| of the closed form, its least over the frequency
   double least = 1e9;
   for (double at = 1e-3; at < pi; at += 1e-4) {
-    least =
-        std::min(least, std::abs(1.0 + ts * result.x[0] * std::polar(1.0, -6.0 * at) / (std::polar(1.0, at) - 1.0)));
+    least = std::min(
+        least, std::abs(1.0 + loops::ts * result.x[0] * std::polar(1.0, -6.0 * at) / (std::polar(1.0, at) - 1.0)));
   }
   EXPECT_NEAR(1.0 / least, 1.5, 2e-3);
 }
@@ -89,10 +87,10 @@ TEST(GoalSearch, OfSeveralPlantsTheWorstCounts) {
   const std::string light = folder.write("light.toml", "[parameters.BODY]\nK = 2.0\n");
   const std::string heavy = folder.write("heavy.toml", "[parameters.BODY]\nK = 0.5\n");
   const auto both = [&](const std::string& robust) {
-    return problem_of(integrator(),
-                      fmt::format("[parameters.P]\nK = 1.0\n[fit.P]\nK = {{min = 0.0}}\n[goal]\norder = 1\n"
-                                  "settling_time = 0.5\nplants = [\"{}\", \"{}\"]\nrobust = \"{}\"\n",
-                                  light, heavy, robust));
+    return loops::problem_of(loops::integrator(),
+                             fmt::format("[parameters.P]\nK = 1.0\n[fit.P]\nK = {{min = 0.0}}\n[goal]\norder = 1\n"
+                                         "settling_time = 0.5\nplants = [\"{}\", \"{}\"]\nrobust = \"{}\"\n",
+                                         light, heavy, robust));
   };
   for (const std::string robust : {"worst", "mean"}) {
     const GoalProblem problem = both(robust);
@@ -116,8 +114,8 @@ TEST(GoalSearch, OfSeveralPlantsTheWorstCounts) {
 }
 
 TEST(GoalSearch, LeavesAnUnstableStart) {
-  const GoalProblem problem =
-      problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 0.1, max = 300.0}"));
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(), settings_of_gain(250.0, "settling_time = 0.5\n", "{min = 0.1, max = 300.0}"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.start_state, LoopState::Unstable);
   EXPECT_FALSE(result.plants[0].before);
@@ -125,7 +123,7 @@ TEST(GoalSearch, LeavesAnUnstableStart) {
   EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
 }
 
-int refused(const std::function<void()>& run) {
+int number_of_refusal(const std::function<void()>& run) {
   try {
     run();
   } catch (const InputError& error) {
@@ -135,22 +133,24 @@ int refused(const std::function<void()>& run) {
 }
 
 TEST(GoalSearch, SaysThatNothingIsStable) {
-  EXPECT_EQ(refused([] {
-              (void)tune_for_goal(
-                  problem_of(integrator(), settings(250.0, "settling_time = 0.5\n", "{min = 220.0, max = 300.0}")));
+  EXPECT_EQ(number_of_refusal([] {
+              (void)tune_for_goal(loops::problem_of(
+                  loops::integrator(), settings_of_gain(250.0, "settling_time = 0.5\n", "{min = 220.0, max = 300.0}")));
             }),
             error::no_stable_loop);
 }
 
 TEST(GoalSearch, SaysThatNoLoopPasses) {
   const std::string beside = "[fit.P]\nK = {}\n[goal]\nsettling_time = 1.0\nloop = \"BESIDE.XOUT\"\n";
-  EXPECT_EQ(refused([&] { (void)tune_for_goal(problem_of(integrator(), beside)); }), error::no_loop_there);
+  EXPECT_EQ(number_of_refusal([&] { (void)tune_for_goal(loops::problem_of(loops::integrator(), beside)); }),
+            error::no_loop_there);
 }
 
 /// Below 0 < TS·K < 2 the effort is at least the lower bound of K: a limit under it cannot be kept.
 TEST(GoalSearch, NamesTheLimitThatCannotBeKept) {
-  const GoalProblem problem = problem_of(
-      integrator(), settings(8.0, "settling_time = 0.5\n[goal.limits]\neffort = 2.0\n", "{min = 4.0, max = 20.0}"));
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(),
+      settings_of_gain(8.0, "settling_time = 0.5\n[goal.limits]\neffort = 2.0\n", "{min = 4.0, max = 20.0}"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Contradiction);
   EXPECT_FALSE(result.limits[0].is_kept);
@@ -172,7 +172,7 @@ END_FUNCTION_BLOCK
 )";
 
 TEST(GoalSearch, NamesTheLimitsThatStandAgainstEachOther) {
-  const GoalProblem problem = problem_of(unstable_plant, R"([fit.P]
+  const GoalProblem problem = loops::problem_of(unstable_plant, R"([fit.P]
 K = {min = 0.0}
 [goal]
 settling_time = 1.0
@@ -196,8 +196,9 @@ phase_margin_deg = 5.0
 }
 
 TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
-  const GoalProblem problem = problem_of(
-      integrator(), "[parameters.P]\nK = 3.0\n[fit.P]\nK = {min = 0.0}\n[goal]\norder = 1\nsettling_time = 0.5\n");
+  const GoalProblem problem =
+      loops::problem_of(loops::integrator(),
+                        "[parameters.P]\nK = 3.0\n[fit.P]\nK = {min = 0.0}\n[goal]\norder = 1\nsettling_time = 0.5\n");
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Tuned);
   EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
@@ -205,7 +206,7 @@ TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
 }
 
 TEST(GoalSearch, KeepsEveryLimitOfALoopWithAll) {
-  const GoalProblem problem = problem_of(loops::oven, R"(
+  const GoalProblem problem = loops::problem_of(loops::oven, R"(
 [fit.PID]
 KP = {min = 0.01, max = 20.0}
 TR = {min = 0.1, max = 20.0}

@@ -13,6 +13,8 @@
 
 namespace hysteron::loops {
 
+inline constexpr double ts = 0.01;  ///< of the integrators, s
+
 /// An integrator, y(k+1) = y(k) + TS·B·u(k), under a proportional controller u = K·(r − y), TS = 0.01 s. The closed
 /// loop is the pole 1 − TS·B·K. With further delays of the measurement, `delays`, the open loop is TS·B·K·z⁻ᵈ/(z − 1).
 inline std::string integrator(int delays = 0) {

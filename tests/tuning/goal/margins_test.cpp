@@ -15,24 +15,22 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using std::numbers::pi;
 
-constexpr double ts = 0.01;
-
 /// L = TS·K·z⁻ᵈ/(z − 1): |L| = TS·K/(2·sin(w/2)), arg L = −90° − (d + ½)·w, w = ω·TS.
-struct Integrator {
+struct KnownIntegrator {
   double gain;
   int delays;
-  [[nodiscard]] double crossover() const { return 2.0 * std::asin(0.5 * ts * gain); }
+  [[nodiscard]] double crossover() const { return 2.0 * std::asin(0.5 * loops::ts * gain); }
   [[nodiscard]] double phase_margin() const { return 90.0 - (delays + 0.5) * crossover() * 180.0 / pi; }
   [[nodiscard]] double gain_margin() const {
     const double w = pi / (2.0 * (delays + 0.5));
-    return -20.0 * std::log10(ts * gain / (2.0 * std::sin(0.5 * w)));
+    return -20.0 * std::log10(loops::ts * gain / (2.0 * std::sin(0.5 * w)));
   }
 };
 
-class MarginsOfIntegrators : public ::testing::TestWithParam<Integrator> {};
+class MarginsOfIntegrators : public ::testing::TestWithParam<KnownIntegrator> {};
 
 TEST_P(MarginsOfIntegrators, AreThoseOfTheClosedForm) {
-  const Integrator known = GetParam();
+  const KnownIntegrator known = GetParam();
   const auto settings = fmt::format(
       "[parameters.P]\nK = {}\n[fit.P]\nK = {{min = 0.0}}\n[goal]\nsettling_time = 1.0\nloop = \"P.XOUT\"\n",
       known.gain);
@@ -41,17 +39,17 @@ TEST_P(MarginsOfIntegrators, AreThoseOfTheClosedForm) {
   ASSERT_EQ(model.evaluate(loops::start_of(problem), true), LoopState::Settles);
   const LoopMargins margins = *model.figures(0).margins;
   EXPECT_NEAR(margins.phase.value, known.phase_margin(), 1e-4);
-  EXPECT_NEAR(margins.phase.frequency, known.crossover() / ts, 1e-4 * margins.phase.frequency);
+  EXPECT_NEAR(margins.phase.frequency, known.crossover() / loops::ts, 1e-4 * margins.phase.frequency);
   EXPECT_NEAR(margins.gain.value, known.gain_margin(), 1e-4);
   // d/dK of the closed forms
-  const double slope = ts / std::cos(0.5 * known.crossover());
+  const double slope = loops::ts / std::cos(0.5 * known.crossover());
   EXPECT_NEAR(margins.phase.by[0], -(known.delays + 0.5) * slope * 180.0 / pi, 1e-3 * std::fabs(margins.phase.by[0]));
   EXPECT_NEAR(margins.gain.by[0], -20.0 / (std::log(10.0) * known.gain), 1e-4 * std::fabs(margins.gain.by[0]));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MarginsOfIntegrators,
-                         ::testing::Values(Integrator{1.0, 0}, Integrator{20.0, 1}, Integrator{5.0, 7},
-                                           Integrator{60.0, 0}, Integrator{14.0, 4}));
+                         ::testing::Values(KnownIntegrator{1.0, 0}, KnownIntegrator{20.0, 1}, KnownIntegrator{5.0, 7},
+                                           KnownIntegrator{60.0, 0}, KnownIntegrator{14.0, 4}));
 
 /// A gain behind a delay, L = K/z: S = 1/(1 + K/z), |S| is largest at the Nyquist frequency, 1/(1 − K).
 TEST(Margins, OfAGainBehindADelay) {
@@ -62,10 +60,10 @@ TEST(Margins, OfAGainBehindADelay) {
     impulse.push_back(std::pow(-gain, k));
     by(k, 0) = k == 0 ? 0.0 : -k * std::pow(-gain, k - 1);
   }
-  const Sensitivity sensitivity(impulse, by, ts);
+  const Sensitivity sensitivity(impulse, by, loops::ts);
   const LoopMargins margins = sensitivity.margins();
   EXPECT_NEAR(margins.sensitivity.value, 1.0 / (1.0 - gain), 1e-9);
-  EXPECT_NEAR(margins.sensitivity.frequency, pi / ts, 1e-6 * pi / ts);
+  EXPECT_NEAR(margins.sensitivity.frequency, pi / loops::ts, 1e-6 * pi / loops::ts);
   EXPECT_NEAR(margins.sensitivity.by[0], 1.0 / std::pow(1.0 - gain, 2), 1e-6);
   EXPECT_NEAR(margins.gain.value, -20.0 * std::log10(gain), 1e-9);
   EXPECT_NEAR(margins.gain.by[0], -20.0 / (std::log(10.0) * gain), 1e-6);

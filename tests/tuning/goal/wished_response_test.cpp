@@ -8,7 +8,7 @@
 namespace hysteron {
 namespace {
 
-parameters::GoalSettings goal(double settling, double order, double damping) {
+parameters::GoalSettings wish_of(double settling, double order, double damping) {
   parameters::GoalSettings settings;
   settings.settling_time = {.value = settling};
   settings.order = {.value = order};
@@ -19,7 +19,7 @@ parameters::GoalSettings goal(double settling, double order, double damping) {
 }
 
 TEST(WishedResponse, OfFirstOrderSettlesAfterLnFiftyTimeConstants) {
-  EXPECT_NEAR(wished_response(goal(1.0, 1.0, 1.0)).time, 1.0 / std::log(50.0), 1e-9);
+  EXPECT_NEAR(wished_response(wish_of(1.0, 1.0, 1.0)).time, 1.0 / std::log(50.0), 1e-9);
   parameters::GoalSettings rising;
   rising.order = {.value = 1.0};
   rising.rise_time = {.value = 1.0};
@@ -28,7 +28,7 @@ TEST(WishedResponse, OfFirstOrderSettlesAfterLnFiftyTimeConstants) {
 
 TEST(WishedResponse, OfSecondOrderSettlesWhereItSays) {
   for (const double damping : {0.4, 0.7, 1.0, 2.5}) {
-    const WishedResponse wished = wished_response(goal(0.8, 2.0, damping));
+    const WishedResponse wished = wished_response(wish_of(0.8, 2.0, damping));
     Signal step(4000, 1.0);
     step.front() = 0.0;
     const Signal y = response_to(wished, step, 1e-3);

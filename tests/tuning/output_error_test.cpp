@@ -14,6 +14,7 @@
 #include "records/read.hpp"
 #include "support/element_name.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/tuning/measured_machines.hpp"
 #include "tests/tuning/output_error_diagrams.hpp"

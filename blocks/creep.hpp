@@ -80,27 +80,46 @@ struct Creep {
   template <class S>
   using Out = Xout<S, "'x", "signal that creeps">;
 
-  /// The rates of the lags at the present sample.
+  /// Of each lag.
   template <class S>
-  static std::array<S, lags> rates(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    std::array<S, lags> result{};
+  struct Coefficients {
+    std::array<S, lags> time;       ///< τ_i
+    std::array<S, lags> forgotten;  ///< 1 − exp(−TS/τ_i)
+  };
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    Coefficients<S> result{};
     for (std::size_t i = 0; i < lags; ++i) {
-      result[i] = started_rate<S>({.start = !state.STARTED,
-                                   .settled = params.SETTLED,
-                                   .rate = at(state.RATES, Int<S>(static_cast<std::int32_t>(i))),
-                                   .x = state.X1},
-                                  in.XIN, params.T_ONSET * S(times[i]), ts);
+      result.time[i] = params.T_ONSET * S(times[i]);
+      result.forgotten[i] = forgotten_part(result.time[i], ts);
     }
     return result;
   }
-  /// Σ w_i·x_i
+
+  /// The lags at the present sample.
   template <class S>
-  static S sum(const Params<S>& params, const In<S>& in, const std::array<S, lags>& rates) {
-    S crept = S(0.0);
+  struct Lagged {
+    std::array<S, lags> rates;
+    S sum;  ///< Σ w_i·x_i
+  };
+  template <class S>
+  static Lagged<S> lagged(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                          const In<S>& in, const S& ts) {
+    const S slope = (in.XIN - select(state.STARTED, state.X1, in.XIN)) / ts;
+    Lagged<S> result{};
     for (std::size_t i = 0; i < lags; ++i) {
-      crept = crept + S(weights[i]) * (in.XIN - params.T_ONSET * S(times[i]) * rates[i]);
+      result.rates[i] = started_rate<S>({.start = !state.STARTED,
+                                         .settled = params.SETTLED,
+                                         .rate = at(state.RATES, Int<S>(static_cast<std::int32_t>(i))),
+                                         .slope = slope},
+                                        in.XIN, coefficients.time[i], coefficients.forgotten[i]);
     }
-    return crept;
+    result.sum = S(0.0);
+    for (std::size_t i = 0; i < lags; ++i) {
+      result.sum = result.sum + S(weights[i]) * (in.XIN - coefficients.time[i] * result.rates[i]);
+    }
+    return result;
   }
 
   template <class S>
@@ -114,31 +133,46 @@ struct Creep {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    return crept<S>(params, state, in, rates(params, state, in, ts));
+    return output(params, coefficients(params, ts), state, in, ts);
   }
   template <class S>
-  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    move_on<S>(params, state, in, rates(params, state, in, ts));
+  static Out<S> output(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
+    return crept<S>(params, state, in, lagged(params, coefficients, state, in, ts));
+  }
+  template <class S>
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& out, const S& ts) {
+    update(params, coefficients(params, ts), state, in, out, ts);
+  }
+  template <class S>
+  static void update(const Params<S>& params, const Coefficients<S>& coefficients, State<S>& state, const In<S>& in,
+                     const Out<S>& /*out*/, const S& ts) {
+    move_on<S>(state, in, lagged(params, coefficients, state, in, ts));
+  }
+  template <class S>
+  static Out<S> step(const Params<S>& params, const Coefficients<S>& coefficients, State<S>& state, const In<S>& in,
+                     const S& ts) {
+    const Lagged<S> now = lagged(params, coefficients, state, in, ts);
+    const Out<S> out = crept<S>(params, state, in, now);
+    move_on<S>(state, in, now);
+    return out;
   }
   template <class S>
   static Out<S> step(const Params<S>& params, State<S>& state, const In<S>& in, const S& ts) {
-    const std::array<S, lags> now = rates(params, state, in, ts);
-    const Out<S> out = crept<S>(params, state, in, now);
-    move_on<S>(params, state, in, now);
-    return out;
+    return step(params, coefficients(params, ts), state, in, ts);
   }
 
  private:
   template <class S>
-  static Out<S> crept(const Params<S>& params, const State<S>& state, const In<S>& in, const std::array<S, lags>& now) {
-    const S whole = since_start(params.SINCE_START, state, sum<S>(params, in, now));
+  static Out<S> crept(const Params<S>& params, const State<S>& state, const In<S>& in, const Lagged<S>& now) {
+    const S whole = since_start(params.SINCE_START, state, now.sum);
     return {.XOUT = with_term<S>(in.XIN, params.GAIN * whole)};
   }
   template <class S>
-  static void move_on(const Params<S>& params, State<S>& state, const In<S>& in, const std::array<S, lags>& now) {
-    state.FIRST = select(state.STARTED, state.FIRST, sum<S>(params, in, now));
+  static void move_on(State<S>& state, const In<S>& in, const Lagged<S>& now) {
+    state.FIRST = select(state.STARTED, state.FIRST, now.sum);
     for (std::size_t i = 0; i < lags; ++i) {
-      store(state.RATES, Int<S>(static_cast<std::int32_t>(i)), now[i]);
+      store(state.RATES, Int<S>(static_cast<std::int32_t>(i)), now.rates[i]);
     }
     state.X1 = in.XIN;
     state.STARTED = Bool<S>(true);

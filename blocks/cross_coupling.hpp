@@ -61,6 +61,13 @@ struct CrossCoupling {
   using Out = Xout<S, "'x", "signal with what the other adds">;
 
   template <class S>
+  using Coefficients = RateCoefficients<S>;
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    return {.forgotten = forgotten_part(params.T1, ts)};
+  }
+  template <class S>
   static State<S> initial(const Params<S>& params) {
     return {.LAGGED = params.Z_REFERENCE, .Z1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
   }
@@ -69,8 +76,14 @@ struct CrossCoupling {
     return {.XOUT = with_term<S>(in.XIN, params.GAIN * (state.LAGGED - params.Z_REFERENCE))};
   }
   template <class S>
-  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    const S rate = filtered_rate(state.RATE1, in.Z, select(state.STARTED, state.Z1, in.Z), params.T1, ts);
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& out, const S& ts) {
+    update(params, coefficients(params, ts), state, in, out, ts);
+  }
+  template <class S>
+  static void update(const Params<S>& params, const Coefficients<S>& coefficients, State<S>& state, const In<S>& in,
+                     const Out<S>& /*out*/, const S& ts) {
+    const S slope = (in.Z - select(state.STARTED, state.Z1, in.Z)) / ts;
+    const S rate = filtered_rate(state.RATE1, slope, coefficients.forgotten);
     state = {.LAGGED = in.Z - params.T1 * rate, .Z1 = in.Z, .RATE1 = rate, .STARTED = Bool<S>(true)};
   }
 };

@@ -47,12 +47,24 @@ struct DerivativeFiltered {
   using Out = Derivative::Out<S>;
 
   template <class S>
+  using Coefficients = RateCoefficients<S>;
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    return {.forgotten = forgotten_part(params.T1, ts)};
+  }
+  template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
     return {.X1 = S(0.0), .RATE = S(0.0), .STARTED = Bool<S>(false)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const S rate = filtered_rate(state.RATE, in.XIN, state.X1, params.T1, ts);
+    return output(params, coefficients(params, ts), state, in, ts);
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& /*params*/, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
+    const S rate = filtered_rate(state.RATE, (in.XIN - state.X1) / ts, coefficients.forgotten);
     return {.XOUT = select(in.RUN && state.STARTED, rate, S(0.0))};
   }
   template <class S>

@@ -234,6 +234,14 @@ concept FunctionBlock = requires(const typename B::template Params<double>& para
 template <class B>
 concept HasMemory = !std::is_empty_v<typename B::template State<double>>;
 
+/// A block may work out first what follows from its parameters and TS alone. Its output, update and step then have a
+/// form that takes these coefficients behind the parameters, with the same bits. Who runs many steps with the same
+/// parameters works them out once.
+template <class B>
+concept HasCoefficients = requires(const typename B::template Params<double>& params, const double& ts) {
+  { B::coefficients(params, ts) } -> std::same_as<typename B::template Coefficients<double>>;
+};
+
 /// A block may say output and update in one, where both start from the same costly values.
 template <class B>
 concept StepsAtOnce = requires(const typename B::template Params<double>& params,

@@ -16,7 +16,8 @@ namespace hysteron {
 /// dual number keeps its derivative: a tuner starts from effects that are 0 and whose derivative is not.
 template <class S>
 S without_denormals(const S& x) {
-  return select(abs(x) < S(1e-36), (x + S(1.0)) - S(1.0), x);
+  return either<S>(
+      abs(x) < S(1e-36), [&] { return (x + S(1.0)) - S(1.0); }, [&] { return x; });
 }
 
 /// Below this (1 − exp(−u))/u goes through its series, since the difference from 1 would lose digits (of a lag of 1 s
@@ -44,10 +45,16 @@ S forgotten_part(const S& time_constant, const S& ts) {
   return decayed_part(ts / max(time_constant, ts * S(0.015625)));
 }
 
-/// D(k) from D(k−1), x(k) and x(k−1).
+/// What a block with one such rate works out from its time constant and TS alone.
 template <class S>
-S filtered_rate(const S& rate, const S& x, const S& x_before, const S& time_constant, const S& ts) {
-  return without_denormals(rate + forgotten_part(time_constant, ts) * ((x - x_before) / ts - rate));
+struct RateCoefficients {
+  S forgotten;  ///< 1 − a
+};
+
+/// D(k) from D(k−1) and the slope (x(k) − x(k−1))/TS.
+template <class S>
+S filtered_rate(const S& rate, const S& slope, const S& forgotten) {
+  return without_denormals(rate + forgotten * (slope - rate));
 }
 
 /// The state of a block that keeps such a rate.
@@ -69,17 +76,17 @@ template <class S>
 struct RateBefore {
   Bool<S> start;
   Bool<S> settled;
-  S rate;  ///< D(k−1)
-  S x;     ///< x(k−1)
+  S rate;   ///< D(k−1)
+  S slope;  ///< (x(k) − x(k−1))/TS, 0 at the start
 };
 
 /// D(k), also at the start: 0 where settled, else what leaves the lag x − T·D at 0.
 template <class S>
-S started_rate(const RateBefore<S>& before, const S& x, const S& time_constant, const S& ts) {
+S started_rate(const RateBefore<S>& before, const S& x, const S& time_constant, const S& forgotten) {
   const Bool<S> lags = time_constant > S(0.0);
-  const S from_zero = select(lags, x / select(lags, time_constant, S(1.0)), S(0.0));
-  const S going_on = filtered_rate(before.rate, x, select(before.start, x, before.x), time_constant, ts);
-  return select(before.start && !before.settled, from_zero, going_on);
+  return either<S>(
+      before.start && !before.settled, [&] { return select(lags, x / select(lags, time_constant, S(1.0)), S(0.0)); },
+      [&] { return filtered_rate(before.rate, before.slope, forgotten); });
 }
 
 /// What follows a signal slowly, or with `wanted` only what has followed since the first step: the state's members

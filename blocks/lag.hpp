@@ -62,16 +62,29 @@ struct Lag {
   };
 
   template <class S>
+  using Coefficients = RateCoefficients<S>;
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    return {.forgotten = forgotten_part(params.T1, ts)};
+  }
+  template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
     return {.X1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    return output(params, coefficients(params, ts), state, in, ts);
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
     const Bool<S> load = in.R1 || (!state.STARTED && !params.SETTLED);
     const Bool<S> lags = params.T1 > S(0.0);
-    const S loaded = select(lags, (in.XIN - in.X0) / select(lags, params.T1, S(1.0)), S(0.0));
     const S before = select(state.STARTED, state.X1, in.XIN);
-    const S rate = select(load, loaded, filtered_rate(state.RATE1, in.XIN, before, params.T1, ts));
+    const S rate = either<S>(
+        load, [&] { return select(lags, (in.XIN - in.X0) / select(lags, params.T1, S(1.0)), S(0.0)); },
+        [&] { return filtered_rate(state.RATE1, (in.XIN - before) / ts, coefficients.forgotten); });
     return {.XOUT = select(load, in.X0, in.XIN - params.T1 * rate), .RATE = rate};
   }
   template <class S>

@@ -52,13 +52,26 @@ struct LeadLag {
   };
 
   template <class S>
+  using Coefficients = RateCoefficients<S>;
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    return {.forgotten = forgotten_part(params.T2, ts)};
+  }
+  template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
     return {.X1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    return output(params, coefficients(params, ts), state, in, ts);
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
     const Bool<S> settle = in.R1 || !state.STARTED;
-    const S rate = select(settle, S(0.0), filtered_rate(state.RATE1, in.XIN, state.X1, params.T2, ts));
+    const S going_on = filtered_rate(state.RATE1, (in.XIN - state.X1) / ts, coefficients.forgotten);
+    const S rate = select(settle, S(0.0), going_on);
     return {.XOUT = in.XIN + (params.T1 - params.T2) * rate, .RATE = rate};
   }
   template <class S>

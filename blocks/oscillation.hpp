@@ -12,13 +12,20 @@ struct Oscillation {
   S velocity;
 };
 
-/// The oscillation after a time τ ≥ 0:
-///   q(τ)  = e^(−ζτ)·((c + ζτ·s)·q + τ·s·q')
-///   q'(τ) = e^(−ζτ)·((c − ζτ·s)·q' − τ·s·q)
+/// What position and velocity become of each other in a time τ ≥ 0:
+///   q(τ)  = kept·q + passed·q'       kept   = e^(−ζτ)·(c + ζτ·s),  passed = e^(−ζτ)·τ·s
+///   q'(τ) = damped·q' − passed·q     damped = e^(−ζτ)·(c − ζτ·s)
 /// where, with δ = (1 − ζ²)·τ², c = cos√δ and s = sin√δ/√δ; for δ < 0 the hyperbolic functions of √−δ. About δ = 0 both
 /// are taken from their series, so that critical damping is an ordinary point, with derivatives.
 template <class S>
-Oscillation<S> oscillate(const Oscillation<S>& start, const S& zeta, const S& tau) {
+struct OscillationStep {
+  S kept;
+  S passed;
+  S damped;
+};
+
+template <class S>
+OscillationStep<S> oscillation_step(const S& zeta, const S& tau) {
   const S damping = zeta * tau;
   const S delta = (S(1.0) - zeta) * (S(1.0) + zeta) * tau * tau;
   const S size = abs(delta);
@@ -39,8 +46,14 @@ Oscillation<S> oscillate(const Oscillation<S>& start, const S& zeta, const S& ta
   const S c = select(near_critical, c_series, select(periodic, decay * cos(root), S(0.5) * (slow + fast)));
   const S s =
       select(near_critical, s_series, select(periodic, decay * sin(root) / root, S(0.5) * (slow - fast) / root));
-  return {.position = (c + damping * s) * start.position + tau * s * start.velocity,
-          .velocity = (c - damping * s) * start.velocity - tau * s * start.position};
+  return {.kept = c + damping * s, .passed = tau * s, .damped = c - damping * s};
+}
+
+/// The oscillation after that time.
+template <class S>
+Oscillation<S> oscillate(const Oscillation<S>& start, const OscillationStep<S>& step) {
+  return {.position = step.kept * start.position + step.passed * start.velocity,
+          .velocity = step.damped * start.velocity - step.passed * start.position};
 }
 
 }  // namespace hysteron

@@ -54,11 +54,22 @@ struct Relaxation {
   template <class S>
   using Out = Xout<S, "'x", "signal with what follows slowly">;
 
+  template <class S>
+  using Coefficients = RateCoefficients<S>;
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    return {.forgotten = forgotten_part(params.T1, ts)};
+  }
+
   /// The rate of the lagged input at the present sample.
   template <class S>
-  static S rate(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    return started_rate<S>({.start = !state.STARTED, .settled = params.SETTLED, .rate = state.RATE1, .x = state.X1},
-                           in.XIN, params.T1, ts);
+  static S rate(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state, const In<S>& in,
+                const S& ts) {
+    const S before = select(state.STARTED, state.X1, in.XIN);
+    return started_rate<S>(
+        {.start = !state.STARTED, .settled = params.SETTLED, .rate = state.RATE1, .slope = (in.XIN - before) / ts},
+        in.XIN, params.T1, coefficients.forgotten);
   }
 
   template <class S>
@@ -72,13 +83,23 @@ struct Relaxation {
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
-    const S lagged = in.XIN - params.T1 * rate(params, state, in, ts);
+    return output(params, coefficients(params, ts), state, in, ts);
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
+    const S lagged = in.XIN - params.T1 * rate(params, coefficients, state, in, ts);
     const S followed = since_start(params.SINCE_START, state, lagged);
     return {.XOUT = with_term<S>(in.XIN, params.GAIN * followed)};
   }
   template <class S>
-  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& /*out*/, const S& ts) {
-    const S now = rate(params, state, in, ts);
+  static void update(const Params<S>& params, State<S>& state, const In<S>& in, const Out<S>& out, const S& ts) {
+    update(params, coefficients(params, ts), state, in, out, ts);
+  }
+  template <class S>
+  static void update(const Params<S>& params, const Coefficients<S>& coefficients, State<S>& state, const In<S>& in,
+                     const Out<S>& /*out*/, const S& ts) {
+    const S now = rate(params, coefficients, state, in, ts);
     state.FIRST = select(state.STARTED, state.FIRST, in.XIN - params.T1 * now);
     state.RATE1 = now;
     state.X1 = in.XIN;

@@ -90,27 +90,46 @@ struct SecondOrder {
   };
 
   template <class S>
+  struct Coefficients {
+    S delay;   ///< 2·ZETA·T, by which the response to a ramp is late
+    S period;  ///< T, but at least TS/π
+    OscillationStep<S> step;
+  };
+
+  template <class S>
+  static Coefficients<S> coefficients(const Params<S>& params, const S& ts) {
+    const S period = max(params.T, ts * S(0.31830988618379067));  // TS/π
+    return {
+        .delay = S(2.0) * params.ZETA * params.T, .period = period, .step = oscillation_step(params.ZETA, ts / period)};
+  }
+  template <class S>
   static State<S> initial(const Params<S>& /*params*/) {
     return {.X1 = S(0.0), .DEVIATION1 = S(0.0), .RATE1 = S(0.0), .STARTED = Bool<S>(false)};
   }
   template <class S>
   static Out<S> output(const Params<S>& params, const State<S>& state, const In<S>& in, const S& ts) {
+    return output(params, coefficients(params, ts), state, in, ts);
+  }
+  template <class S>
+  static Out<S> output(const Params<S>& params, const Coefficients<S>& coefficients, const State<S>& state,
+                       const In<S>& in, const S& ts) {
     const Bool<S> load = in.R1 || (!state.STARTED && !params.SETTLED);
     const Bool<S> has_gain = params.K != S(0.0);
-    const S loaded = select(has_gain, in.X0 / select(has_gain, params.K, S(1.0)) - in.XIN, S(0.0));
 
     // While the input runs along the ramp of slope r, the response runs along the same ramp, late by 2·ZETA·T; what
     // deviates from that is a free oscillation.
     const S ramp = (in.XIN - select(state.STARTED, state.X1, in.XIN)) / ts;
-    const S late = S(2.0) * params.ZETA * params.T * ramp;
-    const S period = max(params.T, ts * S(0.31830988618379067));  // TS/π
+    const S late = coefficients.delay * ramp;
+    const S& period = coefficients.period;
     const Oscillation<S> before{.position = state.DEVIATION1 + late, .velocity = period * (state.RATE1 - ramp)};
-    const Oscillation<S> after = oscillate(before, params.ZETA, ts / period);
+    const Oscillation<S> after = oscillate(before, coefficients.step);
     const Bool<S> visible = params.T >= period;
-    const S deviation = without_denormals(select(visible, after.position, S(0.0)) - late);
+    const S deviation = either<S>(
+        load, [&] { return select(has_gain, in.X0 / select(has_gain, params.K, S(1.0)) - in.XIN, S(0.0)); },
+        [&] { return without_denormals(select(visible, after.position, S(0.0)) - late); });
     const S rate = without_denormals(ramp + select(visible, after.velocity, S(0.0)) / period);
-    return {.XOUT = select(load, in.X0, params.K * (in.XIN + select(load, loaded, deviation))),
-            .DEVIATION = select(load, loaded, deviation),
+    return {.XOUT = select(load, in.X0, params.K * (in.XIN + deviation)),
+            .DEVIATION = deviation,
             .RATE = select(load, S(0.0), rate)};
   }
   template <class S>

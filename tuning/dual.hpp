@@ -165,22 +165,27 @@ class Dual {
   [[nodiscard]] double get(std::size_t place) const { return pairs_[place / 2][place % 2]; }
   void set(std::size_t place, double number) { pairs_[place / 2][place % 2] = number; }
 
-  /// f(a) with df = slope·da.
+  /// f(a) with df = slope·da. The first pair is put together before it is written: who reads a pair of which one half
+  /// was written by itself waits for the store.
   static Dual chain(double value, double slope, const Dual& a) {
     Dual result;
-    for (std::size_t i = 0; i < size; ++i) {
+    Pair first = slope * a.pairs_[0];
+    first[0] = value;
+    result.pairs_[0] = first;
+    for (std::size_t i = 1; i < size; ++i) {
       result.pairs_[i] = slope * a.pairs_[i];
     }
-    result.pairs_[0][0] = value;
     return result;
   }
   /// f(a, b) with df = by_a·da + by_b·db.
   static Dual chain(double value, double by_a, const Dual& a, double by_b, const Dual& b) {
     Dual result;
-    for (std::size_t i = 0; i < size; ++i) {
+    Pair first = by_a * a.pairs_[0] + by_b * b.pairs_[0];
+    first[0] = value;
+    result.pairs_[0] = first;
+    for (std::size_t i = 1; i < size; ++i) {
       result.pairs_[i] = by_a * a.pairs_[i] + by_b * b.pairs_[i];
     }
-    result.pairs_[0][0] = value;
     return result;
   }
   /// d asin(x)/dx; 0 at the ends, where it is infinite.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <type_traits>
+#include <utility>
 
 #include "codegen/cosimulation/session.hpp"
 #include "tuning/dual_value.hpp"
@@ -29,7 +31,9 @@ Rollout::Rollout(const OutputErrorProblem& problem)
     : problem_(problem),
       scales_(problem.outputs.size(), 1.0),
       first_row_(problem.experiments.size(), std::vector<Index>(problem.outputs.size())),
-      plain_(problem.program, sample_time_of(problem)) {
+      whole_(problem.program, sample_time_of(problem)),
+      reach_(problem),
+      last_x_(problem.experiments.size()) {
   for (std::size_t output = 0; output < problem.outputs.size(); ++output) {
     for (std::size_t e = 0; e < problem.experiments.size(); ++e) {
       first_row_[e][output] = rows_;
@@ -42,6 +46,12 @@ Rollout::Rollout(const OutputErrorProblem& problem)
   for (const Experiment& experiment : problem.experiments) {
     first_state_.push_back(first_state_.back() +
                            std::ssize(problem.initial_states) * (1 + std::ssize(experiment.restarts)));
+  }
+  std::vector<Index> all(static_cast<std::size_t>(unknowns()));
+  std::iota(all.begin(), all.end(), Index{0});
+  if (std::vector<bool> still = reach_.unreached(all); std::ranges::count(still, true) > 0) {
+    unreached_ =
+        std::make_unique<Kept>(problem.program, whole_.sample_time, std::move(still), problem.experiments.size());
   }
 }
 
@@ -120,7 +130,7 @@ void Rollout::drive(Machine<S>& machine, const Drive& drive, std::size_t step) {
 
 template <class S>
 bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
-                   VectorXd& residuals, MatrixXd* jacobian) {
+                   const Replay& replay, VectorXd& residuals, MatrixXd* jacobian) {
   machine.use_directions(columns.size());
   prepare(machine, x, experiment, columns);
   const Experiment& record = problem_.experiments[experiment];
@@ -128,13 +138,25 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
   std::size_t step = 0;
   std::size_t start = 0;
   Index row = 0;
+  const std::vector<double>* const played =
+      replay.played != nullptr ? &replay.played->records[experiment].values : nullptr;
+  const std::size_t given = replay.played != nullptr ? replay.played->rest.given.size() : 0;
+  std::vector<double> values;
   for (const records::RowRange& range : record.train) {
     for (; step < range.last; ++step) {
       if (restarts(machine, x, experiment, step, start, columns)) {
         std::ranges::transform(columns, targets.begin(), [&](Index column) { return column_at(column, start); });
       }
       drive(machine, record.drive, step);
+      for (std::size_t i = 0; i < given; ++i) {
+        machine.set_input(replay.played->rest.first_input + i, S((*played)[step * given + i]));
+      }
       machine.step();
+      if (replay.kept != nullptr) {
+        for (const Wire& wire : replay.kept->rest.given) {
+          values.push_back(plain_value(machine.value(wire)));
+        }
+      }
       if (step < range.first) {
         continue;
       }
@@ -156,6 +178,9 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       ++row;
     }
   }
+  if (replay.kept != nullptr) {
+    replay.kept->records[experiment] = {.filled = true, .x = x, .values = std::move(values)};
+  }
   return true;
 }
 
@@ -170,58 +195,112 @@ bool Rollout::residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobi
 bool Rollout::all_residuals(const VectorXd& x, VectorXd& residuals, MatrixXd* jacobian) {
   if (jacobian != nullptr) {
     jacobian->setZero();
+    is_grid_ = false;
+    of_grid_.reset();
   }
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
     std::vector<Index> columns;
-    for (std::size_t j = 0; jacobian != nullptr && j < problem_.parameters.size(); ++j) {
-      if (acts_in(problem_.parameters[j], e)) {
-        columns.push_back(static_cast<Index>(j));
-      }
+    if (jacobian != nullptr) {  // a state's column at start 0 stands for those at the restarts, too
+      columns = columns_of(e);
+      std::erase_if(columns, [&](Index column) { return column >= state_column(e, 1, 0); });
     }
-    for (std::size_t state = 0; jacobian != nullptr && state < problem_.initial_states.size(); ++state) {
-      columns.push_back(state_column(e, 0, state));
-    }
-    if (columns.empty()) {  // also where derivatives are asked for, and there is nothing to derive by
-      if (!pass<double>(plain_, x, e, {}, residuals, nullptr)) {
-        return false;
-      }
-      continue;
-    }
-    const std::span<const Index> all(columns);
-    for (std::size_t begin = 0; begin < all.size();) {
-      const std::size_t left = all.size() - begin;
-      bool finite = false;
-      if (left <= 4) {
-        if (!four_) {
-          four_.emplace(problem_.program, sample_time_of(problem_));
-        }
-        finite = pass<Dual<4>>(*four_, x, e, all.subspan(begin), residuals, jacobian);
-      } else {
-        if (!eight_) {
-          eight_.emplace(problem_.program, sample_time_of(problem_));
-        }
-        finite = pass<Dual<8>>(*eight_, x, e, all.subspan(begin, std::min<std::size_t>(left, 8)), residuals, jacobian);
-      }
-      if (!finite) {
-        return false;
-      }
-      begin += left <= 4 ? left : std::min<std::size_t>(left, 8);
+    // Plain also where derivatives are asked for, and there is nothing to derive by.
+    if (columns.empty() ? !plain_pass(x, e, residuals) : !derivative_passes(x, e, columns, residuals, *jacobian)) {
+      return false;
     }
   }
   return true;
 }
 
+bool Rollout::plain_pass(const VectorXd& x, std::size_t experiment, VectorXd& residuals) {
+  const Replay replay = is_grid_ ? of_grid(x, experiment) : of_unreached(experiment);
+  Machine<double>& machine = replay.played != nullptr ? replay.played->machines.plain : whole_.plain;
+  return pass<double>(machine, x, experiment, {}, replay, residuals, nullptr);
+}
+
+std::vector<Index> Rollout::columns_of(std::size_t experiment) const {
+  std::vector<Index> columns;
+  for (std::size_t j = 0; j < problem_.parameters.size(); ++j) {
+    if (acts_in(problem_.parameters[j], experiment)) {
+      columns.push_back(static_cast<Index>(j));
+    }
+  }
+  for (Index column = first_state_[experiment]; column < first_state_[experiment + 1]; ++column) {
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+Rollout::Replay Rollout::of_unreached(std::size_t experiment) {
+  if (unreached_ == nullptr) {
+    return {};
+  }
+  return unreached_->records[experiment].filled ? Replay{.played = unreached_.get()} : Replay{.kept = unreached_.get()};
+}
+
+bool Rollout::holds(const Kept& kept, const VectorXd& x, std::size_t experiment) const {
+  const Kept::OfRecord& record = kept.records[experiment];
+  return record.filled && std::ranges::all_of(columns_of(experiment), [&](Index column) {
+           return x[column] == record.x[column] || reach_.leaves(column, kept.still);
+         });
+}
+
+Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
+  const Replay before = of_unreached(experiment);
+  const VectorXd last = std::exchange(last_x_[experiment], x);
+  if (last.size() == 0 || before.kept != nullptr) {
+    return before;
+  }
+  const bool held = of_grid_ != nullptr && holds(*of_grid_, x, experiment);
+  std::vector<Index> changed = columns_of(experiment);
+  std::erase_if(changed, [&](Index column) { return x[column] == last[column]; });
+  std::vector<bool> still = reach_.unreached(changed);
+  const auto count = [](const std::vector<bool>& nodes) { return std::ranges::count(nodes, true); };
+  const auto played = held ? count(of_grid_->still) : before.played != nullptr ? count(before.played->still) : 0;
+  if (changed.empty() || count(still) <= played) {
+    return held ? Replay{.played = of_grid_.get()} : before;
+  }
+  if (of_grid_ == nullptr || of_grid_->still != still) {
+    of_grid_ =
+        std::make_unique<Kept>(problem_.program, whole_.sample_time, std::move(still), problem_.experiments.size());
+  }
+  of_grid_->records[experiment].filled = false;
+  return {.kept = of_grid_.get()};
+}
+
+bool Rollout::derivative_passes(const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
+                                VectorXd& residuals, MatrixXd& jacobian) {
+  for (std::size_t begin = 0; begin < columns.size();) {
+    const std::size_t left = columns.size() - begin;
+    const std::size_t passes = (left + most_derivatives - 1) / most_derivatives;
+    const auto part = columns.subspan(begin, (left + passes - 1) / passes);  // passes of about the same width
+    const Replay replay = of_unreached(experiment);
+    Machines& machines = replay.played != nullptr ? unreached_->machines : whole_;
+    const auto with = [&]<int N>(std::optional<Machine<Dual<N>>>& machine) {
+      if (!machine) {
+        machine.emplace(machines.program, machines.sample_time);
+      }
+      return pass<Dual<N>>(*machine, x, experiment, part, replay, residuals, &jacobian);
+    };
+    if (!(part.size() <= 3 ? with(machines.three) : part.size() <= 5 ? with(machines.five) : with(machines.seven))) {
+      return false;
+    }
+    begin += part.size();
+  }
+  return true;
+}
+
 std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) {
-  prepare<double>(plain_, x, experiment, {});
+  prepare<double>(whole_.plain, x, experiment, {});
   const Drive& inputs = problem_.experiments[experiment].drive;
   std::vector<Signal> result(problem_.outputs.size(), Signal(inputs.steps));
   std::size_t start = 0;
   for (std::size_t step = 0; step < inputs.steps; ++step) {
-    (void)restarts<double>(plain_, x, experiment, step, start, {});
-    drive(plain_, inputs, step);
-    plain_.step();
+    (void)restarts<double>(whole_.plain, x, experiment, step, start, {});
+    drive(whole_.plain, inputs, step);
+    whole_.plain.step();
     for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {
-      result[i][step] = plain_.output(problem_.outputs[i]);
+      result[i][step] = whole_.plain.output(problem_.outputs[i]);
     }
   }
   return result;
@@ -231,19 +310,19 @@ std::vector<double> Rollout::own_states(const VectorXd& parameters) {
   std::vector<double> values;
   const auto keep = [&] {
     for (const FreeState& state : problem_.initial_states) {
-      values.push_back(*plain_.real_state(state.path));
+      values.push_back(*whole_.plain.real_state(state.path));
     }
   };
   for (std::size_t e = 0; e < problem_.experiments.size(); ++e) {
     const Experiment& experiment = problem_.experiments[e];
-    set_parameters<double>(plain_, parameters, e, {});
-    plain_.reset();
+    set_parameters<double>(whole_.plain, parameters, e, {});
+    whole_.plain.reset();
     keep();
     std::size_t step = 0;
     for (const std::size_t restart : experiment.restarts) {
       for (; step < restart; ++step) {
-        drive(plain_, experiment.drive, step);
-        plain_.step();
+        drive(whole_.plain, experiment.drive, step);
+        whole_.plain.step();
       }
       keep();
     }

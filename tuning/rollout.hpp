@@ -3,13 +3,46 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "tuning/machine_dual.hpp"
 #include "tuning/output_error.hpp"
+#include "tuning/unreached.hpp"
 
 namespace hysteron::detail {
+
+/// The interpreters of a program: the plain one, and those that carry derivatives where these are asked for.
+struct Machines {
+  Machines(const Program& the_program, double the_sample_time)
+      : program(the_program), sample_time(the_sample_time), plain(the_program, the_sample_time) {}
+  const Program& program;
+  double sample_time;
+  Machine<double> plain;
+  std::optional<Machine<Dual<3>>> three{};
+  std::optional<Machine<Dual<5>>> five{};
+  std::optional<Machine<Dual<7>>> seven{};
+};
+
+/// The signals of nodes that stand still from rollout to rollout, and the machines of the others.
+struct Kept {
+  Kept(const Program& whole, double sample_time, std::vector<bool> the_still, std::size_t record_count)
+      : still(std::move(the_still)),
+        rest(without_nodes(whole, still)),
+        machines(rest.program, sample_time),
+        records(record_count) {}
+  struct OfRecord {
+    bool filled = false;
+    Eigen::VectorXd x{};           ///< at which they were kept
+    std::vector<double> values{};  ///< of each step: what is given, wire by wire
+  };
+  std::vector<bool> still;
+  WithoutNodes rest;
+  Machines machines;
+  std::vector<OfRecord> records;
+};
 
 /// The unknowns are the parameters, those of a single record among them, then the initial states of the first record,
 /// at its start and at each of its restarts, of the second, …
@@ -45,10 +78,27 @@ class Rollout {
 
  private:
   bool all_residuals(const Eigen::VectorXd& x, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
+  bool plain_pass(const Eigen::VectorXd& x, std::size_t experiment, Eigen::VectorXd& residuals);
+  bool derivative_passes(const Eigen::VectorXd& x, std::size_t experiment, std::span<const Eigen::Index> columns,
+                         Eigen::VectorXd& residuals, Eigen::MatrixXd& jacobian);
+  /// What of a record a pass plays instead of running it, and what it keeps for later ones; each may be null.
+  struct Replay {
+    Kept* played = nullptr;
+    Kept* kept = nullptr;
+  };
   /// One pass over one record: S carries the derivatives by the unknowns in `columns`.
   template <class S>
   bool pass(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment,
-            std::span<const Eigen::Index> columns, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian);
+            std::span<const Eigen::Index> columns, const Replay& replay, Eigen::VectorXd& residuals,
+            Eigen::MatrixXd* jacobian);
+  /// The unknowns that act in a record, states of all its starts among them.
+  [[nodiscard]] std::vector<Eigen::Index> columns_of(std::size_t experiment) const;
+  /// What is played of a record in which the signals that no unknown reaches are kept; else those are kept now.
+  Replay of_unreached(std::size_t experiment);
+  /// The same for a point of a grid: what its own changes do not reach is kept as well.
+  Replay of_grid(const Eigen::VectorXd& x, std::size_t experiment);
+  /// Whether what is kept of a record is what a rollout at x would give.
+  [[nodiscard]] bool holds(const Kept& kept, const Eigen::VectorXd& x, std::size_t experiment) const;
   template <class S>
   void prepare(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment,
                std::span<const Eigen::Index> columns);
@@ -75,9 +125,12 @@ class Rollout {
   Eigen::Index rows_ = 0;
   std::vector<std::vector<Eigen::Index>> first_row_{};  ///< of the residuals, by record and output
   std::vector<Eigen::Index> first_state_{};             ///< column of the first state, by record; at the end their sum
-  Machine<double> plain_;
-  std::optional<Machine<Dual<4>>> four_{};
-  std::optional<Machine<Dual<8>>> eight_{};
+  Machines whole_;
+  Reach reach_;
+  std::unique_ptr<Kept> unreached_{};      ///< by any unknown; null: there is nothing to keep
+  std::unique_ptr<Kept> of_grid_{};        ///< while points of a grid are tried
+  std::vector<Eigen::VectorXd> last_x_{};  ///< by record
+  bool is_grid_ = true;                    ///< no derivative has been asked for yet
 };
 
 }  // namespace hysteron::detail

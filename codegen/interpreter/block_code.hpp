@@ -1,10 +1,12 @@
 // The functions of every block for one scalar, behind pointers: what the interpreter calls.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -24,6 +26,7 @@ struct Instruction {
   void* state = nullptr;
   void* out = nullptr;
   const S* ts = nullptr;
+  void* prepared = nullptr;          ///< what follows from parameters that stand still; null: worked out in each step
   const BlockType* block = nullptr;  ///< null: an operation
 };
 
@@ -33,10 +36,12 @@ struct BlockCode {
   using Run = void (*)(const Instruction<S>&);
   std::size_t state_size = 0;
   std::size_t out_size = 0;
+  std::size_t prepared_size = 0;
   std::size_t alignment = 1;
   std::vector<std::size_t> state_offsets;
   std::vector<std::size_t> out_offsets;
-  Run reset = nullptr;  ///< constructs state and outputs, state from the parameters
+  Run prepare = nullptr;  ///< gathers the parameters, and works out what follows from them; null without any
+  Run reset = nullptr;    ///< constructs state and outputs, state from the parameters
   Run output = nullptr;
   Run update = nullptr;  ///< null without memory
   Run step = nullptr;    ///< output, then update
@@ -65,6 +70,18 @@ Struct gather(const void* const* pins, std::index_sequence<I...> /*indices*/) {
    ...);
   return result;
 }
+/// The coefficients of a block; nothing where it has none.
+template <class B, class S>
+struct CoefficientsOfBlock {
+  struct Type {};
+};
+template <HasCoefficients B, class S>
+struct CoefficientsOfBlock<B, S> {
+  using Type = typename B::template Coefficients<S>;
+};
+template <class B, class S>
+using CoefficientsOf = typename CoefficientsOfBlock<B, S>::Type;
+
 template <class Struct>
 inline constexpr std::size_t field_count = std::tuple_size_v<decltype(Struct::fields())>;
 template <class Struct>
@@ -82,6 +99,28 @@ struct Code {
 
   static const State& state(const Instruction<S>& at) { return *static_cast<const State*>(at.state); }
 
+  /// The parameters of a block, and what follows from them and TS alone.
+  struct Prepared {
+    Params params;
+    [[no_unique_address]] CoefficientsOf<B, S> coefficients;
+  };
+  static Prepared prepared(const Instruction<S>& at) {
+    const auto params = gather<Params>(at.pins + inputs);
+    if constexpr (HasCoefficients<B>) {
+      return {.params = params, .coefficients = B::coefficients(params, *at.ts)};
+    } else {
+      return {.params = params, .coefficients = {}};
+    }
+  }
+  static void prepare(const Instruction<S>& at) { new (at.prepared) Prepared(prepared(at)); }
+
+  /// Calls call(prepared), with what stands ready where the parameters stand still.
+  template <class Call>
+  static void with_prepared(const Instruction<S>& at, const Call& call) {
+    std::optional<Prepared> own;
+    call(at.prepared != nullptr ? *static_cast<const Prepared*>(at.prepared) : own.emplace(prepared(at)));
+  }
+
   static void reset(const Instruction<S>& at) {
     new (at.out) Out{};
     if constexpr (HasMemory<B>) {
@@ -91,35 +130,61 @@ struct Code {
     }
   }
   static void output(const Instruction<S>& at) {
-    *static_cast<Out*>(at.out) = B::output(gather<Params>(at.pins + inputs), state(at), gather<In>(at.pins), *at.ts);
+    with_prepared(at, [&](const Prepared& with) {
+      *static_cast<Out*>(at.out) = output_of(with, state(at), gather<In>(at.pins), *at.ts);
+    });
   }
   static void update(const Instruction<S>& at) {
     if constexpr (HasMemory<B>) {
-      B::update(gather<Params>(at.pins + inputs), *static_cast<State*>(at.state), gather<In>(at.pins),
-                *static_cast<const Out*>(at.out), *at.ts);
+      with_prepared(at, [&](const Prepared& with) {
+        move_on(with, *static_cast<State*>(at.state), gather<In>(at.pins), *static_cast<const Out*>(at.out), *at.ts);
+      });
     }
   }
   static void step(const Instruction<S>& at) {
-    const auto params = gather<Params>(at.pins + inputs);
-    const auto in = gather<In>(at.pins);
-    auto& out = *static_cast<Out*>(at.out);
-    if constexpr (StepsAtOnce<B>) {
-      out = B::template step<S>(params, *static_cast<State*>(at.state), in, *at.ts);
-    } else {
-      out = B::output(params, state(at), in, *at.ts);
-      if constexpr (HasMemory<B>) {
-        B::update(params, *static_cast<State*>(at.state), in, out, *at.ts);
+    with_prepared(at, [&](const Prepared& with) {
+      const auto in = gather<In>(at.pins);
+      auto& memory = *static_cast<State*>(at.state);
+      auto& out = *static_cast<Out*>(at.out);
+      if constexpr (StepsAtOnce<B> && HasCoefficients<B>) {
+        out = B::template step<S>(with.params, with.coefficients, memory, in, *at.ts);
+      } else if constexpr (StepsAtOnce<B>) {
+        out = B::template step<S>(with.params, memory, in, *at.ts);
+      } else {
+        out = output_of(with, memory, in, *at.ts);
+        if constexpr (HasMemory<B>) {
+          move_on(with, memory, in, out, *at.ts);
+        }
       }
+    });
+  }
+
+  /// Output and update, each with the coefficients where it takes them.
+  static Out output_of(const Prepared& with, const State& state, const In& in, const S& ts) {
+    if constexpr (requires { B::output(with.params, with.coefficients, state, in, ts); }) {
+      return B::output(with.params, with.coefficients, state, in, ts);
+    } else {
+      return B::output(with.params, state, in, ts);
+    }
+  }
+  static void move_on(const Prepared& with, State& state, const In& in, const Out& out, const S& ts) {
+    if constexpr (requires { B::update(with.params, with.coefficients, state, in, out, ts); }) {
+      B::update(with.params, with.coefficients, state, in, out, ts);
+    } else {
+      B::update(with.params, state, in, out, ts);
     }
   }
 
   static BlockCode<S> make() {
     static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Out>);
+    static_assert(std::is_trivially_copyable_v<Prepared>);
     return {.state_size = sizeof(State),
             .out_size = sizeof(Out),
-            .alignment = alignof(State) > alignof(Out) ? alignof(State) : alignof(Out),
+            .prepared_size = sizeof(Prepared),
+            .alignment = std::max({alignof(State), alignof(Out), alignof(Prepared)}),
             .state_offsets = member_offsets<State>(),
             .out_offsets = member_offsets<Out>(),
+            .prepare = field_count<Params> > 0 ? &prepare : nullptr,
             .reset = &reset,
             .output = &output,
             .update = HasMemory<B> ? &update : nullptr,

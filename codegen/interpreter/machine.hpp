@@ -81,6 +81,7 @@ class Machine {
   struct Placed {
     std::size_t state = 0;
     std::size_t out = 0;
+    std::size_t prepared = 0;
     std::size_t first_pin = 0;
   };
   struct Timed {
@@ -95,6 +96,8 @@ class Machine {
   [[nodiscard]] std::size_t output_offset(const Wire& wire) const;
   [[nodiscard]] S* real_state(std::uint32_t node, std::uint32_t state);
   [[nodiscard]] const S* ts_of(const Node& node);
+  [[nodiscard]] bool parameters_stand_still(const Node& node) const;
+  void prepare();
   Instruction<S> instruction_of(std::uint32_t index);
 
   struct Free {
@@ -103,15 +106,19 @@ class Machine {
 
   std::shared_ptr<const Program> program_;
   double sample_time_ = 0.0;
-  std::unique_ptr<std::byte[], Free> memory_;  ///< states and outputs of all nodes, inputs, literals, parameters
-  std::size_t live_size_ = 0;                  ///< the front of memory_: what changes from step to step
-  std::vector<Placed> placed_;                 ///< by node
+  /// States and outputs of all nodes, inputs, literals, parameters, and what is prepared of these.
+  std::unique_ptr<std::byte[], Free> memory_;
+  std::size_t live_size_ = 0;   ///< the front of memory_: what changes from step to step
+  std::vector<Placed> placed_;  ///< by node
   std::vector<std::size_t> inputs_;
   std::vector<std::size_t> literals_;
   std::vector<std::size_t> parameters_;
+  std::vector<const void*> outputs_;  ///< where each output of the diagram stands
   std::vector<const void*> pins_;
   std::vector<std::pair<std::uint32_t, std::unique_ptr<S>>> sample_times_;  ///< by `every`
   std::vector<Instruction<S>> resets_;
+  std::vector<Instruction<S>> preparations_;
+  bool prepared_ = false;  ///< what is prepared is of the parameters as they are now
   std::vector<Instruction<S>> instructions_;
   std::vector<Timed> timed_;                        ///< instead of instructions_, where there are several rates
   std::vector<std::unique_ptr<FmuNode<S>>> fmus_;   ///< by node; null for all others

@@ -159,6 +159,12 @@ void Machine<S>::lay_out() {
   for (const Parameter& parameter : graph.parameters) {
     parameters_.push_back(reserve(sizeof(S) * parameter.value.size(), align));
   }
+  for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
+    const Node& node = graph.nodes[index];
+    if (node.block != nullptr && code_of(index).prepare != nullptr && parameters_stand_still(node)) {
+      placed_[index].prepared = reserve(code_of(index).prepared_size, code_of(index).alignment);
+    }
+  }
   memory_.reset(static_cast<std::byte*>(::operator new[](size == 0 ? 1 : size, std::align_val_t{64})));
   std::memset(memory_.get(), 0, size);
   for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
@@ -224,15 +230,30 @@ const S* Machine<S>::ts_of(const Node& node) {
   return sample_times_.back().second.get();
 }
 
+/// Whether no signal is wired to a parameter of a block.
+template <class S>
+bool Machine<S>::parameters_stand_still(const Node& node) const {
+  const Graph& graph = program_->graph;
+  for (std::size_t pin = node.block->inputs.size(); pin < node.wire_count; ++pin) {
+    const Wire::From from = graph.wire(node, static_cast<std::uint32_t>(pin)).from;
+    if (from != Wire::From::Parameter && from != Wire::From::Literal) {
+      return false;
+    }
+  }
+  return true;
+}
+
 template <class S>
 Instruction<S> Machine<S>::instruction_of(std::uint32_t index) {
   const Node& node = program_->graph.nodes[index];
   void* const state = memory_.get() + placed_[index].state;
+  const std::size_t prepared = placed_[index].prepared;
   return {.run = nullptr,
           .pins = pins_.data() + placed_[index].first_pin,
           .state = fmus_[index] != nullptr ? static_cast<void*>(fmus_[index].get()) : state,
           .out = memory_.get() + placed_[index].out,
           .ts = ts_of(node),
+          .prepared = prepared == 0 ? nullptr : memory_.get() + prepared,
           .block = node.block};
 }
 
@@ -248,11 +269,18 @@ void Machine<S>::place_instructions() {
       pins_.push_back(source_of(graph.wire(node, pin)));
     }
   }
+  for (const Port& output : graph.outputs) {
+    outputs_.push_back(source_of(output.wire));
+  }
   for (std::uint32_t index = 0; index < graph.nodes.size(); ++index) {
     if (graph.nodes[index].block != nullptr) {
       auto instruction = instruction_of(index);
       instruction.run = code_of(index).reset;
       resets_.push_back(instruction);
+      if (instruction.prepared != nullptr) {
+        instruction.run = code_of(index).prepare;
+        preparations_.push_back(instruction);
+      }
     }
   }
   for (const Node& node : graph.nodes) {
@@ -280,6 +308,7 @@ void Machine<S>::place_instructions() {
 
 template <class S>
 void Machine<S>::set_parameter(std::size_t parameter, const Number& value, std::size_t element) {
+  prepared_ = false;
   const Type type = program_->graph.parameters[parameter].field.type;
   std::byte* target = memory_.get() + parameters_[parameter] + element * sizeof(S);
   if (type == Type::Real) {
@@ -320,7 +349,18 @@ void Machine<S>::set_input(std::size_t input, const Number& value) {
 }
 
 template <class S>
+void Machine<S>::prepare() {
+  for (const auto& instruction : preparations_) {
+    instruction.run(instruction);
+  }
+  prepared_ = true;
+}
+
+template <class S>
 void Machine<S>::step() {
+  if (!prepared_) {
+    prepare();
+  }
   for (const auto& instruction : instructions_) {
     instruction.run(instruction);
   }
@@ -336,7 +376,7 @@ void Machine<S>::step() {
 
 template <class S>
 typename Machine<S>::Number Machine<S>::output(std::size_t output) const {
-  return value(program_->graph.outputs[output].wire);
+  return detail::read_as<S>(outputs_[output], program_->graph.outputs[output].wire.type);
 }
 
 template <class S>

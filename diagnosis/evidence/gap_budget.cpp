@@ -10,13 +10,15 @@
 #include "diagnosis/evidence/output_space.hpp"
 #include "diagnosis/model/parallel.hpp"
 #include "diagnosis/policy.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::diagnosis {
 namespace {
 
 constexpr std::size_t count_of_kinds = gap_kinds.size();
-/// Of the mean square of a column, each of which has the same: from hardly any to what leaves a tenth of it.
-constexpr std::array ridges{1e-7, 1e-5, 1e-3, 1e-1, 10.0};
+/// Of the mean square of a column, each of which has the same: from hardly any to what leaves a tenth of it. Those
+/// first that are the best more often.
+constexpr std::array ridges{1e-3, 1e-1, 1e-5, 10.0, 1e-7};
 constexpr std::size_t fewest_blocks = 3;
 
 /// Fits of any of the kinds together, each block predicted by one without it.
@@ -66,22 +68,24 @@ class HeldOutFits {
     }
     const MatrixXd whole = whole_(used, used);
     const VectorXd product = product_(used);
-    std::vector<MatrixXd> grams;
-    std::vector<VectorXd> products;
-    for (std::size_t b = 0; b < grams_.size(); ++b) {
-      grams.emplace_back(grams_[b](used, used));
-      products.emplace_back(products_[b](used));
-    }
+    MatrixXd gram;
+    MatrixXd matrix(whole.rows(), whole.cols());
     for (const double ridge : ridges) {
-      VectorXd one(std::ssize(grams));
-      for (std::size_t b = 0; b < grams.size(); ++b) {
-        MatrixXd matrix = whole - grams[b];
-        matrix.diagonal().array() += ridge;
-        const VectorXd x = matrix.ldlt().solve(product - products[b]);
-        one[static_cast<Index>(b)] = energies_[b] - 2.0 * x.dot(products[b]) + x.dot(grams[b] * x);
+      VectorXd one = VectorXd::Zero(best.size());
+      // Energies are not negative: where the first blocks are worse than all of the best, the others are not asked.
+      for (Index b = 0; b < one.size() && one.sum() < best.sum(); ++b) {
+        const auto block = static_cast<std::size_t>(b);
+        gram = grams_[block](used, used);
+        const VectorXd here = products_[block](used);
+        matrix = whole - gram;
+        matrix.diagonal().array() += ridge;  // by which it is positive definite
+        const Eigen::LLT<Eigen::Ref<MatrixXd>> factor(matrix);
+        const VectorXd x = factor.solve(product - here);
+        const double energy = energies_[block] - 2.0 * x.dot(here) + x.dot(gram * x);
+        one[b] = factor.info() == Eigen::Success && std::isfinite(energy) ? std::max(0.0, energy) : infinity;
       }
-      if (one.allFinite() && one.sum() < best.sum()) {
-        best = one.cwiseMax(0.0);
+      if (one.sum() < best.sum()) {
+        best = one;
       }
     }
     return best;

@@ -16,7 +16,7 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr std::size_t lanes = 8;
+constexpr std::size_t lanes = most_derivatives;
 using Lanes = Dual<static_cast<int>(lanes)>;
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace hysteron::diagnosis {
 namespace {
 
-constexpr std::size_t tangents_at_once = 8;
+constexpr std::size_t tangents_at_once = most_derivatives;
 using Tangents = Dual<static_cast<int>(tangents_at_once)>;
 
 }  // namespace

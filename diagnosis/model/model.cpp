@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "tuning/rollout.hpp"
+
 namespace hysteron::diagnosis {
 namespace {
 
@@ -96,6 +98,12 @@ Model::Model(const Task& task, const Program& program, std::span<const Unknown> 
     typical_[at] = std::max(std::abs(start_[at]), 1e-3);
     ++at;
   }
+}
+
+Model::~Model() = default;
+
+Index Model::rows() const {
+  return rollout_->residual_count();
 }
 
 VectorXd Model::smooth(VectorXd x) const {

@@ -20,7 +20,10 @@
 #include "diagnosis/model/whitening.hpp"
 #include "records/record.hpp"
 #include "tuning/output_error.hpp"
-#include "tuning/rollout.hpp"
+
+namespace hysteron::detail {
+class Rollout;
+}
 
 namespace hysteron::diagnosis {
 
@@ -70,9 +73,9 @@ class Model {
   Model(const Task& task, const Program& program, std::span<const Unknown> further = {});
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
-  ~Model() = default;
+  ~Model();
 
-  [[nodiscard]] Index rows() const { return rollout_->residual_count(); }
+  [[nodiscard]] Index rows() const;
   [[nodiscard]] Index unknowns() const { return start_.size(); }
   /// The first of the unknowns that were given as `further`.
   [[nodiscard]] Index first_further() const { return first_further_; }

@@ -4,13 +4,18 @@
 #include <cstdio>
 #include <functional>
 #include <string_view>
+#include <vector>
 
 #include "bench/many_instances.hpp"
 #include "bench/reference_signal.hpp"
 #include "bench/static_map_data.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
 #include "codegen/interpreter/machine.hpp"
+#include "codegen/parameters/parameter_file.hpp"
 #include "feedforward.hpp"
+#include "records/record.hpp"
+#include "tuning/output_error.hpp"
+#include "tuning/rollout.hpp"
 
 namespace {
 
@@ -68,6 +73,32 @@ double generate(int count) {
   return counted_region([&] { return static_cast<double>(hysteron::generate_cpp_header(program).text.size()); });
 }
 
+/// A rollout of a gear with play, a resonance and a creep, as a diagnosis runs thousands of: plain, or with the
+/// derivatives by six parameters.
+double rollout(bool derivatives) {
+  hysteron::Diagnostics warnings;
+  const auto program = hysteron::compile_file(HYSTERON_SOURCE_DIR "/bench/diagnosis/machine.st", {}, warnings);
+  const auto file =
+      hysteron::parameters::parse_parameter_file("counted.toml",
+                                                 "[fit.AMPLIFIER]\nT1 = {}\n[fit.GEAR]\nWIDTH = {}\n[fit.STAGE]\nK = "
+                                                 "{}\nT = {}\n[fit.CREEP]\nGAIN = {}\nT_ONSET = {}\n");
+  auto record = hysteron::records::Record::even(0.0, 1e-3, steps);
+  record.add({.name = "U", .values = hysteron::bench::reference_signal(steps)});
+  record.add({.name = "Y", .values = std::vector<double>(steps)});
+  const auto problem = hysteron::output_error_problem(program, file, std::vector{record});
+  hysteron::detail::Rollout rollout(problem);
+  Eigen::VectorXd x(rollout.unknowns());
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    x[static_cast<Eigen::Index>(j)] = problem.parameters[j].start;
+  }
+  Eigen::VectorXd residuals(rollout.residual_count());
+  Eigen::MatrixXd jacobian(rollout.residual_count(), rollout.unknowns());
+  return counted_region([&] {
+    rollout.residuals(x, residuals, derivatives ? &jacobian : nullptr);
+    return residuals.norm();
+  });
+}
+
 double static_fit() {
   const auto data = hysteron::bench::static_map_data(points);
   return counted_region([&] { return hysteron::fit_static_map({.p = data.p, .M = data.M}).map.C3; });
@@ -90,12 +121,16 @@ int main(int count, char** arguments) {
     result = generate(instances);
   } else if (work == "generate_fewer") {
     result = generate(fewer_instances);
+  } else if (work == "rollout") {
+    result = rollout(false);
+  } else if (work == "derivatives") {
+    result = rollout(true);
   } else if (work == "static_fit") {
     result = static_fit();
   } else {
     std::fputs(
         "usage: counted generated_step | interpreted_step | check | check_fewer | generate | generate_fewer | "
-        "static_fit\n",
+        "rollout | derivatives | static_fit\n",
         stderr);
     return 2;
   }

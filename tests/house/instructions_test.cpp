@@ -28,6 +28,8 @@ constexpr Budget budgets[] = {
     {"interpreted_step", 1e4, 518},  // the same
     {"check", 1e4, 60'300},          // an instance: read twice (once for sequential bodies), checked and scheduled
     {"generate", 1e4, 92'000},       // an instance: write its C++
+    {"rollout", 1e4, 748},           // a sample of a lag, a play, a resonance and a creep
+    {"derivatives", 1e4, 5'710},     // the same, with the derivatives by six parameters
     {"static_fit", 1, 547'000},      // a fit of 200 points
 };
 

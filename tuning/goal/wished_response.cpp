@@ -13,7 +13,7 @@ constexpr double band = 0.02;  // within which a response has settled
 
 /// What is left of a step after τ = t/T.
 double left_of_step(int order, double damping, double tau) {
-  return order == 1 ? std::exp(-tau) : oscillate(Oscillation<double>{1.0, 0.0}, damping, tau).position;
+  return order == 1 ? std::exp(-tau) : oscillate({1.0, 0.0}, oscillation_step(damping, tau)).position;
 }
 
 /// Where a condition that is false before and true behind becomes true.
@@ -76,7 +76,7 @@ Signal response_to(const WishedResponse& wished, const Signal& input, double sam
       left.position += input[k] - input[k - 1];
     }
     left = wished.order == 1 ? Oscillation<double>{left.position * std::exp(-tau), 0.0}
-                             : oscillate(left, wished.damping, tau);
+                             : oscillate(left, oscillation_step(wished.damping, tau));
     if (k + 1 + late < response.size()) {
       response[k + 1 + late] = input[k] - left.position;
     }

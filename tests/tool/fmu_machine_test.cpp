@@ -112,7 +112,7 @@ TEST(FmuMachine, DerivativesAreThoseOfTheDiagramThatTheFmuIsMadeOf) {
 END_FUNCTION_BLOCK
 )",
                                                      file));
-    using D = Dual<4>;
+    using D = Dual<3>;
     Machine<D> exact(inside);
     Machine<D> differences(outside);
     const auto index = [](const Program& program, const char* path) {
@@ -155,13 +155,13 @@ TEST(FmuMachine, DerivativesOfInstancesInOneProcessAndInSeveral) {
     test::write_motor(bench.path() / (alone ? "alone.fmu" : "motor.fmu"), xml);
     std::string text(motor_loop);
     text.replace(text.find("motor.fmu"), 9, alone ? "alone.fmu" : "motor.fmu");
-    Machine<Dual<4>> machine(compile_text(text, {.path = (bench.path() / "loop.st").string()}));
+    Machine<Dual<3>> machine(compile_text(text, {.path = (bench.path() / "loop.st").string()}));
     machine.use_directions(1);
     for (const double gain : {2.0, 0.0, 1e-9}) {
-      machine.set_parameter(0, Dual<4>::variable(gain, 0));
+      machine.set_parameter(0, Dual<3>::variable(gain, 0));
       machine.reset();
       for (int k = 0; k < 20; ++k) {
-        machine.set_input(0, Dual<4>(1.5));
+        machine.set_input(0, Dual<3>(1.5));
         machine.step();
         EXPECT_NEAR(machine.output(0).value(), 0.001 * k * gain * 1.5, 1e-12) << alone;
         EXPECT_NEAR(machine.output(0).derivative(0), 0.001 * k * 1.5, 1e-9) << alone << gain;

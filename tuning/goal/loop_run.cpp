@@ -150,9 +150,9 @@ LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopRespons
     std::vector<Index> columns(parameters_.size());
     std::iota(columns.begin(), columns.end(), Index{0});
     for (std::span<const Index> left(columns); !left.empty();) {
-      const std::size_t taken = std::min<std::size_t>(left.size(), left.size() <= 4 ? 4 : 8);
+      const std::size_t taken = std::min(left.size(), most_derivatives);
       const bool finite =
-          left.size() <= 4 ? pass(four_, x, left.first(taken), response) : pass(eight_, x, left.first(taken), response);
+          taken <= 3 ? pass(three_, x, left.first(taken), response) : pass(seven_, x, left.first(taken), response);
       if (!finite) {
         return LoopState::NotFinite;
       }

@@ -68,8 +68,8 @@ class LoopRun {
   const std::vector<FreeParameter>& parameters_;
   double largest_ = 0.0;  ///< |v| of the last test
   Machine<double> plain_;
-  std::optional<Machine<Dual<4>>> four_{};
-  std::optional<Machine<Dual<8>>> eight_{};
+  std::optional<Machine<Dual<3>>> three_{};
+  std::optional<Machine<Dual<7>>> seven_{};
 };
 
 }  // namespace hysteron

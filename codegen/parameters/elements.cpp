@@ -116,12 +116,31 @@ class ByElement {
   Diagnostics& diagnostics_;
 };
 
+/// Outputs by name; of a vector, each of its elements.
+std::vector<PlacedText> outputs_of(const std::vector<PlacedText>& wanted, const Graph& graph) {
+  std::vector<PlacedText> result;
+  for (const PlacedText& one : wanted) {
+    const std::size_t before = result.size();
+    for (const Port& output : graph.outputs) {
+      if (is_or_is_element_of(output.name, one.text)) {
+        const bool same = equal_ignoring_case(output.name, one.text);  // then as the user writes it
+        result.push_back({.text = same ? one.text : output.name, .place = one.place});
+      }
+    }
+    if (result.size() == before) {
+      result.push_back(one);  // told by who looks for it
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 ParameterFile by_element(ParameterFile file, const Graph& graph, Diagnostics& diagnostics) {
   ByElement rewrite(graph, diagnostics);
   file.values = rewrite.values(file.values);
   file.fits = rewrite.fits(file.fits);
+  file.tune.outputs = outputs_of(file.tune.outputs, graph);
   return file;
 }
 

@@ -92,7 +92,7 @@ Task task_of(const DiagnosisInput& input) {
     task.initial_states.push_back(state.text);
   }
   std::vector<std::string> wanted;
-  for (const parameters::PlacedText& output : input.file.tune.outputs) {
+  for (const parameters::PlacedText& output : file.tune.outputs) {
     wanted.push_back(output.text);
   }
   for (const Port& output : graph.outputs) {

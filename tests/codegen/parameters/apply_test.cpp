@@ -12,8 +12,8 @@
 namespace hysteron::parameters {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 constexpr std::string_view diagram = R"(FUNCTION_BLOCK INNER
   VAR_INPUT
@@ -63,7 +63,7 @@ FUNCTION_BLOCK TOP  (* @ts 1ms *)
 END_FUNCTION_BLOCK
 )";
 
-class Apply : public testing::Test {
+class Apply : public ::testing::Test {
  protected:
   Program program = compile_text(std::string(diagram), {.top = "TOP"});
 

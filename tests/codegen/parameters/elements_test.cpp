@@ -13,9 +13,9 @@
 namespace hysteron::parameters {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr std::string_view vectors = R"(FUNCTION_BLOCK TOP  (* @ts 1ms *)
   VAR_INPUT
@@ -33,7 +33,7 @@ constexpr std::string_view vectors = R"(FUNCTION_BLOCK TOP  (* @ts 1ms *)
 END_FUNCTION_BLOCK
 )";
 
-class Elements : public testing::Test {
+class Elements : public ::testing::Test {
  protected:
   [[nodiscard]] ParameterFile by_elements(const std::string& text) const {
     return by_element(parse_parameter_file("p.toml", text), program_.graph);
@@ -83,6 +83,14 @@ TEST_F(Elements, AFitOfAVectorFitsEachElement) {
     EXPECT_EQ(fit.minimum->value, 0.5);
     EXPECT_EQ(fit.maximum->value, 9.0);
   }
+}
+
+TEST_F(Elements, OutputsOfAFitAreThoseOfTheVector) {
+  std::vector<std::string> names;
+  for (const PlacedText& one : by_elements("[tune]\noutputs = [\"y\", \"W\"]\n").tune.outputs) {
+    names.push_back(one.text);
+  }
+  EXPECT_THAT(names, ElementsAre("Y[0]", "Y[1]", "Y[2]", "W"));
 }
 
 /// Whatever the form, the file by elements says the same as itself by elements.

@@ -9,9 +9,9 @@
 namespace hysteron::parameters {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 constexpr std::string_view whole = R"(# piezo
 [parameters]
@@ -243,7 +243,7 @@ TEST(ParameterReader, CollectsErrors) {
   for (const auto& diagnostic : list.all()) {
     numbers.push_back(diagnostic.number);
   }
-  EXPECT_THAT(numbers, testing::UnorderedElementsAre(error::parameter_not_finite, error::wrong_value_type,
+  EXPECT_THAT(numbers, ::testing::UnorderedElementsAre(error::parameter_not_finite, error::wrong_value_type,
                                                      error::unknown_key, error::unknown_key));
 }
 

@@ -21,7 +21,7 @@ using test::integrators;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> random_inputs(std::size_t steps, unsigned seed) {
   std::mt19937 random(seed);
@@ -220,10 +220,10 @@ TEST(ChangeableProgram, ValuesAreComparedAsTheTaskLimitsThem) {
   EXPECT_EQ(bump_of(9.5, 30.0, limit).size, 0.5);
   EXPECT_EQ(bump_of(12.0, 30.0, limit).size, 0.0);
   EXPECT_EQ(bump_of(-5.0, 3.0, limit).size, 3.0);
-  EXPECT_FALSE(bump_of(1.0, no_number, limit).is_within(limit));
-  EXPECT_FALSE(bump_of(no_number, std::numeric_limits<double>::infinity(), limit).is_within(limit));
+  EXPECT_FALSE(bump_of(1.0, no_value, limit).is_within(limit));
+  EXPECT_FALSE(bump_of(no_value, std::numeric_limits<double>::infinity(), limit).is_within(limit));
   // What was no number is safe on its way out already: any number is better.
-  EXPECT_TRUE(bump_of(no_number, 3.0, limit).is_within(limit));
+  EXPECT_TRUE(bump_of(no_value, 3.0, limit).is_within(limit));
   EXPECT_TRUE(bump_of(1.0, 1.0, {}).is_within({}));
   EXPECT_FALSE(bump_of(1.0, std::nextafter(1.0, 2.0), {}).is_within({}));
 }

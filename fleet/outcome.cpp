@@ -59,7 +59,8 @@ Outcome diagnosis_of(const nlohmann::json& json) {
     const auto known = std::ranges::find(outcome.effects, id, &FoundEffect::effect);
     FoundEffect& effect = known != outcome.effects.end() ? *known : outcome.effects.emplace_back();
     effect.family = family.at("family");
-    outcome.families[effect.family] = number_of(family.value("probability_by_record", family.at("probability")));
+    outcome.families[effect.family] =
+        number_of(family.value("probability_by_record", family.value("probability", nlohmann::json())));
     effect.probability = number_of(family.at("effect_probability"));
     if (!effect.named) {
       effect.effect = id;

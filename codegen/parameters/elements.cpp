@@ -94,13 +94,18 @@ class ByElement {
                                                          : "1"));
   }
 
+  static std::string key_of(const ParameterValue& value) { return in_capitals(value.path); }
+  /// Who has taken records apart has a fit of one path for each.
+  static std::string key_of(const FitSetting& fit) {
+    return fit.record ? fmt::format("{} of {}", in_capitals(fit.path), *fit.record) : in_capitals(fit.path);
+  }
   /// The reader has refused a name that stands twice; here two names may mean one element.
   template <class Item>
   std::vector<Item> without_doubles(std::vector<Item> items) {
     std::map<std::string, Place> seen;
     std::vector<Item> result;
     for (Item& item : items) {
-      const auto [first, fresh] = seen.emplace(in_capitals(item.path), item.place);
+      const auto [first, fresh] = seen.emplace(key_of(item), item.place);
       if (fresh) {
         result.push_back(std::move(item));
         continue;

@@ -153,7 +153,7 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
     best->set->probability += counts;
     for (const std::string& family : best->families) {
       votes.families[family] += counts;
-      votes.by_record[family] += 1.0 / count;
+      votes.by_record[family] += 1.0;
     }
     for (const std::size_t i : best->set->laws) {
       const Law& law = (*spaces[best->set->space].laws)[i];
@@ -165,6 +165,9 @@ Votes vote(const std::vector<Explored>& spaces, AllSets& sets, std::uint64_t see
   }
   for (auto& [family, votes_of] : votes.families) {
     votes_of /= sum;
+  }
+  for (auto& [family, votes_of] : votes.by_record) {
+    votes_of /= static_cast<double>(count);
   }
   for (auto& [member, votes_of] : votes.members) {
     votes_of /= sum;

@@ -43,6 +43,7 @@ enum class Inverse : std::uint8_t { Exact, Avoidable, None };
 
 struct EffectFinding {
   std::string id{};
+  std::string family{};  ///< dry_friction; of an effect without one, its id
   std::string edge{};
   std::vector<std::string> same_edges{};  ///< edges that this record cannot tell from it
   std::vector<std::string> drivers{};     ///< signals that drive it, besides that of its edge

@@ -69,6 +69,10 @@ Outcome diagnosis_of(const nlohmann::json& json) {
   }
   add_intervals(outcome, "calibration", "", json.at("calibration"));
   outcome.confidence = number_of(json.at("confidence"));
+  for (const nlohmann::json& one : json.at("effects")) {
+    // Where the evidence has weighed the families, it has said so already, without the prior.
+    outcome.families.try_emplace(one.value("family", one.at("id").get<std::string>()), outcome.confidence);
+  }
   outcome.nominal_rms = number_of(json.at("gap").at("nominal_rms"));
   outcome.improved_rms = number_of(json.at("gap").at("improved_rms"));
   outcome.unit_of_gap = json.at("gap").at("unit");

@@ -36,4 +36,11 @@ void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program&
   }
 }
 
+std::string family_of(const std::string& effect, const Program& program) {
+  Diagnostics ignored;  // the file compiles
+  const std::vector<EffectKind> kinds = effect_kinds(define(program.graph.source, ignored));
+  const auto found = std::ranges::find(kinds, effect, &EffectKind::id);
+  return found == kinds.end() ? effect : found->family;
+}
+
 }  // namespace hysteron::diagnosis

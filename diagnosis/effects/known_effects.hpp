@@ -1,4 +1,4 @@
-// The names by which a user asks for effects.
+// The names by which a user asks for effects, and the families that they are of.
 #pragma once
 
 #include <string>
@@ -11,5 +11,8 @@ namespace hysteron::diagnosis {
 /// Throws InputError HY754 for a diagram with an FMU, HY730 for an effect that neither the library nor the file of the
 /// diagram has.
 void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program);
+
+/// The family of an effect of the library or of the diagram's file; of one without any, as glitches, its own identifier.
+[[nodiscard]] std::string family_of(const std::string& effect, const Program& program);
 
 }  // namespace hysteron::diagnosis

@@ -176,6 +176,7 @@ std::string verdict_json(const Diagnosis& found) {
   Json effects = Json::array();
   for (const EffectFinding& effect : found.effects) {
     effects.push_back({{"id", effect.id},
+                       {"family", effect.family},
                        {"edge", effect.edge},
                        {"same_edges", effect.same_edges},
                        {"drivers", effect.drivers},

@@ -6,6 +6,7 @@
 
 #include "codegen/parameters/elements.hpp"
 #include "diagnosis/effects/candidates.hpp"
+#include "diagnosis/effects/known_effects.hpp"
 #include "diagnosis/findings/doubts.hpp"
 #include "diagnosis/findings/evidence_findings.hpp"
 #include "diagnosis/findings/findings.hpp"
@@ -131,6 +132,9 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   add_gaps(judged, answer, kept, options, result);
   result.cuts = cuts_at(record.inner, record.task, *record.base.program, materiality_of(record, options));
   add_verdict(judged, answer, kept, options, rules, result);
+  for (EffectFinding& effect : result.effects) {
+    effect.family = family_of(effect.id, record.input.program);
+  }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   add_improved(judged, kept, result);
   add_outlook({.task = record.task,

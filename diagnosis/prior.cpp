@@ -1,6 +1,5 @@
 #include "diagnosis/prior.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -10,6 +9,7 @@
 #include "blocks/families.hpp"
 #include "support/diagnostic.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 #include "support/sha256.hpp"
 #include "support/text_file.hpp"
 
@@ -28,7 +28,8 @@ double odds(double rate) {
 }
 
 /// The mean of a sibling's records, those apart that are in `own`; none where none is left.
-std::optional<Prior::Probabilities> mean_of(const nlohmann::json& records, const std::set<std::string>& own) {
+std::optional<Prior::Probabilities> mean_of(const std::string& file, const nlohmann::json& records,
+                                            const std::set<std::string>& own) {
   Prior::Probabilities sum;
   double count = 0.0;
   for (const nlohmann::json& record : records) {
@@ -37,7 +38,11 @@ std::optional<Prior::Probabilities> mean_of(const nlohmann::json& records, const
     }
     count += 1.0;
     for (const auto& [family, probability] : record.at("families").items()) {
-      sum[family] += std::clamp(probability.get<double>(), 0.0, 1.0);
+      const double value = probability.get<double>();
+      if (!(value >= 0.0 && value <= 1.0)) {
+        refuse(file, "the probability of " + family + " is " + number_text(value));
+      }
+      sum[family] += value;
     }
   }
   if (count == 0.0) {
@@ -99,7 +104,7 @@ Prior read_prior(const std::string& file, const std::vector<std::string>& logs) 
   std::vector<Prior::Probabilities> siblings;
   try {
     for (const nlohmann::json& machine : json.at("machines")) {
-      if (auto mean = mean_of(machine.at("records"), own)) {
+      if (auto mean = mean_of(file, machine.at("records"), own)) {
         siblings.push_back(std::move(*mean));
       }
     }

@@ -138,6 +138,11 @@ int diagnose(DiagnoseOptions options, Console& console) {
     line.finish();
   }
   found.controller = std::move(controller);
+  if (!options.prior.empty() && (found.siblings == 0 || found.evidence.families.empty())) {
+    Console::note(options.prior, found.siblings == 0
+                                     ? "no sibling in it has an effect, and it changes nothing"
+                                     : "the families of effects were not weighed here, and it changes nothing");
+  }
   write_diagnosis(options.output, found);
   console.print(options.json ? diagnosis::verdict_json(found) : diagnosis_text(found));
   console.report(warnings);

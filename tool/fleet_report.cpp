@@ -14,6 +14,7 @@
 #include "fleet/run_record.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
+#include "support/overwriting.hpp"
 #include "tool/commands.hpp"
 #include "tool/version.hpp"
 #include "tool/writable.hpp"
@@ -66,6 +67,16 @@ int report_fleet(const FleetReportOptions& options, Console& console) {
   const fleet::Run& last = runs.back();
   const auto rows = fleet::write_table(last.units, last.keys, options.folder);
   const fleet::Analysis all = fleet::analysed(rows, options.false_share);
+  std::vector<InputFile> inputs;
+  for (const fleet::Run& run : runs) {
+    inputs.push_back({.file = run.manifest});
+    for (const fleet::Unit& unit : run.units) {
+      inputs.insert(inputs.end(), {{.file = unit.diagram}, {.file = unit.parameters}, {.file = unit.log}});
+    }
+  }
+  for (const std::string& file : {options.output, options.csv, options.prior}) {
+    refuse_to_overwrite({.file = file}, inputs);
+  }
   if (!options.output.empty()) {
     write_file_atomically(options.output, fleet::fleet_page(all, rows, seen_from(options.output, options.folder)));
   }

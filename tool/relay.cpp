@@ -125,6 +125,10 @@ int relay(const RelayOptions& options, Console& console) {
   const records::Record record = records::read_record(options.file, read_options(options.record));
   const records::Column& u = record.column(options.u);
   const records::Column& y = record.column(options.y);
+  if (&u == &y) {
+    throw InputError(error::bad_usage, {}, fmt::format("--u and --y are the same column, {}.", options.y),
+                     "name the column that the relay wrote, and that of the process value.");
+  }
   const RelayExperiment found = relay_experiment(u.values, y.values, record.sample_time(), options.file);
   if (!options.output.empty()) {
     write_files_atomically({{.path = options.output, .contents = start_file(options, found)}});

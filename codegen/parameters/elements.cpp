@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -122,17 +123,26 @@ class ByElement {
 };
 
 /// Outputs by name; of a vector, each of its elements.
-std::vector<PlacedText> outputs_of(const std::vector<PlacedText>& wanted, const Graph& graph) {
+std::vector<PlacedText> outputs_of(const std::vector<PlacedText>& wanted, const Graph& graph,
+                                   Diagnostics& diagnostics) {
   std::vector<PlacedText> result;
+  std::set<std::string> seen;
   for (const PlacedText& one : wanted) {
-    const std::size_t before = result.size();
+    bool known = false;
     for (const Port& output : graph.outputs) {
       if (is_or_is_element_of(output.name, one.text)) {
+        known = true;
         const bool same = equal_ignoring_case(output.name, one.text);  // then as the user writes it
-        result.push_back({.text = same ? one.text : output.name, .place = one.place});
+        if (seen.insert(output.name).second) {
+          result.push_back({.text = same ? one.text : output.name, .place = one.place});
+        } else {
+          diagnostics.error(error::duplicate_key, one.place,
+                            fmt::format("{} stands in the list twice: alone, and with its whole vector.", output.name),
+                            "keep one of the two.");
+        }
       }
     }
-    if (result.size() == before) {
+    if (!known) {
       result.push_back(one);  // told by who looks for it
     }
   }
@@ -145,7 +155,7 @@ ParameterFile by_element(ParameterFile file, const Graph& graph, Diagnostics& di
   ByElement rewrite(graph, diagnostics);
   file.values = rewrite.values(file.values);
   file.fits = rewrite.fits(file.fits);
-  file.tune.outputs = outputs_of(file.tune.outputs, graph);
+  file.tune.outputs = outputs_of(file.tune.outputs, graph, diagnostics);
   return file;
 }
 

@@ -117,6 +117,8 @@ TEST_F(PriorFile, WhatIsNoPriorIsRefused) {
       refusal(
           R"({"schema": "hysteron-prior/1", "machines": [{"records": [{"log": "a", "families": {"play": "x"}}]}]})"),
       HasSubstr("number"));
+  EXPECT_THAT(refusal(R"({"schema": "hysteron-prior/1", "machines": [)" + machine("A", "x", R"("play": 2.0)") + "]}"),
+              HasSubstr("the probability of play is 2"));
   EXPECT_THROW((void)read_prior("/nowhere/prior.json", {}), InputError);
 }
 

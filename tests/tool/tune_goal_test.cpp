@@ -125,6 +125,7 @@ TEST(TuneGoal, RefusesWhatTheDiagramDoesNotHave) {
   EXPECT_THAT(said(fit + "loop = \"SP\"\n"), HasSubstr("HY531"));
   EXPECT_THAT(said("[goal]\nsettling_time = 0.5\n"), HasSubstr("HY716"));
   EXPECT_THAT(said(fit + "duration = 0.01\n"), HasSubstr("HY606"));
+  EXPECT_THAT(said(fit + "duration = 0.2\n"), HasSubstr("before the wished response has settled"));
   EXPECT_THAT(said("[fit.record.P]\nK = {}\n[goal]\nsettling_time = 0.5\n"), HasSubstr("HY606"));
   EXPECT_THAT(said("[fit.P]\nK = {}\n"), AllOf(HasSubstr("HY730"), HasSubstr("no record is given")));
 }

@@ -220,6 +220,15 @@ class GoalBuilder {
                          "choose a duration of 10 to 1000000 steps, or another wished response.");
       return;
     }
+    if (goal_.duration && duration < problem_.model->settling) {
+      diagnostics_.error(
+          error::contradicting_range, goal_.duration->place,
+          fmt::format("The test ends at {:.4g} s, before the wished response has settled, at {:.4g} s.", duration,
+                      problem_.model->settling),
+          fmt::format("leave duration out, or let it be at least {:.4g}: what comes later would not be seen.",
+                      settling_times * problem_.model->settling));
+      return;
+    }
     const double from = value_or(goal_.from, 0.0);
     const double size = value_or(goal_.size, 1.0);
     problem_.begin = steps_at_rest;

@@ -93,6 +93,11 @@ TEST_F(Elements, OutputsOfAFitAreThoseOfTheVector) {
   EXPECT_THAT(names, ElementsAre("Y[0]", "Y[1]", "Y[2]", "W"));
 }
 
+TEST_F(Elements, AnOutputTwiceIsRefused) {
+  EXPECT_THAT(refusal("[tune]\noutputs = [\"Y\", \"Y[0]\"]\n"),
+              HasSubstr("HY602 error: p.toml:2:17: Y[0] stands in the list twice: alone, and with its whole vector."));
+}
+
 /// Whatever the form, the file by elements says the same as itself by elements.
 TEST_F(Elements, IsTheSameTwice) {
   const ParameterFile once = by_elements("[parameters]\nK = [4.0, 5.0, 6.0]\n\"ON[1]\" = true\n[fit]\nK = {}\n");

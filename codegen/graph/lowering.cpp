@@ -197,29 +197,26 @@ Wire Lowering::mismatch(language::Span span, std::string_view what, std::initial
 }
 
 std::string Lowering::meant_brackets(const language::Binary& binary, Type left, Type right) const {
-  const auto text_of = [&](language::ExpressionId id) {
-    const language::Span span = span_of(id);
-    return std::string_view(*source_.text).substr(span.offset, span.length);
-  };
   const bool is_logic = binary.op == Operator::And || binary.op == Operator::Or || binary.op == Operator::Xor;
   if (!is_logic || (left == Type::Word) == (right == Type::Word)) {
     return {};
   }
+  const auto text = [&](language::ExpressionId first, language::ExpressionId last) {
+    const auto from = span_of(first).offset;
+    return std::string_view(*source_.text).substr(from, span_of(last).offset + span_of(last).length - from);
+  };
   const language::ExpressionId other = left == Type::Word ? binary.right : binary.left;
   const auto* const comparison = std::get_if<language::Binary>(&source_.expressions[other].node);
   if (comparison == nullptr || (comparison->op != Operator::Equal && comparison->op != Operator::NotEqual) ||
-      text_of(other).starts_with('(')) {
+      text(other, other).starts_with('(')) {
     return {};
   }
   const std::string_view sign = comparison->op == Operator::Equal ? "=" : "<>";
-  const auto between = [&](language::ExpressionId first, language::ExpressionId second) {
-    const auto from = span_of(first).offset;
-    return std::string_view(*source_.text).substr(from, span_of(second).offset + span_of(second).length - from);
-  };
-  return left == Type::Word ? fmt::format("{0} is done before the operation on bits. Write ({1}) {0} {2}.", sign,
-                                          between(binary.left, comparison->left), text_of(comparison->right))
-                            : fmt::format("{0} is done before the operation on bits. Write {1} {0} ({2}).", sign,
-                                          text_of(comparison->left), between(comparison->right, binary.right));
+  const std::string meant = left == Type::Word ? fmt::format("({}) {} {}", text(binary.left, comparison->left), sign,
+                                                             text(comparison->right, comparison->right))
+                                               : fmt::format("{} {} ({})", text(comparison->left, comparison->left),
+                                                             sign, text(comparison->right, binary.right));
+  return fmt::format("{} is done before the operation on bits. Write {}.", sign, meant);
 }
 
 Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {

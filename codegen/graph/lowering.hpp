@@ -47,10 +47,10 @@ class GraphBuilder {
 /// The names of a function's arguments in their order, by its name in upper case: G, IN0, IN1 of SEL.
 std::span<const std::string_view> formal_arguments(std::string_view function);
 
-/// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
 /// How a value of one type becomes one of another, as the mend of an error says it.
 [[nodiscard]] std::string conversion_in_words(Type wanted, Type given);
 
+/// Lowers one expression. Names are resolved by a callback, which reports what it does not know.
 class Lowering {
  public:
   using Resolve = std::function<Wire(const language::Reference&, language::Span)>;

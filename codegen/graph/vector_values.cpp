@@ -29,9 +29,10 @@ Name VectorValues::element(const Name& vector, std::size_t index) {
   return {keep(element_name(vector.text, static_cast<std::int64_t>(index))), vector.span};
 }
 
-bool VectorValues::is_declared(std::string_view name) const {
-  return std::ranges::any_of(block_->variables,
-                             [&](const Variable& variable) { return same_name(variable.name.text, name); });
+const Variable* VectorValues::find_variable(std::string_view name) const {
+  const auto found = std::ranges::find_if(
+      block_->variables, [&](const Variable& variable) { return same_name(variable.name.text, name); });
+  return found == block_->variables.end() ? nullptr : &*found;
 }
 
 ExpressionId VectorValues::make(Expression expression) {
@@ -45,15 +46,11 @@ bool VectorValues::whole_constant(ExpressionId id, std::int64_t& value) {
   const auto resolve = [&](const Reference& reference, Span /*span*/) -> Wire {
     double number = 0.0;
     Type type = Type::Real;
-    for (const Variable& variable : block_->variables) {
-      const bool constant =
-          variable.section == language::Section::Constant && !variable.is_vector() && variable.initial != no_expression;
-      if (constant && reference.pin.text.empty() && same_name(variable.name.text, reference.name.text) &&
-          constant_value(written_, variable.initial, number, type)) {
-        return builder.literal(type, number);
-      }
-    }
-    return {};
+    const Variable* const variable = reference.pin.text.empty() ? find_variable(reference.name.text) : nullptr;
+    const bool constant = variable != nullptr && variable->section == language::Section::Constant &&
+                          !variable->is_vector() && variable->initial != no_expression;
+    return constant && constant_value(written_, variable->initial, number, type) ? builder.literal(type, number)
+                                                                                 : Wire{};
   };
   Lowering lowering(builder, file_, resolve, [](int, auto, auto, auto) {});
   const Wire wire = lowering.lower(id, "");
@@ -132,12 +129,10 @@ std::optional<Elements> VectorValues::value(ExpressionId id) {
 
 std::optional<Elements> VectorValues::value_of(const Reference& reference, ExpressionId id) {
   const bool pin = !reference.pin.text.empty();
-  std::optional<PinShape> shape;
-  for (const Variable& variable : block_->variables) {
-    if (same_name(variable.name.text, reference.name.text)) {
-      shape = pin ? pins_.pin(*block_, variable, reference.pin.text) : pins_.variable(*block_, variable.name.text);
-    }
-  }
+  const Variable* const variable = find_variable(reference.name.text);
+  const std::optional<PinShape> shape = variable == nullptr ? std::nullopt
+                                        : pin               ? pins_.pin(*block_, *variable, reference.pin.text)
+                                                            : pins_.variable(*block_, variable->name.text);
   const Name& named = pin ? reference.pin : reference.name;
   const Span span = span_of(id);
   Reference element = reference;

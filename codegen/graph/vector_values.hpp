@@ -32,6 +32,7 @@ class VectorValues {
 
   /// Names mean those of this block from now on.
   void enter(const language::FunctionBlock& block) { block_ = &block; }
+  [[nodiscard]] const language::FunctionBlock& block() const { return *block_; }
 
   /// The value for a place of a shape; none where an error was reported.
   [[nodiscard]] std::optional<Elements> fitting(language::ExpressionId id, const PinShape& shape,
@@ -44,7 +45,8 @@ class VectorValues {
 
   [[nodiscard]] std::string_view keep(std::string text) { return file_.names->emplace_back(std::move(text)); }
   [[nodiscard]] language::Name element(const language::Name& vector, std::size_t index);
-  [[nodiscard]] bool is_declared(std::string_view name) const;
+  /// The variable of the block by its name; null where none is declared.
+  [[nodiscard]] const language::Variable* find_variable(std::string_view name) const;
   [[nodiscard]] language::Span span_of(language::ExpressionId id) const { return file_.expressions[id].span; }
 
  private:

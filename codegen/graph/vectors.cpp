@@ -55,7 +55,7 @@ class VectorExpansion {
     }
     for (std::size_t i = 0; i < file_.blocks.size(); ++i) {
       if (!file_.blocks[i].sequential) {
-        enter(written_.blocks[i]);
+        values_.enter(written_.blocks[i]);
         expand(file_.blocks[i]);
       }
     }
@@ -66,13 +66,8 @@ class VectorExpansion {
   void error(int number, Span span, std::string cause, std::string mend) {
     diagnostics_.error(number, written_.place(span), std::move(cause), std::move(mend));
   }
-  void enter(const FunctionBlock& block) {
-    block_ = &block;
-    values_.enter(block);
-  }
-
   void declare(const FunctionBlock& block) {
-    enter(block);
+    values_.enter(block);
     for (const Variable& variable : block.variables) {
       pins_.declare(block, variable, variable.is_vector() ? length_of(variable) : 0);
     }
@@ -124,10 +119,10 @@ class VectorExpansion {
   }
 
   void expand_variable(const Variable& written, std::vector<Variable>& variables) {
-    const PinShape shape = pins_.variable(*block_, written.name.text);
+    const PinShape shape = pins_.variable(values_.block(), written.name.text);
     Variable variable = written;
     variable.settings = expand_arguments(written, written.settings);
-    if (const std::string_view sized = pins_.sized_type(*block_, written.name.text); !sized.empty()) {
+    if (const std::string_view sized = pins_.sized_type(values_.block(), written.name.text); !sized.empty()) {
       variable.type.text = values_.keep(std::string(sized));
     }
     if (!written.is_vector()) {
@@ -147,20 +142,17 @@ class VectorExpansion {
   }
 
   Call expand_call(const Call& call) {
-    Call result{.instance = call.instance, .arguments = {}, .span = call.span};
-    for (const Variable& variable : block_->variables) {
-      if (same_name(variable.name.text, call.instance.text)) {
-        result.arguments = expand_arguments(variable, call.arguments);
-        return result;
-      }
+    Call result = call;
+    if (const Variable* const instance = values_.find_variable(call.instance.text)) {
+      result.arguments = expand_arguments(*instance, call.arguments);
     }
-    return call;  // what is not declared is told by who looks for it
+    return result;  // what is not declared is told by who looks for it
   }
 
   std::vector<Argument> expand_arguments(const Variable& instance, const std::vector<Argument>& arguments) {
     std::vector<Argument> result;
     for (const Argument& argument : arguments) {
-      const auto shape = pins_.pin(*block_, instance, argument.pin.text);
+      const auto shape = pins_.pin(values_.block(), instance, argument.pin.text);
       const bool list = std::holds_alternative<language::ArrayLiteral>(file_.expressions[argument.value].node);
       const bool setting = VectorPins::is_setting(instance, argument.pin.text);
       if (!shape || setting || (shape->list && list)) {
@@ -185,13 +177,13 @@ class VectorExpansion {
   }
 
   void expand_assignment(const Assignment& written, std::vector<language::Statement>& statements) {
-    if (!values_.is_declared(written.target.text)) {  // told by who looks for it
+    if (values_.find_variable(written.target.text) == nullptr) {  // told by who looks for it
       Assignment unknown = written;
       unknown.index = no_expression;
       statements.emplace_back(unknown);
       return;
     }
-    const PinShape shape = pins_.variable(*block_, written.target.text);
+    const PinShape shape = pins_.variable(values_.block(), written.target.text);
     Assignment assignment = written;
     assignment.index = no_expression;
     PinShape wanted = shape;
@@ -221,7 +213,6 @@ class VectorExpansion {
   Diagnostics& diagnostics_;
   VectorPins pins_;
   VectorValues values_;
-  const FunctionBlock* block_ = nullptr;
 };
 
 }  // namespace

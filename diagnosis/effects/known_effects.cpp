@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <ranges>
 #include <string_view>
 
 #include "codegen/graph/definition.hpp"
@@ -19,12 +21,7 @@ void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program&
   refuse_fmu(program.graph, "a diagnosis tries effects within a plant, and an FMU shows nothing of its inside",
              "fit its parameters with `hysteron tune`; or write the plant as a diagram, and diagnose that.");
   std::vector<std::string> known{"glitches"};
-  Diagnostics ignored;  // the file compiles
-  for (const EffectKind& kind : effect_kinds(define(program.graph.source, ignored))) {
-    if (kind.id != known.back()) {
-      known.push_back(kind.id);
-    }
-  }
+  std::ranges::copy(std::views::keys(families_by_effect(program)), std::back_inserter(known));
   std::ranges::sort(known);
   for (const std::string& effect : wanted) {
     if (std::ranges::find(known, effect) == known.end()) {
@@ -36,11 +33,13 @@ void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program&
   }
 }
 
-std::string family_of(const std::string& effect, const Program& program) {
+std::map<std::string, std::string> families_by_effect(const Program& program) {
   Diagnostics ignored;  // the file compiles
-  const std::vector<EffectKind> kinds = effect_kinds(define(program.graph.source, ignored));
-  const auto found = std::ranges::find(kinds, effect, &EffectKind::id);
-  return found == kinds.end() ? effect : found->family;
+  std::map<std::string, std::string> families;
+  for (const EffectKind& kind : effect_kinds(define(program.graph.source, ignored))) {
+    families.emplace(kind.id, kind.family);
+  }
+  return families;
 }
 
 }  // namespace hysteron::diagnosis

@@ -1,6 +1,7 @@
 // The names by which a user asks for effects, and the families that they are of.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace hysteron::diagnosis {
 /// diagram has.
 void refuse_undiagnosable(const std::vector<std::string>& wanted, const Program& program);
 
-/// The family of an effect of the library or of the diagram's file; of one without any, as glitches, its own identifier.
-[[nodiscard]] std::string family_of(const std::string& effect, const Program& program);
+/// The family of each effect of the library and of the diagram's file, by its identifier.
+[[nodiscard]] std::map<std::string, std::string> families_by_effect(const Program& program);
 
 }  // namespace hysteron::diagnosis

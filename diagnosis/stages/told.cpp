@@ -132,8 +132,10 @@ Diagnosis told(const Judged& judged, const Answer& answer, const DiagnosisOption
   add_gaps(judged, answer, kept, options, result);
   result.cuts = cuts_at(record.inner, record.task, *record.base.program, materiality_of(record, options));
   add_verdict(judged, answer, kept, options, rules, result);
+  const auto families = families_by_effect(record.input.program);
   for (EffectFinding& effect : result.effects) {
-    effect.family = family_of(effect.id, record.input.program);
+    const auto known = families.find(effect.id);
+    effect.family = known == families.end() ? effect.id : known->second;
   }
   result.traces = traces_of(record.task, result.gaps, record.nominal, calibrated.fit.residuals, kept.fit.residuals);
   add_improved(judged, kept, result);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <ranges>
 
 #include "fleet/report/analysis.hpp"
 #include "support/diagnostic.hpp"
@@ -18,10 +18,10 @@ namespace hysteron::fleet {
 
 std::string prior_json(const std::vector<Row>& rows, const std::string& group, const std::string& folder) {
   using Json = nlohmann::ordered_json;
-  std::set<std::string> groups;
+  std::map<std::string, std::vector<const Row*>> groups;
   for (const Row& row : rows) {
     if (row.unit.command == Command::Diagnose && row.result.status == Status::Done) {
-      groups.insert(kind_of(row.unit).group);
+      groups[kind_of(row.unit).group].push_back(&row);
     }
   }
   if (groups.empty()) {
@@ -32,31 +32,25 @@ std::string prior_json(const std::vector<Row>& rows, const std::string& group, c
     throw InputError(error::bad_usage, {.file = folder},
                      group.empty() ? "The fleet has several groups, and a prior is of one."
                                    : fmt::format("The fleet has no group {}.", group),
-                     fmt::format("say --group with one of {}.", fmt::join(groups, ", ")));
+                     fmt::format("say --group with one of {}.", fmt::join(std::views::keys(groups), ", ")));
   }
+  const auto& [name, diagnosed] = group.empty() ? *groups.begin() : *groups.find(group);
   std::map<std::string, Json> machines;
-  for (const Row& row : rows) {
-    const bool counts = row.unit.command == Command::Diagnose && row.result.status == Status::Done &&
-                        kind_of(row.unit).group == (group.empty() ? *groups.begin() : group);
-    if (!counts) {
-      continue;
-    }
+  for (const Row* const row : diagnosed) {
     Json families = Json::object();
-    for (const auto& [family, probability] : row.outcome.families) {
+    for (const auto& [family, probability] : row->outcome.families) {
       if (std::isfinite(probability)) {
         families[family] = probability;
       }
     }
-    machines.try_emplace(row.unit.machine, Json::array())
-        .first->second.push_back({{"log", sha256(read_text_file(row.unit.log))}, {"families", std::move(families)}});
+    machines.try_emplace(row->unit.machine, Json::array())
+        .first->second.push_back({{"log", sha256(read_text_file(row->unit.log))}, {"families", std::move(families)}});
   }
   Json list = Json::array();
   for (auto& [machine, records] : machines) {
     list.push_back({{"machine", machine}, {"records", std::move(records)}});
   }
-  const Json result = {{"schema", "hysteron-prior/1"},
-                       {"group", group.empty() ? *groups.begin() : group},
-                       {"machines", std::move(list)}};
+  const Json result = {{"schema", "hysteron-prior/1"}, {"group", name}, {"machines", std::move(list)}};
   return result.dump(2) + "\n";
 }
 

@@ -95,12 +95,10 @@ bool DeviceReader::read_place(modbus::RemoteValue& value, modbus::WordOrder usua
     return false;
   }
   value.at.count = static_cast<std::uint32_t>(modbus::registers_of(value.format.type));
-  std::string flaw = modbus::flaw_of(value.format);
-  if (given.order && value.at.count == 1) {
-    flaw = "lies in one register, which has no word order";
-  }
+  const std::string of_order = modbus::order_flaw_of(given, value.format.type);
+  const std::string flaw = of_order.empty() ? modbus::flaw_of(value.format) : of_order;
   if (!flaw.empty()) {
-    found_->error(error::unfit_format, table.place(given.order && value.at.count == 1 ? "word_order" : "scale"),
+    found_->error(error::unfit_format, table.place(of_order.empty() ? "scale" : "word_order"),
                   "What lies at register " + std::to_string(value.at.address) + " " + flaw + ".",
                   "choose a type, a scale and an offset in which each value is near a step; leave out what does not "
                   "apply.");

@@ -71,6 +71,10 @@ std::string flaw_of(const PointFormat& format) {
   return {};
 }
 
+std::string order_flaw_of(const GivenFormat& given, RegisterType type) {
+  return given.order && registers_of(type) == 1 ? "lies in one register, which has no word order" : "";
+}
+
 std::optional<RawCode> encoded(double value, const PointFormat& format) {
   if (is_real(format.type)) {
     return encoded_real(value, format);

@@ -194,8 +194,8 @@ class Placer {
     if (format.type == PointType::boolean && points_[point].type != PointType::boolean) {
       flaw = fmt::format("is a {}, which no boolean holds", name_of(points_[point].type));
     }
-    if (given.format->order && registers_of(format.type) == 1) {
-      flaw = "lies in one register, which has no word order";
+    if (std::string of_order = order_flaw_of(*given.format, format.type); !of_order.empty()) {
+      flaw = std::move(of_order);
     }
     if (!flaw.empty()) {
       diagnostics_.error(

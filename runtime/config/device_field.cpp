@@ -1,15 +1,14 @@
 #include "runtime/config/device_field.hpp"
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace hysteron::runtime {
 namespace {
 
+using modbus::DeviceStatus;
 using modbus::Quality;
 using modbus::RemoteReading;
 using std::chrono::nanoseconds;
@@ -17,19 +16,20 @@ using std::chrono::nanoseconds;
 struct DeviceCount {
   const char* name;
   const char* meaning;
+  std::uint64_t DeviceStatus::*count = nullptr;  ///< none: the state of the link
 };
 
-/// In the order in which count() gives their values. The first is no count.
 constexpr std::array device_counts{
     DeviceCount{"link", "0 connecting, 1 running, 2 waiting to connect again"},
-    DeviceCount{"connections", "links that were opened: the first, and one for each reconnect"},
-    DeviceCount{"unreachable", "attempts to open a link that failed"},
-    DeviceCount{"closed", "links that the device ended"},
-    DeviceCount{"answers", "requests that were answered"},
-    DeviceCount{"exceptions", "requests that the device refused"},
-    DeviceCount{"timeouts", "requests without a whole answer in time"},
-    DeviceCount{"wrong_answers", "answers that were not of their request"},
-    DeviceCount{"bad_checksums", "answers with a wrong checksum, on a serial line"},
+    DeviceCount{"connections", "links that were opened: the first, and one for each reconnect",
+                &DeviceStatus::connections},
+    DeviceCount{"unreachable", "attempts to open a link that failed", &DeviceStatus::no_link},
+    DeviceCount{"closed", "links that the device ended", &DeviceStatus::closed},
+    DeviceCount{"answers", "requests that were answered", &DeviceStatus::answers},
+    DeviceCount{"exceptions", "requests that the device refused", &DeviceStatus::exceptions},
+    DeviceCount{"timeouts", "requests without a whole answer in time", &DeviceStatus::timeouts},
+    DeviceCount{"wrong_answers", "answers that were not of their request", &DeviceStatus::wrong_answers},
+    DeviceCount{"bad_checksums", "answers with a wrong checksum, on a serial line", &DeviceStatus::bad_checksums},
 };
 
 double seconds(nanoseconds time) {
@@ -41,13 +41,13 @@ double seconds(nanoseconds time) {
 std::vector<Point> device_points(const RunConfig& config) {
   std::vector<Point> points;
   for (const modbus::DeviceOptions& device : config.devices) {
-    for (const DeviceCount& count : device_counts) {
-      const bool counts = &count != device_counts.data();
-      points.push_back({.name = std::string("device.") + device.name + "." + count.name,
+    for (const DeviceCount& one : device_counts) {
+      const bool counts = one.count != nullptr;
+      points.push_back({.name = std::string("device.") + device.name + "." + one.name,
                         .kind = PointKind::status,
                         .type = counts ? PointType::uint64 : PointType::uint16,
                         .unit = "1",
-                        .meaning = count.meaning,
+                        .meaning = one.meaning,
                         .counts = counts,
                         .comes_last = true});
     }
@@ -145,18 +145,10 @@ std::uint64_t DeviceField::not_taken() const noexcept {
 void DeviceField::count(std::span<double> into) const noexcept {
   auto at = into.begin();
   for (const auto& device : devices_) {
-    const modbus::DeviceStatus status = device->status();
-    const std::array counts{static_cast<std::uint64_t>(status.state),
-                            status.connections,
-                            status.no_link,
-                            status.closed,
-                            status.answers,
-                            status.exceptions,
-                            status.timeouts,
-                            status.wrong_answers,
-                            status.bad_checksums};
-    static_assert(std::tuple_size_v<decltype(counts)> == device_counts.size());
-    at = std::ranges::transform(counts, at, [](std::uint64_t count) { return static_cast<double>(count); }).out;
+    const DeviceStatus status = device->status();
+    for (const DeviceCount& one : device_counts) {
+      *at++ = one.count == nullptr ? static_cast<double>(status.state) : static_cast<double>(status.*one.count);
+    }
   }
 }
 

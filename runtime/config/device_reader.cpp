@@ -65,12 +65,8 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
   std::size_t order = 0;
   table.read_choice("word_order", order);
   orders_.push_back(modbus::word_orders.at(order));
-  std::int64_t period = device.period.count();
-  table.read_duration("cycle", period);
-  device.period = std::chrono::nanoseconds(period);
-  std::int64_t response = std::chrono::nanoseconds(device.response).count();
-  table.read_duration("timeout", response);
-  device.response = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(response));
+  table.read_duration("cycle", device.period);
+  table.read_duration("timeout", device.response);
   config_->devices.push_back(std::move(device));
 }
 
@@ -81,7 +77,7 @@ bool DeviceReader::read_place(modbus::RemoteValue& value, modbus::WordOrder usua
   value.at.bit = read_bit(table);
   table.read_whole("register", value.at.address);
   const auto given = read_format(table).value_or(modbus::GivenFormat{});
-  const bool is_bit = modbus::holds_bits(value.at.area) || value.at.is_bit();
+  const bool is_bit = value.at.is_boolean();
   value.format = given.or_else(is_bit ? PointType::boolean : PointType::real64, usual);
   const std::string type = modbus::name_of(value.format.type);
   if (modbus::holds_bits(value.at.area) && value.at.is_bit()) {
@@ -99,12 +95,10 @@ bool DeviceReader::read_place(modbus::RemoteValue& value, modbus::WordOrder usua
     return false;
   }
   value.at.count = static_cast<std::uint32_t>(modbus::registers_of(value.format.type));
-  std::string flaw = modbus::flaw_of(value.format);
-  if (given.order && value.at.count == 1) {
-    flaw = "lies in one register, which has no word order";
-  }
+  const std::string of_order = modbus::order_flaw_of(given, value.format.type);
+  const std::string flaw = of_order.empty() ? modbus::flaw_of(value.format) : of_order;
   if (!flaw.empty()) {
-    found_->error(error::unfit_format, table.place(given.order && value.at.count == 1 ? "word_order" : "scale"),
+    found_->error(error::unfit_format, table.place(of_order.empty() ? "scale" : "word_order"),
                   "What lies at register " + std::to_string(value.at.address) + " " + flaw + ".",
                   "choose a type, a scale and an offset in which each value is near a step; leave out what does not "
                   "apply.");

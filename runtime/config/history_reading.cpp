@@ -1,16 +1,12 @@
 #include "runtime/config/history_reading.hpp"
 
 #include "runtime/config/sampled_points.hpp"
-#include "support/errors.hpp"
 
 namespace hysteron::runtime {
 
 HistoryConfig HistoryReading::read(TomlReader table) {
   HistoryConfig history{.place = table.place()};
-  if (!table.has("file")) {
-    found_->error(error::wrong_run_value, table.place(), table.name() + " needs the key file.",
-                  "write it as in file = \"history.sqlite\", or remove the table.");
-  }
+  table.require("file", "\"history.sqlite\"");
   table.read("file", history.file);
   history.step = read_step(table, *shape_, *found_);
   history.points = read_points(table, *shape_, field_points_, *found_);

@@ -1,8 +1,8 @@
 #include "runtime/config/line_reader.hpp"
 
-#include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "runtime/modbus/serial_line.hpp"
 #include "support/errors.hpp"

@@ -1,8 +1,6 @@
 // What a run file says of a serial line, of a device or of the server: one set of keys for both.
 #pragma once
 
-#include <string_view>
-
 #include "runtime/config/toml_reader.hpp"
 #include "runtime/modbus/client_link.hpp"
 

@@ -1,7 +1,6 @@
 #include "runtime/config/modbus_reader.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -12,15 +11,6 @@
 #include "support/errors.hpp"
 
 namespace hysteron::runtime {
-namespace {
-
-void read_milliseconds(TomlReader& table, std::string_view key, std::chrono::milliseconds& into) {
-  std::int64_t time = std::chrono::nanoseconds(into).count();
-  table.read_duration(key, time);
-  into = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(time));
-}
-
-}  // namespace
 
 void ModbusReader::read(const toml::table* modbus, bool over_tls) {
   if (modbus != nullptr) {
@@ -42,14 +32,9 @@ void ModbusReader::read_line_of(const toml::table* rtu) {
   modbus::RtuOptions options;
   options.line = read_line(table, *found_);
   table.read_whole("unit", options.unit);
-  std::int64_t gap = 0;
-  table.read_duration("longest_gap", gap);
-  options.longest_gap = std::chrono::nanoseconds(gap);
+  table.read_duration("longest_gap", options.longest_gap);
   table.read("read_only", options.read_only);
-  if (!table.has("serial")) {
-    found_->error(error::wrong_run_value, table.place(), "[modbus_rtu] needs the key serial.",
-                  "write it as in serial = \"/dev/ttyUSB0\", or remove the table.");
-  }
+  table.require("serial", "\"/dev/ttyUSB0\"");
   const bool is_device = std::ranges::any_of(config_->devices, [&](const modbus::DeviceOptions& device) {
     const auto* const line = std::get_if<modbus::SerialLink>(&device.link);
     return line != nullptr && line->path == options.line.path;
@@ -101,8 +86,8 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   table.read_whole("connections", modbus.connections);
   modbus.connections_per_address = std::max<std::size_t>(1, modbus.connections / 4);
   table.read_whole("connections_per_address", modbus.connections_per_address);
-  read_milliseconds(table, "idle", modbus.idle);
-  read_milliseconds(table, "evict", modbus.evict);
+  table.read_duration("idle", modbus.idle);
+  table.read_duration("evict", modbus.evict);
   table.read("read_only", modbus.read_only);
   std::size_t order = 0;
   table.read_choice("word_order", order);
@@ -144,15 +129,13 @@ void ModbusReader::read_addresses(const std::string& prefix, const toml::table& 
 /// [registers.HYST.C1] is the table of HYST.C1: a table of tables alone is a part of names.
 void ModbusReader::read_registers(const std::string& prefix, const toml::table& table) {
   for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
     const auto* const own = node.as_table();
     if (own == nullptr) {
       found_->error(error::wrong_run_value, place_of(*file_, node.source()),
                     std::string(key.str()) + " must be a table.",
-                    "write it as [registers." + prefix + std::string(key.str()) + "], and its keys below.");
-      continue;
-    }
-    const std::string name = prefix + std::string(key.str());
-    if (!own->empty() && std::ranges::all_of(*own, [](const auto& one) { return one.second.is_table(); })) {
+                    "write it as [registers." + name + "], and its keys below.");
+    } else if (!own->empty() && std::ranges::all_of(*own, [](const auto& one) { return one.second.is_table(); })) {
       read_registers(name + ".", *own);
     } else {
       read_register(name, {*file_, "[registers." + name + "]", *own, run_table("registers").keys, *found_});
@@ -179,7 +162,7 @@ void ModbusReader::read_heartbeat(TomlReader& table, ModbusConfig& modbus) {
   std::size_t mode = 0;
   table.read_choice("heartbeat", mode);
   modbus.heartbeat.mode = static_cast<modbus::HeartbeatMode>(mode);
-  read_milliseconds(table, "heartbeat_time", modbus.heartbeat.time);
+  table.read_duration("heartbeat_time", modbus.heartbeat.time);
   std::size_t after = 0;
   table.read_choice("after_loss", after);
   config_->task.reset_after_lost_client = after == 1;

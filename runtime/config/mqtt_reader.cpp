@@ -51,10 +51,7 @@ void MqttReader::useless(const TomlReader& table, std::string_view key, const st
 }
 
 void MqttReader::read_broker(TomlReader& table, MqttConfig& mqtt) {
-  if (!table.has("broker")) {
-    found_->error(error::wrong_run_value, table.place(), table.name() + " needs the key broker.",
-                  "write it as in broker = \"192.168.10.5\", or remove the table.");
-  }
+  table.require("broker", "\"192.168.10.5\"");
   table.read("broker", mqtt.broker);
   const std::size_t colon = mqtt.broker.find(':');
   if (mqtt.broker.find('/') != std::string::npos || (colon != std::string::npos && colon == mqtt.broker.rfind(':'))) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -267,13 +266,6 @@ class Reader {
     return age;
   }
 
-  void missing(const TomlReader& table, const std::string& key, const std::string& example) {
-    if (!table.has(key)) {
-      found_.error(error::wrong_run_value, table.place(), table.name() + " needs the key " + key + ".",
-                   "write it as in " + key + " = " + example + ", or remove the table.");
-    }
-  }
-
   void read_online_change(TomlReader table) {
     ChangeConfig change{.place = table.place("socket")};
     table.read("socket", change.socket);
@@ -286,7 +278,7 @@ class Reader {
 
   void read_retain(TomlReader table) {
     RetainConfig retain{.place = table.place()};
-    missing(table, "folder", "\"retained\"");
+    table.require("folder", "\"retained\"");
     table.read("folder", retain.folder);
     if (table.is_whole("every")) {
       table.read_whole("every", config_.task.retain_every);
@@ -305,7 +297,7 @@ class Reader {
   void read_trace(TomlReader table) {
     TraceSettings trace;
     std::string file;
-    missing(table, "file", "\"run.trace\"");
+    table.require("file", "\"run.trace\"");
     table.read("file", file);
     trace.file = file;
     std::uint64_t megabytes = 1024;

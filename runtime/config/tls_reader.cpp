@@ -40,11 +40,8 @@ void TlsReader::read(const toml::table* tls, const toml::table* roles) {
 }
 
 void TlsReader::read_files(TomlReader table, modbus::TlsOptions& tls) {
-  const auto read = [&](std::string_view key, std::string& into, Place& place) {
-    if (!table.has(key)) {
-      found_->error(error::wrong_run_value, table.place(), "[tls] needs the key " + std::string(key) + ".",
-                    "write it as in " + std::string(key) + " = \"" + std::string(key) + ".pem\", or remove the table.");
-    }
+  const auto read = [&](const std::string& key, std::string& into, Place& place) {
+    table.require(key, "\"" + key + ".pem\"");
     table.read(key, into);
     place = table.place(key);
   };

@@ -137,6 +137,18 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into) {
   read_duration(key, into, static_cast<std::int64_t>(bounds.low), static_cast<std::int64_t>(bounds.high));
 }
 
+void TomlReader::read_duration(std::string_view key, std::chrono::nanoseconds& into) {
+  std::int64_t time = into.count();
+  read_duration(key, time);
+  into = std::chrono::nanoseconds(time);
+}
+
+void TomlReader::read_duration(std::string_view key, std::chrono::milliseconds& into) {
+  std::chrono::nanoseconds time = into;
+  read_duration(key, time);
+  into = std::chrono::ceil<std::chrono::milliseconds>(time);
+}
+
 void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high) {
   const auto* const node = table_->get(key);
   if (node == nullptr) {
@@ -151,6 +163,13 @@ void TomlReader::read_duration(std::string_view key, std::int64_t& into, std::in
                         "from " + time_text(static_cast<double>(low)) + " to " + time_text(static_cast<double>(high)));
   }
   into = *value;
+}
+
+void TomlReader::require(const std::string& key, const std::string& example) {
+  if (!has(key)) {
+    diagnostics_->error(error::wrong_run_value, place(), name_ + " needs the key " + key + ".",
+                        "write it as in " + key + " = " + example + ", or remove the table.");
+  }
 }
 
 void TomlReader::read_choice(std::string_view key, std::size_t& into) {

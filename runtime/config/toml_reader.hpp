@@ -2,6 +2,7 @@
 // is an error with its place. Only the files of this folder see the library.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,6 +29,9 @@ class TomlReader {
   void read(std::string_view key, std::vector<std::string>& into);
   void read(std::string_view key, double& into);
   void read_duration(std::string_view key, std::int64_t& into);
+  void read_duration(std::string_view key, std::chrono::nanoseconds& into);
+  /// Rounded up.
+  void read_duration(std::string_view key, std::chrono::milliseconds& into);
   /// Within bounds that the key's declaration cannot know.
   void read_duration(std::string_view key, std::int64_t& into, std::int64_t low, std::int64_t high);
   /// The index of the word that stands there.
@@ -39,6 +43,8 @@ class TomlReader {
     }
   }
 
+  /// An error where the table does not have the key; `example` is a value as it may stand there.
+  void require(const std::string& key, const std::string& example);
   [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
   [[nodiscard]] bool is_whole(std::string_view key) const { return has(key) && table_->get(key)->is_integer(); }
   /// Of a value; of the table where the key is not there.

@@ -110,9 +110,12 @@ std::optional<ParsedAddress> parse_address(std::string_view text) {
   return ParsedAddress{.at = {*area, *number, 1, static_cast<std::int8_t>(*bit)}, .any_width = true};
 }
 
+std::string bit_text(const Stretch& at) {
+  return at.is_bit() ? "." + std::to_string(at.bit) : "";
+}
+
 std::string address_text(const Stretch& at) {
-  const std::string bit = at.is_bit() ? "." + std::to_string(at.bit) : "";
-  return std::string(name_of(at.area)) + " " + std::to_string(at.address) + bit;
+  return std::string(name_of(at.area)) + " " + std::to_string(at.address) + bit_text(at);
 }
 
 }  // namespace hysteron::runtime::modbus

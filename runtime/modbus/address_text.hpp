@@ -29,6 +29,9 @@ struct ParsedAddress {
 /// Empty where the text is no address, or one outside of its area.
 [[nodiscard]] std::optional<ParsedAddress> parse_address(std::string_view text);
 
+/// As it stands behind the number of a register: .3; empty where it is no bit.
+[[nodiscard]] std::string bit_text(const Stretch& at);
+
 /// As an area and a number: holding 16, or the bit holding 16.3.
 [[nodiscard]] std::string address_text(const Stretch& at);
 

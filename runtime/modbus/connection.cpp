@@ -34,9 +34,7 @@ Served Connection::resume(Instant now, Responder& responder, const Caller& calle
     taken += scan.size;
     last_request_ = now;
     frame_began_.reset();
-    ++served.requests;
-    served.exceptions += reply.exception == Exception::none ? 0 : 1;
-    served.writes += reply.wrote ? 1 : 0;
+    served.count(reply);
   }
   std::copy(input_.begin() + static_cast<std::ptrdiff_t>(taken),
             input_.begin() + static_cast<std::ptrdiff_t>(input_size_), input_.begin());

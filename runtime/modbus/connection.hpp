@@ -45,6 +45,13 @@ struct Served {
   std::uint32_t requests = 0;
   std::uint32_t exceptions = 0;
   std::uint32_t writes = 0;  ///< requests whose values were taken
+
+  /// One more request, which was answered so.
+  void count(const Reply& reply) {
+    ++requests;
+    exceptions += reply.exception == Exception::none ? 0 : 1;
+    writes += reply.wrote ? 1 : 0;
+  }
 };
 
 class Connection {

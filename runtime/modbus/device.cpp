@@ -34,8 +34,8 @@ std::uint32_t most_of(const Block& block) {
 }
 
 void check(const RemoteValue& value) {
-  const bool is_bit = holds_bits(value.at.area) || value.at.is_bit();
-  if (is_bit != (value.format.type == PointType::boolean) || (holds_bits(value.at.area) && value.at.is_bit())) {
+  if (value.at.is_boolean() != (value.format.type == PointType::boolean) ||
+      (holds_bits(value.at.area) && value.at.is_bit())) {
     throw std::invalid_argument("booleans lie among bits, other values among registers");
   }
   if (value.written && value.at.area != Area::coil && value.at.area != Area::holding_register) {
@@ -331,7 +331,7 @@ class Device::Worker {
       if (!code) {
         return {};  // what is not a number has no bits there: the device keeps what it was given last
       }
-      const std::uint64_t pattern = code->bits << (value.at.is_bit() ? static_cast<unsigned>(value.at.bit) : 0U);
+      const std::uint64_t pattern = code->bits << value.at.shift();
       const std::uint32_t offset = value.at.address - block.address;
       if (bits) {
         request[6 + offset / 8] |= static_cast<std::uint8_t>(pattern << offset % 8);
@@ -363,7 +363,7 @@ class Device::Worker {
         used[word] = static_cast<std::uint16_t>(answer[at] << 8U | answer[at + 1]);
       }
       bits = from_registers(used, value.format.order);
-      bits = value.at.is_bit() ? bits >> static_cast<unsigned>(value.at.bit) & 1U : bits;
+      bits = value.at.is_bit() ? bits >> value.at.shift() & 1U : bits;
     }
     const auto number = taken(bits, value.format, value.low, value.high);
     return number && holds(RegisterType(value.of), *number) ? number : std::nullopt;

@@ -148,6 +148,7 @@ std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
   std::vector<std::uint16_t> words = head_of(map, map.entries().size());
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
+    const bool is_formatted = !is_plain(map, entry);
     std::vector<std::uint16_t> record;
     record.push_back(area_digits[static_cast<std::size_t>(entry.at.area)]);
     record.push_back(static_cast<std::uint16_t>(entry.at.address));
@@ -158,13 +159,13 @@ std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
     put_real(record, point.high);
     put_text(record, point.name);
     put_text(record, point.unit);
-    if (!is_plain(map, entry)) {
+    if (is_formatted) {
       put_real(record, entry.format.scale);
       put_real(record, entry.format.offset);
       record.push_back(static_cast<std::uint16_t>(entry.format.order));
       record.push_back(entry.at.is_bit() ? static_cast<std::uint16_t>(entry.at.bit) : whole_register);
     }
-    words.push_back(is_plain(map, entry) ? point_record : formatted_record);
+    words.push_back(is_formatted ? formatted_record : point_record);
     words.push_back(static_cast<std::uint16_t>(record.size()));
     words.insert(words.end(), record.begin(), record.end());
   }
@@ -173,7 +174,8 @@ std::vector<std::uint16_t> make_chain(const RegisterMap& map) {
   return words;
 }
 
-std::vector<std::uint16_t> make_entrance(const RegisterMap& map, std::size_t chain_size) {
+std::vector<std::uint16_t> make_entrance(const RegisterMap& map) {
+  const std::size_t chain_size = map.chain().size();
   std::vector<std::uint16_t> words = head_of(map, 0);
   const std::array<std::uint16_t, 6> rest{
       files_record, 2, static_cast<std::uint16_t>(chain_size >> 16U), static_cast<std::uint16_t>(chain_size & 0xFFFFU),

@@ -38,8 +38,8 @@ namespace hysteron::runtime::modbus {
 
 /// The whole chain.
 [[nodiscard]] std::vector<std::uint16_t> make_chain(const RegisterMap& map);
-/// What leads to a chain that is to be read by function 20.
-[[nodiscard]] std::vector<std::uint16_t> make_entrance(const RegisterMap& map, std::size_t chain_size);
+/// What leads to the map's chain, where that is to be read by function 20.
+[[nodiscard]] std::vector<std::uint16_t> make_entrance(const RegisterMap& map);
 
 /// Records of a file of function 20.
 inline constexpr std::uint32_t records_of_file = 10000;

@@ -25,7 +25,7 @@ std::optional<LockLine> parse_line(const std::string& text, std::uint32_t holdin
   }
   const auto parsed = parse_address(area + " " + number);
   const auto known = register_type_named(type);
-  if (!parsed || !known || (holds_bits(parsed->at.area) || parsed->at.is_bit()) != (*known == PointType::boolean)) {
+  if (!parsed || !known || parsed->at.is_boolean() != (*known == PointType::boolean)) {
     return std::nullopt;
   }
   line.type = *known;

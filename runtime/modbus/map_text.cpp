@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "runtime/modbus/address_text.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/csv_cell.hpp"
 #include "support/json_number.hpp"
@@ -53,10 +54,6 @@ std::string format_text(const MapEntry& entry, WordOrder usual) {
   return text + (entry.at.count > 1 && format.order != usual ? fmt::format(", {}", name_of(format.order)) : "");
 }
 
-std::string address_of(const Stretch& at) {
-  return at.is_bit() ? fmt::format("{}.{}", at.address, at.bit) : std::to_string(at.address);
-}
-
 std::string discovery_text(const RegisterMap& map) {
   return map.chain().empty() ? std::string()
          : map.is_in_files()
@@ -95,8 +92,7 @@ std::string namespace_of(const std::string& title) {
 
 std::string reference_number(const Stretch& at) {
   constexpr std::array<int, 4> digits{0, 1, 4, 3};
-  const std::string bit = at.is_bit() ? fmt::format(".{}", at.bit) : "";
-  return fmt::format("{}{:05}{}", digits[static_cast<std::size_t>(at.area)], at.address + 1, bit);
+  return fmt::format("{}{:05}{}", digits[static_cast<std::size_t>(at.area)], at.address + 1, bit_text(at));
 }
 
 std::string as_csv(const RegisterMap& map) {
@@ -152,9 +148,9 @@ std::string as_markdown(const RegisterMap& map) {
     const Point& point = map.point_of(entry);
     const auto bound = [](double value) { return std::isfinite(value) ? number_text(value) : std::string(); };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(entry.at.area),
-                        address_of(entry.at), reference_number(entry.at), format_text(entry, map.order()),
-                        markdown_cell(point.name), markdown_cell(point.unit), bound(point.low), bound(point.high),
-                        access_of(point), markdown_cell(point.meaning));
+                        std::to_string(entry.at.address) + bit_text(entry.at), reference_number(entry.at),
+                        format_text(entry, map.order()), markdown_cell(point.name), markdown_cell(point.unit),
+                        bound(point.low), bound(point.high), access_of(point), markdown_cell(point.meaning));
   }
   return text;
 }

@@ -40,12 +40,12 @@ RawCode encoded_real(double value, const PointFormat& format) {
   return {.bits = bits_of(is_saturated ? std::copysign(most, raw) : raw, format.type), .is_saturated = is_saturated};
 }
 
-/// As the format can tell it.
-double limit_as_held(double limit, const PointFormat& format) {
-  const auto code = std::isfinite(limit) ? encoded(limit, format) : std::nullopt;
+/// The value as the format tells it; nothing where it does not have it, but for rounding.
+std::optional<double> as_held(double value, const PointFormat& format) {
+  const auto code = encoded(value, format);
   const auto held = code && !code->is_saturated ? decoded(code->bits, format) : std::nullopt;
-  const bool is_same = held && (is_real(format.type) || std::abs(*held - limit) <= rounding * std::abs(format.scale));
-  return is_same ? *held : limit;
+  const bool is_same = held && (is_real(format.type) || std::abs(*held - value) <= rounding * std::abs(format.scale));
+  return is_same ? held : std::nullopt;
 }
 
 }  // namespace
@@ -69,6 +69,10 @@ std::string flaw_of(const PointFormat& format) {
                        number_text(format.offset), number_text(format.scale));
   }
   return {};
+}
+
+std::string order_flaw_of(const GivenFormat& given, RegisterType type) {
+  return given.order && registers_of(type) == 1 ? "lies in one register, which has no word order" : "";
 }
 
 std::optional<RawCode> encoded(double value, const PointFormat& format) {
@@ -100,8 +104,9 @@ std::optional<double> decoded(std::uint64_t bits, const PointFormat& format) {
 
 std::optional<double> taken(std::uint64_t bits, const PointFormat& format, double low, double high) {
   const auto value = decoded(bits, format);
-  const bool is_within = value && std::isfinite(*value) && *value >= std::min(low, limit_as_held(low, format)) &&
-                         *value <= std::max(high, limit_as_held(high, format));
+  const bool is_within = value && std::isfinite(*value) &&
+                         *value >= std::min(low, as_held(low, format).value_or(low)) &&
+                         *value <= std::max(high, as_held(high, format).value_or(high));
   return is_within ? std::optional(std::min(std::max(*value, low), high)) : std::nullopt;
 }
 
@@ -114,9 +119,7 @@ std::pair<double, double> limits_of(const PointFormat& format) {
 }
 
 bool holds(const PointFormat& format, double value) {
-  const auto code = encoded(value, format);
-  const auto held = code && !code->is_saturated ? decoded(code->bits, format) : std::nullopt;
-  return held && (is_real(format.type) || std::abs(*held - value) <= rounding * std::abs(format.scale));
+  return as_held(value, format).has_value();
 }
 
 }  // namespace hysteron::runtime::modbus

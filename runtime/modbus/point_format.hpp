@@ -41,6 +41,8 @@ struct GivenFormat {
 
 /// Why a format does not serve, as the end of a sentence that begins with "it"; empty where it does.
 [[nodiscard]] std::string flaw_of(const PointFormat& format);
+/// The same of a word order that was given to what lies in one register.
+[[nodiscard]] std::string order_flaw_of(const GivenFormat& given, RegisterType type);
 
 struct RawCode {
   std::uint64_t bits = 0;     ///< the low 16·registers_of(type) of them

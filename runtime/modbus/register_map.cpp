@@ -61,7 +61,7 @@ class Occupancy {
 
  private:
   static std::pair<std::uint32_t, std::uint32_t> sixteenths(const Stretch& at) {
-    const std::uint32_t begin = 16 * at.address + (at.is_bit() ? static_cast<std::uint32_t>(at.bit) : 0U);
+    const std::uint32_t begin = 16 * at.address + at.shift();
     return {begin, at.is_bit() ? begin + 1 : begin + 16 * at.count};
   }
 
@@ -184,7 +184,7 @@ class Placer {
   }
 
   [[nodiscard]] bool fits(std::size_t point, const Stretch& at) const {
-    return (holds_bits(at.area) || at.is_bit()) == (formats_[point].type == PointType::boolean) &&
+    return at.is_boolean() == (formats_[point].type == PointType::boolean) &&
            (!points_[point].writable || at.area == Area::coil || at.area == Area::holding_register);
   }
 
@@ -194,8 +194,8 @@ class Placer {
     if (format.type == PointType::boolean && points_[point].type != PointType::boolean) {
       flaw = fmt::format("is a {}, which no boolean holds", name_of(points_[point].type));
     }
-    if (given.format->order && registers_of(format.type) == 1) {
-      flaw = "lies in one register, which has no word order";
+    if (std::string of_order = order_flaw_of(*given.format, format.type); !of_order.empty()) {
+      flaw = std::move(of_order);
     }
     if (!flaw.empty()) {
       diagnostics_.error(
@@ -370,7 +370,7 @@ RegisterMap make_register_map(std::span<const Point> points, const MapRequest& r
   if (request.has_discovery) {
     map.chain_ = make_chain(map);
     if (chain_address + map.chain_.size() > area_size) {
-      map.entrance_ = make_entrance(map, map.chain_.size());
+      map.entrance_ = make_entrance(map);
     }
   }
   return map;

@@ -43,6 +43,10 @@ struct Stretch {
   std::uint32_t count = 1;
   std::int8_t bit = no_bit;  ///< 0, the lowest, to 15
   [[nodiscard]] bool is_bit() const { return bit != no_bit; }
+  /// Whether a boolean lies here, and nothing else can.
+  [[nodiscard]] bool is_boolean() const { return holds_bits(area) || is_bit(); }
+  /// The lowest bit of its register that it has: of a bit, that one; else 0.
+  [[nodiscard]] unsigned shift() const { return is_bit() ? static_cast<unsigned>(bit) : 0U; }
   [[nodiscard]] bool overlaps(const Stretch& other) const {
     const bool are_bits_apart = is_bit() && other.is_bit() && bit != other.bit;
     return area == other.area && address < other.address + other.count && other.address < address + count &&

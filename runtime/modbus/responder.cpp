@@ -391,7 +391,7 @@ std::optional<std::uint64_t> Responder::register_bits(std::span<const MapEntry> 
     if (!bits) {
       return std::nullopt;
     }
-    all |= entry.at.is_bit() ? *bits << static_cast<unsigned>(entry.at.bit) : *bits;
+    all |= *bits << entry.at.shift();
   }
   return all;
 }
@@ -460,7 +460,7 @@ Exception Responder::collect_register(std::span<const MapEntry> entries, std::ui
     return collect(entries.front(), bits);
   }
   for (const MapEntry& entry : entries) {
-    const auto bit = std::uint64_t{1} << static_cast<unsigned>(entry.at.bit);
+    const auto bit = std::uint64_t{1} << entry.at.shift();
     if (const auto flaw = collect(entry, (bits & bit) != 0 ? 1 : 0); flaw != Exception::none) {
       return flaw;
     }

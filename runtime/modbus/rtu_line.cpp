@@ -36,7 +36,7 @@ bool RtuLine::open_when_due(Instant now) {
     return false;
   }
   OpenedLine opened = open_line(options_.line);
-  if (!opened.line.is_open() || !opened.problem.empty()) {
+  if (!opened.line.is_open()) {
     lose(opened.problem, now);
     return false;
   }

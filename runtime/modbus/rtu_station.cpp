@@ -90,7 +90,9 @@ Served RtuStation::answer(std::span<const std::uint8_t> frame, Instant now, Resp
   forget_output();
   output_ = is_broadcast ? std::vector<std::uint8_t>() : rtu_frame(unit_, reply.pdu());
   answer_at_ = now + timing_.silence;
-  return {.requests = 1, .exceptions = reply.exception == Exception::none ? 0U : 1U, .writes = reply.wrote ? 1U : 0U};
+  Served served;
+  served.count(reply);
+  return served;
 }
 
 Served RtuStation::silent(Instant now, Responder& responder, const Caller& caller) {

@@ -252,7 +252,7 @@ class Server::Loop {
     const Caller caller{.rights = options_.read_only || line_->read_only() ? all.without_writes() : all,
                         .other_owns_writes = heartbeat_.other_owns_writes(line_mark)};
     count(line_mark, line_->serve(is_readable, now, responder_, caller), now);
-    tell_what_was_met("the serial line " + options_.rtu->line.path, now);
+    tell_what_was_met([&] { return "the serial line " + options_.rtu->line.path; }, now);
     const RtuCounts& counts = line_->counts();
     counters_.line_frames.store(counts.frames, std::memory_order_relaxed);
     counters_.line_broken.store(counts.broken, std::memory_order_relaxed);
@@ -329,7 +329,7 @@ class Server::Loop {
         break;
       }
     }
-    tell_what_was_met(address_text(client.peer), now);
+    tell_what_was_met([&] { return address_text(client.peer); }, now);
     const bool has_output = !client.connection.output().empty() || client.transport->has_output();
     const bool wants_input = client.connection.wants_input() > 0 && client.transport->wants_input();
     const std::uint32_t events =
@@ -372,10 +372,11 @@ class Server::Loop {
     }
   }
 
-  /// What the answers to a client met.
-  void tell_what_was_met(const std::string& client, Instant now) {
+  /// What the answers to a client met. `name` gives the client's, for it is seldom wanted.
+  template <class Name>
+  void tell_what_was_met(const Name& name, Instant now) {
     if (const std::string why = responder_.take_refusal(); !why.empty()) {
-      tell_of_refusal(client, "by the program: " + why, now);
+      tell_of_refusal(name(), "by the program: " + why, now);
     }
     const std::uint64_t saturated = responder_.saturated();
     if (saturated != counters_.saturated.load(std::memory_order_relaxed) && options_.tell &&

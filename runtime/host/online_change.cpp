@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -13,6 +12,7 @@
 
 #include "runtime/host/notices.hpp"
 #include "runtime/task/carry.hpp"
+#include "runtime/task/clock.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
@@ -77,25 +77,6 @@ void require_same_interface(const ProgramShape& has, const ProgramShape& next) {
   }
 }
 
-std::vector<std::byte> state_of(const StepProgram& program) {
-  std::vector<std::byte> state(program.state_size());
-  program.save(state);
-  return state;
-}
-
-/// Of this thread, in ns: what others compute meanwhile does not count.
-std::int64_t own_cpu_time() {
-  timespec time{};
-  (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-void set_parameters(StepProgram& program, std::span<const double> values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    program.set_parameter(i, values[i]);
-  }
-}
-
 /// No number where there is none of that name.
 double parameter_named(const StepProgram& program, const std::string& name) {
   const auto& parameters = program.shape().parameters;
@@ -133,16 +114,16 @@ std::vector<OutputLimit> bump_limits(const RunConfig& config, const ProgramShape
     const OutputSafety& safety = config.task.outputs[i];
     const double low = std::max(shape.outputs[i].low, safety.low);
     const double high = std::min(shape.outputs[i].high, safety.high);
-    const bool is_real = shape.outputs[i].type == PointType::real64 || shape.outputs[i].type == PointType::real32;
+    const bool is_analog = is_real(shape.outputs[i].type);
     OutputLimit one{.limit = {.low = low, .high = high}};
     if (const auto given = config.bumps.find(i); given != config.bumps.end()) {
       one.limit.most = given->second;
       one.origin = "bump in the run file";
-    } else if (is_real && std::isfinite(low) && std::isfinite(high)) {
+    } else if (is_analog && std::isfinite(low) && std::isfinite(high)) {
       one.limit.most = part_of_range * (high - low);
       one.origin = fmt::format("1 % of {:.6g} to {:.6g}", low, high);
     } else {
-      one.origin = is_real ? "it has no low and high" : "it is no real number";
+      one.origin = is_analog ? "it has no low and high" : "it is no real number";
     }
     limits.push_back(std::move(one));
   }
@@ -251,19 +232,11 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   change.start = plan.own_state ? *plan.own_state : state_of(next);
   change.to = &plan.next;
   change.parameters = plan.image.parameters;
-  change.shared = shared_state(layout, shape, carried.left);
   change.from.resize(running.state_size());
   change.into = change.start;
+  change.shared = carry_state(layout, plan.image.state, shape, change.into, carried);
   change.outputs.resize(shape.outputs.size());
   change.bumps.resize(shape.outputs.size());
-  std::size_t states = 0;
-  for (const SharedNumber& one : change.shared) {
-    if (copy_shared(one, plan.image.state, change.into)) {
-      ++states;
-    } else {
-      carried.left.push_back(shape.state[one.field].name + " (not finite)");
-    }
-  }
   for (const auto& [name, most] : wish.bumps) {
     if (std::ranges::find(shape.outputs, name, &ProgramSignal::name) == shape.outputs.end()) {
       throw InputError(error::bad_usage, {}, fmt::format("There is no output {} whose jump could be limited.", name),
@@ -285,7 +258,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   report.parameters = shape.parameters.size();
   report.parameters_carried = carried.parameters_taken;
   report.states = shape.state.size();
-  report.states_carried = states;
+  report.states_carried = carried.states_taken;
   report.left = std::move(carried.left);
 }
 
@@ -306,7 +279,7 @@ void OnlineChange::rehearse(Plan& plan) const {
   if (found.has_errors()) {
     throw InputError(std::move(found));
   }
-  const std::int64_t began = own_cpu_time();
+  const std::int64_t began = own_cpu_now();
   for (std::size_t step = 1; step <= rehearsed_steps; ++step) {
     next.step(plan.image.inputs, change.outputs);
     const auto bad = std::ranges::find_if(change.outputs, [](double value) { return !std::isfinite(value); });
@@ -317,7 +290,7 @@ void OnlineChange::rehearse(Plan& plan) const {
       throw InputError(std::move(found));
     }
   }
-  plan.report.step_time = static_cast<double>(own_cpu_time() - began) / static_cast<double>(rehearsed_steps);
+  plan.report.step_time = static_cast<double>(own_cpu_now() - began) / static_cast<double>(rehearsed_steps);
   if (plan.report.step_time > static_cast<double>(program_->shape().period)) {
     refuse_for_now(fmt::format("A step of the new version takes {:.0f} us, and the period is {:.0f} us.",
                                plan.report.step_time * 1e-3, static_cast<double>(program_->shape().period) * 1e-3));

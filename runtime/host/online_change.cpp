@@ -77,12 +77,16 @@ void require_same_interface(const ProgramShape& has, const ProgramShape& next) {
   }
 }
 
+/// Nothing where there is none of that name.
+std::optional<std::size_t> place_of(const std::vector<ProgramSignal>& signals, const std::string& name) {
+  const auto found = std::ranges::find(signals, name, &ProgramSignal::name);
+  return found == signals.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - signals.begin()));
+}
+
 /// No number where there is none of that name.
 double parameter_named(const StepProgram& program, const std::string& name) {
-  const auto& parameters = program.shape().parameters;
-  const auto found = std::ranges::find(parameters, name, &ProgramSignal::name);
-  return found == parameters.end() ? not_a_number
-                                   : program.parameter(static_cast<std::size_t>(found - parameters.begin()));
+  const auto place = place_of(program.shape().parameters, name);
+  return place ? program.parameter(*place) : not_a_number;
 }
 
 void refuse_bump(Diagnostics& found, const OutputChange& output, const std::string& when) {
@@ -162,6 +166,17 @@ bool OnlineChange::wait_for(const Ready& ready) const {
   return true;
 }
 
+template <class Ready, class Withdraw>
+bool OnlineChange::wait_or_withdraw(const Ready& ready, const Withdraw& withdraw) const {
+  if (!wait_for(ready) && withdraw()) {
+    return false;
+  }
+  while (!ready()) {
+    std::this_thread::yield();  // it is at work
+  }
+  return true;
+}
+
 void OnlineChange::refuse_for_now(const std::string& why) const {
   throw InputError(error::online_change_not_now, {}, why,
                    has_ended_.load() ? "start the task with the new version: retained values are carried over."
@@ -176,14 +191,11 @@ StepImage OnlineChange::image() {
                   .inputs = std::vector<double>(shape.inputs.size()),
                   .outputs = std::vector<double>(shape.outputs.size())};
   program_->ask_for_image(image);
-  if (!wait_for([&] { return program_->has_image(); }) && program_->withdraw_image()) {
+  if (!wait_or_withdraw([&] { return program_->has_image(); }, [&] { return program_->withdraw_image(); })) {
     const FaultReport faults = task_->faults();
     refuse_for_now(has_ended_.load() ? "The task ends."
                                      : fmt::format("The diagram is not stepped; the last fault of the task was: {}.",
                                                    name_of(faults.last)));
-  }
-  while (!program_->has_image()) {
-    std::this_thread::yield();  // it is being taken
   }
   return image;
 }
@@ -197,13 +209,12 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   const KeptLayout layout = read_description(describe(running.shape()), running.state_size());
   CarriedValues carried = carry_parameters(layout, plan.image.parameters, shape, plan.given);
   for (const std::string& name : wish.as_given) {
-    const auto found = std::ranges::find(shape.parameters, name, &ProgramSignal::name);
-    if (found == shape.parameters.end()) {
+    const auto place = place_of(shape.parameters, name);
+    if (!place) {
       throw InputError(error::bad_usage, {}, fmt::format("The new version has no parameter {}.", name),
                        "write a name as `hysteron map` lists it.");
     }
-    const auto place = static_cast<std::size_t>(found - shape.parameters.begin());
-    carried.parameters[place] = plan.given[place];
+    carried.parameters[*place] = plan.given[*place];
     const auto is_left = [&](const std::string& left) { return left.starts_with(name + " ("); };
     if (std::ranges::none_of(carried.left, is_left)) {
       carried.left.push_back(name + " (as given)");
@@ -238,7 +249,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   change.outputs.resize(shape.outputs.size());
   change.bumps.resize(shape.outputs.size());
   for (const auto& [name, most] : wish.bumps) {
-    if (std::ranges::find(shape.outputs, name, &ProgramSignal::name) == shape.outputs.end()) {
+    if (!place_of(shape.outputs, name)) {
       throw InputError(error::bad_usage, {}, fmt::format("There is no output {} whose jump could be limited.", name),
                        "write a name as `hysteron map` lists it.");
     }
@@ -308,19 +319,15 @@ ChangeVerdict OnlineChange::propose(Plan& plan) {
     plan.next.traced = std::make_unique<TraceProgram>(plan.next.program());
   }
   program_->propose(plan.change);
-  const auto is_decided = [&] { return program_->is_decided(); };
-  if (!wait_for(is_decided) && program_->withdraw()) {
+  if (!wait_or_withdraw([&] { return program_->is_decided(); }, [&] { return program_->withdraw(); })) {
     refuse_for_now("The task did not take the change up: it steps the diagram no more.");
-  }
-  while (!is_decided()) {
-    std::this_thread::yield();  // it is being decided
   }
   return plan.change.verdict;
 }
 
-ChangeReport OnlineChange::carry_out(ProgramVersion& next, const Plan& begin, const ChangeWish& wish) {
+ChangeReport OnlineChange::carry_out(const Plan& begin, const ChangeWish& wish) {
   for (int i = 0; i < most_plans; ++i) {
-    Plan made{.next = next, .given = begin.given, .own_state = begin.own_state, .image = image()};
+    Plan made{.next = begin.next, .given = begin.given, .own_state = begin.own_state, .image = image()};
     plan(made, wish);
     rehearse(made);
     if (wish.only_check) {
@@ -385,20 +392,16 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
   try {
     const auto lock = one_at_a_time();
     require_same_interface(program_->shape(), program->shape());
-    const std::vector<double> given = parameters_of(*program);
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
+    auto held = wish.only_check ? nullptr : held_commits(task_->door());
+    ChangeReport report = carry_out({.next = *next, .given = parameters_of(next->program())}, wish);
     if (wish.only_check) {
-      return carry_out(*next, {.next = *next, .given = given}, wish);
+      return report;
     }
-    std::unique_ptr<ProgramVersion> gone;
-    ChangeReport report;
-    {
-      const auto held = held_commits(task_->door());
-      report = carry_out(*next, {.next = *next, .given = given}, wish);
-      gone = program_->keep(std::move(next));
-      keep_as_given(wish.as_given);
-      task_->door().version_changed(program_->version().program(), program_->version().parameters());
-    }
+    const auto gone = program_->keep(std::move(next));
+    keep_as_given(wish.as_given);
+    task_->door().version_changed(program_->version().program(), program_->version().parameters());
+    held.reset();
     tell_changed(report, ChangeOutcome::changed);
     if (retainer_ != nullptr) {
       retainer_->let_go();  // of the version that is gone
@@ -433,19 +436,16 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       program.restore(*begin.own_state);
     };
     try {
+      auto held = wish.only_check ? nullptr : held_commits(task_->door());
+      ChangeReport report = carry_out(begin, wish);
       if (wish.only_check) {
-        ChangeReport report = carry_out(*former, begin, wish);
         as_it_was();
         return report;
       }
-      ChangeReport report;
-      {
-        const auto held = held_commits(task_->door());
-        report = carry_out(*former, begin, wish);
-        program_->keep_former();
-        keep_as_given(wish.as_given);
-        task_->door().version_changed(program, former->parameters());
-      }
+      program_->keep_former();
+      keep_as_given(wish.as_given);
+      task_->door().version_changed(program, former->parameters());
+      held.reset();
       tell_changed(report, ChangeOutcome::back);
       return report;
     } catch (const InputError&) {

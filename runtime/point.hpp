@@ -22,6 +22,11 @@ enum class PointKind {
 
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
 
+/// Any number within its precision; else whole numbers, or two values.
+constexpr bool is_real(PointType type) {
+  return type == PointType::real32 || type == PointType::real64;
+}
+
 /// What a client must be allowed before it may write a point.
 enum class WriteRight {
   inputs,      ///< inputs of the diagram, and to say that the client lives

@@ -1,6 +1,5 @@
 #include "tool/change_channel.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>

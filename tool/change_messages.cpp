@@ -1,15 +1,12 @@
 #include "tool/change_messages.hpp"
 
-#include <cmath>
 #include <string>
 #include <utility>
 
+#include "support/json_number.hpp"
+
 namespace hysteron::tool {
 namespace {
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Place place_of(const Json& json) {
   return {.file = json.at("file"),
@@ -25,8 +22,8 @@ Json as_json(const runtime::ChangeReport& report) {
   for (const runtime::OutputChange& one : report.outputs) {
     outputs.push_back({{"name", one.name},
                        {"unit", one.unit},
-                       {"before", number(one.bump.before)},
-                       {"after", number(one.bump.after)},
+                       {"before", number_or_null<Json>(one.bump.before)},
+                       {"after", number_or_null<Json>(one.bump.after)},
                        {"bump", one.bump.size},
                        {"limit", one.limit},
                        {"limit_from", one.origin}});

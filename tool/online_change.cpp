@@ -1,9 +1,9 @@
 // hysteron online-change: changes the diagram of a task that runs, without ending it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -90,11 +90,7 @@ std::string number_word(const Json& value) {
 }
 
 std::string list_text(std::string_view title, const Json& names) {
-  std::string text;
-  for (const Json& name : names) {
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", name.get<std::string>());
-  }
-  return text.empty() ? "" : fmt::format("{}: {}\n", title, text);
+  return names.empty() ? "" : fmt::format("{}: {}\n", title, fmt::join(names.get<std::vector<std::string>>(), ", "));
 }
 
 std::string change_text(const Json& report, bool is_back) {
@@ -143,25 +139,22 @@ std::filesystem::path free_name(const std::filesystem::path& path) {
 class FilesBack {
  public:
   explicit FilesBack(const std::vector<OutputFile>& former) {
+    std::vector<OutputFile> changed;
     for (const OutputFile& one : former) {
       std::string found = text_on_disk(one.path);
       if (found != one.contents) {
         kept_.push_back({.path = free_name(one.path), .contents = found});
         as_they_were_.push_back({.path = one.path, .contents = std::move(found)});
-        former_.push_back(one);
+        changed.push_back(one);
       }
     }
     std::vector<OutputFile> all = kept_;
-    all.insert(all.end(), former_.begin(), former_.end());
-    if (!all.empty()) {
-      write_files_atomically(all);
-    }
+    all.insert(all.end(), changed.begin(), changed.end());
+    write_files_atomically(all);
   }
   /// The task goes on with the version that it had.
   void undo() const {
-    if (!as_they_were_.empty()) {
-      write_files_atomically(as_they_were_);
-    }
+    write_files_atomically(as_they_were_);
     for (const OutputFile& one : kept_) {
       std::error_code unknown;
       std::filesystem::remove(one.path, unknown);
@@ -169,17 +162,16 @@ class FilesBack {
   }
   [[nodiscard]] std::string text() const {
     std::string text;
-    for (std::size_t i = 0; i < former_.size(); ++i) {
-      text +=
-          fmt::format("{} is as before; what stood there is in {}\n", former_[i].path.string(), kept_[i].path.string());
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      text += fmt::format("{} is as before; what stood there is in {}\n", as_they_were_[i].path.string(),
+                          kept_[i].path.string());
     }
     return text;
   }
 
  private:
-  std::vector<OutputFile> former_{};
-  std::vector<OutputFile> kept_{};
-  std::vector<OutputFile> as_they_were_{};
+  std::vector<OutputFile> kept_{};          ///< beside each file, what stood there
+  std::vector<OutputFile> as_they_were_{};  ///< the files themselves
 };
 
 int go_back(const Socket& socket, const OnlineChangeOptions& options, Console& console) {

@@ -1,10 +1,9 @@
 #include "tool/served_versions.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 
 #include "support/errors.hpp"

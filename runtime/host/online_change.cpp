@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -13,6 +12,7 @@
 
 #include "runtime/host/notices.hpp"
 #include "runtime/task/carry.hpp"
+#include "runtime/task/clock.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
@@ -77,31 +77,16 @@ void require_same_interface(const ProgramShape& has, const ProgramShape& next) {
   }
 }
 
-std::vector<std::byte> state_of(const StepProgram& program) {
-  std::vector<std::byte> state(program.state_size());
-  program.save(state);
-  return state;
-}
-
-/// Of this thread, in ns: what others compute meanwhile does not count.
-std::int64_t own_cpu_time() {
-  timespec time{};
-  (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-void set_parameters(StepProgram& program, std::span<const double> values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    program.set_parameter(i, values[i]);
-  }
+/// Nothing where there is none of that name.
+std::optional<std::size_t> place_of(const std::vector<ProgramSignal>& signals, const std::string& name) {
+  const auto found = std::ranges::find(signals, name, &ProgramSignal::name);
+  return found == signals.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - signals.begin()));
 }
 
 /// No number where there is none of that name.
 double parameter_named(const StepProgram& program, const std::string& name) {
-  const auto& parameters = program.shape().parameters;
-  const auto found = std::ranges::find(parameters, name, &ProgramSignal::name);
-  return found == parameters.end() ? not_a_number
-                                   : program.parameter(static_cast<std::size_t>(found - parameters.begin()));
+  const auto place = place_of(program.shape().parameters, name);
+  return place ? program.parameter(*place) : not_a_number;
 }
 
 void refuse_bump(Diagnostics& found, const OutputChange& output, const std::string& when) {
@@ -133,16 +118,16 @@ std::vector<OutputLimit> bump_limits(const RunConfig& config, const ProgramShape
     const OutputSafety& safety = config.task.outputs[i];
     const double low = std::max(shape.outputs[i].low, safety.low);
     const double high = std::min(shape.outputs[i].high, safety.high);
-    const bool is_real = shape.outputs[i].type == PointType::real64 || shape.outputs[i].type == PointType::real32;
+    const bool is_analog = is_real(shape.outputs[i].type);
     OutputLimit one{.limit = {.low = low, .high = high}};
     if (const auto given = config.bumps.find(i); given != config.bumps.end()) {
       one.limit.most = given->second;
       one.origin = "bump in the run file";
-    } else if (is_real && std::isfinite(low) && std::isfinite(high)) {
+    } else if (is_analog && std::isfinite(low) && std::isfinite(high)) {
       one.limit.most = part_of_range * (high - low);
       one.origin = fmt::format("1 % of {:.6g} to {:.6g}", low, high);
     } else {
-      one.origin = is_real ? "it has no low and high" : "it is no real number";
+      one.origin = is_analog ? "it has no low and high" : "it is no real number";
     }
     limits.push_back(std::move(one));
   }
@@ -181,6 +166,17 @@ bool OnlineChange::wait_for(const Ready& ready) const {
   return true;
 }
 
+template <class Ready, class Withdraw>
+bool OnlineChange::wait_or_withdraw(const Ready& ready, const Withdraw& withdraw) const {
+  if (!wait_for(ready) && withdraw()) {
+    return false;
+  }
+  while (!ready()) {
+    std::this_thread::yield();  // it is at work
+  }
+  return true;
+}
+
 void OnlineChange::refuse_for_now(const std::string& why) const {
   throw InputError(error::online_change_not_now, {}, why,
                    has_ended_.load() ? "start the task with the new version: retained values are carried over."
@@ -195,14 +191,11 @@ StepImage OnlineChange::image() {
                   .inputs = std::vector<double>(shape.inputs.size()),
                   .outputs = std::vector<double>(shape.outputs.size())};
   program_->ask_for_image(image);
-  if (!wait_for([&] { return program_->has_image(); }) && program_->withdraw_image()) {
+  if (!wait_or_withdraw([&] { return program_->has_image(); }, [&] { return program_->withdraw_image(); })) {
     const FaultReport faults = task_->faults();
     refuse_for_now(has_ended_.load() ? "The task ends."
                                      : fmt::format("The diagram is not stepped; the last fault of the task was: {}.",
                                                    name_of(faults.last)));
-  }
-  while (!program_->has_image()) {
-    std::this_thread::yield();  // it is being taken
   }
   return image;
 }
@@ -216,13 +209,12 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   const KeptLayout layout = read_description(describe(running.shape()), running.state_size());
   CarriedValues carried = carry_parameters(layout, plan.image.parameters, shape, plan.given);
   for (const std::string& name : wish.as_given) {
-    const auto found = std::ranges::find(shape.parameters, name, &ProgramSignal::name);
-    if (found == shape.parameters.end()) {
+    const auto place = place_of(shape.parameters, name);
+    if (!place) {
       throw InputError(error::bad_usage, {}, fmt::format("The new version has no parameter {}.", name),
                        "write a name as `hysteron map` lists it.");
     }
-    const auto place = static_cast<std::size_t>(found - shape.parameters.begin());
-    carried.parameters[place] = plan.given[place];
+    carried.parameters[*place] = plan.given[*place];
     const auto is_left = [&](const std::string& left) { return left.starts_with(name + " ("); };
     if (std::ranges::none_of(carried.left, is_left)) {
       carried.left.push_back(name + " (as given)");
@@ -251,21 +243,13 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   change.start = plan.own_state ? *plan.own_state : state_of(next);
   change.to = &plan.next;
   change.parameters = plan.image.parameters;
-  change.shared = shared_state(layout, shape, carried.left);
   change.from.resize(running.state_size());
   change.into = change.start;
+  change.shared = carry_state(layout, plan.image.state, shape, change.into, carried);
   change.outputs.resize(shape.outputs.size());
   change.bumps.resize(shape.outputs.size());
-  std::size_t states = 0;
-  for (const SharedNumber& one : change.shared) {
-    if (copy_shared(one, plan.image.state, change.into)) {
-      ++states;
-    } else {
-      carried.left.push_back(shape.state[one.field].name + " (not finite)");
-    }
-  }
   for (const auto& [name, most] : wish.bumps) {
-    if (std::ranges::find(shape.outputs, name, &ProgramSignal::name) == shape.outputs.end()) {
+    if (!place_of(shape.outputs, name)) {
       throw InputError(error::bad_usage, {}, fmt::format("There is no output {} whose jump could be limited.", name),
                        "write a name as `hysteron map` lists it.");
     }
@@ -285,7 +269,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   report.parameters = shape.parameters.size();
   report.parameters_carried = carried.parameters_taken;
   report.states = shape.state.size();
-  report.states_carried = states;
+  report.states_carried = carried.states_taken;
   report.left = std::move(carried.left);
 }
 
@@ -306,7 +290,7 @@ void OnlineChange::rehearse(Plan& plan) const {
   if (found.has_errors()) {
     throw InputError(std::move(found));
   }
-  const std::int64_t began = own_cpu_time();
+  const std::int64_t began = own_cpu_now();
   for (std::size_t step = 1; step <= rehearsed_steps; ++step) {
     next.step(plan.image.inputs, change.outputs);
     const auto bad = std::ranges::find_if(change.outputs, [](double value) { return !std::isfinite(value); });
@@ -317,7 +301,7 @@ void OnlineChange::rehearse(Plan& plan) const {
       throw InputError(std::move(found));
     }
   }
-  plan.report.step_time = static_cast<double>(own_cpu_time() - began) / static_cast<double>(rehearsed_steps);
+  plan.report.step_time = static_cast<double>(own_cpu_now() - began) / static_cast<double>(rehearsed_steps);
   if (plan.report.step_time > static_cast<double>(program_->shape().period)) {
     refuse_for_now(fmt::format("A step of the new version takes {:.0f} us, and the period is {:.0f} us.",
                                plan.report.step_time * 1e-3, static_cast<double>(program_->shape().period) * 1e-3));
@@ -335,19 +319,15 @@ ChangeVerdict OnlineChange::propose(Plan& plan) {
     plan.next.traced = std::make_unique<TraceProgram>(plan.next.program());
   }
   program_->propose(plan.change);
-  const auto is_decided = [&] { return program_->is_decided(); };
-  if (!wait_for(is_decided) && program_->withdraw()) {
+  if (!wait_or_withdraw([&] { return program_->is_decided(); }, [&] { return program_->withdraw(); })) {
     refuse_for_now("The task did not take the change up: it steps the diagram no more.");
-  }
-  while (!is_decided()) {
-    std::this_thread::yield();  // it is being decided
   }
   return plan.change.verdict;
 }
 
-ChangeReport OnlineChange::carry_out(ProgramVersion& next, const Plan& begin, const ChangeWish& wish) {
+ChangeReport OnlineChange::carry_out(const Plan& begin, const ChangeWish& wish) {
   for (int i = 0; i < most_plans; ++i) {
-    Plan made{.next = next, .given = begin.given, .own_state = begin.own_state, .image = image()};
+    Plan made{.next = begin.next, .given = begin.given, .own_state = begin.own_state, .image = image()};
     plan(made, wish);
     rehearse(made);
     if (wish.only_check) {
@@ -412,20 +392,16 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
   try {
     const auto lock = one_at_a_time();
     require_same_interface(program_->shape(), program->shape());
-    const std::vector<double> given = parameters_of(*program);
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
+    auto held = wish.only_check ? nullptr : held_commits(task_->door());
+    ChangeReport report = carry_out({.next = *next, .given = parameters_of(next->program())}, wish);
     if (wish.only_check) {
-      return carry_out(*next, {.next = *next, .given = given}, wish);
+      return report;
     }
-    std::unique_ptr<ProgramVersion> gone;
-    ChangeReport report;
-    {
-      const auto held = held_commits(task_->door());
-      report = carry_out(*next, {.next = *next, .given = given}, wish);
-      gone = program_->keep(std::move(next));
-      keep_as_given(wish.as_given);
-      task_->door().version_changed(program_->version().program(), program_->version().parameters());
-    }
+    const auto gone = program_->keep(std::move(next));
+    keep_as_given(wish.as_given);
+    task_->door().version_changed(program_->version().program(), program_->version().parameters());
+    held.reset();
     tell_changed(report, ChangeOutcome::changed);
     if (retainer_ != nullptr) {
       retainer_->let_go();  // of the version that is gone
@@ -460,19 +436,16 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       program.restore(*begin.own_state);
     };
     try {
+      auto held = wish.only_check ? nullptr : held_commits(task_->door());
+      ChangeReport report = carry_out(begin, wish);
       if (wish.only_check) {
-        ChangeReport report = carry_out(*former, begin, wish);
         as_it_was();
         return report;
       }
-      ChangeReport report;
-      {
-        const auto held = held_commits(task_->door());
-        report = carry_out(*former, begin, wish);
-        program_->keep_former();
-        keep_as_given(wish.as_given);
-        task_->door().version_changed(program, former->parameters());
-      }
+      program_->keep_former();
+      keep_as_given(wish.as_given);
+      task_->door().version_changed(program, former->parameters());
+      held.reset();
       tell_changed(report, ChangeOutcome::back);
       return report;
     } catch (const InputError&) {

@@ -83,7 +83,7 @@ class OnlineChange {
  private:
   struct Plan;
 
-  ChangeReport carry_out(ProgramVersion& next, const Plan& begin, const ChangeWish& wish);
+  ChangeReport carry_out(const Plan& begin, const ChangeWish& wish);
   [[nodiscard]] StepImage image();
   void plan(Plan& plan, const ChangeWish& wish) const;
   void rehearse(Plan& plan) const;
@@ -96,6 +96,9 @@ class OnlineChange {
   [[nodiscard]] std::unique_lock<std::mutex> one_at_a_time();
   template <class Ready>
   [[nodiscard]] bool wait_for(const Ready& ready) const;
+  /// What was asked of the cyclic thread; false where that did not begin with it in time, and it is withdrawn.
+  template <class Ready, class Withdraw>
+  [[nodiscard]] bool wait_or_withdraw(const Ready& ready, const Withdraw& withdraw) const;
   [[noreturn]] void refuse_for_now(const std::string& why) const;
 
   ChangeableProgram* program_;

@@ -35,9 +35,8 @@ std::string names_text(const std::vector<std::string>& names) {
 }  // namespace
 
 RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
-    : config_(config), folder_(config.folder), after_reset_(program.state_size()) {
+    : config_(config), folder_(config.folder), after_reset_(state_of(program)) {
   const std::vector<double> given = parameters_of(program);
-  program.save(after_reset_);
   try {
     folder_.open();
     recovery_ = recover(
@@ -103,13 +102,10 @@ void RetainedState::carry(StepProgram& program, std::span<const double> given) {
                                  "\"cold\", which puts the files aside.",
                                  config_.folder));
   }
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    program.set_parameter(i, carried.parameters[i]);
-  }
+  set_parameters(program, carried.parameters);
   program.reset();  // what starts at a parameter starts at the carried one
-  std::vector<std::byte> state(program.state_size());
-  program.save(state);
-  after_reset_ = state;
+  after_reset_ = state_of(program);
+  std::vector<std::byte> state = after_reset_;
   carry_state(kept, values.state, shape, state, carried);
   program.restore(state);
   left_ = std::move(carried.left);

@@ -41,9 +41,6 @@ std::optional<PointType> type_of(std::string_view name) {
   return found == type_names.end() ? std::nullopt : std::optional(found->type);
 }
 
-bool is_real(PointType type) {
-  return type == PointType::real64 || type == PointType::real32;
-}
 bool is_count(PointType type) {
   return type == PointType::int32 || type == PointType::uint64;
 }
@@ -310,15 +307,17 @@ bool copy_shared(const SharedNumber& shared, std::span<const std::byte> from, st
   return true;
 }
 
-void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
-                 std::span<std::byte> into, CarriedValues& carried) {
-  for (const SharedNumber& one : shared_state(kept, shape, carried.left)) {
+std::vector<SharedNumber> carry_state(const KeptLayout& kept, std::span<const std::byte> from,
+                                      const ProgramShape& shape, std::span<std::byte> into, CarriedValues& carried) {
+  std::vector<SharedNumber> shared = shared_state(kept, shape, carried.left);
+  for (const SharedNumber& one : shared) {
     if (copy_shared(one, from, into)) {
       ++carried.states_taken;
     } else {
       carried.left.push_back(left(shape.state[one.field].name, "not finite"));
     }
   }
+  return shared;
 }
 
 std::string not_finite(const ProgramShape& shape, std::span<const std::byte> state,

@@ -65,11 +65,10 @@ struct SharedNumber {
 /// Copies what is finite; a row of which one number is not stays as it is in `into`. False then. Allocates nothing.
 bool copy_shared(const SharedNumber& shared, std::span<const std::byte> from, std::span<std::byte> into) noexcept;
 
-/// Numbers of the state whose instance, block, type and unit are the same, and which are finite; none where the period
-/// is another, in which a delay of so many steps is another time. `into` is the state of
-/// the program after its reset; the count and the reasons are added to `carried`.
-void carry_state(const KeptLayout& kept, std::span<const std::byte> from, const ProgramShape& shape,
-                 std::span<std::byte> into, CarriedValues& carried);
+/// Copies what shared_state finds and is finite; gives back all that it finds. `into` is the state of the program after
+/// its reset; the count and the reasons are added to `carried`.
+std::vector<SharedNumber> carry_state(const KeptLayout& kept, std::span<const std::byte> from,
+                                      const ProgramShape& shape, std::span<std::byte> into, CarriedValues& carried);
 
 /// The name of the first number of a state that is infinite or not a number, though it is finite in `after_reset`;
 /// empty where there is none. Both are of the program.

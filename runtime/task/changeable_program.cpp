@@ -71,9 +71,7 @@ void ChangeableProgram::plain_step(std::span<const double> inputs, std::span<dou
     program.step(inputs, outputs);
     return;
   }
-  for (std::size_t i = 0; i < wanted_->parameters.size(); ++i) {
-    wanted_->parameters[i] = program.parameter(i);
-  }
+  copy_parameters(program, wanted_->parameters);
   program.save(wanted_->state);
   std::ranges::copy(inputs, wanted_->inputs.begin());
   program.step(inputs, outputs);
@@ -110,9 +108,7 @@ bool ChangeableProgram::try_change(std::span<const double> inputs, std::span<dou
     }
   }
   std::ranges::copy(change.outputs, outputs.begin());
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    values_[i] = parameter(i);
-  }
+  copy_parameters(*this, values_);
   running_ = change.to;
   change.verdict = ChangeVerdict::taken;
   return true;

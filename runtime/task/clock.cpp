@@ -37,6 +37,10 @@ std::int64_t monotonic_now() noexcept {
   return read_clock(CLOCK_MONOTONIC);
 }
 
+std::int64_t own_cpu_now() noexcept {
+  return read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
+
 std::int64_t stolen_time(const char* text, long ticks_a_second) {
   // cpu user nice system idle iowait irq softirq steal
   unsigned long long steal = 0;
@@ -70,7 +74,7 @@ void MonotonicClock::sleep_until(std::int64_t time) noexcept {
 }
 
 std::int64_t MonotonicClock::own_cpu() noexcept {
-  return read_clock(CLOCK_THREAD_CPUTIME_ID);
+  return own_cpu_now();
 }
 
 }  // namespace hysteron::runtime

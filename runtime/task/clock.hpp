@@ -60,6 +60,9 @@ class VirtualClock final : public Clock {
 /// CLOCK_MONOTONIC now.
 [[nodiscard]] std::int64_t monotonic_now() noexcept;
 
+/// What the calling thread has computed so far: what others compute meanwhile does not count.
+[[nodiscard]] std::int64_t own_cpu_now() noexcept;
+
 /// The stolen time in a text like /proc/stat's, in nanoseconds: of all processors together. 0 where it says nothing.
 [[nodiscard]] std::int64_t stolen_time(const char* text, long ticks_a_second);
 

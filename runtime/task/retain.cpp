@@ -242,9 +242,7 @@ void Retainer::offer(const StepProgram& program, std::uint64_t commits) noexcept
   Latest<RetainedValues>& newest = image_.load(std::memory_order_relaxed)->newest_;
   RetainedValues& values = newest.filling();
   values.commits = commits;
-  for (std::size_t i = 0; i < values.parameters.size(); ++i) {
-    values.parameters[i] = program.parameter(i);
-  }
+  copy_parameters(program, values.parameters);
   program.save(values.state);
   newest.publish();
 }

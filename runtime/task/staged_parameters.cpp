@@ -15,7 +15,7 @@ std::string refusal_of(const ProgramSignal& signal, double value) {
   if (signal.type == PointType::boolean && value != 0.0 && value != 1.0) {
     return signal.name + " takes 0 or 1.";
   }
-  if (signal.type != PointType::real32 && signal.type != PointType::real64 && value != std::trunc(value)) {
+  if (!is_real(signal.type) && value != std::trunc(value)) {
     return signal.name + " takes a whole number.";
   }
   const bool too_low = signal.low_excluded ? !(value > signal.low) : !(value >= signal.low);

@@ -87,13 +87,32 @@ class StepProgram {
   virtual void restore(std::span<const std::byte> bytes) noexcept = 0;
 };
 
+/// The values of the first parameters, as many as there is room for. Allocates nothing.
+inline void copy_parameters(const StepProgram& program, std::span<double> into) noexcept {
+  for (std::size_t i = 0; i < into.size(); ++i) {
+    into[i] = program.parameter(i);
+  }
+}
+
 /// The values of all parameters.
 [[nodiscard]] inline std::vector<double> parameters_of(const StepProgram& program) {
   std::vector<double> values(program.shape().parameters.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = program.parameter(i);
-  }
+  copy_parameters(program, values);
   return values;
+}
+
+/// Sets the first parameters, as many as are given. Allocates nothing.
+inline void set_parameters(StepProgram& program, std::span<const double> values) noexcept {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    program.set_parameter(i, values[i]);
+  }
+}
+
+/// The state as the program saves it.
+[[nodiscard]] inline std::vector<std::byte> state_of(const StepProgram& program) {
+  std::vector<std::byte> state(program.state_size());
+  program.save(state);
+  return state;
 }
 
 }  // namespace hysteron::runtime

@@ -128,9 +128,7 @@ void Task::take_orders() noexcept {
   }
   if (orders->commits != applied_commits_) {
     applied_commits_ = orders->commits;
-    for (std::size_t i = 0; i < orders->parameters.size(); ++i) {
-      program_->set_parameter(i, orders->parameters[i]);
-    }
+    set_parameters(*program_, orders->parameters);
     if (attachments_.trace != nullptr) {
       attachments_.trace->parameters_changed(running());
     }

@@ -174,9 +174,7 @@ void Trace::push_state(std::uint64_t number, const StepProgram& program) noexcep
     const std::array<std::span<const std::byte>, 1> contents{std::as_bytes(std::span(program_.head))};
     needs_head_ = !push(TraceKind::program, contents);
   }
-  for (std::size_t i = 0; i < program_.parameters.size(); ++i) {
-    program_.parameters[i] = program.parameter(i);
-  }
+  copy_parameters(program, program_.parameters);
   const std::array<std::span<const std::byte>, 3> contents{
       bytes_of(number), std::as_bytes(std::span(program_.parameters)), std::span<const std::byte>(program_.state)};
   needs_state_ = needs_head_ || !push(TraceKind::state, contents);
@@ -192,9 +190,7 @@ void Trace::program_changed(std::uint64_t number, const StepProgram& program, st
 }
 
 void Trace::parameters_changed(const StepProgram& program) noexcept {
-  for (std::size_t i = 0; i < program_.parameters.size(); ++i) {
-    program_.parameters[i] = program.parameter(i);
-  }
+  copy_parameters(program, program_.parameters);
   const std::array<std::span<const std::byte>, 1> contents{std::as_bytes(std::span(program_.parameters))};
   needs_state_ = !push(TraceKind::parameters, contents) || needs_state_;
 }

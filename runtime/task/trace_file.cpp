@@ -223,11 +223,7 @@ std::string replay(std::string_view bytes, StepProgram& program, ReplayResult& r
   std::vector<double> computed(program.shape().outputs.size());
   result.difference_rms.assign(computed.size(), 0.0);
   result.limited_rms.assign(computed.size(), 0.0);
-  const auto set_all = [&](std::span<const double> parameters) {
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      program.set_parameter(i, parameters[i]);
-    }
-  };
+  const auto set_all = [&](std::span<const double> parameters) { set_parameters(program, parameters); };
   const auto visit = [&](const TraceHead& head) {
     TraceVisitor visitor;
     if (head.layout != program.shape().layout || head.state_size != program.state_size()) {

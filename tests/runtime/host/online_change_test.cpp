@@ -66,9 +66,7 @@ class Plant {
   void keep_in(const hysteron::test::ScratchFolder& folder) {
     files_ = std::make_unique<RetainFolder>(folder.path() / "kept");
     files_->open();
-    std::vector<std::byte> state(program_.state_size());
-    program_.save(state);
-    retainer_ = std::make_unique<Retainer>(*files_, program_, Recovery{}, state);
+    retainer_ = std::make_unique<Retainer>(*files_, program_, Recovery{}, state_of(program_));
     trace_ = std::make_unique<Trace>(TraceSettings{.file = folder / "run.trace", .waits = true}, program_);
   }
   void start() {

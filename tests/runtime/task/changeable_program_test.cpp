@@ -66,14 +66,11 @@ struct Change {
     proposed.to = &to;
     proposed.parameters = parameters_of(running);
     CarriedValues carried = carry_parameters(kept, proposed.parameters, next.shape(), parameters_of(next));
-    for (std::size_t i = 0; i < carried.parameters.size(); ++i) {
-      next.set_parameter(i, carried.parameters[i]);
-    }
+    set_parameters(next, carried.parameters);
     left = carried.left;
     proposed.shared = shared_state(kept, next.shape(), left);
     proposed.from.resize(running.state_size());
-    proposed.start.resize(next.state_size());
-    next.save(proposed.start);
+    proposed.start = state_of(next);
     proposed.into = proposed.start;
     proposed.outputs.resize(1);
     proposed.limits = {{.most = most}};
@@ -126,17 +123,13 @@ TEST(ChangeableProgram, AChangeHasTheBitsOfARestartThatLostNothing) {
     const std::vector<Integrator> after{{"B", 5.0}, {"NEW", 0.01}, {"A", 5.0}, {"C", 1.0, "um"}};
     auto expected = all_steps(*old, std::span(inputs).first(at));
     auto next = integrators(after);
-    std::vector<std::byte> state(old->state_size());
-    std::vector<std::byte> into(next->state_size());
-    old->save(state);
-    next->save(into);
+    const std::vector<std::byte> state = state_of(*old);
+    std::vector<std::byte> into = state_of(*next);
     const KeptLayout kept = read_description(describe(old->shape()), state.size());
     CarriedValues carried = carry_parameters(kept, parameters_of(*old), next->shape(), parameters_of(*next));
     carry_state(kept, state, next->shape(), into, carried);
     next->restore(into);
-    for (std::size_t i = 0; i < carried.parameters.size(); ++i) {
-      next->set_parameter(i, carried.parameters[i]);
-    }
+    set_parameters(*next, carried.parameters);
     for (const double input : std::span(inputs).subspan(at)) {
       expected.push_back(one_step(*next, input));
     }

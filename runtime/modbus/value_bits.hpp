@@ -57,7 +57,7 @@ constexpr std::size_t registers_of(RegisterType type) {
 }
 
 constexpr bool is_real(RegisterType type) {
-  return type.type == PointType::real32 || type.type == PointType::real64;
+  return is_real(type.type);
 }
 
 constexpr const char* name_of(RegisterType type) {

@@ -20,8 +20,7 @@ std::string value_text(double value, PointType type) {
   if (type == PointType::boolean) {
     return value != 0.0 ? "true" : "false";
   }
-  return type == PointType::real32 || type == PointType::real64 ? fmt::format("{}", value)
-                                                                : fmt::format("{:.0f}", value);
+  return is_real(type) ? fmt::format("{}", value) : fmt::format("{:.0f}", value);
 }
 
 /// Bytes that are no UTF-8 are replaced: what is sent is JSON whatever the diagram's units say.

@@ -33,9 +33,7 @@ std::string_view name_of(PointKind kind) {
 }
 
 std::string_view name_of(PointType type) {
-  return type == PointType::boolean                               ? "boolean"
-         : type == PointType::real32 || type == PointType::real64 ? "real"
-                                                                  : "integer";
+  return type == PointType::boolean ? "boolean" : is_real(type) ? "real" : "integer";
 }
 
 /// Texts are the user's: what is no UTF-8 is replaced.

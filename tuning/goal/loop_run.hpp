@@ -59,17 +59,12 @@ class LoopRun {
   template <class S>
   bool take_impulse(Machine<S>& machine, std::span<const Eigen::Index> columns, std::size_t steps,
                     LoopResponse& response);
-  template <class S>
-  bool pass(std::optional<Machine<S>>& machine, const Eigen::VectorXd& x, std::span<const Eigen::Index> columns,
-            LoopResponse& response);
 
   const LoopPlant& plant_;
   const Drive& drive_;
   const std::vector<FreeParameter>& parameters_;
   double largest_ = 0.0;  ///< |v| of the last test
-  Machine<double> plain_;
-  std::optional<Machine<Dual<3>>> three_{};
-  std::optional<Machine<Dual<7>>> seven_{};
+  Machines machines_;
 };
 
 }  // namespace hysteron

@@ -57,8 +57,7 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
     if (result.at_bound[j] != AtBound::Free) {
       const FreeParameter& free = problem.parameters[j];
       notes.push_back({.place = free.place,
-                       .text = fmt::format("{} is on its {} bound", free.name,
-                                           result.at_bound[j] == AtBound::Lower ? "lower" : "upper")});
+                       .text = fmt::format("{} is on its {} bound", free.name, bound_name(result.at_bound[j]))});
       mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
     }
   }

@@ -87,7 +87,7 @@ json goal_json(const GoalProblem& problem, const GoalResult& result) {
                               {"after", figures_json(plant.after)}});
   }
   for (const LimitResult& limit : result.limits) {
-    list["limits"].push_back({{"name", text_of(problem.limits[limit.limit].kind).key},
+    list["limits"].push_back({{"name", text_of(problem.limits[limit.limit].kind).key.name},
                               {"plant", problem.plants[limit.plant].name},
                               {"limit", problem.limits[limit.limit].limit},
                               {"value", number_or_null<json>(limit.value)},

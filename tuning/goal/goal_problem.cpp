@@ -249,11 +249,9 @@ class GoalBuilder {
   // ---- limits and plants ------------------------------------------------------------------------------------------
 
   void take_limits() {
-    const std::array stated{&goal_.largest_effort, &goal_.largest_rate, &goal_.largest_overshoot,
-                            &goal_.gain_margin,    &goal_.phase_margin, &goal_.sensitivity};
-    for (std::size_t i = 0; i < stated.size(); ++i) {
-      if (const auto& limit = *stated[i]) {
-        problem_.limits.push_back({.kind = limit_texts[i].kind, .limit = limit->value, .place = limit->place});
+    for (const LimitText& text : limit_texts) {
+      if (const auto& limit = goal_.*text.key.setting) {
+        problem_.limits.push_back({.kind = text.kind, .limit = limit->value, .place = limit->place});
       }
     }
   }

@@ -37,7 +37,6 @@ class GoalBuilder {
         goal_(file.goal),
         records_(records) {
     problem_.settings = goal_;
-    problem_.file = file.file;
   }
 
   GoalProblem build() {

@@ -50,7 +50,6 @@ struct GoalLimit {
 
 struct GoalProblem {
   parameters::GoalSettings settings{};
-  std::string file{};                       ///< the parameter file
   std::vector<LoopPlant> plants{};          ///< one at least
   std::vector<FreeParameter> parameters{};  ///< what is tuned
   Drive drive{};                            ///< the test signal, and what the other inputs stand at

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tuning/free_parameters.hpp"
@@ -40,6 +41,11 @@ enum class LoopState : std::uint8_t {
   NotFinite,  ///< a value of the test run is no finite number
   Unstable,   ///< what was put in has not died away in twenty times the test's duration
 };
+
+/// What the response of a loop without a value is said to do.
+[[nodiscard]] constexpr std::string_view what_it_does(LoopState state) {
+  return state == LoopState::Unstable ? "does not settle" : "has no finite response";
+}
 
 /// Runs one loop again and again. h is half the difference of two runs with ±ε, ε a millionth of the largest |v|: exact
 /// for a linear loop, of second order in ε for a smooth one; its derivatives are those of the two runs, by dual

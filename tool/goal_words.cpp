@@ -125,9 +125,8 @@ TextTable limit_table(const GoalProblem& problem, const GoalResult& result) {
 std::vector<std::string> goal_remarks(const GoalProblem& problem, const GoalResult& result) {
   std::vector<std::string> remarks;
   if (result.start_state != LoopState::Settles) {
-    remarks.push_back(
-        fmt::format("At the start the loop {}: the search began at a point where it settles.",
-                    result.start_state == LoopState::Unstable ? "does not settle" : "has no finite response"));
+    remarks.push_back(fmt::format("At the start the loop {}: the search began at a point where it settles.",
+                                  what_it_does(result.start_state)));
   }
   if (result.plants.front().frequencies.empty()) {
     remarks.emplace_back("No margin is known: [goal] does not say where the loop is cut, as in loop = \"PID.XOUT\".");

@@ -37,7 +37,7 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
     const GoalLimit& one = problem.limits[limit.limit];
     const std::string plant = problem.plants.size() > 1 ? " with " + problem.plants[limit.plant].name : std::string();
     place = parts.empty() ? one.place : place;
-    parts.push_back(fmt::format("{} = {}", text_of(one.kind).key, number_text(one.limit)));
+    parts.push_back(fmt::format("{} = {}", text_of(one.kind).key.name, number_text(one.limit)));
     notes.push_back({.place = one.place,
                      .text = fmt::format("{} is {:.4g}{}{}", text_of(one.kind).name, limit.value, plant,
                                          limit.is_kept ? "" : ", which breaks it")});
@@ -57,8 +57,7 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
     if (result.at_bound[j] != AtBound::Free) {
       const FreeParameter& free = problem.parameters[j];
       notes.push_back({.place = free.place,
-                       .text = fmt::format("{} is on its {} bound", free.name,
-                                           result.at_bound[j] == AtBound::Lower ? "lower" : "upper")});
+                       .text = fmt::format("{} is on its {} bound", free.name, bound_name(result.at_bound[j]))});
       mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
     }
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
+
 #include "support/errors.hpp"
 #include "support/overwriting.hpp"
 #include "tool/writable.hpp"

@@ -1,7 +1,6 @@
 // What `hysteron tune` is asked, by records or by a goal alike.
 #pragma once
 
-#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -3,9 +3,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 #include <span>
 
+#include "codegen/interpreter/machine.hpp"
 #include "tuning/dual.hpp"
+#include "tuning/simulation.hpp"
 
 namespace hysteron {
 
@@ -24,6 +27,16 @@ S seeded(double value, Eigen::Index column, std::span<const Eigen::Index> column
     }
   }
   return S(value);
+}
+
+/// The inputs of a step; one that stands still is set in the first.
+template <class S>
+void set_inputs(Machine<S>& machine, const Drive& drive, std::size_t step) {
+  for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
+    if (step == 0 || drive.inputs[i].size() > 1) {
+      machine.set_input(i, S(at_step(drive.inputs[i], step)));
+    }
+  }
 }
 
 inline double plain_value(double value) {

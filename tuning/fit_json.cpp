@@ -73,15 +73,12 @@ nlohmann::json fit_json(const OutputErrorProblem& problem, const OutputErrorFit&
                          {"start_costs", nlohmann::json::array()}};
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
-    const AtBound bound = fit.solution.at_bound[i];
     json[i < problem.parameters.size() ? "parameters" : "initial_states"].push_back(
         {{"name", fit.names[i]},
          {"value", fit.solution.x[j]},
          {"standard_error", number_or_null<nlohmann::json>(fit.covariance.standard_errors[j])},
          {"unit", fit.units[i]},
-         {"at_bound", bound == AtBound::Lower   ? "lower"
-                      : bound == AtBound::Upper ? "upper"
-                                                : ""}});
+         {"at_bound", bound_name(fit.solution.at_bound[i])}});
     nlohmann::json row = nlohmann::json::array();
     for (Eigen::Index k = 0; k < std::ssize(fit.names); ++k) {
       row.push_back(number_or_null<nlohmann::json>(fit.covariance.correlation(j, k)));

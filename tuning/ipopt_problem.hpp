@@ -19,8 +19,7 @@
 // - Last digits. A line search compares costs, which no longer change below a cosine of 1e-8 or so. Full Gauss-Newton
 //   steps judged by the gradient instead follow, as long as each makes it smaller.
 // - Result. The best point ever evaluated is kept, the start among them: a cancelled or failed run still returns it,
-// and
-//   no fit ends worse than it began.
+//   and no fit ends worse than it began.
 #pragma once
 
 #include <Eigen/Core>
@@ -88,6 +87,11 @@ enum class FitStatus : std::uint8_t {
 std::string_view plain_words(FitStatus status);
 
 enum class AtBound : std::int8_t { Lower = -1, Free = 0, Upper = 1, Held = 2 };
+
+/// "lower" or "upper"; empty where it is at neither.
+[[nodiscard]] constexpr std::string_view bound_name(AtBound at) {
+  return at == AtBound::Lower ? "lower" : at == AtBound::Upper ? "upper" : "";
+}
 
 struct LeastSquaresResult {
   Eigen::VectorXd x{};

@@ -1,7 +1,9 @@
-// The interpreter with dual scalars, compiled in machine_dual.cpp alone.
+// The interpreter with dual scalars, compiled in machine_dual.cpp alone, and the machines of a program of which each
+// pass takes the one that is wide enough.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "codegen/interpreter/machine.hpp"
 #include "tuning/dual.hpp"
@@ -14,5 +16,40 @@ inline constexpr std::size_t most_derivatives = 7;
 extern template class Machine<Dual<3>>;
 extern template class Machine<Dual<5>>;
 extern template class Machine<Dual<static_cast<int>(most_derivatives)>>;
+
+/// The interpreters of a program, which outlives them: the plain one, and those that carry derivatives, made where
+/// these are asked for.
+class Machines {
+ public:
+  Machines(const Program& program, double sample_time)
+      : plain(program, sample_time), program_(program), sample_time_(sample_time) {}
+
+  Machine<double> plain;
+
+  /// What a run gives of the machine that carries so many derivatives, most_derivatives at the most.
+  template <class Run>
+  auto with_derivatives(std::size_t count, Run&& run) {
+    const auto with = [&]<int N>(std::optional<Machine<Dual<N>>>& machine) {
+      if (!machine) {
+        machine.emplace(program_, sample_time_);
+      }
+      return run(*machine);
+    };
+    return count <= 3 ? with(three_) : count <= 5 ? with(five_) : with(seven_);
+  }
+
+ private:
+  const Program& program_;
+  double sample_time_;
+  std::optional<Machine<Dual<3>>> three_{};
+  std::optional<Machine<Dual<5>>> five_{};
+  std::optional<Machine<Dual<static_cast<int>(most_derivatives)>>> seven_{};
+};
+
+/// How many of the columns that are left the next pass takes: passes are of about the same width.
+[[nodiscard]] constexpr std::size_t width_of_pass(std::size_t left) {
+  const std::size_t passes = (left + most_derivatives - 1) / most_derivatives;
+  return passes == 0 ? 0 : (left + passes - 1) / passes;
+}
 
 }  // namespace hysteron

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <utility>
 
-#include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"

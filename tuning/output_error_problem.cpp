@@ -11,20 +11,13 @@
 #include "codegen/parameters/apply.hpp"
 #include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
-#include "support/names.hpp"
 #include "support/numbers.hpp"
 #include "tuning/free_parameters.hpp"
 #include "tuning/output_error.hpp"
+#include "tuning/signal_names.hpp"
 
 namespace hysteron {
 namespace {
-
-std::vector<std::string> names_of(const std::vector<Port>& ports) {
-  std::vector<std::string> names;
-  names.reserve(ports.size());
-  std::ranges::transform(ports, std::back_inserter(names), &Port::name);
-  return names;
-}
 
 using parameters::ParameterFile;
 
@@ -93,16 +86,8 @@ class Builder {
   void find_outputs() {
     const auto& outputs = graph().outputs;
     for (const parameters::PlacedText& wanted : file_.tune.outputs) {
-      const Port* const found = find_port(outputs, wanted.text);
-      if (found == nullptr) {
-        const std::vector<std::string> names = names_of(outputs);
-        const auto near = nearest_name(wanted.text, names);
-        diagnostics_.error(error::unknown_key, wanted.place,
-                           fmt::format("{} has no output {}.", graph().name, wanted.text),
-                           near.empty() ? fmt::format("the outputs are {}.", fmt::join(names, ", "))
-                                        : fmt::format("did you mean {}?", near));
-      } else {
-        problem_.outputs.push_back(static_cast<std::size_t>(found - outputs.data()));
+      if (const auto found = find_port(graph(), outputs, "output", wanted, diagnostics_)) {
+        problem_.outputs.push_back(*found);
       }
     }
     if (!file_.tune.outputs.empty()) {

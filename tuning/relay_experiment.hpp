@@ -3,11 +3,12 @@
 // A relay in place of the controller makes the loop oscillate by itself, near the frequency at which a proportional
 // controller would make it unstable. Over whole cycles of the oscillation
 //
-//   G(jω) = Y₁/U₁, ω = 2π/P          by the first Fourier coefficients of both signals: no describing function is
-//   needed Ku = 1/|G|, Tu = P               where the phase is −180°: a relay without hysteresis G(0) = mean(y −
-//   y₀)/mean(u − u₀) where the record begins at rest and the relay is asymmetric about it
+//   G(jω) = Y₁/U₁, ω = 2π/P            by the first Fourier coefficients of both signals
+//   Ku = 1/|G|, Tu = P                 where the phase is −180°: a relay without hysteresis
+//   G(0) = mean(y − y₀)/mean(u − u₀)   where the record begins at rest and the relay is asymmetric about it
 //
-// and with G(0) = K the first-order model with a dead time, K·e^(−Ls)/(1 + T·s), that passes through both:
+// No describing function is needed. With G(0) = K follows the first-order model with a dead time, K·e^(−Ls)/(1 + T·s),
+// that passes through both:
 //
 //   T = √((K/|G|)² − 1)/ω,   L = (−arg G − atan(ωT))/ω
 #pragma once

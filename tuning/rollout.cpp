@@ -51,7 +51,7 @@ Rollout::Rollout(const OutputErrorProblem& problem)
   std::iota(all.begin(), all.end(), Index{0});
   if (std::vector<bool> still = reach_.unreached(all); std::ranges::count(still, true) > 0) {
     unreached_ =
-        std::make_unique<Kept>(problem.program, whole_.sample_time, std::move(still), problem.experiments.size());
+        std::make_unique<Kept>(problem.program, sample_time_of(problem), std::move(still), problem.experiments.size());
   }
 }
 
@@ -120,15 +120,6 @@ void Rollout::prepare(Machine<S>& machine, const VectorXd& x, std::size_t experi
 }
 
 template <class S>
-void Rollout::drive(Machine<S>& machine, const Drive& drive, std::size_t step) {
-  for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
-    if (step == 0 || drive.inputs[i].size() > 1) {
-      machine.set_input(i, S(at_step(drive.inputs[i], step)));
-    }
-  }
-}
-
-template <class S>
 bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
                    const Replay& replay, VectorXd& residuals, MatrixXd* jacobian) {
   machine.use_directions(columns.size());
@@ -147,7 +138,7 @@ bool Rollout::pass(Machine<S>& machine, const VectorXd& x, std::size_t experimen
       if (restarts(machine, x, experiment, step, start, columns)) {
         std::ranges::transform(columns, targets.begin(), [&](Index column) { return column_at(column, start); });
       }
-      drive(machine, record.drive, step);
+      set_inputs(machine, record.drive, step);
       for (std::size_t i = 0; i < given; ++i) {
         machine.set_input(replay.played->rest.first_input + i, S((*played)[step * given + i]));
       }
@@ -261,8 +252,8 @@ Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
     return held ? Replay{.played = of_grid_.get()} : before;
   }
   if (of_grid_ == nullptr || of_grid_->still != still) {
-    of_grid_ =
-        std::make_unique<Kept>(problem_.program, whole_.sample_time, std::move(still), problem_.experiments.size());
+    of_grid_ = std::make_unique<Kept>(problem_.program, sample_time_of(problem_), std::move(still),
+                                      problem_.experiments.size());
   }
   of_grid_->records[experiment].filled = false;
   return {.kept = of_grid_.get()};
@@ -270,22 +261,16 @@ Rollout::Replay Rollout::of_grid(const VectorXd& x, std::size_t experiment) {
 
 bool Rollout::derivative_passes(const VectorXd& x, std::size_t experiment, std::span<const Index> columns,
                                 VectorXd& residuals, MatrixXd& jacobian) {
-  for (std::size_t begin = 0; begin < columns.size();) {
-    const std::size_t left = columns.size() - begin;
-    const std::size_t passes = (left + most_derivatives - 1) / most_derivatives;
-    const auto part = columns.subspan(begin, (left + passes - 1) / passes);  // passes of about the same width
+  for (std::span<const Index> left = columns; !left.empty();) {
+    const auto part = left.first(width_of_pass(left.size()));
     const Replay replay = of_unreached(experiment);
     Machines& machines = replay.played != nullptr ? unreached_->machines : whole_;
-    const auto with = [&]<int N>(std::optional<Machine<Dual<N>>>& machine) {
-      if (!machine) {
-        machine.emplace(machines.program, machines.sample_time);
-      }
-      return pass<Dual<N>>(*machine, x, experiment, part, replay, residuals, &jacobian);
-    };
-    if (!(part.size() <= 3 ? with(machines.three) : part.size() <= 5 ? with(machines.five) : with(machines.seven))) {
+    const bool finite = machines.with_derivatives(
+        part.size(), [&](auto& machine) { return pass(machine, x, experiment, part, replay, residuals, &jacobian); });
+    if (!finite) {
       return false;
     }
-    begin += part.size();
+    left = left.subspan(part.size());
   }
   return true;
 }
@@ -297,7 +282,7 @@ std::vector<Signal> Rollout::outputs(const VectorXd& x, std::size_t experiment) 
   std::size_t start = 0;
   for (std::size_t step = 0; step < inputs.steps; ++step) {
     (void)restarts<double>(whole_.plain, x, experiment, step, start, {});
-    drive(whole_.plain, inputs, step);
+    set_inputs(whole_.plain, inputs, step);
     whole_.plain.step();
     for (std::size_t i = 0; i < problem_.outputs.size(); ++i) {
       result[i][step] = whole_.plain.output(problem_.outputs[i]);
@@ -321,7 +306,7 @@ std::vector<double> Rollout::own_states(const VectorXd& parameters) {
     std::size_t step = 0;
     for (const std::size_t restart : experiment.restarts) {
       for (; step < restart; ++step) {
-        drive(whole_.plain, experiment.drive, step);
+        set_inputs(whole_.plain, experiment.drive, step);
         whole_.plain.step();
       }
       keep();

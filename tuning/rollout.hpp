@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,18 +12,6 @@
 #include "tuning/unreached.hpp"
 
 namespace hysteron::detail {
-
-/// The interpreters of a program: the plain one, and those that carry derivatives where these are asked for.
-struct Machines {
-  Machines(const Program& the_program, double the_sample_time)
-      : program(the_program), sample_time(the_sample_time), plain(the_program, the_sample_time) {}
-  const Program& program;
-  double sample_time;
-  Machine<double> plain;
-  std::optional<Machine<Dual<3>>> three{};
-  std::optional<Machine<Dual<5>>> five{};
-  std::optional<Machine<Dual<7>>> seven{};
-};
 
 /// The signals of nodes that stand still from rollout to rollout, and the machines of the others.
 struct Kept {
@@ -102,8 +89,6 @@ class Rollout {
   template <class S>
   void prepare(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment,
                std::span<const Eigen::Index> columns);
-  template <class S>
-  static void drive(Machine<S>& machine, const Drive& drive, std::size_t step);
   /// The states at a start of a record: 0, then its restarts. `columns` are those of start 0.
   template <class S>
   void load_states(Machine<S>& machine, const Eigen::VectorXd& x, std::size_t experiment, std::size_t start,

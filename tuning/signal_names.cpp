@@ -1,6 +1,10 @@
 #include "tuning/signal_names.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
 
 #include "support/element_name.hpp"
 #include "support/errors.hpp"
@@ -58,6 +62,25 @@ Wire find_signal(const Graph& graph, const std::string& path, const Place& place
                      fmt::format("name an element, as {}.", found.front().name));
   }
   return found.front().wire;
+}
+
+std::vector<std::string> names_of(const std::vector<Port>& ports) {
+  std::vector<std::string> names;
+  std::ranges::transform(ports, std::back_inserter(names), &Port::name);
+  return names;
+}
+
+std::optional<std::size_t> find_port(const Graph& graph, const std::vector<Port>& ports, std::string_view kind,
+                                     const parameters::PlacedText& wanted, Diagnostics& diagnostics) {
+  if (const Port* const found = find_port(ports, wanted.text)) {
+    return static_cast<std::size_t>(found - ports.data());
+  }
+  const std::vector<std::string> names = names_of(ports);
+  const auto near = nearest_name(wanted.text, names);
+  diagnostics.error(error::unknown_key, wanted.place, fmt::format("{} has no {} {}.", graph.name, kind, wanted.text),
+                    near.empty() ? fmt::format("the {}s are {}.", kind, fmt::join(names, ", "))
+                                 : fmt::format("did you mean {}?", near));
+  return std::nullopt;
 }
 
 }  // namespace hysteron

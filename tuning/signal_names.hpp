@@ -1,10 +1,14 @@
-// Signals inside a diagram by their names.
+// Signals inside a diagram, and its ports, by their names.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codegen/graph/graph.hpp"
+#include "codegen/parameters/parameter_file.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron {
@@ -21,5 +25,13 @@ struct NamedSignal {
 
 /// The same of one signal. Throws InputError HY708 for a vector, too.
 [[nodiscard]] Wire find_signal(const Graph& graph, const std::string& path, const Place& place);
+
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Port>& ports);
+
+/// The place of an input or of an output, which `kind` says, among the ports of a graph. Reports HY603 where there is
+/// none of that name.
+[[nodiscard]] std::optional<std::size_t> find_port(const Graph& graph, const std::vector<Port>& ports,
+                                                   std::string_view kind, const parameters::PlacedText& wanted,
+                                                   Diagnostics& diagnostics);
 
 }  // namespace hysteron

@@ -2,21 +2,13 @@
 #include "tuning/unreached.hpp"
 
 #include <algorithm>
-#include <string_view>
 
-#include "codegen/language/syntax.hpp"
+#include "codegen/parameters/apply.hpp"
 
 namespace hysteron::detail {
 namespace {
 
 using Eigen::Index;
-
-/// The node whose state this is: LAG of LAG.XOUT.
-bool owns_state(const Node& node, std::string_view path) {
-  return node.block != nullptr && path.size() > node.path.size() + 1 && path[node.path.size()] == '.' &&
-         path.find('.', node.path.size() + 1) == std::string_view::npos &&
-         language::same_name(path.substr(0, node.path.size()), node.path);
-}
 
 /// Adds to `reached` what reads of it, directly or through others.
 void spread(const Graph& graph, std::vector<bool>& reached) {
@@ -54,8 +46,9 @@ Reach::Reach(const OutputErrorProblem& problem)
   }
   for (const FreeState& state : problem.initial_states) {
     std::vector<bool>& reached = reached_.emplace_back(nodes_);
-    for (std::size_t n = 0; n < nodes_; ++n) {
-      reached[n] = owns_state(graph.nodes[n], state.path);
+    Diagnostics diagnostics;  // the problem has found its states before
+    if (const auto found = parameters::find_state(graph, state.path, {}, diagnostics)) {
+      reached[found->node] = true;
     }
     spread(graph, reached);
   }

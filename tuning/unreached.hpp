@@ -18,14 +18,16 @@ class Reach {
  public:
   explicit Reach(const OutputErrorProblem& problem);
 
-  /// By the column of an unknown: parameters first, then the initial states, start by start.
-  [[nodiscard]] const std::vector<bool>& of(Eigen::Index column) const;
-  /// Whether it reaches none of these nodes.
+  // Columns are those of the unknowns: parameters first, then the initial states, start by start.
+
+  /// Whether an unknown reaches none of these nodes.
   [[nodiscard]] bool leaves(Eigen::Index column, const std::vector<bool>& nodes) const;
   /// The nodes that none of these columns reaches. None at all where an FMU is among the nodes: it keeps its own time.
   [[nodiscard]] std::vector<bool> unreached(const std::vector<Eigen::Index>& columns) const;
 
  private:
+  [[nodiscard]] const std::vector<bool>& of(Eigen::Index column) const;
+
   std::size_t parameters_ = 0;
   std::size_t nodes_ = 0;
   bool has_fmu_ = false;

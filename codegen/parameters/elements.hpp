@@ -7,9 +7,10 @@
 
 namespace hysteron::parameters {
 
-/// The file with the name of a whole vector replaced by its elements, under [parameters], under [fit] and in `outputs` of
-/// [tune]; what names no vector stays as it is. A file that names elements alone is returned unchanged. Reports HY604 for a list of another
-/// length, or a single value for a vector, and HY602 for an element that is given twice; neither is in the result.
+/// The file with the name of a whole vector replaced by its elements, under [parameters], under [fit] and in `outputs`
+/// of [tune]; what names no vector stays as it is. A file that names elements alone is returned unchanged. Reports
+/// HY604 for a list of another length, or a single value for a vector, and HY602 for an element that is given twice;
+/// neither is in the result.
 [[nodiscard]] ParameterFile by_element(ParameterFile file, const Graph& graph, Diagnostics& diagnostics);
 
 /// The same; throws InputError with everything that was reported.

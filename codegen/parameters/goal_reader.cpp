@@ -37,13 +37,6 @@ constexpr std::array<NumberKey, 9> number_keys{{{"from", &GoalSettings::from, Ra
                                                 {"damping", &GoalSettings::damping, Range::Positive},
                                                 {"dead_time", &GoalSettings::dead_time, Range::NotNegative},
                                                 {"effort_weight", &GoalSettings::effort_weight, Range::NotNegative}}};
-constexpr std::array<NumberKey, 6> limit_keys{
-    {{"effort", &GoalSettings::largest_effort, Range::Positive},
-     {"effort_rate", &GoalSettings::largest_rate, Range::Positive},
-     {"overshoot_percent", &GoalSettings::largest_overshoot, Range::NotNegative},
-     {"gain_margin_db", &GoalSettings::gain_margin, Range::Positive},
-     {"phase_margin_deg", &GoalSettings::phase_margin, Range::Positive},
-     {"sensitivity", &GoalSettings::sensitivity, Range::Positive}}};
 
 struct TextKey {
   std::string_view name;
@@ -103,10 +96,11 @@ class GoalReader : private SettingsReader {
     if (table == nullptr) {
       return;
     }
-    const auto known = keys_of({}, limit_keys);
+    const auto known = keys_of({}, goal_limit_keys);
     for (const auto& [name, value] : *table) {
       if (known_key(name, value, known, "[goal.limits]")) {
-        read_number(name, value, *std::ranges::find(limit_keys, name.str(), &NumberKey::name));
+        const GoalLimitKey& limit = *std::ranges::find(goal_limit_keys, name.str(), &GoalLimitKey::name);
+        read_number(name, value, {limit.name, limit.setting, limit.may_be_zero ? Range::NotNegative : Range::Positive});
       }
     }
   }

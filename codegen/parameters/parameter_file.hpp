@@ -32,6 +32,7 @@
 // Hence every value carries its place. Why the file has this shape: docs/decisions/0002-parameter-files.md.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -130,6 +131,21 @@ struct GoalSettings {
   [[nodiscard]] bool is_given() const { return place.line > 0; }
   [[nodiscard]] bool limits_margins() const { return gain_margin || phase_margin || sensitivity; }
 };
+
+/// A key of [goal.limits], and what it sets.
+struct GoalLimitKey {
+  std::string_view name;
+  std::optional<PlacedNumber> GoalSettings::*setting;
+  bool may_be_zero = false;  ///< else above 0
+};
+/// In the order in which they are written.
+inline constexpr std::array<GoalLimitKey, 6> goal_limit_keys{
+    {{"effort", &GoalSettings::largest_effort},
+     {"effort_rate", &GoalSettings::largest_rate},
+     {"overshoot_percent", &GoalSettings::largest_overshoot, true},
+     {"gain_margin_db", &GoalSettings::gain_margin},
+     {"phase_margin_deg", &GoalSettings::phase_margin},
+     {"sensitivity", &GoalSettings::sensitivity}}};
 
 struct DiagnoseSettings {
   std::vector<PlacedText> ignore{};  ///< columns of the records that the diagnosis does not look at

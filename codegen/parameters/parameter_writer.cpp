@@ -252,42 +252,39 @@ void append_goal(const GoalSettings& goal, std::vector<Entry>& entries) {
   if (goal.signal != GoalSettings::Signal::Step) {
     add("goal", "signal", goal.signal == GoalSettings::Signal::Ramp ? "\"ramp\"" : "\"record\"");
   }
-  const auto numbers = [&](const std::string& table,
-                           std::initializer_list<std::pair<const char*, const std::optional<PlacedNumber>*>> list) {
-    for (const auto& [key, number] : list) {
-      if (*number) {
-        add(table, key, real_text((*number)->value));
-      }
+  for (const auto& [key, number] : {std::pair("from", &goal.from),
+                                    {"size", &goal.size},
+                                    {"duration", &goal.duration},
+                                    {"rise_time", &goal.rise_time},
+                                    {"settling_time", &goal.settling_time},
+                                    {"order", &goal.order},
+                                    {"damping", &goal.damping},
+                                    {"dead_time", &goal.dead_time}}) {
+    if (*number) {
+      add("goal", key, real_text((*number)->value));
     }
-  };
-  numbers("goal", {{"from", &goal.from},
-                   {"size", &goal.size},
-                   {"duration", &goal.duration},
-                   {"rise_time", &goal.rise_time},
-                   {"settling_time", &goal.settling_time},
-                   {"order", &goal.order},
-                   {"damping", &goal.damping},
-                   {"dead_time", &goal.dead_time}});
+  }
   for (const auto& [key, text] : {std::pair("wished", &goal.wished), {"loop", &goal.loop}, {"effort", &goal.effort}}) {
     if (*text) {
       add("goal", key, toml_string((*text)->text));
     }
   }
-  numbers("goal", {{"effort_weight", &goal.effort_weight}});
+  if (goal.effort_weight) {
+    add("goal", "effort_weight", real_text(goal.effort_weight->value));
+  }
   if (!goal.plants.empty()) {
     add("goal", "plants", list_of(goal.plants));
   }
   if (goal.robust == GoalSettings::Robust::Mean) {
     add("goal", "robust", "\"mean\"");
   }
-  if (goal.largest_effort || goal.largest_rate || goal.largest_overshoot || goal.limits_margins()) {
+  if (std::ranges::any_of(goal_limit_keys, [&](const GoalLimitKey& key) { return (goal.*key.setting).has_value(); })) {
     head("goal.limits");
-    numbers("goal.limits", {{"effort", &goal.largest_effort},
-                            {"effort_rate", &goal.largest_rate},
-                            {"overshoot_percent", &goal.largest_overshoot},
-                            {"gain_margin_db", &goal.gain_margin},
-                            {"phase_margin_deg", &goal.phase_margin},
-                            {"sensitivity", &goal.sensitivity}});
+  }
+  for (const GoalLimitKey& key : goal_limit_keys) {
+    if (const auto& limit = goal.*key.setting) {
+      add("goal.limits", std::string(key.name), real_text(limit->value));
+    }
   }
 }
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <utility>
 
+#include "support/numbers.hpp"
 #include "tuning/ipopt_application.hpp"
 
 namespace hysteron {
@@ -41,7 +41,7 @@ class InequalityProblem : public Ipopt::TNLP {
       low[j] = (problem_.lower[j] - problem_.start[j]) / problem_.typical[j];
       high[j] = (problem_.upper[j] - problem_.start[j]) / problem_.typical[j];
     }
-    std::fill(g_low, g_low + m, -std::numeric_limits<double>::infinity());
+    std::fill(g_low, g_low + m, -infinity);
     std::fill(g_high, g_high + m, 0.0);
     return true;
   }
@@ -93,7 +93,6 @@ class InequalityProblem : public Ipopt::TNLP {
                              double /*regularization*/, double /*alpha_dual*/, double /*alpha_primal*/,
                              Ipopt::Index /*trials*/, const Ipopt::IpoptData* /*data*/,
                              Ipopt::IpoptCalculatedQuantities* /*quantities*/) override {
-    result.iterations = iteration;
     return !failure && (!options_.progress || options_.progress(iteration));
   }
   void finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index /*n*/, const double* z, const double* /*z_low*/,
@@ -124,7 +123,6 @@ class InequalityProblem : public Ipopt::TNLP {
     }
     x_ = std::move(x);
     is_known_ = true;
-    ++result.evaluations;
     try {
       is_valid_ = problem_.evaluate(x_, point_) && std::isfinite(point_.cost) && point_.gradient.allFinite() &&
                   point_.constraints.allFinite() && point_.jacobian.allFinite();

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <string_view>
 
 #include "tuning/ipopt_problem.hpp"
 
@@ -43,8 +42,6 @@ struct ConstrainedResult {
   FitStatus status = FitStatus::SolverFailed;
   Eigen::VectorXd x{};
   Eigen::VectorXd multipliers{};  ///< of the constraints, 0 where one is not active
-  int iterations = 0;
-  int evaluations = 0;
 };
 
 /// Deterministic. Exceptions of the user's function pass through. The start must have a value.

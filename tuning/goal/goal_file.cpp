@@ -30,7 +30,7 @@ std::string tuned_heading(const GoalProblem& problem, const GoalResult& result) 
   for (const LimitResult& limit : result.limits) {
     if (!limit.is_kept) {
       const GoalLimit& one = problem.limits[limit.limit];
-      text += fmt::format("\nBROKEN: {} = {}, is {:.4g} with {}.", text_of(one.kind).key, number_text(one.limit),
+      text += fmt::format("\nBROKEN: {} = {}, is {:.4g} with {}.", text_of(one.kind).key.name, number_text(one.limit),
                           limit.value, problem.plants[limit.plant].name);
     }
   }

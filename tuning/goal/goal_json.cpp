@@ -79,9 +79,7 @@ json goal_json(const GoalProblem& problem, const GoalResult& result) {
                                   {"value", result.x[static_cast<Eigen::Index>(j)]},
                                   {"start", free.start},
                                   {"unit", free.unit},
-                                  {"at_bound", result.at_bound[j] == AtBound::Lower   ? "lower"
-                                               : result.at_bound[j] == AtBound::Upper ? "upper"
-                                                                                      : ""}});
+                                  {"at_bound", bound_name(result.at_bound[j])}});
   }
   for (const PlantResult& plant : result.plants) {
     list["plants"].push_back({{"name", plant.name},
@@ -89,7 +87,7 @@ json goal_json(const GoalProblem& problem, const GoalResult& result) {
                               {"after", figures_json(plant.after)}});
   }
   for (const LimitResult& limit : result.limits) {
-    list["limits"].push_back({{"name", text_of(problem.limits[limit.limit].kind).key},
+    list["limits"].push_back({{"name", text_of(problem.limits[limit.limit].kind).key.name},
                               {"plant", problem.plants[limit.plant].name},
                               {"limit", problem.limits[limit.limit].limit},
                               {"value", number_or_null<json>(limit.value)},

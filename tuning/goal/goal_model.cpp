@@ -38,20 +38,27 @@ GoalModel::GoalModel(const GoalProblem& problem) : problem_(problem) {
 }
 
 LoopState GoalModel::evaluate(const VectorXd& x, bool with_derivatives) {
-  for (const auto& point : plants_) {
-    const LoopState state = point->run.respond(x, with_derivatives, point->response);
+  for (std::size_t plant = 0; plant < plants_.size(); ++plant) {
+    PlantPoint& point = *plants_[plant];
+    point.sensitivity.reset();
+    const LoopState state = point.run.respond(x, with_derivatives, point.response);
     if (state != LoopState::Settles) {
       return state;
     }
-    take_cost(*point, with_derivatives);
-    if (!point->response.impulse.empty()) {
-      point->sensitivity.emplace(point->response.impulse, point->response.impulse_by, problem_.drive.sample_time);
-      if (problem_.settings.limits_margins()) {
-        point->margins = point->sensitivity->margins();
-      }
+    take_cost(point, with_derivatives);
+    if (problem_.settings.limits_margins()) {
+      point.margins = sensitivity(plant)->margins();
     }
   }
   return LoopState::Settles;
+}
+
+const Sensitivity* GoalModel::sensitivity(std::size_t plant) {
+  PlantPoint& point = *plants_[plant];
+  if (!point.sensitivity && !point.response.impulse.empty()) {
+    point.sensitivity.emplace(point.response.impulse, point.response.impulse_by, problem_.drive.sample_time);
+  }
+  return point.sensitivity ? &*point.sensitivity : nullptr;
 }
 
 /// J = mean of ((y − y_wished)/size)² + (w·(u(k) − u(k−1))/TS)² from the step on.
@@ -199,7 +206,7 @@ Margin GoalModel::excess(const LimitPlace& place) const {
   return {.value = excess_over(limit.kind, value, limit.limit), .by = place.sign / unit * by};
 }
 
-LoopFigures GoalModel::figures(std::size_t plant) const {
+LoopFigures GoalModel::figures(std::size_t plant) {
   const PlantPoint& point = *plants_[plant];
   const Signal& input = problem_.drive.inputs[problem_.input];
   const double ts = problem_.drive.sample_time;
@@ -209,8 +216,8 @@ LoopFigures GoalModel::figures(std::size_t plant) const {
                       .settling_time = not_a_number,
                       .effort = not_a_number,
                       .rate = not_a_number};
-  if (point.sensitivity) {
-    figures.margins = point.margins ? *point.margins : point.sensitivity->margins();
+  if (const Sensitivity* const loop = sensitivity(plant)) {
+    figures.margins = point.margins ? *point.margins : loop->margins();
   }
   if (problem_.plants[plant].effort) {
     figures.effort = largest_in_test(LimitKind::Effort, point.response);

@@ -46,11 +46,10 @@ class GoalModel {
   [[nodiscard]] const Eigen::VectorXd& cost_by(std::size_t plant) const { return plants_[plant]->cost_by; }
   /// The worst or the mean of the plants.
   [[nodiscard]] double cost() const;
-  [[nodiscard]] LoopFigures figures(std::size_t plant) const;
+  [[nodiscard]] LoopFigures figures(std::size_t plant);
   [[nodiscard]] const LoopResponse& response(std::size_t plant) const { return plants_[plant]->response; }
-  [[nodiscard]] const Sensitivity* sensitivity(std::size_t plant) const {
-    return plants_[plant]->sensitivity ? &*plants_[plant]->sensitivity : nullptr;
-  }
+  /// Null without a cut. Worked out where it is asked for: a search without limits of margins needs none.
+  [[nodiscard]] const Sensitivity* sensitivity(std::size_t plant);
   /// The value that a limit is held against, in a plant.
   [[nodiscard]] double value_of(std::size_t limit, std::size_t plant) const;
   /// The largest excess of all limits in all plants; −1 where there are none.
@@ -65,8 +64,8 @@ class GoalModel {
     explicit PlantPoint(LoopRun own) : run(std::move(own)) {}
     LoopRun run;
     LoopResponse response{};
-    std::optional<Sensitivity> sensitivity{};
-    std::optional<LoopMargins> margins{};  ///< where a limit asks for them
+    std::optional<Sensitivity> sensitivity{};  ///< where a limit, or somebody, asks for it
+    std::optional<LoopMargins> margins{};      ///< where a limit asks for them
     double cost = 0.0;
     Eigen::VectorXd cost_by{};
   };

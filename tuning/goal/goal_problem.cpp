@@ -14,7 +14,6 @@
 #include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
-#include "support/numbers.hpp"
 #include "tuning/signal_names.hpp"
 
 namespace hysteron {
@@ -38,7 +37,6 @@ class GoalBuilder {
         goal_(file.goal),
         records_(records) {
     problem_.settings = goal_;
-    problem_.file = file.file;
   }
 
   GoalProblem build() {
@@ -111,21 +109,6 @@ class GoalBuilder {
 
   // ---- ports ------------------------------------------------------------------------------------------------------
 
-  [[nodiscard]] std::optional<std::size_t> port_of(const std::vector<Port>& ports, const PlacedText& wanted,
-                                                   std::string_view kind) {
-    if (const Port* const found = find_port(ports, wanted.text)) {
-      return static_cast<std::size_t>(found - ports.data());
-    }
-    std::vector<std::string> names;
-    std::ranges::transform(ports, std::back_inserter(names), &Port::name);
-    const auto near = nearest_name(wanted.text, names);
-    diagnostics_.error(error::unknown_key, wanted.place,
-                       fmt::format("{} has no {} {}.", program_.graph.name, kind, wanted.text),
-                       near.empty() ? fmt::format("the {}s are {}.", kind, fmt::join(names, ", "))
-                                    : fmt::format("did you mean {}?", near));
-    return std::nullopt;
-  }
-
   /// The only LREAL among ports that a condition leaves.
   template <class Condition>
   std::optional<std::size_t> only_port(const std::vector<Port>& ports, std::string_view kind, Condition condition) {
@@ -138,10 +121,7 @@ class GoalBuilder {
     if (candidates.size() == 1) {
       return candidates.front();
     }
-    std::vector<std::string> names;
-    for (const Port& port : ports) {
-      names.push_back(port.name);
-    }
+    const std::vector<std::string> names = names_of(ports);
     lacks(goal_.place,
           fmt::format("[goal] does not say which {} it means: {} has {}.", kind, program_.graph.name,
                       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))),
@@ -152,11 +132,11 @@ class GoalBuilder {
 
   void find_ports() {
     const Graph& graph = program_.graph;
-    const auto input = goal_.input ? port_of(graph.inputs, *goal_.input, "input")
+    const auto input = goal_.input ? find_port(graph, graph.inputs, "input", *goal_.input, diagnostics_)
                                    : only_port(graph.inputs, "input", [&](const Port& port) {
                                        return !has_default(graph, port) || graph.inputs.size() == 1;
                                      });
-    const auto output = goal_.output ? port_of(graph.outputs, *goal_.output, "output")
+    const auto output = goal_.output ? find_port(graph, graph.outputs, "output", *goal_.output, diagnostics_)
                                      : only_port(graph.outputs, "output", [](const Port&) { return true; });
     for (const auto& [found, ports, kind] :
          {std::tuple(input, &graph.inputs, "input"), std::tuple(output, &graph.outputs, "output")}) {
@@ -268,11 +248,9 @@ class GoalBuilder {
   // ---- limits and plants ------------------------------------------------------------------------------------------
 
   void take_limits() {
-    const std::array stated{&goal_.largest_effort, &goal_.largest_rate, &goal_.largest_overshoot,
-                            &goal_.gain_margin,    &goal_.phase_margin, &goal_.sensitivity};
-    for (std::size_t i = 0; i < stated.size(); ++i) {
-      if (const auto& limit = *stated[i]) {
-        problem_.limits.push_back({.kind = limit_texts[i].kind, .limit = limit->value, .place = limit->place});
+    for (const LimitText& text : limit_texts) {
+      if (const auto& limit = goal_.*text.key.setting) {
+        problem_.limits.push_back({.kind = text.kind, .limit = limit->value, .place = limit->place});
       }
     }
   }

@@ -24,19 +24,19 @@ enum class LimitKind : std::uint8_t { Effort, Rate, Overshoot, Gain, Phase, Sens
 
 struct LimitText {
   LimitKind kind;
-  std::string_view key;   ///< in [goal.limits]
-  std::string_view name;  ///< in reports
-  std::string_view unit;  ///< empty: that of the effort
-  bool is_least;          ///< the value may not be below the limit; else not above
+  parameters::GoalLimitKey key;  ///< in [goal.limits]
+  std::string_view name;         ///< in reports
+  std::string_view unit;         ///< empty: that of the effort
+  bool is_least;                 ///< the value may not be below the limit; else not above
 };
 
 inline constexpr std::array limit_texts{
-    LimitText{LimitKind::Effort, "effort", "largest effort", "", false},
-    LimitText{LimitKind::Rate, "effort_rate", "largest rate of the effort", "", false},
-    LimitText{LimitKind::Overshoot, "overshoot_percent", "overshoot", "%", false},
-    LimitText{LimitKind::Gain, "gain_margin_db", "gain margin", "dB", true},
-    LimitText{LimitKind::Phase, "phase_margin_deg", "phase margin", "deg", true},
-    LimitText{LimitKind::Sensitivity, "sensitivity", "largest sensitivity Ms", "1", false}};
+    LimitText{LimitKind::Effort, parameters::goal_limit_keys[0], "largest effort", "", false},
+    LimitText{LimitKind::Rate, parameters::goal_limit_keys[1], "largest rate of the effort", "", false},
+    LimitText{LimitKind::Overshoot, parameters::goal_limit_keys[2], "overshoot", "%", false},
+    LimitText{LimitKind::Gain, parameters::goal_limit_keys[3], "gain margin", "dB", true},
+    LimitText{LimitKind::Phase, parameters::goal_limit_keys[4], "phase margin", "deg", true},
+    LimitText{LimitKind::Sensitivity, parameters::goal_limit_keys[5], "largest sensitivity Ms", "1", false}};
 
 constexpr const LimitText& text_of(LimitKind kind) {
   return limit_texts[static_cast<std::size_t>(kind)];
@@ -50,7 +50,6 @@ struct GoalLimit {
 
 struct GoalProblem {
   parameters::GoalSettings settings{};
-  std::string file{};                       ///< the parameter file
   std::vector<LoopPlant> plants{};          ///< one at least
   std::vector<FreeParameter> parameters{};  ///< what is tuned
   Drive drive{};                            ///< the test signal, and what the other inputs stand at

@@ -130,8 +130,8 @@ class GoalSearch {
       throw InputError(
           error::no_stable_loop, problem_.settings.place,
           fmt::format("The loop {} at the start, and at none of {} points spread over the bounds{}.",
-                      result_.start_state == LoopState::Unstable ? "does not settle" : "has no finite response",
-                      most_spread_points, one ? "" : " does it settle with every plant"),
+                      what_it_does(result_.start_state), most_spread_points,
+                      one ? "" : " does it settle with every plant"),
           "start from a controller with which the loop is stable, most often with a smaller gain, or narrow the bounds "
           "around one. A loop that the test's duration is too short for does not count as settled either.");
     }

@@ -34,7 +34,7 @@ void keep_derivatives(const Dual<N>& value, std::span<const Index> columns, doub
 }  // namespace
 
 LoopRun::LoopRun(const LoopPlant& plant, const Drive& drive, const std::vector<FreeParameter>& parameters)
-    : plant_(plant), drive_(drive), parameters_(parameters), plain_(plant.program, drive.sample_time) {}
+    : plant_(plant), drive_(drive), parameters_(parameters), machines_(plant.program, drive.sample_time) {}
 
 template <class S>
 bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const Index> columns,
@@ -50,9 +50,7 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
   }
   largest_ = 0.0;
   for (std::size_t step = 0; step < drive_.steps; ++step) {
-    for (std::size_t i = 0; i < drive_.inputs.size(); ++i) {
-      machine.set_input(i, S(at_step(drive_.inputs[i], step)));
-    }
+    set_inputs(machine, drive_, step);
     machine.step();
     const S y = machine.value(plant_.output);
     const S u = plant_.effort ? machine.value(*plant_.effort) : S(0.0);
@@ -121,23 +119,13 @@ bool LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, 
   return steps > 0;
 }
 
-template <class S>
-bool LoopRun::pass(std::optional<Machine<S>>& machine, const VectorXd& x, std::span<const Index> columns,
-                   LoopResponse& response) {
-  if (!machine) {
-    machine.emplace(plant_.program, drive_.sample_time);
-  }
-  return take_test(*machine, x, columns, response) &&
-         (!plant_.cut || take_impulse(*machine, columns, response.impulse.size(), response));
-}
-
 LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopResponse& response) {
   response = {.output = Signal(drive_.steps), .effort = Signal(drive_.steps)};
   try {
-    if (!take_test(plain_, x, {}, response)) {
+    if (!take_test(machines_.plain, x, {}, response)) {
       return LoopState::NotFinite;
     }
-    if (plant_.cut && !take_impulse(plain_, {}, 0, response)) {
+    if (plant_.cut && !take_impulse(machines_.plain, {}, 0, response)) {
       return LoopState::Unstable;
     }
     if (!with_derivatives) {
@@ -150,13 +138,15 @@ LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopRespons
     std::vector<Index> columns(parameters_.size());
     std::iota(columns.begin(), columns.end(), Index{0});
     for (std::span<const Index> left(columns); !left.empty();) {
-      const std::size_t taken = std::min(left.size(), most_derivatives);
-      const bool finite =
-          taken <= 3 ? pass(three_, x, left.first(taken), response) : pass(seven_, x, left.first(taken), response);
+      const auto part = left.first(width_of_pass(left.size()));
+      const bool finite = machines_.with_derivatives(part.size(), [&](auto& machine) {
+        return take_test(machine, x, part, response) &&
+               (!plant_.cut || take_impulse(machine, part, response.impulse.size(), response));
+      });
       if (!finite) {
         return LoopState::NotFinite;
       }
-      left = left.subspan(taken);
+      left = left.subspan(part.size());
     }
   } catch (const cosimulation::FmuRefusal&) {  // a point at which a model cannot go on has no value
     return LoopState::NotFinite;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tuning/free_parameters.hpp"
@@ -41,6 +42,11 @@ enum class LoopState : std::uint8_t {
   Unstable,   ///< what was put in has not died away in twenty times the test's duration
 };
 
+/// What the response of a loop without a value is said to do.
+[[nodiscard]] constexpr std::string_view what_it_does(LoopState state) {
+  return state == LoopState::Unstable ? "does not settle" : "has no finite response";
+}
+
 /// Runs one loop again and again. h is half the difference of two runs with ±ε, ε a millionth of the largest |v|: exact
 /// for a linear loop, of second order in ε for a smooth one; its derivatives are those of the two runs, by dual
 /// numbers.
@@ -59,17 +65,12 @@ class LoopRun {
   template <class S>
   bool take_impulse(Machine<S>& machine, std::span<const Eigen::Index> columns, std::size_t steps,
                     LoopResponse& response);
-  template <class S>
-  bool pass(std::optional<Machine<S>>& machine, const Eigen::VectorXd& x, std::span<const Eigen::Index> columns,
-            LoopResponse& response);
 
   const LoopPlant& plant_;
   const Drive& drive_;
   const std::vector<FreeParameter>& parameters_;
   double largest_ = 0.0;  ///< |v| of the last test
-  Machine<double> plain_;
-  std::optional<Machine<Dual<3>>> three_{};
-  std::optional<Machine<Dual<7>>> seven_{};
+  Machines machines_;
 };
 
 }  // namespace hysteron

@@ -244,7 +244,7 @@ TEST(ParameterReader, CollectsErrors) {
     numbers.push_back(diagnostic.number);
   }
   EXPECT_THAT(numbers, ::testing::UnorderedElementsAre(error::parameter_not_finite, error::wrong_value_type,
-                                                     error::unknown_key, error::unknown_key));
+                                                       error::unknown_key, error::unknown_key));
 }
 
 TEST(ParameterReader, NestingWithoutEndIsRefused) {

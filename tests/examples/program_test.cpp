@@ -29,10 +29,21 @@ struct Example {
   std::vector<std::string> records;
 };
 
-class ExampleProgram : public testing::TestWithParam<Example> {};
+class ExampleProgram : public testing::TestWithParam<Example> {
+ protected:
+  /// Runs the example with a compiler on its path and no gnuplot.
+  void run_without_gnuplot() const {
+    ASSERT_EQ(run("mkdir -p " + folder / "bin" + " && for p in c++ as ld; do ln -s \"$(command -v $p)\" " +
+                  folder / "bin/" + "; done"),
+              0);
+    ASSERT_EQ(run("PATH=" + folder / "bin" + " " + programs + "/" + GetParam().program + " " + folder / "out" + " > " +
+                  folder / "printed"),
+              0);
+  }
+  const ScratchFolder folder;
+};
 
 TEST_P(ExampleProgram, LeavesRecordsAndPicture) {
-  const ScratchFolder folder;
   const auto& [program, picture, records] = GetParam();
   ASSERT_EQ(run(programs + "/" + program + " " + folder / "out" + " > " + folder / "printed"), 0);
   for (const std::string& record : records) {
@@ -46,19 +57,13 @@ TEST_P(ExampleProgram, LeavesRecordsAndPicture) {
 }
 
 TEST_P(ExampleProgram, SaysThatGnuplotIsMissing) {
-  const ScratchFolder folder;
-  ASSERT_EQ(run("PATH=" + folder.path().string() + " " + programs + "/" + GetParam().program + " " + folder / "out" +
-                " > " + folder / "printed"),
-            0);
+  run_without_gnuplot();
   EXPECT_THAT(contents_of(folder / "printed"), HasSubstr("No picture: gnuplot is not installed"));
   EXPECT_FALSE(std::filesystem::exists(folder / (std::string("out/") + GetParam().picture)));
 }
 
 TEST_P(ExampleProgram, ReadmeShowsWhatItPrints) {
-  const ScratchFolder folder;
-  ASSERT_EQ(run("PATH=" + folder.path().string() + " " + programs + "/" + GetParam().program + " " + folder / "out" +
-                " > " + folder / "printed"),
-            0);
+  run_without_gnuplot();
   const std::string printed = contents_of(folder / "printed");
   const std::string name = std::string(GetParam().program).substr(std::string("example_").size());
   expect_readme_shows(name, printed.substr(0, printed.find("No picture")));
@@ -70,7 +75,9 @@ INSTANTIATE_TEST_SUITE_P(
         Example{"example_01_memory_element", "memory_element.png", {"memory_element.csv"}},
         Example{"example_02_procedure_1", "procedure_1.png", {"map.csv", "rounds_weighted.csv"}},
         Example{"example_03_feedforward", "feedforward.png", {"closed_form.csv", "servo_closed.csv", "order.csv"}},
-        Example{"example_05_simulated_actuator", "simulated_actuator.png", {"simulated_identify.csv"}}),
+        Example{"example_05_simulated_actuator",
+                "simulated_actuator.png",
+                {"simulated_identify.csv", "simulated_feedforward.csv"}}),
     [](const auto& example) { return std::string(example.param.program).substr(8); });
 
 /// Those that read measured records: where there is a folder of them, what their pages tell must be what they print.

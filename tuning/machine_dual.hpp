@@ -1,6 +1,6 @@
-// The interpreter with dual scalars of 3, 5 and 7 derivatives, each compiled in a source of its own, and the machines of
-// a program of which each pass takes the one that is wide enough. With its value a dual is whole pairs of numbers; more
-// parameters take several passes.
+// The interpreter with dual scalars of 3, 5 and 7 derivatives, each compiled in a source of its own, and the machines
+// of a program of which each pass takes the one that is wide enough. With its value a dual is whole pairs of numbers;
+// more parameters take several passes.
 #pragma once
 
 #include <cstddef>

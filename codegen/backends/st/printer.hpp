@@ -73,11 +73,17 @@ class StPrinter final : public ExpressionPrinter {
   mutable bool uses_largest = false;
 
  private:
+  void print_name(std::string_view name, std::string& out) const override { print_variable(name, out); }
   void print_leaf(const Value& value, int outer, std::string& out) const override;
   void print_special(const Value& value, int outer, std::string& out) const override;
   [[nodiscard]] bool sign_needs_brackets(int outer) const override { return outer > Strength::Loosest; }
   void print_power_inside(const Value& value, int outer, std::string& out) const;
   [[nodiscard]] std::string argument(ValueId id) const;
+  [[nodiscard]] std::string pattern(ValueId id) const;
+  [[nodiscard]] bool is_word(ValueId id) const;
+  void print_as_word(ValueId id, int outer, std::string& out) const;
+  void print_bits(const Value& value, int outer, std::string& out) const;
+  void print_comparison(const Value& value, int outer, std::string& out) const;
 
   const Graph& graph_;
   const Routine& routine_;

@@ -40,7 +40,6 @@ constexpr SpellingTable st_operations({
     {Op::And, infix("AND", Strength::LogicalAnd)},
     {Op::Or, infix("OR", Strength::LogicalOr)},
     {Op::Xor, infix("XOR", Strength::LogicalXor)},
-    {Op::Not, negation("NOT ")},
 });
 
 /// The digits of a real number with a large E, as the standard writes it. A constant that is not a number (LN(-1.0)) is
@@ -60,6 +59,11 @@ std::string digits_of(double value, const StReals& reals) {
 }
 
 }  // namespace
+
+std::string st_typed_literal(std::string_view type, std::string_view digits) {
+  const bool negative = digits.starts_with('-');
+  return fmt::format("{}{}#{}", negative ? "-" : "", type, digits.substr(negative ? 1 : 0));
+}
 
 std::string_view st_type(Type type, bool float32) {
   return float32 && type == Type::Real ? "REAL" : type_name(type);
@@ -97,9 +101,10 @@ std::string StPrinter::text(ValueId id, int outer) const {
 std::string StPrinter::argument(ValueId id) const {
   const Value& value = tape()[id];
   if (value.op == Op::IntLiteral && !is_named(id) && value.literal == std::numeric_limits<std::int32_t>::min()) {
-    return "(DINT#-2147483647 - DINT#1)";
+    return "(-DINT#2147483647 - DINT#1)";
   }
-  return value.op == Op::IntLiteral && !is_named(id) ? "DINT#" + text(id) : text(id);
+  return value.op == Op::IntLiteral && !is_named(id) ? st_typed_literal("DINT", literal(Type::Int, value.literal))
+                                                     : text(id);
 }
 
 /// The bits of an integer, as a DWORD.
@@ -148,8 +153,8 @@ void StPrinter::print_leaf(const Value& value, int outer, std::string& out) cons
   const std::string digits = literal(value.type, value.literal);
   const bool brackets = digits.front() == '-' && outer > Strength::Loosest;
   out += brackets ? "(" : "";
-  out += value.type == Type::Real && float32_ ? "REAL#" : "";  // elsewhere a literal with a point may be an LREAL
-  out += digits;
+  // Elsewhere a literal with a point may be an LREAL.
+  out += value.type == Type::Real && float32_ ? st_typed_literal("REAL", digits) : digits;
   out += brackets ? ")" : "";
 }
 
@@ -215,7 +220,7 @@ void StPrinter::print_power_inside(const Value& value, int outer, std::string& o
       out += brackets ? "(" : "";
       const std::string exponent = literal(Type::Real, tape()[value.args[1]].literal);
       print_power(guards_.power_form(value) == PowerForm::PositivePart ? positive_part() : text(base),
-                  fmt::format("{}#{}", st_type(Type::Real, float32_), exponent), out);
+                  st_typed_literal(st_type(Type::Real, float32_), exponent), out);
       out += brackets ? ")" : "";
     }
   }
@@ -287,6 +292,37 @@ void StPrinter::print_comparison(const Value& value, int outer, std::string& out
   out += brackets ? ")" : "";
 }
 
+/// A truth value turned round. NOT stands before single values alone: a compiler that makes C++ of it has no NOT of
+/// what AND, OR and XOR of truth values give there.
+void StPrinter::print_negated(ValueId id, int outer, std::string& out) const {
+  const Value& value = tape()[id];
+  if (!is_named(id) && value.op == Op::Not) {
+    return print(value.args[0], outer, out);
+  }
+  if (!is_named(id) && (value.op == Op::IntEqual || value.op == Op::IntNotEqual)) {
+    Value other = value;
+    other.op = value.op == Op::IntEqual ? Op::IntNotEqual : Op::IntEqual;
+    return print_comparison(other, outer, out);
+  }
+  if (!is_named(id) && (value.op == Op::And || value.op == Op::Or || value.op == Op::Xor)) {
+    const bool brackets = outer > Strength::Loosest;
+    out += brackets ? "(" : "";
+    if (value.op == Op::Xor) {
+      print(value.args[0], Strength::Primary, out);
+      out += " = ";
+      print(value.args[1], Strength::Primary, out);
+    } else {
+      print_negated(value.args[0], Strength::Primary, out);
+      out += value.op == Op::And ? " OR " : " AND ";
+      print_negated(value.args[1], Strength::Primary, out);
+    }
+    out += brackets ? ")" : "";
+    return;
+  }
+  out += "NOT ";
+  print(id, Strength::Primary, out);
+}
+
 void StPrinter::print_special(const Value& value, int outer, std::string& out) const {
   const ValueId first = value.args[0];
   switch (value.op) {
@@ -295,6 +331,8 @@ void StPrinter::print_special(const Value& value, int outer, std::string& out) c
     case Op::At:
       print(first, out);
       return print_place(value.args[1], length_of(first), out);
+    case Op::Not:
+      return print_negated(first, outer, out);
     case Op::IntEqual:
     case Op::IntNotEqual:
       return print_comparison(value, outer, out);

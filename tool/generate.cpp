@@ -101,7 +101,7 @@ int print_proofs(const std::vector<Written>& written, Console& console) {
   for (const Written& one : written) {
     std::size_t bytes = 0;
     for (const GeneratedFile& file : one.files) {
-      bytes += file.name == one.sheet.file.name ? 0 : file.text.size();
+      bytes += file.name == one.sheet.file.name || file.name == one.sheet.page.name ? 0 : file.text.size();
     }
     const TargetProof& proof = one.sheet.proof;
     all_equal = all_equal && proof.fault.empty();
@@ -139,6 +139,7 @@ int generate(const GenerateOptions& options, Console& console) {
       one.sheet = proof_sheet(program, *one.target, one.files, target, options.diagram);
       if (options.proof) {
         one.files.push_back(one.sheet.file);
+        one.files.push_back(one.sheet.page);
       }
     }
   }
@@ -180,9 +181,10 @@ int generate(const GenerateOptions& options, Console& console) {
 Action add_generate(CLI::App& app) {
   const auto options = std::make_shared<GenerateOptions>();
   add_diagram_options(app, options->diagram);
-  app.add_option("--target", options->target.target,
-                 "The language: cpp (C++11), batch (C++17, many instances), c (C99), st (Structured Text), plcopen (PLCopen "
-                 "XML), fmu (FMI); or all, each run beside the interpreter.")
+  app.add_option(
+         "--target", options->target.target,
+         "The language: cpp (C++11), batch (C++17, many instances), c (C99), st (Structured Text), plcopen (PLCopen "
+         "XML), fmu (FMI); or all, each run beside the interpreter.")
       ->option_text("cpp|batch|c|st|plcopen|fmu|all");
   app.add_option("--dialect", options->target.dialect,
                  "Of Structured Text or PLCopen XML; portable where none is given.")
@@ -205,8 +207,9 @@ Action add_generate(CLI::App& app) {
   app.add_option("--out", options->folder, "The folder for the files; it is made where there is none.")
       ->required()
       ->option_text("DIR");
-  app.add_flag("--proof", options->proof,
-               "Runs the files beside the interpreter, and writes NAME.TARGET.proof.json beside them.");
+  app.add_flag(
+      "--proof", options->proof,
+      "Runs the files beside the interpreter, and writes NAME.TARGET.proof.json and a page to sign beside them.");
   app.add_flag("--force", options->force, "Overwrites files that Hysteron did not write.");
   app.footer(std::string(generate_examples));
   return [options](Console& console) { return generate(*options, console); };

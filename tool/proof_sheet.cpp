@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "codegen/backends/shared/identifiers.hpp"
@@ -11,12 +12,14 @@
 #include "support/names.hpp"
 #include "support/sha256.hpp"
 #include "support/text_file.hpp"
+#include "tool/proof_page.hpp"
 #include "tool/record_options.hpp"
 #include "tool/version.hpp"
 
 namespace hysteron::tool {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Json hash_of_file(const std::string& path) {
@@ -47,6 +50,10 @@ std::size_t parameter_bytes(const Graph& graph, bool float32) {
     parameters.cells.push_back({.field = one.field});
   }
   return state_bytes(parameters, float32);
+}
+
+Json stack_of(const TargetProof& proof) {
+  return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O1"}} : Json();
 }
 
 std::string command_of(const Target& target, const TargetOptions& options, const DiagramOptions& diagram) {
@@ -103,6 +110,7 @@ ProofSheet proof_sheet(const Program& program, const Target& target, const std::
                   {"real", options.float32 ? "32 bits" : "64 bits"},
                   {"state_bytes", state_bytes(routine, options.float32)},
                   {"parameter_bytes", parameter_bytes(graph, options.float32)},
+                  {"stack_bytes", stack_of(sheet.proof)},
                   {"operations_per_step", routine.operations},
                   {"function_calls_per_step", routine.function_calls},
                   {"schedule", schedule_of(program)},
@@ -118,6 +126,7 @@ ProofSheet proof_sheet(const Program& program, const Target& target, const std::
                   {"command", command_of(target, options, diagram)}};
   sheet.file = {fmt::format("{}.{}.proof.json", identifier_text({graph.name}, LetterCase::Lower), target.name),
                 json.dump(2) + "\n"};
+  sheet.page = {fs::path(sheet.file.name).replace_extension(".html").string(), proof_page(json)};
   return sheet;
 }
 

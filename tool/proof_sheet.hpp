@@ -11,6 +11,7 @@ namespace hysteron::tool {
 
 struct ProofSheet {
   GeneratedFile file{};  ///< NAME.TARGET.proof.json
+  GeneratedFile page{};  ///< NAME.TARGET.proof.html: the same for a person who signs it
   TargetProof proof{};
 };
 

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -192,15 +194,36 @@ std::string main_of_fmu(const Program& program, const FmuContents& contents, con
   return text + gets + "}\n" + std::string(main_in_c);
 }
 
+/// What the functions of a source take of the stack together: no less than any chain of calls does, since none calls
+/// itself. Nothing where the compiler does not say, or says that it is not known.
+std::optional<std::size_t> stack_of(std::vector<std::string> compile, const fs::path& folder,
+                                    const std::string& source) {
+  compile.insert(compile.end(),
+                 {"-fstack-usage", "-c", (folder / source).string(), "-o", (folder / "stack.o").string()});
+  if (run_program(compile, {.errors = folder / "stack.errors"}) != 0 || !fs::exists(folder / "stack.su")) {
+    return std::nullopt;
+  }
+  std::size_t bytes = 0;
+  std::istringstream lines(read_text_file((folder / "stack.su").string()));
+  for (std::string line; std::getline(lines, line);) {  // axis.c:34:6:axis_step<TAB>48<TAB>static
+    const auto tab = line.find('\t');
+    if (tab == std::string::npos || line.ends_with("dynamic")) {
+      return std::nullopt;
+    }
+    bytes += std::strtoul(line.c_str() + tab + 1, nullptr, 10);
+  }
+  return bytes;
+}
+
 std::vector<Signal> run_in_c(const Program& program, const std::vector<GeneratedFile>& files,
                              const std::vector<std::string>& sources, const std::string& main, const Drive& drive,
-                             std::string& way) {
+                             TargetProof& proof) {
   const auto compiler = find_compiler("CC", {"cc", "gcc", "clang"});
   if (!compiler) {
     throw InputError(error::no_compiler, {}, "There is no C compiler (cc, gcc or clang) on the path.",
                      "install one (Debian: apt install gcc), or set CC.");
   }
-  way = fmt::format("compiled by {}", fs::path(compiler->front()).filename().string());
+  proof.way = fmt::format("compiled by {}", fs::path(compiler->front()).filename().string());
   const TemporaryFolder folder(fs::temp_directory_path());
   for (const GeneratedFile& file : files) {
     fs::create_directories((folder.path() / file.name).parent_path());
@@ -212,6 +235,7 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
   for (const std::string& flag : words_of(cpp_numeric_flags)) {
     command.push_back(flag);
   }
+  const auto compile = command;
   for (const std::string& source : sources) {
     command.push_back((folder.path() / source).string());
   }
@@ -224,6 +248,7 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
                                  first_lines(errors)),
                      "set CC to a compiler for C99.");
   }
+  proof.stack_bytes = stack_of(compile, folder.path(), sources.front());
   return run_rows({.command = {executable.string()},
                    .name = program.graph.name,
                    .outputs = program.graph.outputs.size(),
@@ -306,15 +331,16 @@ TargetProof prove(const Program& program, const Target& target, const std::vecto
       found = run_in_vectors(program, files, drive);
     } else if (target.name == "c") {
       found = run_in_c(program, files, {namespace_identifier(program.graph.name) + ".c"}, main_of_c(program.graph),
-                       drive, proof.way);
+                       drive, proof);
     } else if (target.name == "fmu") {
       const FmuOptions fmu{.version = options.fmi == "2" ? FmiVersion::Two : FmiVersion::Three,
                            .float32 = options.float32};
       const FmuContents contents = generate_fmu(program, fmu);
       std::vector<std::string> sources = contents.sources;
       std::erase_if(sources, [](const std::string& one) { return one.find("_fmi") != std::string::npos; });
-      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, fmu), drive, proof.way);
+      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, fmu), drive, proof);
       proof.way += ", through FMI";
+      proof.stack_bytes.reset();  // the functions of FMI are not in it
     } else {
       std::string text = files.front().text;
       proof.way = "read back";

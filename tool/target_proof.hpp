@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct TargetProof {
   std::size_t outputs = 0;  ///< by so many outputs
   std::string fault{};      ///< empty where all bits are equal; else where they differ, or why it could not be run
   bool was_run = false;
+  std::optional<std::size_t> stack_bytes{};  ///< of C: what a step takes at most, as its compiler says
 };
 
 /// Random inputs of a fixed seed: within the ranges that the diagram states, else of size 1 about 0.

@@ -357,7 +357,10 @@ Wire Elaborator::resolve(const Instance& instance, const std::vector<Part>& part
   if (!is_instance) {
     error(error::unknown_pin, reference.pin.span,
           fmt::format("'{}' is a variable and has no outputs", reference.name.text),
-          "Leave the dot and what follows away.");
+          language::names_bit(reference.pin.text)
+              ? fmt::format("A bit of a WORD is written by its number alone: {}.{}.", reference.name.text,
+                            reference.pin.text.substr(1))
+              : "Leave the dot and what follows away.");
     return {};
   }
   const Part& part = parts[found->second];

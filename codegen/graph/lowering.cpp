@@ -236,7 +236,32 @@ Wire Lowering::lower_unary(const language::Unary& unary, language::Span span) {
                                    : mismatch(span, "unary −", {operand.type}, {Type::Real, Type::Int});
 }
 
+Wire Lowering::lower_bit(const language::Binary& binary, language::Span span) {
+  const auto& masked = std::get<language::Binary>(source_.expressions[binary.left].node);
+  const Wire word = expression(masked.left);
+  if (word.from == Wire::From::Nothing) {
+    return {};
+  }
+  if (word.type != Type::Word) {
+    const language::Span of = span_of(masked.left);
+    const auto name = std::string_view(*source_.text).substr(of.offset, of.length);
+    const std::string whole = word.type == Type::Int ? std::string(name) : fmt::format("LREAL_TO_DINT({})", name);
+    report_(error::type_mismatch, span,
+            fmt::format("'{}' is {} and has no bit {}", name, type_name(word.type), binary.bit),
+            word.type == Type::Bool ? fmt::format("A BOOL is a single bit: write {}.", name)
+                                    : fmt::format("Write (DINT_TO_WORD({}) AND 16#{:X}) <> 16#0.", whole,
+                                                  1U << static_cast<unsigned>(binary.bit)));
+    return {};
+  }
+  const Wire bit = builder_.literal(Type::Word, static_cast<double>(1U << static_cast<unsigned>(binary.bit)));
+  return lower_words(Operator::NotEqual, lower_words(Operator::And, word, bit, span), builder_.literal(Type::Word, 0),
+                     span);
+}
+
 Wire Lowering::lower_binary(const language::Binary& binary, language::Span span) {
+  if (binary.bit >= 0) {
+    return lower_bit(binary, span);
+  }
   Wire left = expression(binary.left);
   Wire right = expression(binary.right);
   if (left.from == Wire::From::Nothing || right.from == Wire::From::Nothing) {

@@ -68,6 +68,8 @@ class Lowering {
  private:
   Wire lower_unary(const language::Unary& unary, language::Span span);
   Wire lower_binary(const language::Binary& binary, language::Span span);
+  /// A bit of a value: `W.3`.
+  Wire lower_bit(const language::Binary& binary, language::Span span);
   Wire lower_call(const language::FunctionCall& call, language::Span span);
   /// AND, OR, XOR, = and <> of two WORDs; From::Nothing for another operator.
   Wire lower_words(language::Operator op, Wire left, Wire right, language::Span span);

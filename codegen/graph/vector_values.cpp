@@ -192,13 +192,23 @@ std::optional<Elements> VectorValues::value_of(const language::Binary& binary, S
   if (!left || !right) {
     return std::nullopt;
   }
+  if (binary.bit >= 0 && left->vector) {
+    const auto name = std::string_view(*file_.text).substr(span.offset, span.length);
+    const auto vector = name.substr(0, name.rfind('.'));
+    error_(error::vector_for_value, span,
+           fmt::format("whether '{}' is an element or a bit of each element can be meant", name),
+           fmt::format("Write {}[{}] for an element, {}[0].{} for a bit of one.", vector,
+                       std::min<std::size_t>(static_cast<std::size_t>(binary.bit), left->elements.size() - 1), vector,
+                       binary.bit));
+    return std::nullopt;
+  }
   if ((left->vector || right->vector) && (binary.op == Operator::Equal || binary.op == Operator::NotEqual)) {
     error_(error::vector_for_value, span, "whether vectors are equal can be meant for each element, or for all of them",
            "Compare elements, V[0] = W[0], or a distance: NORM(V - W) < 0.001.");
     return std::nullopt;
   }
   return each({*left, *right}, span, id, [&](const auto& one) -> Expression {
-    return {.node = language::Binary{binary.op, one[0], one[1]}, .span = span};
+    return {.node = language::Binary{binary.op, one[0], one[1], binary.bit}, .span = span};
   });
 }
 

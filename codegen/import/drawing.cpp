@@ -188,6 +188,8 @@ class ProjectReader {
         read_variables(list, Section::Input, pou);
       } else if (name == tc6::output_vars) {
         read_variables(list, Section::Output, pou);
+      } else if (name == tc6::in_out_vars || name == tc6::external_vars) {
+        read_variables(list, Section::Both, pou);
       } else if (name == tc6::local_vars || name == tc6::temporary_vars) {
         read_variables(list, list.attribute(tc6::constant).as_bool() ? Section::Constant : Section::Local, pou);
       } else if (name.ends_with("Vars") && list.first_child()) {
@@ -227,6 +229,7 @@ class ProjectReader {
   void read_variables(xml_node list, DrawnVariable::Section section, DrawnPou& pou) {
     for_each(list, tc6::variable, [&](xml_node node) {
       DrawnVariable variable{.section = section,
+                             .external = is(list, tc6::external_vars),
                              .name = node.attribute(tc6::name).value(),
                              .initial = initial_of(child(node, tc6::initial_value)),
                              .remark = without_blanks(text_below(child(node, tc6::documentation))),
@@ -277,14 +280,7 @@ class ProjectReader {
       element.text = node.attribute(tc6::type_name).value();
       read_pins(child(node, tc6::input_variables), element.inputs);
       read_pins(child(node, tc6::output_variables), element.outputs);
-      std::vector<DrawnPin> both;
-      read_pins(child(node, tc6::in_out_variables), both);
-      if (!both.empty()) {
-        throw refusal(element.line,
-                      fmt::format("block {} {} (localId {}) has VAR_IN_OUT {}", element.text, element.instance,
-                                  element.id, both.front().name),
-                      "Hand the value in by an input and out by an output.", error::untranslatable_element);
-      }
+      read_pins(child(node, tc6::in_out_variables), element.both);
       return element;
     }
     for (const char* const name : {tc6::expression, tc6::variable}) {

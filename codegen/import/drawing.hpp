@@ -37,18 +37,26 @@ struct DrawnElement {
   std::string edge{};     ///< rising, falling; of a contact or coil
   std::vector<DrawnPin> inputs{};
   std::vector<DrawnPin> outputs{};
+  std::vector<DrawnPin> both{};  ///< of a block: its VAR_IN_OUT, by what is handed over
   std::uint32_t line = 0;
 };
 
 struct DrawnVariable {
-  enum class Section : std::uint8_t { Input, Output, Local, Constant };
+  /// Both: VAR_IN_OUT, or VAR_EXTERNAL, a variable of the project
+  enum class Section : std::uint8_t { Input, Output, Both, Local, Constant };
   Section section = Section::Local;
+  bool external = false;
   std::string name{};
   std::string type{};
   std::string initial{};
   std::string remark{};
   std::uint32_t line = 0;
 };
+
+/// What hands back the new value of a variable that is both input and output.
+[[nodiscard]] inline std::string name_of_output(const DrawnVariable& variable) {
+  return variable.section == DrawnVariable::Section::Both ? variable.name + "_OUT" : variable.name;
+}
 
 struct DrawnPou {
   std::string name{};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "codegen/import/expression.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/tc6.hpp"
 #include "support/names.hpp"
@@ -61,10 +62,38 @@ std::string negated(const std::string& text) {
   return fmt::format("(NOT {})", text);
 }
 
+std::optional<Type> type_of_text(const Variables& variables, const std::string& text) {
+  const auto variable = variables.find(in_capitals(text));
+  if (variable != variables.end()) {
+    const auto known = known_type(variable->second->type);
+    return known ? std::optional(known->type) : std::nullopt;
+  }
+  return type_of_literal(with_known_literals(text));
+}
+
+std::optional<Type> result_type(const DrawnPou& pou, const Variables& variables, const DrawnElement& function) {
+  const plcopen::OperatorFunction* const own = plcopen::operator_of(function.text);
+  if (own != nullptr && own->is_comparison) {
+    return Type::Bool;
+  }
+  for (const DrawnPin& pin : function.inputs) {
+    for (const Link& link : pin.links) {
+      const auto found = std::ranges::find(pou.elements, link.element, &DrawnElement::id);
+      if (found != pou.elements.end() && found->kind == tc6::in_variable && !equal_ignoring_case(pin.name, "G")) {
+        if (const auto type = type_of_text(variables, found->text)) {
+          return type;
+        }
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin) {
   if (own != nullptr) {
     return std::ranges::any_of(own->variables, [&](const DrawnVariable& one) {
-      return one.section == DrawnVariable::Section::Input && equal_ignoring_case(one.name, pin);
+      using Section = DrawnVariable::Section;
+      return (one.section == Section::Input || one.section == Section::Both) && equal_ignoring_case(one.name, pin);
     });
   }
   for (std::size_t i = 0; i < block->pin_count(); ++i) {

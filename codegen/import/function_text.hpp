@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +31,16 @@ struct Value {
 
 /// The type of an output of a block of the library, by the names of type and pin; nothing where it is none.
 [[nodiscard]] std::optional<Type> output_type(std::string_view block, std::string_view pin);
+
+/// The variables of a POU, by name in capitals.
+using Variables = std::map<std::string, const DrawnVariable*>;
+
+/// The type of a variable or a literal.
+[[nodiscard]] std::optional<Type> type_of_text(const Variables& variables, const std::string& text);
+
+/// The type of what a function gives, by the variables that are connected to it.
+[[nodiscard]] std::optional<Type> result_type(const DrawnPou& pou, const Variables& variables,
+                                              const DrawnElement& function);
 
 /// Whether a POU of the project, or else a block of the library, has an input.
 [[nodiscard]] bool has_input(const DrawnPou* own, const BlockType* block, std::string_view pin);

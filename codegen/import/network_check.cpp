@@ -25,10 +25,10 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
 
 }  // namespace
 
-std::vector<Objection> objections_to(const DrawnPou& pou) {
-  static const std::set<std::string_view> known{tc6::in_variable,  tc6::out_variable, tc6::block,     tc6::connector,
-                                                tc6::continuation, tc6::contact,      tc6::coil,      tc6::left_rail,
-                                                tc6::right_rail,   tc6::comment,      "vendorElement"};
+std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own) {
+  static const std::set<std::string_view> known{
+      tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
+      tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
   std::vector<Objection> result;
   std::map<std::string, int> targets;
   std::set<std::string> instances;
@@ -41,6 +41,30 @@ std::vector<Objection> objections_to(const DrawnPou& pou) {
     }
     if ((element.kind == tc6::out_variable || element.kind == tc6::coil) && ++targets[in_capitals(element.text)] == 2) {
       object("it is assigned twice", "Assign it once: choose between the values by SEL or OR.");
+    }
+    for (const DrawnPin& pin : element.both) {
+      const auto callee = own.find(in_capitals(element.text));
+      const std::string name = handed_over(pou, pin);
+      if (callee == own.end() || callee->second->language == tc6::structured_text) {
+        object("it has VAR_IN_OUT " + pin.name, "Hand the value in by an input and out by an output.");
+      } else if (name.empty()) {
+        object("its VAR_IN_OUT " + pin.name + " is handed no variable of the POU",
+               "Connect a local variable, an output or a VAR_IN_OUT.");
+      } else if (hands_back(element, pin.name, own) && ++targets[name] == 2) {
+        object("it assigns " + name + ", which is assigned elsewhere too",
+               "Hand the value in by an input and out by an output.");
+      }
+    }
+    const bool wired =
+        element.kind == tc6::in_out_variable && !element.inputs.empty() &&
+        std::ranges::any_of(element.inputs.front().links, [&](const Link& link) {
+          const auto from = std::ranges::find(pou.elements, link.element, &DrawnElement::id);
+          return from == pou.elements.end() || std::ranges::none_of(from->both, [&](const DrawnPin& one) {
+                   return equal_ignoring_case(one.name, link.pin);
+                 });
+        });
+    if (wired) {
+      object("a wire assigns it", "Assign it by an output variable, outVariable.");
     }
     if (element.kind == tc6::block && !element.instance.empty() &&
         !instances.insert(in_capitals(element.instance)).second) {
@@ -56,14 +80,58 @@ std::vector<Objection> objections_to(const DrawnPou& pou) {
   return result;
 }
 
-std::set<std::string> targets_of(const DrawnPou& pou) {
+std::string handed_over(const DrawnPou& pou, const DrawnPin& pin) {
+  const std::string* text = &pin.expression;
+  if (pin.links.size() == 1 && !pin.negated) {
+    const auto source = std::ranges::find(pou.elements, pin.links.front().element, &DrawnElement::id);
+    const bool variable = source != pou.elements.end() && !source->negated &&
+                          (source->kind == tc6::in_variable || source->kind == tc6::in_out_variable);
+    text = variable ? &source->text : text;
+  }
+  const auto declared = std::ranges::find_if(
+      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, *text); });
+  using Section = DrawnVariable::Section;
+  const bool may_change =
+      declared != pou.variables.end() && (declared->section == Section::Output || declared->section == Section::Local ||
+                                          declared->section == Section::Both);
+  return may_change ? in_capitals(declared->name) : std::string();
+}
+
+namespace {
+
+/// Blocks call blocks: no deeper than there are any.
+std::set<std::string> targets_within(const DrawnPou& pou, const OwnBlocks& own, std::size_t depth);
+
+bool hands_back_within(const DrawnElement& block, std::string_view pin, const OwnBlocks& own, std::size_t depth) {
+  const auto called = own.find(in_capitals(block.text));
+  return called != own.end() && depth <= own.size() &&
+         targets_within(*called->second, own, depth + 1).contains(in_capitals(pin));
+}
+
+std::set<std::string> targets_within(const DrawnPou& pou, const OwnBlocks& own, std::size_t depth) {
   std::set<std::string> targets;
   for (const DrawnElement& element : pou.elements) {
     if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
       targets.insert(in_capitals(element.text));
     }
+    for (const DrawnPin& pin : element.both) {
+      if (const std::string name = handed_over(pou, pin);
+          !name.empty() && hands_back_within(element, pin.name, own, depth)) {
+        targets.insert(name);
+      }
+    }
   }
   return targets;
+}
+
+}  // namespace
+
+bool hands_back(const DrawnElement& block, std::string_view pin, const OwnBlocks& own) {
+  return hands_back_within(block, pin, own, 0);
+}
+
+std::set<std::string> targets_of(const DrawnPou& pou, const OwnBlocks& own) {
+  return targets_within(pou, own, 0);
 }
 
 bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view name) {

@@ -46,7 +46,7 @@ class Reader {
       }
     }
     for (const DrawnVariable& variable : pou.variables) {
-      taken_.insert(in_capitals(variable.name));
+      taken_.insert({in_capitals(variable.name), in_capitals(name_of_output(variable))});
       variables_.emplace(in_capitals(variable.name), &variable);
     }
     states_.resize(pou.elements.size());
@@ -66,7 +66,6 @@ class Reader {
       throw InputError(std::move(refused_));
     }
     made_.called.assign(called_.begin(), called_.end());
-    made_.assigned.assign(assigned_.begin(), assigned_.end());
     return std::move(made_);
   }
 
@@ -97,10 +96,10 @@ class Reader {
   }
 
   void refuse_what_is_no_network() {
-    for (const Objection& one : objections_to(pou_)) {
+    for (const Objection& one : objections_to(pou_, own_)) {
       refuse(*one.element, one.why, one.mend);
     }
-    assigned_somewhere_ = targets_of(pou_);
+    assigned_somewhere_ = targets_of(pou_, own_);
   }
 
   // --- elements ---
@@ -132,9 +131,13 @@ class Reader {
     if (value.text.empty()) {
       return refuse(element, "nothing is connected to it", "Connect it, or take it out.");
     }
-    assigned_.insert(in_capitals(element.text));
-    made_.statements +=
-        fmt::format("  {} := {};\n", target->second->name, element.negated ? negated(value.text) : value.text);
+    assign(*target->second, element.negated ? negated(value.text) : value.text);
+  }
+
+  void assign(const DrawnVariable& variable, const std::string& value) {
+    assigned_.insert(in_capitals(variable.name));
+    made_.assigned.push_back(in_capitals(name_of_output(variable)));
+    made_.statements += fmt::format("  {} := {};\n", name_of_output(variable), value);
   }
 
   void run_function(const DrawnElement& element, State& state) {
@@ -221,6 +224,9 @@ class Reader {
         arguments += fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", pin.name, value.text);
       }
     }
+    for (const DrawnPin& pin : element.both) {
+      arguments += fmt::format("{}{} := {}", arguments.empty() ? "" : ", ", pin.name, input_value(element, pin).text);
+    }
     for (std::size_t i = 0; block != nullptr && i < block->inputs.size(); ++i) {
       const Field& field = block->inputs[i];
       if (field.required && !wired.contains(in_capitals(field.name))) {  // as in every IEC compiler
@@ -230,6 +236,12 @@ class Reader {
     }
     called_.insert(in_capitals(element.instance));
     made_.statements += fmt::format("  {}({});\n", declared->second->name, arguments);
+    for (const DrawnPin& pin : element.both) {  // what it hands back
+      if (const auto variable = variables_.find(handed_over(pou_, pin));
+          variable != variables_.end() && hands_back(element, pin.name, own_)) {
+        assign(*variable->second, pin_value(element, element.instance, pin.name).text);
+      }
+    }
   }
 
   // --- values ---
@@ -272,7 +284,7 @@ class Reader {
 
   Value element_value(std::size_t index, const Link& link, const DrawnElement& reader) {
     const DrawnElement& element = pou_.elements[index];
-    if (element.kind == tc6::in_variable) {
+    if (element.kind == tc6::in_variable || element.kind == tc6::in_out_variable) {
       Value value = expression_value(element, element.text);
       value.text = element.negated ? negated(value.text) : value.text;
       return value;
@@ -319,7 +331,7 @@ class Reader {
     if (state.done) {
       return state.value;
     }
-    const std::optional<Type> type = result_type(element);
+    const std::optional<Type> type = result_type(pou_, variables_, element);
     if (!type) {
       refuse(element, "it is in a loop, and its type cannot be told", "Put a variable into the loop.");
       return {"FALSE", std::nullopt};
@@ -328,34 +340,6 @@ class Reader {
       state.variable = new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
     }
     return delayed(state.variable, *type, "");
-  }
-
-  [[nodiscard]] std::optional<Type> result_type(const DrawnElement& element) const {
-    const OperatorFunction* const own = plcopen::operator_of(element.text);
-    if (own != nullptr && own->is_comparison) {
-      return Type::Bool;
-    }
-    for (const DrawnPin& pin : element.inputs) {
-      for (const Link& link : pin.links) {
-        const auto found = by_id_.find(link.element);
-        if (found != by_id_.end() && pou_.elements[found->second].kind == tc6::in_variable &&
-            !equal_ignoring_case(pin.name, "G")) {
-          if (const auto type = type_of_text(pou_.elements[found->second].text)) {
-            return type;
-          }
-        }
-      }
-    }
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::optional<Type> type_of_text(const std::string& text) const {
-    const auto variable = variables_.find(in_capitals(text));
-    if (variable != variables_.end()) {
-      const auto known = known_type(variable->second->type);
-      return known ? std::optional(known->type) : std::nullopt;
-    }
-    return type_of_literal(with_known_literals(text));
   }
 
   Value output_value(const DrawnElement& element, const std::string& pin) {
@@ -380,10 +364,12 @@ class Reader {
     const bool called = called_.contains(in_capitals(instance));
     if (const auto own = own_.find(in_capitals(declared->second->type)); own != own_.end()) {
       for (const DrawnVariable& one : own->second->variables) {
-        if (one.section == DrawnVariable::Section::Output && equal_ignoring_case(one.name, pin)) {
+        using Section = DrawnVariable::Section;
+        if ((one.section == Section::Output || one.section == Section::Both) && equal_ignoring_case(one.name, pin)) {
           const auto type = known_type(one.type);
-          return called || !type ? Value{text, type ? std::optional(type->type) : std::nullopt}
-                                 : delayed(text, type->type, "");
+          const std::string output = fmt::format("{}.{}", declared->second->name, name_of_output(one));
+          return called || !type ? Value{output, type ? std::optional(type->type) : std::nullopt}
+                                 : delayed(output, type->type, "");
         }
       }
     } else if (const BlockType* const block = known_block(declared->second->type)) {
@@ -442,7 +428,7 @@ class Reader {
       return {"FALSE", std::nullopt};
     }
     const auto dot = text.find('.');
-    std::optional<Type> type = type_of_text(text);
+    std::optional<Type> type = type_of_text(variables_, text);
     if (!type && dot != std::string::npos && variables_.contains(in_capitals(text.substr(0, dot)))) {
       type = output_type(variables_.at(in_capitals(text.substr(0, dot)))->type, text.substr(dot + 1));
     }
@@ -456,6 +442,11 @@ class Reader {
       return "FALSE";
     }
     const DrawnVariable& variable = *found->second;
+    if (variable.section == DrawnVariable::Section::Both) {
+      const bool own = assigned_.contains(in_capitals(name));
+      made_.taken_in.insert(made_.taken_in.end(), own ? 0U : 1U, in_capitals(name));
+      return own ? name_of_output(variable) : variable.name;
+    }
     const auto type = known_type(variable.type);
     const bool last_cycles = assigned_somewhere_.contains(in_capitals(name)) && !assigned_.contains(in_capitals(name));
     return last_cycles && type ? delayed(variable.name, type->type, with_known_literals(variable.initial)).text
@@ -478,7 +469,7 @@ class Reader {
   std::unordered_map<std::uint64_t, std::size_t> by_id_;
   std::map<std::string, std::size_t> connectors_;
   std::unordered_map<std::uint64_t, std::size_t> readers_;  ///< by localId: how many wires leave it
-  std::map<std::string, const DrawnVariable*> variables_;
+  Variables variables_;
   std::vector<State> states_;  ///< by element
   std::map<std::string, Delay> delays_;
   std::set<std::string> taken_;  ///< names, in capitals

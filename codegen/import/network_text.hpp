@@ -5,23 +5,21 @@
 // HY_DELAY.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "codegen/import/drawing.hpp"
+#include "codegen/import/network_check.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::import {
-
-/// What the network of one POU may call, by name in capitals: the POUs of the project that are no library blocks.
-using OwnBlocks = std::map<std::string, const DrawnPou*>;
 
 struct NetworkText {
   std::string locals{};  ///< declarations of what the network has beside the POU's own variables
   std::string statements{};
   std::vector<std::string> called{};    ///< instances, in capitals
-  std::vector<std::string> assigned{};  ///< variables, in capitals
+  std::vector<std::string> assigned{};  ///< variables, in capitals; of one that is input and output the output's name
+  std::vector<std::string> taken_in{};  ///< of those that are input and output: what is read before it is assigned
 };
 
 /// Throws InputError HY744 with every element that no diagram can express.

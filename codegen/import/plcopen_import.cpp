@@ -130,6 +130,7 @@ class Importer {
     if (!is_good_name(pou.name, pou.line)) {
       return "";
     }
+    tell_of_both(pou);
     std::string remark = comment_of(pou.remark);
     if (remark.find("@ts") == std::string::npos) {
       if (const std::string cycle = cycle_of(pou); !cycle.empty()) {
@@ -179,10 +180,11 @@ class Importer {
     std::string text;
     for (const auto& [section, keyword] : {std::pair{Section::Input, "VAR_INPUT"},
                                            {Section::Output, "VAR_OUTPUT"},
+                                           {Section::Both, "VAR_IN_OUT"},
                                            {Section::Constant, "VAR CONSTANT"},
                                            {Section::Local, "VAR"}}) {
       std::string lines;
-      for (const DrawnVariable& variable : pou.variables) {
+      for (const DrawnVariable& variable : network != nullptr ? apart(pou, *network) : pou.variables) {
         if (variable.section == section && is_good_name(variable.name, variable.line)) {
           lines += network != nullptr ? declaration(pou, variable, *network) : plain_declaration(variable);
         }
@@ -195,6 +197,47 @@ class Importer {
       }
     }
     return text;
+  }
+
+  /// A network has inputs and outputs alone: what is both becomes one of each, as far as it is read and assigned.
+  std::vector<DrawnVariable> apart(const DrawnPou& pou, const import::NetworkText& network) {
+    using Section = DrawnVariable::Section;
+    std::vector<DrawnVariable> list;
+    for (const DrawnVariable& one : pou.variables) {
+      if (one.section != Section::Both) {
+        list.push_back(one);
+        continue;
+      }
+      const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::ranges::find(names, in_capitals(name)) != names.end();
+      };
+      DrawnVariable variable = one;
+      const bool assigned = has(network.assigned, import::name_of_output(one));
+      if (!assigned || !one.external || has(network.taken_in, one.name)) {
+        variable.section = Section::Input;
+        list.push_back(variable);
+      }
+      if (assigned) {
+        variable.section = Section::Output;
+        variable.name = import::name_of_output(one);
+        variable.initial.clear();
+        list.push_back(variable);
+      }
+    }
+    return list;
+  }
+
+  /// What is of the project or of the caller has to be wired where the block is called.
+  void tell_of_both(const DrawnPou& pou) {
+    for (const DrawnVariable& one : pou.variables) {
+      if (one.section == DrawnVariable::Section::Both) {
+        warnings_.warning(error::untranslatable_element, {.file = file_, .line = one.line, .column = 1},
+                          fmt::format("{} of {} is {}: its value comes in by {}, and its new value goes out by {}",
+                                      one.name, pou.name, one.external ? "a variable of the project" : "a VAR_IN_OUT",
+                                      one.name, import::name_of_output(one)),
+                          "Wire both where the block is called.");
+      }
+    }
   }
 
   [[nodiscard]] std::string type_of(const std::string& type) const {

@@ -259,6 +259,9 @@ void Lexer::scan_number() {
     if (peek() == '.' && peek(1) != '.') {
       ++at_;
       digits();
+      if (text_[start] == '.' && peek() == '#') {  // W.16#1, which the parser refuses as one thing
+        ++at_;
+      }
     }
     if (at_ > start && is_exponent_mark(peek()) && (peek(1) == '+' || peek(1) == '-') && is_digit(peek(2))) {
       at_ += 2;
@@ -312,10 +315,23 @@ Token Lexer::quoted() {
   return token(Symbol::Refused, start);
 }
 
+/// W.%X3, W.%B1: behind the dot.
+void Lexer::refuse_part(std::uint32_t start) {
+  const std::string_view part = text_.substr(start, at_ - start);
+  const bool bit = part.size() > 2 && (part[1] == 'X' || part[1] == 'x') && is_digit(part[2]);
+  error(error::refused_access, start, at_ - start, fmt::format("A part of a variable is not written as {} here.", part),
+        bit ? fmt::format("Write the number of the bit alone: .{}.", part.substr(2))
+            : "Shift and mask instead: SHR(W, 8) AND 16#FF is the upper byte of a WORD.");
+}
+
 Token Lexer::address() {
   const auto start = at_++;
   while (at_ < size_ && (is_word(text_[at_]) || (text_[at_] == '.' && is_word(peek(1))) || text_[at_] == '*')) {
     ++at_;
+  }
+  if (start > 0 && text_[start - 1] == '.') {  // W.%X3 is a part of W, and no address
+    refuse_part(start);
+    return token(Symbol::Refused, start);
   }
   error(error::direct_address, start, at_ - start,
         fmt::format("The address {} binds the diagram to one machine.", text_.substr(start, at_ - start)),

@@ -51,6 +51,7 @@ class Lexer {
   Token typed(std::uint32_t start);
   Token quoted();
   Token address();
+  void refuse_part(std::uint32_t start);
   Token sign();
   Token token(Symbol symbol, std::uint32_t start) const { return {start, at_ - start, symbol, Keyword::None}; }
   [[nodiscard]] char peek(std::uint32_t ahead = 0) const { return ahead < size_ - at_ ? text_[at_ + ahead] : '\0'; }

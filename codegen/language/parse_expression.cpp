@@ -121,11 +121,11 @@ ExpressionId Parser::primary(bool behind_minus) {
       advance();
       return make({.node = RealLiteral{}, .span = span_of(last_)}, 1);
     case Symbol::LeftParenthesis:
-      return parenthesized();
+      return without_bit(parenthesized());
     case Symbol::LeftBracket:
       return array();
     case Symbol::Identifier:
-      return ahead(1).symbol == Symbol::LeftParenthesis ? function_call() : reference();
+      return ahead(1).symbol == Symbol::LeftParenthesis ? without_bit(function_call()) : reference();
     default:
       break;
   }
@@ -178,8 +178,19 @@ ExpressionId Parser::reference() {
   const auto begin = now().offset;
   Reference reference{.name = name_of(now())};
   advance();
-  if (accept(Symbol::Dot) && !expect_name(reference.pin, "the name of a pin")) {
-    return no_expression;
+  if (accept(Symbol::Dot)) {
+    if (is(Symbol::Number)) {
+      error(error::refused_access, span_of(now()), "The number of a bit stands close to its dot.",
+            fmt::format("Write {}.{}.", reference.name.text, text_of(span_of(now()))));
+      return no_expression;
+    }
+    if (is(Symbol::Refused)) {
+      advance();
+      return make({.node = RealLiteral{}, .span = since(begin)}, 1);
+    }
+    if (!expect_name(reference.pin, "the name of a pin")) {
+      return no_expression;
+    }
   }
   if (!index(reference.index)) {
     return no_expression;
@@ -193,22 +204,51 @@ ExpressionId Parser::reference() {
   }
   const auto height = reference.index == no_expression ? 1U : 1U + heights_[reference.index];
   const ExpressionId whole = make({.node = reference, .span = since(begin)}, height);
-  return is(Symbol::Number) && text_of(span_of(now())).front() == '.' && now().offset == last_.end()
-             ? bit_of(whole, begin)
-             : whole;
+  return is_bit() ? bit_of(whole, begin) : whole;
+}
+
+bool Parser::is_bit() const {
+  return is(Symbol::Number) && text_of(span_of(now())).front() == '.' && now().offset == last_.end();
+}
+
+/// The number behind the dot; -1 where it names no bit.
+int Parser::bit_number(std::string_view digits) {
+  int bit = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), bit);
+  return problem == std::errc{} && end == digits.data() + digits.size() && bit <= highest_bit ? bit : -1;
+}
+
+/// A value that is no variable, whose bits have no numbers.
+ExpressionId Parser::without_bit(ExpressionId value) {
+  if (value == no_expression || !is_bit()) {
+    return value;
+  }
+  const auto text = text_of(file_.expressions[value].span);
+  const int bit = bit_number(text_of(span_of(now())).substr(1));
+  const bool brackets = text.starts_with('(');
+  error(error::refused_access, span_of(now()), "Only a variable has bits that are read by their number.",
+        bit < 0 ? fmt::format("Give {} to a WORD of its own, and name a bit from 0 to {}: NAME.0.", text, highest_bit)
+                : fmt::format("Write ({} AND 16#{:X}) <> 16#0, or give {} to a WORD of its own: NAME.{}.", text,
+                              1U << static_cast<unsigned>(bit), brackets ? "the value" : text, bit));
+  advance();
+  return value;
 }
 
 /// `W.3` is (W AND 16#8) <> 16#0.
 ExpressionId Parser::bit_of(ExpressionId word, std::uint32_t begin) {
-  constexpr int highest = 15;
   const auto span = span_of(now());
   const auto digits = text_of(span).substr(1);
-  int bit = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), bit);
+  const int bit = bit_number(digits);
   advance();
-  if (problem != std::errc{} || end != digits.data() + digits.size() || bit > highest) {
-    error(error::refused_access, span, fmt::format("A WORD has no bit {}.", digits),
-          fmt::format("Its bits are 0 to {}; bit 0 is the lowest.", highest));
+  if (bit < 0) {
+    const auto based = number_literal(digits, false);
+    const auto* const number = std::get_if<IntLiteral>(&based);
+    const bool is_one = digits.find('#') != std::string_view::npos && number != nullptr && number->value >= 0 &&
+                        number->value <= highest_bit;
+    error(error::refused_access, span,
+          is_one ? "The number of a bit is decimal." : fmt::format("A WORD has no bit {}.", digits),
+          is_one ? fmt::format("Write .{}.", number->value)
+                 : fmt::format("Its bits are 0 to {}; bit 0 is the lowest.", highest_bit));
     return no_expression;
   }
   const auto literal = [&](std::int64_t value) {
@@ -217,7 +257,10 @@ ExpressionId Parser::bit_of(ExpressionId word, std::uint32_t begin) {
   const auto joined = [&](Operator op, ExpressionId left, ExpressionId right) {
     return make({.node = Binary{op, left, right}, .span = since(begin)}, heights_[left] + 1);
   };
-  return joined(Operator::NotEqual, joined(Operator::And, word, literal(std::int64_t{1} << bit)), literal(0));
+  const ExpressionId masked = joined(Operator::And, word, literal(std::int64_t{1} << bit));
+  const ExpressionId read = joined(Operator::NotEqual, masked, literal(0));
+  std::get<Binary>(file_.expressions[read].node).bit = static_cast<std::int8_t>(bit);
+  return read;
 }
 
 bool Parser::index(ExpressionId& index) {

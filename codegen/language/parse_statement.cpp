@@ -1,6 +1,8 @@
 // Statements: calls of instances and assignments, and the advice for what else one might write there.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "codegen/language/parser.hpp"
 #include "support/errors.hpp"
 
@@ -47,9 +49,14 @@ bool Parser::named_statement(FunctionBlock& block) {
     case Symbol::Assign:
       return assignment(block);
     case Symbol::Dot:
-      return pin_assignment();
+      return pin_assignment(block);
     case Symbol::LeftBracket:
       return element_assignment(block);
+    case Symbol::Number:
+      if (text_of(span_of(ahead(1))).starts_with('.')) {
+        return bit_assignment();
+      }
+      break;
     case Symbol::Equal:
       advance();
       unexpected("`:=`", "Write := to assign; = compares.");
@@ -61,10 +68,11 @@ bool Parser::named_statement(FunctionBlock& block) {
             "Move it between VAR and END_VAR, before the first statement.");
       return false;
     default:
-      advance();
-      unexpected("`(` or `:=`", "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
-      return false;
+      break;
   }
+  advance();
+  unexpected("`(` or `:=`", "Write a call INSTANCE(PIN := value); or an assignment NAME := value;.");
+  return false;
 }
 
 bool Parser::call(FunctionBlock& block) {
@@ -109,10 +117,34 @@ bool Parser::assigned_value(FunctionBlock& block, Assignment assignment, std::ui
   return true;
 }
 
-bool Parser::pin_assignment() {
+/// `Z.3 := value;`: refused, since a diagram gives a variable its value once and whole.
+bool Parser::bit_assignment() {
+  const auto begin = now().offset;
+  const std::string_view name = text_of(span_of(now()));
+  advance();
+  advance();
+  refuse_bit_assignment(since(begin), name, text_of(span_of(last_)).substr(1));
+  return false;
+}
+
+void Parser::refuse_bit_assignment(Span span, std::string_view name, std::string_view digits) {
+  const int bit = bit_number(digits);
+  error(error::pin_assignment, span, fmt::format("A bit of '{}' is assigned by itself.", name),
+        bit < 0 ? fmt::format("Assign all of {} at once. Its bits are 0 to {}.", name, highest_bit)
+                : fmt::format(
+                      "Assign all of {0} at once, with a SEL for each bit: {0} := SEL(BIT{1}, WORD#0, WORD#16#{2:X}) "
+                      "OR …; or say (* @body *) behind the name of the block: its statements then run one by "
+                      "one.",
+                      name, bit, 1U << static_cast<unsigned>(bit)));
+}
+
+bool Parser::pin_assignment(const FunctionBlock& block) {
   const auto instance = name_of(now());
   advance();
   advance();
+  if (is(Symbol::Refused)) {
+    return false;  // Z.%X3, told where it was read
+  }
   const auto pin = is(Symbol::Identifier) ? now() : last_;
   const bool is_assignment = is(Symbol::Identifier) && ahead(1).symbol == Symbol::Assign;
   if (!is_assignment) {
@@ -120,9 +152,18 @@ bool Parser::pin_assignment() {
     return false;
   }
   const auto name = name_of(pin);
-  error(error::pin_assignment, {instance.span.offset, pin.end() - instance.span.offset},
+  const Span span{instance.span.offset, pin.end() - instance.span.offset};
+  const bool plain = std::ranges::any_of(block.variables, [&](const Variable& one) {
+    return same_name(one.name.text, instance.text) && is_elementary_type(one.type.text);
+  });
+  if (plain && names_bit(name.text)) {
+    refuse_bit_assignment(span, instance.text, name.text.substr(1));
+    return false;
+  }
+  error(error::pin_assignment, span,
         fmt::format("The pin {}.{} is assigned outside of its call.", instance.text, name.text),
-        fmt::format("Wire it in the call: {}({} := …);", instance.text, name.text));
+        plain ? fmt::format("'{0}' is a variable and has no pins: write {0} := …;", instance.text)
+              : fmt::format("Wire it in the call: {}({} := …);", instance.text, name.text));
   return false;
 }
 

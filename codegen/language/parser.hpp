@@ -21,6 +21,7 @@
 namespace hysteron::language {
 
 inline constexpr std::uint32_t deepest_expression = 256;
+inline constexpr int highest_bit = 15;  ///< of a WORD
 
 class Parser {
  public:
@@ -48,7 +49,9 @@ class Parser {
   bool assignment(FunctionBlock& block);
   bool element_assignment(FunctionBlock& block);
   bool assigned_value(FunctionBlock& block, Assignment assignment, std::uint32_t begin);
-  bool pin_assignment();
+  bool bit_assignment();
+  void refuse_bit_assignment(Span span, std::string_view name, std::string_view digits);
+  bool pin_assignment(const FunctionBlock& block);
   void control();
   bool arguments(std::vector<Argument>& list);
 
@@ -60,6 +63,9 @@ class Parser {
   ExpressionId primary(bool behind_minus);
   ExpressionId parenthesized();
   ExpressionId reference();
+  [[nodiscard]] bool is_bit() const;
+  [[nodiscard]] static int bit_number(std::string_view digits);
+  ExpressionId without_bit(ExpressionId value);
   ExpressionId bit_of(ExpressionId word, std::uint32_t begin);
   /// `[2]` behind a name; no_expression where there is none. False where an error was reported.
   bool index(ExpressionId& index);

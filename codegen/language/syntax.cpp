@@ -36,6 +36,12 @@ bool same_name(std::string_view a, std::string_view b) {
   return equal_ignoring_case(a, b);
 }
 
+bool names_bit(std::string_view member) {
+  constexpr std::size_t longest = 3;
+  return member.size() > 1 && member.size() <= longest && same_name(member.substr(0, 1), "X") &&
+         member.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
 std::string upper(std::string_view name) {
   return in_capitals(name);
 }

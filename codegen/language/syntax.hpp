@@ -84,6 +84,7 @@ struct Binary {
   Operator op{};
   ExpressionId left = no_expression;
   ExpressionId right = no_expression;
+  std::int8_t bit = -1;  ///< written W.3: this is (W AND 16#8) <> 16#0, and 3
 };
 /// `LIMIT(0.0, X, 1.0)`; a formal argument (`MN := 0.0`) keeps its name.
 struct FunctionArgument {
@@ -182,6 +183,8 @@ SourceFile parse_file(const std::string& path, Diagnostics& diagnostics);
 
 /// Identifiers compared as the language does: without regard to case.
 bool same_name(std::string_view a, std::string_view b);
+/// X3, as some editors write the bit 3 of a word: W.X3.
+bool names_bit(std::string_view member);
 std::string upper(std::string_view name);
 
 /// For each block of a file, its statements by their indexes in the order wanted; an empty order keeps the source's.

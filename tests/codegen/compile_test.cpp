@@ -125,23 +125,6 @@ TEST(Compile, TheMendOfAnAssignmentNamesTheConversion) {
   }
 }
 
-TEST(Compile, TheMendOfAPatternOfBitsIsOne) {
-  const auto mend = [](const std::string& expression) {
-    const auto found = diagnose(block("VAR_INPUT W : WORD; N : DINT; B : BOOL; END_VAR VAR_OUTPUT Y : BOOL; END_VAR",
-                                      "Y := " + expression + ";"));
-    return found.empty() ? "" : found[0].mend;
-  };
-  EXPECT_EQ(mend("W AND 16#6F = 16#27"), "= is done before the operation on bits. Write (W AND 16#6F) = 16#27.");
-  EXPECT_EQ(mend("16#27 <> 16#6F OR W"), "<> is done before the operation on bits. Write 16#27 <> (16#6F OR W).");
-  EXPECT_EQ(mend("(W AND 16#6F) = 16#27"), "");
-  EXPECT_EQ(mend("16#27 <> (16#6F OR W)"), "");
-  EXPECT_THAT(mend("(N AND 16#FF) = 3"), HasSubstr("DINT_TO_WORD converts."));
-  EXPECT_THAT(mend("N.3"), HasSubstr("DINT_TO_WORD converts."));
-  EXPECT_THAT(mend("B.3"), HasSubstr("It takes BOOL or WORD"));
-  EXPECT_EQ(mend("W.16"), "Its bits are 0 to 15; bit 0 is the lowest.");
-  EXPECT_EQ(mend("W.3E0"), "Its bits are 0 to 15; bit 0 is the lowest.");
-}
-
 TEST(Compile, RatesThatDifferByTheirPhasesAreTold) {
   const auto found = diagnose(block(io + "VAR A : HY_SAMPLE; (* @every 3 @phase 1 *) B : HY_GAIN; (* @every 3 *) "
                                          "H : HY_HOLD; END_VAR",

@@ -137,6 +137,30 @@ TEST(Plcopen, AVariableRunsTheBlockThatFeedsItFirst) {
   EXPECT_EQ(read_back(xml).find("HY_DELAY"), std::string::npos);
 }
 
+TEST(Plcopen, AVectorIsDrawnByItsElements) {
+  const Program program = compile_text(R"(FUNCTION_BLOCK INNER
+  VAR_INPUT V : ARRAY[0..2] OF LREAL; END_VAR
+  VAR_OUTPUT W : ARRAY[0..2] OF LREAL; S : LREAL; END_VAR
+  W := 2.0 * V;
+  S := SUM(V);
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK OUTER (* @ts 1ms *)
+  VAR_INPUT X : ARRAY[0..2] OF LREAL; END_VAR
+  VAR_OUTPUT Y : ARRAY[0..2] OF LREAL; T : LREAL; END_VAR
+  VAR I : INNER; M : ARRAY[0..2] OF LREAL; OLD : HY_DELAY; END_VAR
+  M := X - OLD.XOUT;
+  I(V := M);
+  OLD(XIN := I.S);
+  Y := I.W + [1.0, 2.0, 3.0];
+  T := DOT(M, X);
+END_FUNCTION_BLOCK
+)",
+                                       {.top = "OUTER"});
+  const std::string text = read_back(drawn(program));
+  EXPECT_NE(text.find("X_0"), std::string::npos);
+  expect_same_bits(program, compile_text(text, {.top = "OUTER"}));
+}
+
 TEST(Plcopen, WhatNoNetworkHoldsIsRefused) {
   const Program program = compile_text(R"(FUNCTION_BLOCK SLOW (* @ts 1ms *)
   VAR_INPUT X : LREAL; END_VAR
@@ -147,11 +171,21 @@ TEST(Plcopen, WhatNoNetworkHoldsIsRefused) {
   Y := H.XOUT;
 END_FUNCTION_BLOCK
 )");
-  try {
-    drawn(program);
-    FAIL() << "a network has no rates";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.diagnostics().all().front().number, error::no_network);
+  const Program sized = compile_text(R"(FUNCTION_BLOCK SIZED (* @ts 1ms *)
+  VAR_INPUT X : ARRAY[0..1] OF LREAL; END_VAR
+  VAR_OUTPUT Y : LREAL; END_VAR
+  VAR G : HY_MATRIX_GAIN := (K := [1.0, 2.0], ROWS := 1); END_VAR
+  G(XIN := X);
+  Y := G.XOUT;
+END_FUNCTION_BLOCK
+)");
+  for (const Program* const one : {&program, &sized}) {
+    try {
+      drawn(*one);
+      FAIL() << "a network has no rates, and no block of a size of its own";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.diagnostics().all().front().number, error::no_network);
+    }
   }
 }
 
@@ -211,6 +245,102 @@ TEST(Plcopen, AVariableThatIsReadBeforeItIsAssignedIsADelay) {
   EXPECT_EQ(machine.output(0), 5.0);
   machine.step();
   EXPECT_EQ(machine.output(0), 6.0);
+}
+
+/// TOTAL := TOTAL + X, of a variable that comes from outside and goes out again.
+std::string adding(const std::string& total) {
+  return R"(<inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <inVariable localId="2"><connectionPointOut/><expression>)" +
+         total + R"(</expression></inVariable>
+         <block localId="3" typeName="ADD"><inputVariables>
+           <variable formalParameter="IN1"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></variable>
+           <variable formalParameter="IN2"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable>
+         </inputVariables><outputVariables><variable formalParameter="OUT"><connectionPointOut/></variable></outputVariables></block>
+         <outVariable localId="4"><connectionPointIn><connection refLocalId="3"/></connectionPointIn><expression>)" +
+         total + "</expression></outVariable>";
+}
+
+constexpr const char* lreal = "<type><LREAL/></type></variable>";
+const std::string input_x = std::string(R"(<inputVars><variable name="X">)") + lreal + "</inputVars>";
+
+TEST(Plcopen, AVariableOfTheProjectComesInAndGoesOut) {
+  for (const std::string list : {"externalVars", "inOutVars"}) {
+    const std::string xml =
+        project(input_x + "<" + list + R"(><variable name="TOTAL">)" + lreal + "</" + list + ">", adding("TOTAL"));
+    Diagnostics warnings;
+    const Program program = compile_text(import_plcopen("drawing.xml", xml, {}, warnings));
+    ASSERT_EQ(warnings.all().size(), 1U);
+    EXPECT_NE(warnings.all().front().cause.find("goes out by TOTAL_OUT"), std::string::npos);
+    ASSERT_EQ(program.graph.outputs.size(), 1U);
+    EXPECT_EQ(program.graph.outputs[0].name, "TOTAL_OUT");
+    Machine<double> machine(program, 1e-3);
+    for (std::size_t i = 0; i < 2; ++i) {
+      machine.set_input(i, program.graph.inputs[i].name == "X" ? 1.5 : 40.0);
+    }
+    machine.step();
+    EXPECT_EQ(machine.output(0), 41.5) << list;
+  }
+}
+
+TEST(Plcopen, WhatIsAssignedAloneIsAnOutputAndWhatIsReadAloneAnInput) {
+  const std::string xml =
+      project(std::string(R"(<externalVars><variable name="IN1">)") + lreal + R"(<variable name="OUT1">)" + lreal +
+                  "</externalVars>",
+              R"(<inVariable localId="1"><connectionPointOut/><expression>IN1</expression></inVariable>
+         <outVariable localId="4"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><expression>OUT1</expression></outVariable>)");
+  const Program program = compile_text(read_back(xml));
+  ASSERT_EQ(program.graph.inputs.size(), 1U);
+  EXPECT_EQ(program.graph.inputs[0].name, "IN1");
+  ASSERT_EQ(program.graph.outputs.size(), 1U);
+  EXPECT_EQ(program.graph.outputs[0].name, "OUT1_OUT");
+}
+
+/// A block that adds to what it is handed: the variable behind the pin is memory of the caller.
+std::string with_inner(const std::string& pin, const std::string& more = "") {
+  return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>
+<pou name="INNER" pouType="functionBlock"><interface>)" +
+         input_x + R"(<inOutVars><variable name="TOTAL">)" + lreal + "</inOutVars></interface><body><FBD>" +
+         adding("TOTAL") + R"(</FBD></body></pou>
+<pou name="OUTER" pouType="functionBlock"><interface>)" +
+         input_x + R"(<outputVars><variable name="Y">)" + lreal + R"(</outputVars><localVars><variable name="SUM_1">)" +
+         lreal +
+         R"(<variable name="I"><type><derived name="INNER"/></type></variable></localVars></interface><body><FBD>
+         <inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <inOutVariable localId="2"><connectionPointOut/><expression>)" +
+         pin + R"(</expression></inOutVariable>
+         <block localId="3" typeName="INNER" instanceName="I" executionOrderId="1"><inputVariables>
+           <variable formalParameter="X"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable></inputVariables>
+         <inOutVariables><variable formalParameter="TOTAL"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></variable></inOutVariables></block>
+         <inVariable localId="5"><connectionPointOut/><expression>SUM_1</expression></inVariable>
+         <outVariable localId="6" executionOrderId="2"><connectionPointIn><connection refLocalId="5"/></connectionPointIn><expression>Y</expression></outVariable>)" +
+         more + "</FBD></body></pou></pous></types></project>";
+}
+
+TEST(Plcopen, WhatABlockHandsBackIsAssignedToTheVariableThatItTook) {
+  const Program program = compile_text(read_back(with_inner("SUM_1")), {.top = "OUTER"});
+  Machine<double> machine(program, 1e-3);
+  machine.set_input(0, 2.0);
+  for (const double wanted : {2.0, 4.0, 6.0}) {
+    machine.step();
+    EXPECT_EQ(machine.output(0), wanted);
+  }
+}
+
+TEST(Plcopen, WhatIsHandedOverIsAVariableThatIsAssignedOnce) {
+  const auto cause = [](const std::string& xml) {
+    try {
+      read_back(xml);
+      return std::string();
+    } catch (const InputError& error) {
+      return error.diagnostics().all().front().cause;
+    }
+  };
+  EXPECT_NE(cause(with_inner("2.5")).find("VAR_IN_OUT TOTAL is handed no variable"), std::string::npos);
+  EXPECT_NE(cause(with_inner("X")).find("VAR_IN_OUT TOTAL is handed no variable"), std::string::npos);
+  EXPECT_NE(cause(with_inner("SUM_1", R"(<outVariable localId="7"><connectionPointIn><connection refLocalId="1"/>
+         </connectionPointIn><expression>SUM_1</expression></outVariable>)"))
+                .find("assigned"),
+            std::string::npos);
 }
 
 TEST(Plcopen, WhatADiagramCannotExpressIsNamed) {

@@ -20,7 +20,7 @@ struct RandomWords {
   bool rates = false;      ///< parts that run in every n-th step, between HY_SAMPLE and HY_HOLD
   bool types = false;      ///< an input W1 and an output W of WORD, and DINT at the ends of its range
   bool functions = false;  ///< all functions of the language
-  bool vectors = false;    ///< vectors, and blocks whose pins are vectors
+  bool vectors = false;    ///< vectors, also as inputs XV, BV and outputs YV, YW; and blocks whose pins are vectors
 };
 
 class RandomDiagram {
@@ -359,7 +359,12 @@ class RandomDiagram {
       }
     }
     if (words_.vectors) {
+      offer("XV", 3);
+      for (const std::string_view element : {"BV[0]", "BV[1]"}) {
+        sources_[static_cast<std::size_t>(Type::Bool)].emplace_back(element);
+      }
       write_vectors(declarations, statements);
+      late += fmt::format("  YV := {};\n  YW := {};\n", vector(3), vector(2));
     }
     for (int i = 0; i < 3; ++i) {
       // Bounded, so that feedback does not run away to infinity at once.
@@ -374,9 +379,13 @@ class RandomDiagram {
     const std::string integer = source(Type::Int);
     text_ = fmt::format(
         "FUNCTION_BLOCK {} (* @ts 1ms *)\n  VAR_INPUT\n    X1, X2, X3 : LREAL;\n    B1, B2 : BOOL;\n    N1 : DINT;\n  "
-        "{}END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n{}  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := {};\n  N "
+        "{}{}END_VAR\n  VAR_OUTPUT\n{}    Q : BOOL;\n    N : DINT;\n{}{}  END_VAR\n  VAR\n{}  END_VAR\n{}{}  Q := "
+        "{};\n  N "
         ":= {};\n{}END_FUNCTION_BLOCK\n",
-        name_, words_.types ? "  W1 : WORD;\n  " : "", outputs, words_.types ? "    W : WORD;\n" : "", declarations,
+        name_, words_.types ? "  W1 : WORD;\n  " : "",
+        words_.vectors ? "  XV : ARRAY[0..2] OF LREAL;\n    BV : ARRAY[0..1] OF BOOL;\n  " : "", outputs,
+        words_.types ? "    W : WORD;\n" : "",
+        words_.vectors ? "    YV : ARRAY[0..2] OF LREAL;\n    YW : ARRAY[0..1] OF LREAL;\n" : "", declarations,
         statements, late, truth, integer, words_.types ? fmt::format("  W := {};\n", source(Type::Word)) : "");
   }
 

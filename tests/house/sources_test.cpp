@@ -38,7 +38,7 @@ constexpr std::array<Allowed, 9> allowed_words{{
     {"tests/support/measured_records.hpp", undone_words[2], "without the folder of measured records"},
     {"tests/records/measured_test.cpp", undone_words[2], "without the folder of measured records"},
     {"tests/support/in_browser.hpp", undone_words[2], "without chromium"},
-    {"tests/codegen/backends/matiec_test.cpp", undone_words[2], "without MATIEC, an outside compiler"},
+    {"tests/codegen/backends/outside_compilers_test.cpp", undone_words[2], "without MATIEC or STruC++, outside compilers"},
     {"tests/tool/test_bench_test.cpp", undone_words[2], "without MATIEC, an outside compiler"},
     {"tests/runtime/mqtt/broker.hpp", undone_words[2], "without mosquitto"},
     {"tests/runtime/mqtt/sparkplug_decoder.hpp", undone_words[2], "without protoc"},

@@ -11,6 +11,7 @@ namespace hysteron {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr std::string_view filtered = R"(FUNCTION_BLOCK FILTERED  (* @ts 1ms *)
   VAR_INPUT
@@ -49,6 +50,37 @@ TEST(ProofSheet, TellsWhatTheFilesAreMadeOf) {
   const auto again = bench.shell("hysteron generate \"it's.st\" --target st --params p.toml --proof --out made");
   EXPECT_EQ(again.code, 0) << "its own sheet is not someone else's: " << again.err;
   EXPECT_EQ(bench.read("made/filtered.st.proof.json"), text);
+}
+
+TEST(ProofSheet, ThePageSaysWhatTheSheetSays) {
+  const test::Workbench bench;
+  bench.write("f.st", filtered);
+  const auto outcome = bench.shell("hysteron generate f.st --target c --proof --out made");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("made/filtered.c.proof.html\n"));
+  const auto sheet = nlohmann::json::parse(bench.read("made/filtered.c.proof.json"));
+  const std::string page = bench.read("made/filtered.c.proof.html");
+  EXPECT_THAT(page, HasSubstr("Equal bits in all 2000 steps, at 1 output."));
+  EXPECT_THAT(page, HasSubstr(sheet["source"]["sha256"].get<std::string>()));
+  for (const auto& file : sheet["files"]) {
+    EXPECT_THAT(page, HasSubstr(file["sha256"].get<std::string>()));
+  }
+  EXPECT_THAT(page, HasSubstr(sheet["command"].get<std::string>()));
+  ASSERT_TRUE(sheet["stack_bytes"].is_object()) << "GCC and Clang both tell it";
+  EXPECT_GT(sheet["stack_bytes"]["bytes"], 0);
+  EXPECT_THAT(page, HasSubstr(sheet["stack_bytes"]["bytes"].dump() + " bytes at most"));
+  EXPECT_THAT(page, HasSubstr("<td>LAG</td><td>HY_LAG</td>"));
+  EXPECT_THAT(page, HasSubstr("signature"));
+  EXPECT_THAT(page, Not(HasSubstr("src="))) << "nothing is loaded";
+}
+
+TEST(ProofSheet, APageOfHysteronMayBeWrittenAnew) {
+  const test::Workbench bench;
+  bench.write("f.st", filtered);
+  ASSERT_EQ(bench.shell("hysteron generate f.st --target st --proof --out made").code, 0);
+  bench.write("f.st", std::string(filtered) + "(* another hash *)\n");
+  const auto again = bench.shell("hysteron generate f.st --target st --proof --out made");
+  EXPECT_EQ(again.code, 0) << again.err;
 }
 
 TEST(ProofSheet, OfADialectThatIsNotReadBackProvesThePortableText) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/routine.hpp"
 #include "codegen/backends/st/comment.hpp"
 #include "codegen/graph/fmu_block.hpp"
@@ -59,11 +60,12 @@ A2lRow a2l_row(CStructure structure, std::size_t offset, std::string path, const
           .above_minimum = field.above_minimum};
 }
 
-A2lRow a2l_row(CStructure structure, std::size_t offset, const Port& port) {
+A2lRow a2l_row(CStructure structure, std::size_t offset, const Port& port, const PortGroup& group) {
   return {.structure = structure,
           .offset = offset,
-          .path = port.name,
+          .path = std::string(group.name),
           .type = port.type,
+          .length = static_cast<std::uint16_t>(group.length),
           .unit = port.unit,
           .meaning = port.meaning,
           .minimum = port.minimum,
@@ -86,12 +88,13 @@ class A2lText {
       const Parameter& one = graph_.parameters[i];
       entries_.push_back(a2l_row(CStructure::Params, offset(CStructure::Params, i), one.path, one.field));
     }
-    for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
-      entries_.push_back(a2l_row(CStructure::In, offset(CStructure::In, i), graph_.inputs[i]));
-    }
-    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
-      entries_.push_back(a2l_row(CStructure::Out, offset(CStructure::Out, i), graph_.outputs[i]));
-    }
+    const auto add_ports = [&](CStructure structure, const std::vector<Port>& ports) {
+      for (const PortGroup& group : port_groups(ports)) {
+        entries_.push_back(a2l_row(structure, offset(structure, group.first), ports[group.first], group));
+      }
+    };
+    add_ports(CStructure::In, graph_.inputs);
+    add_ports(CStructure::Out, graph_.outputs);
     for (std::size_t i = 0; i < routine_.cells.size(); ++i) {
       const CellInfo& cell = routine_.cells[i];
       entries_.push_back(a2l_row(CStructure::State, offset(CStructure::State, i),

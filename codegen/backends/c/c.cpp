@@ -7,6 +7,7 @@
 #include "codegen/backends/c/dialect.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/words.hpp"
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/program_hash.hpp"
@@ -89,9 +90,11 @@ class CFiles {
 
   void append_ports(std::string& text, const std::vector<Port>& ports,
                     const std::vector<std::string_view>& names) const {
-    for (std::size_t i = 0; i < ports.size(); ++i) {
-      append(text, "  ", type_of(dialect_, ports[i].type), " ", names[i], ";");
-      append_comment(text, "  // ", ports[i].unit, ports[i].meaning, "");
+    for (const PortGroup& group : port_groups(ports)) {
+      const Port& port = ports[group.first];
+      append(text, "  ", type_of(dialect_, port.type), " ", variable_of(names[group.first]),
+             group.is_array() ? fmt::format("[{}]", group.length) : "", ";");
+      append_comment(text, "  // ", port.unit, port.meaning, "");
       text += '\n';
     }
   }

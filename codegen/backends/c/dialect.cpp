@@ -75,6 +75,7 @@ constexpr DialectOfC dialect_with(const SpellingTable& operations, std::string_v
           .word_end = "U",
           .element_begin = "set_element(",
           .passes_length = true,
+          .place = "uint32_t",
           .careful = true};
 }
 

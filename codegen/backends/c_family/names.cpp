@@ -6,6 +6,7 @@
 
 #include "codegen/backends/c_family/c_library_names.hpp"
 #include "codegen/backends/c_family/words.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 
 namespace hysteron {
 
@@ -31,12 +32,7 @@ std::string namespace_identifier(std::string_view name) {
 
 std::vector<std::string> port_members(const std::vector<Port>& ports) {
   Identifiers identifiers(cpp_words);
-  std::vector<std::string> names;
-  names.reserve(ports.size());
-  for (const Port& port : ports) {
-    names.emplace_back(identifiers.make({port.name}));
-  }
-  return names;
+  return port_names(ports, [&](const PortGroup& group) { return identifiers.make({group.name}); });
 }
 
 StructLayout::StructLayout(const Graph& graph, const Routine& routine, std::span<const std::string_view> reserved)

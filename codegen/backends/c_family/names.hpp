@@ -18,7 +18,7 @@ std::string field_identifier(std::string_view name);
 /// The same for the namespace of a diagram, which the C library's names must not be either.
 std::string namespace_identifier(std::string_view name);
 
-/// The members of the structure of inputs or outputs, by port.
+/// The members of the structure of inputs or outputs, by port; an element of a vector is that of an array, `x[2]`.
 std::vector<std::string> port_members(const std::vector<Port>& ports);
 
 /// Parameters and state as structures: what belongs to one instance stands in a structure of its own.

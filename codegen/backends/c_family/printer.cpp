@@ -151,6 +151,10 @@ void WriterOfC::begin_rate(const Rate& rate, std::string& text) {
                            rate.phase));
 }
 
+void WriterOfC::begin_loop(std::uint32_t count, std::string& text) {
+  append(text, fmt::format("for ({0} {1} = 0U; {1} < {2}U; ++{1}) {{\n", dialect_.place, place_name(), count));
+}
+
 void WriterOfC::define(ValueId id, std::string_view name, std::string& text) {
   append(text, "const ", type_of(dialect_, routine.tape[id].type), " ", name, " = ");
   expressions.print(id, text);

@@ -19,6 +19,7 @@ struct DialectOfC {
   std::string_view literal_begin{}, literal_end{};  ///< round every literal
   std::string_view element_begin{};           ///< the call that sets an element of an array
   bool passes_length = false;                 ///< whether the calls for elements take the length of the array
+  std::string_view place{};                   ///< the type of a place in an array, in loops; empty: there are none
   bool careful = false;  ///< x == x is written as !isnan(x), and operators of two kinds stand in brackets
 };
 
@@ -63,7 +64,11 @@ class WriterOfC : public StepWriter {
  public:
   WriterOfC(const Graph& the_graph, const Routine& the_routine, PrinterOfC& printer, Identifiers& locals,
             const Layout& layout, const DialectOfC& dialect)
-      : StepWriter(the_graph, the_routine, printer, locals), printer_(printer), layout_(layout), dialect_(dialect) {}
+      : StepWriter(the_graph, the_routine, printer, locals),
+        printer_(printer),
+        layout_(layout),
+        dialect_(dialect),
+        place_(dialect.place.empty() || !has_arrays(the_graph.outputs) ? std::string_view() : locals.make({"i"})) {}
 
   /// The end of a step: the counter of steps goes on, within the longest period.
   void write_counter(std::string& text) const;
@@ -77,6 +82,10 @@ class WriterOfC : public StepWriter {
   void set_cell(std::uint32_t cell, ValueId value, std::string& text) override;
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
 
+  [[nodiscard]] std::string_view place_name() override { return place_; }
+  void begin_loop(std::uint32_t count, std::string& text) override;
+  void end_loop(std::string& text) override { text += "}\n"; }
+
   const PrinterOfC& printer() const { return printer_; }
   const Layout& layout() const { return layout_; }
 
@@ -84,6 +93,7 @@ class WriterOfC : public StepWriter {
   PrinterOfC& printer_;
   const Layout& layout_;
   const DialectOfC& dialect_;
+  std::string_view place_;
 };
 
 /// Whether a list of statements reads or sets the state.

@@ -97,7 +97,8 @@ class CppHeader {
     std::string text;
     const bool arrays =
         std::ranges::any_of(routine_.cells, [](const CellInfo& cell) { return cell.field.length > 1; }) ||
-        std::ranges::any_of(graph_.parameters, [](const Parameter& one) { return one.field.length > 1; });
+        std::ranges::any_of(graph_.parameters, [](const Parameter& one) { return one.field.length > 1; }) ||
+        has_arrays(graph_.inputs) || has_arrays(graph_.outputs);
     if (arrays) {
       text += "#include <array>\n";
     }

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "codegen/backends/c_family/names.hpp"
+#include "codegen/backends/c_family/words.hpp"
 #include "codegen/graph/defaults.hpp"
 #include "support/numbers.hpp"
 
@@ -232,8 +233,13 @@ GeneratedFile cpp_host_main(const Program& program) {
   std::string inputs;
   bool has_whole = false;
   const auto input_names = port_members(graph.inputs);
+  Identifiers identifiers(cpp_words);
+  std::vector<std::string_view> columns_of;  // in C++: x_2 of x[2]
+  for (const Port& port : graph.inputs) {
+    columns_of.push_back(identifiers.make({port.name}));
+  }
   for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-    const std::string& name = input_names[i];
+    const std::string_view name = columns_of[i];
     std::string column = graph.inputs[i].name;
     std::ranges::transform(column, column.begin(),
                            [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
@@ -241,8 +247,8 @@ GeneratedFile cpp_host_main(const Program& program) {
     const bool needed = !has_default(graph, graph.inputs[i]);
     places += fmt::format("  const auto {}_at = columns.find(\"{}\", {});\n", name, column, needed);
     const std::string number = fmt::format("number(cells[{0}_at], row, \"{1}\")", name, column);
-    const std::string line =
-        fmt::format("in.{} = {};\n", name, converted(graph.inputs[i].type, "in." + name, column, number));
+    const std::string line = fmt::format("in.{} = {};\n", input_names[i],
+                                         converted(graph.inputs[i].type, "in." + input_names[i], column, number));
     inputs += needed ? "    " + line : fmt::format("    if ({}_at < cells.size()) {{\n      {}    }}\n", name, line);
   }
   std::string outputs;

@@ -10,6 +10,7 @@
 #include "codegen/backends/c_family/printer.hpp"
 #include "codegen/backends/shared/generated_file.hpp"
 #include "codegen/backends/shared/layout.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/routine.hpp"
 
 namespace hysteron {
@@ -74,11 +75,18 @@ struct CppStructs {
   void append_ports(std::string& text, std::string_view name, const std::vector<Port>& ports,
                     const std::vector<std::string_view>& members) const {
     append(text, "struct ", name, " {\n");
-    for (std::size_t i = 0; i < ports.size(); ++i) {
-      append(text, "  ", type_of(dialect, ports[i].type), " ", members[i], " = ",
-             literal(ports[i].type, ports[i].preset), ";");
-      append_comment(text, "  // ", ports[i].unit, ports[i].meaning, "");
-      append(text, "\n");
+    for (const PortGroup& group : port_groups(ports)) {
+      const Port& port = ports[group.first];
+      Field field;
+      field.type = port.type;
+      field.unit = port.unit;
+      field.meaning = port.meaning;
+      field.length = static_cast<std::uint16_t>(group.length);
+      std::vector<double> presets;
+      for (std::uint32_t i = 0; i < group.length; ++i) {
+        presets.push_back(ports[group.first + i].preset);
+      }
+      append_member(text, type_of(dialect, port.type), field, {.name = variable_of(members[group.first])}, &presets);
     }
     append(text, "};\n\n");
   }

@@ -56,6 +56,7 @@ const DialectOfC cpp_dialect{.operations = cpp_operations,
                              .word_begin = "std::uint16_t{",
                              .word_end = "}",
                              .element_begin = "detail::store(",
-                             .passes_length = false};
+                             .passes_length = false,
+                             .place = "std::uint32_t"};
 
 }  // namespace hysteron

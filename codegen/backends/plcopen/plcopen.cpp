@@ -14,7 +14,6 @@
 #include "codegen/backends/st/pou.hpp"
 #include "codegen/graph/definition.hpp"
 #include "codegen/graph/fmu_block.hpp"
-#include "support/element_name.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron {
@@ -78,8 +77,9 @@ Pou caller_of(const plcopen::Network& network) {
   return caller;
 }
 
-/// A wire of a network carries one value.
-void refuse_vectors(const Program& program) {
+/// A wire of a network carries one value: a vector is its elements there, X_0 of X[0]. A block whose pins are vectors has
+/// none of the library to stand for it.
+void refuse_sized_blocks(const Program& program) {
   Diagnostics diagnostics;
   Diagnostics ignored;
   const Definitions definitions = define(program.graph.source, ignored);
@@ -87,12 +87,13 @@ void refuse_vectors(const Program& program) {
   for (const std::uint32_t index : definitions.callees_first) {
     const Definition& definition = definitions.list[index];
     const auto found = std::ranges::find_if(definition.variables, [](const Declared& one) {
-      return element_of(one.field.name) || (one.block != nullptr && one.block->sized != nullptr);
+      return one.block != nullptr && one.block->sized != nullptr;
     });
     if (values.is_used(index) && found != definition.variables.end()) {
       diagnostics.error(
           error::no_network, definitions.source->place(found->variable->name.span),
-          fmt::format("'{}' has a vector, or a block that takes its sizes from lists", definition.block->name.text),
+          fmt::format("'{}' has a block that takes its sizes from lists, {}", definition.block->name.text,
+                      found->variable->name.text),
           "Generate with --body st: a wire of a network carries one value.");
     }
   }
@@ -103,7 +104,7 @@ void refuse_vectors(const Program& program) {
 
 void add_networks(const Program& program, const PlcopenOptions& options, const StOptions& text,
                   plcopen::Project& project) {
-  refuse_vectors(program);
+  refuse_sized_blocks(program);
   plcopen::Networks made =
       plcopen::make_networks(program, {.float32 = options.float32, .small_literals = text.dialect.small_literals});
   plcopen::take_places(options.place(plcopen::placing_dot(made.list)), made.list);

@@ -55,8 +55,7 @@ void ExpressionPrinter::print_arguments(const Value& value, std::string& out) co
 
 void ExpressionPrinter::print(ValueId id, int outer, std::string& out) const {
   if (is_named(id)) {
-    out += names_[name_of_[id] - 1];
-    return;
+    return print_name(names_[name_of_[id] - 1], out);
   }
   const Value& value = tape_[id];
   if (is_leaf(value.op)) {

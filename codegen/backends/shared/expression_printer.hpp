@@ -107,6 +107,8 @@ class ExpressionPrinter {
   void print(ValueId id, std::string& out) const { print(id, Strength::Loosest, out); }
 
  protected:
+  /// A value that has a name.
+  virtual void print_name(std::string_view name, std::string& out) const { out += name; }
   /// A literal, a sample time, an input, a parameter or a cell.
   virtual void print_leaf(const Value& value, int outer, std::string& out) const = 0;
   /// An operation whose row is Special.

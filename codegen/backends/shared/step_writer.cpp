@@ -1,9 +1,51 @@
 #include "codegen/backends/shared/step_writer.hpp"
 
+#include <algorithm>
+#include <optional>
+
+#include "codegen/backends/shared/generated_file.hpp"
+
 namespace hysteron {
+namespace {
+
+constexpr std::size_t shortest_loop = 3;
+
+/// Lines as one, in which a name stands for the place of an element, [0] in the first line and [2] in the third; empty
+/// where they differ in more.
+std::string rolled(const std::vector<std::string>& lines, std::string_view place) {
+  std::string line;
+  std::vector<std::size_t> at(lines.size(), 0);
+  const auto all = [&](auto expected) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (!std::string_view(lines[i]).substr(at[i]).starts_with(expected(i))) {
+        return false;
+      }
+    }
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      at[i] += std::string_view(expected(i)).size();
+    }
+    return true;
+  };
+  while (at[0] < lines[0].size()) {
+    if (all([](std::size_t i) { return "[" + std::to_string(i) + "]"; })) {
+      append(line, "[", place, "]");
+    } else if (const std::string one(1, lines[0][at[0]]); all([&](std::size_t) { return one; })) {
+      line += one;
+    } else {
+      return {};
+    }
+  }
+  const bool whole = std::ranges::equal(lines, at, {}, &std::string::size) && std::ranges::count(line, '\n') == 1;
+  return whole ? line : std::string();
+}
+
+}  // namespace
+
 StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, ExpressionPrinter& the_expressions,
                        Identifiers& locals)
     : graph(the_graph), routine(the_routine), expressions(the_expressions), locals_(locals) {
+  arrays_ = port_groups(graph.outputs);
+  std::erase_if(arrays_, [](const PortGroup& one) { return !one.is_array(); });
   own_definition_.assign(routine.tape.size(), no_value);
   for (std::uint32_t i = 0; i < routine.step.size(); ++i) {
     const Statement& one = routine.step[i];
@@ -11,6 +53,39 @@ StepWriter::StepWriter(const Graph& the_graph, const Routine& the_routine, Expre
       own_definition_[one.value] = i;
     }
   }
+}
+
+void StepWriter::write(const std::vector<Statement>& list, std::string& text) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto array = std::ranges::find_if(arrays_, [&](const PortGroup& one) {
+      return list[i].kind == Statement::Kind::SetOutput && list[i].target == one.first && i + one.length <= list.size();
+    });
+    if (array == arrays_.end()) {
+      write(list[i], text);
+    } else {
+      write_array(list, *array, i, text);
+      i += array->length - 1;
+    }
+  }
+}
+
+/// The elements of an output, whose statements follow each other.
+void StepWriter::write_array(const std::vector<Statement>& list, const PortGroup& group, std::size_t at,
+                             std::string& text) {
+  std::vector<std::string> lines(group.length);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    write(list[at + i], lines[i]);
+  }
+  const bool may_loop = lines.size() >= shortest_loop && !place_name().empty();
+  const std::string line = may_loop ? rolled(lines, place_name()) : std::string();
+  if (line.empty()) {
+    std::ranges::for_each(lines, [&](const std::string& one) { text += one; });
+    return;
+  }
+  text += indentation;
+  begin_loop(group.length, text);
+  append(text, "  ", line, indentation);
+  end_loop(text);
 }
 
 void StepWriter::write(const Statement& statement, std::string& text) {

@@ -12,6 +12,7 @@
 
 #include "codegen/backends/shared/expression_printer.hpp"
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/shared/routine.hpp"
 
 namespace hysteron {
@@ -24,11 +25,8 @@ class StepWriter {
   StepWriter(const StepWriter&) = delete;
   StepWriter& operator=(const StepWriter&) = delete;
 
-  void write(const std::vector<Statement>& list, std::string& text) {
-    for (const Statement& statement : list) {
-      write(statement, text);
-    }
-  }
+  /// Elements of an output that are set by lines which differ in their place alone are set in a loop.
+  void write(const std::vector<Statement>& list, std::string& text);
   /// The reset: values take their names from the block whose state they set.
   void write_reset(std::string& text) {
     in_reset_ = true;
@@ -53,6 +51,10 @@ class StepWriter {
   virtual void call(const Statement& /*statement*/, bool /*reset*/, std::string& /*text*/) {}
   /// The variable of an output, for values that are one.
   [[nodiscard]] virtual std::string_view output_name(std::uint32_t /*output*/) const { return {}; }
+  /// A loop over the places of an array, round a line that names its place; nothing where the target has none.
+  [[nodiscard]] virtual std::string_view place_name() { return {}; }
+  virtual void begin_loop(std::uint32_t /*count*/, std::string& /*text*/) {}
+  virtual void end_loop(std::string& /*text*/) {}
   /// What a shared value is called that is no port and no state.
   [[nodiscard]] virtual std::string_view word_for(const Value& value) const = 0;
 
@@ -75,6 +77,7 @@ class StepWriter {
 
  private:
   void write(const Statement& statement, std::string& text);
+  void write_array(const std::vector<Statement>& list, const PortGroup& group, std::size_t at, std::string& text);
   void begin_line(std::string& text);
   void write_definition(ValueId id, std::string_view name, std::string& text);
   void write_shared(ValueId root, bool with_root, std::string& text);
@@ -84,6 +87,7 @@ class StepWriter {
   std::string_view name_of(const Statement& definition);
 
   Identifiers& locals_;
+  std::vector<PortGroup> arrays_;              ///< of the outputs
   std::vector<std::uint32_t> own_definition_;  ///< by value: where the step defines it by the name of a port or state
   std::uint32_t section_ = 0;                  ///< the node to which the statement at hand belongs
   bool section_begins_ = false;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <string_view>
 
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/st/bench_blocks.hpp"
 #include "codegen/backends/st/bench_results.hpp"
 #include "codegen/backends/st/comment.hpp"
@@ -124,9 +125,14 @@ class BenchText {
     const std::string& name = block.made.block.name;
     const std::string type = dialect_.shape == StDialect::Shape::Source ? fmt::format("\"{}\"", name) : name;
     made.instance = declare(names_.make({name, "1"}), type, 1, "the block under test");
-    for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-      made.inputs.push_back(declare(names_.make({name, graph.inputs[i].name}),
-                                    std::string(st_type(graph.inputs[i].type, block.float32)), 1, "an input of it"));
+    // Elements of an array are set where they are: compilers differ on which arrays may be handed over in a call.
+    for (const PortGroup& group : port_groups(graph.inputs)) {
+      for (std::uint32_t i = group.first; i < group.first + group.length; ++i) {
+        made.inputs.push_back(group.is_array() ? fmt::format("{}.{}", made.instance, block.made.interface.inputs[i])
+                                               : declare(names_.make({name, graph.inputs[i].name}),
+                                                         std::string(st_type(graph.inputs[i].type, block.float32)), 1,
+                                                         "an input of it"));
+      }
     }
     for (const std::size_t i : block.changed) {
       const Parameter& parameter = graph.parameters[i];
@@ -252,8 +258,10 @@ class BenchText {
       numbers.push_back(test + 1);
     }
     std::vector<std::string> arguments;
-    for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
-      arguments.push_back(fmt::format("{} := {}", pins.inputs[i], own.inputs[i]));
+    for (const PortGroup& group : port_groups(graph.inputs)) {
+      if (!group.is_array()) {
+        arguments.push_back(fmt::format("{} := {}", pins.inputs[group.first], own.inputs[group.first]));
+      }
     }
     for (std::size_t p = 0; p < block.changed.size(); ++p) {
       arguments.push_back(fmt::format("{} := {}", pins.parameters[block.changed[p]], own.parameters[p]));

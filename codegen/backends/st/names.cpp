@@ -17,7 +17,7 @@ std::string_view StBlockNames::keep(std::string_view name) {
   }
   const std::string_view kept = identifiers_.make({name});
   const bool plain = element_of(name) && language::same_name(kept, identifier_text({name}, LetterCase::Upper));
-  if (!plain && !language::same_name(kept, name)) {  // X[0] is X_0 as a matter of course
+  if (!plain && !language::same_name(kept, name)) {  // of a vector of one element X[0] is X_0, as a matter of course
     renamed_ +=
         fmt::format("   {} is called {}: its name is taken, or some compiler keeps it for itself.\n", name, kept);
   }
@@ -37,12 +37,8 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
       }
     }
   }
-  for (const Port& port : graph.inputs) {
-    layout_.inputs.push_back(keep(port.name));
-  }
-  for (const Port& port : graph.outputs) {
-    layout_.outputs.push_back(keep(port.name));
-  }
+  name_ports(graph.inputs, inputs_, layout_.inputs);
+  name_ports(graph.outputs, outputs_, layout_.outputs);
   block_ = keep(graph.name);
   reset_ = identifiers_.make({"RESET"});
   if (reset_ != "RESET") {  // the diagram has an input of this name
@@ -65,6 +61,30 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
     const CellInfo& cell = routine.cells[i];
     layout_.cells.push_back({.name = identifiers_.make({cell.instance, cell.field.name})});
   }
+}
+
+/// The pins of a block of the library are single ones, since each may be wired by itself.
+void StBlockNames::name_ports(const std::vector<Port>& ports, std::vector<std::string>& names,
+                              std::vector<std::string_view>& list) {
+  if (keeps_pins_) {
+    for (const Port& port : ports) {
+      list.push_back(keep(port.name));
+    }
+    return;
+  }
+  names = port_names(ports, [this](const PortGroup& group) { return keep(group.name); });
+  list.assign(names.begin(), names.end());
+}
+
+std::vector<PortGroup> StBlockNames::groups(const std::vector<Port>& ports) const {
+  if (!keeps_pins_) {
+    return port_groups(ports);
+  }
+  std::vector<PortGroup> single;
+  for (std::uint32_t i = 0; i < ports.size(); ++i) {
+    single.push_back({.name = ports[i].name, .first = i});
+  }
+  return single;
 }
 
 void StBlockNames::name_instances(const Graph& graph, const StCalls& calls) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codegen/backends/shared/identifiers.hpp"
+#include "codegen/backends/shared/port_groups.hpp"
 #include "codegen/backends/st/pou.hpp"
 #include "codegen/backends/st/printer.hpp"
 
@@ -25,6 +26,8 @@ class StBlockNames {
   [[nodiscard]] std::string_view block() const { return block_; }
   [[nodiscard]] std::string_view reset() const { return reset_; }
   [[nodiscard]] std::string_view started() const { return started_; }
+  /// The ports as they are declared.
+  [[nodiscard]] std::vector<PortGroup> groups(const std::vector<Port>& ports) const;
   /// What gives the names of values, none of which is one of those above.
   [[nodiscard]] Identifiers& identifiers() { return identifiers_; }
 
@@ -33,6 +36,7 @@ class StBlockNames {
 
  private:
   std::string_view keep(std::string_view name);
+  void name_ports(const std::vector<Port>& ports, std::vector<std::string>& names, std::vector<std::string_view>& list);
   void name_instances(const Graph& graph, const StCalls& calls);
 
   const StDialect& dialect_;
@@ -43,6 +47,8 @@ class StBlockNames {
   std::string_view block_;
   std::string_view reset_;
   std::string_view started_;
+  std::vector<std::string> inputs_;
+  std::vector<std::string> outputs_;
   std::deque<std::string> outputs_of_instances_;  ///< LAG.XOUT
   std::string renamed_;
 };

@@ -131,13 +131,16 @@ class StBlock {
     return (library_ || calls_ != nullptr) && dialect_.shape == StDialect::Shape::OneFile;
   }
 
-  [[nodiscard]] StVariable of_port(std::string_view name, const Port& port, std::string_view meaning,
-                                   bool with_value) const {
-    StVariable variable{.name = std::string(name),
+  [[nodiscard]] StVariable of_ports(const std::vector<Port>& ports, const PortGroup& group, std::string_view name,
+                                    std::string_view meaning, bool with_value) const {
+    const Port& port = ports[group.first];
+    StVariable variable{.name = std::string(variable_of(name)),
                         .type = type(port.type),
+                        .length = group.length,
+                        .values = {},
                         .remark = st_remark(port.unit, port.minimum, port.maximum, false, meaning)};
-    if (with_value) {
-      variable.values.push_back(printer_.literal(port.type, port.preset));
+    for (std::uint32_t i = 0; with_value && i < group.length; ++i) {
+      variable.values.push_back(printer_.literal(port.type, ports[group.first + i].preset));
     }
     return variable;
   }
@@ -172,9 +175,10 @@ class StBlock {
 
   [[nodiscard]] std::vector<StVariable> inputs() const {
     std::vector<StVariable> list;
-    for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
-      const Port& port = graph_.inputs[i];
-      list.push_back(of_port(names_.layout().inputs[i], port, port.meaning, has_default(graph_, port)));
+    for (const PortGroup& group : names_.groups(graph_.inputs)) {
+      const Port& port = graph_.inputs[group.first];
+      list.push_back(
+          of_ports(graph_.inputs, group, names_.layout().inputs[group.first], port.meaning, has_default(graph_, port)));
     }
     list.push_back({.name = std::string(names_.reset()),
                     .type = "BOOL",
@@ -251,9 +255,10 @@ class StBlock {
 
   [[nodiscard]] std::vector<StVariable> outputs() const {
     std::vector<StVariable> list;
-    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
-      const Port& port = graph_.outputs[i];
-      list.push_back(of_port(names_.layout().outputs[i], port, port.meaning, library_ && port.preset != 0.0));
+    for (const PortGroup& group : names_.groups(graph_.outputs)) {
+      const Port& port = graph_.outputs[group.first];
+      list.push_back(of_ports(graph_.outputs, group, names_.layout().outputs[group.first], port.meaning,
+                              library_ && port.preset != 0.0));
     }
     return list;
   }
@@ -346,21 +351,27 @@ class StBlock {
         names_.block(), number_text(static_cast<double>(graph_.sample_time_ns) / 1e6));
     StSection section{.keyword = "VAR", .variables = {{.name = instance, .type = std::string(names_.block())}}};
     std::string arguments;
-    for (std::size_t i = 0; i < graph_.inputs.size(); ++i) {
-      const Port& port = graph_.inputs[i];
-      const std::string_view name = names_.layout().inputs[i];
-      section.variables.push_back(of_port(name, port, port.meaning, true));
-      append(arguments, arguments.empty() ? "" : ", ", name, " := ", name);
+    std::string elements;  // compilers differ on which arrays may be handed over in a call
+    for (const PortGroup& group : names_.groups(graph_.inputs)) {
+      const std::string_view first = names_.layout().inputs[group.first];
+      section.variables.push_back(of_ports(graph_.inputs, group, first, graph_.inputs[group.first].meaning, true));
+      for (std::uint32_t i = group.first; group.is_array() && i < group.first + group.length; ++i) {
+        append(elements, "  ", instance, ".", names_.layout().inputs[i], " := ", names_.layout().inputs[i], ";\n");
+      }
+      if (!group.is_array()) {
+        append(arguments, arguments.empty() ? "" : ", ", first, " := ", first);
+      }
     }
     std::string results;
-    for (std::size_t i = 0; i < graph_.outputs.size(); ++i) {
-      const std::string_view name = names_.layout().outputs[i];
-      section.variables.push_back(of_port(name, graph_.outputs[i], "", false));
+    for (const PortGroup& group : names_.groups(graph_.outputs)) {
+      section.variables.push_back(of_ports(graph_.outputs, group, names_.layout().outputs[group.first], "", false));
+    }
+    for (const std::string_view name : names_.layout().outputs) {
       append(results, "  ", name, " := ", instance, ".", name, ";\n");
     }
     program.sections.push_back(std::move(section));
-    program.body = fmt::format("  {}({}{}{} := FALSE);\n{}", instance, arguments, arguments.empty() ? "" : ", ",
-                               names_.reset(), results);
+    program.body = fmt::format("{}  {}({}{}{} := FALSE);\n{}", elements, instance, arguments,
+                               arguments.empty() ? "" : ", ", names_.reset(), results);
     return program;
   }
 

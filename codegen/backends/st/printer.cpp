@@ -37,12 +37,9 @@ constexpr SpellingTable st_operations({
     {Op::NotEqual, infix("<>", Strength::Equality)},
     {Op::IntLess, infix("<", Strength::Relation)},
     {Op::IntLessEqual, infix("<=", Strength::Relation)},
-    {Op::IntEqual, infix("=", Strength::Equality)},
-    {Op::IntNotEqual, infix("<>", Strength::Equality)},
     {Op::And, infix("AND", Strength::LogicalAnd)},
     {Op::Or, infix("OR", Strength::LogicalOr)},
     {Op::Xor, infix("XOR", Strength::LogicalXor)},
-    {Op::Not, negation("NOT ")},
 });
 
 /// The digits of a real number with a large E, as the standard writes it. A constant that is not a number (LN(-1.0)) is
@@ -62,6 +59,11 @@ std::string digits_of(double value, const StReals& reals) {
 }
 
 }  // namespace
+
+std::string st_typed_literal(std::string_view type, std::string_view digits) {
+  const bool negative = digits.starts_with('-');
+  return fmt::format("{}{}#{}", negative ? "-" : "", type, digits.substr(negative ? 1 : 0));
+}
 
 std::string_view st_type(Type type, bool float32) {
   return float32 && type == Type::Real ? "REAL" : type_name(type);
@@ -99,9 +101,18 @@ std::string StPrinter::text(ValueId id, int outer) const {
 std::string StPrinter::argument(ValueId id) const {
   const Value& value = tape()[id];
   if (value.op == Op::IntLiteral && !is_named(id) && value.literal == std::numeric_limits<std::int32_t>::min()) {
-    return "(DINT#-2147483647 - DINT#1)";
+    return "(-DINT#2147483647 - DINT#1)";
   }
-  return value.op == Op::IntLiteral && !is_named(id) ? "DINT#" + text(id) : text(id);
+  return value.op == Op::IntLiteral && !is_named(id) ? st_typed_literal("DINT", literal(Type::Int, value.literal))
+                                                     : text(id);
+}
+
+/// The bits of an integer, as a DWORD.
+std::string StPrinter::pattern(ValueId id) const {
+  const Value& value = tape()[id];
+  return value.op == Op::IntLiteral && !is_named(id)
+             ? fmt::format("DWORD#16#{:08X}", static_cast<std::uint32_t>(static_cast<std::int32_t>(value.literal)))
+             : "DINT_TO_DWORD(" + argument(id) + ")";
 }
 
 void StPrinter::print_largest(bool negative, int outer, std::string& out) const {
@@ -142,8 +153,8 @@ void StPrinter::print_leaf(const Value& value, int outer, std::string& out) cons
   const std::string digits = literal(value.type, value.literal);
   const bool brackets = digits.front() == '-' && outer > Strength::Loosest;
   out += brackets ? "(" : "";
-  out += value.type == Type::Real && float32_ ? "REAL#" : "";  // elsewhere a literal with a point may be an LREAL
-  out += digits;
+  // Elsewhere a literal with a point may be an LREAL.
+  out += value.type == Type::Real && float32_ ? st_typed_literal("REAL", digits) : digits;
   out += brackets ? ")" : "";
 }
 
@@ -209,10 +220,107 @@ void StPrinter::print_power_inside(const Value& value, int outer, std::string& o
       out += brackets ? "(" : "";
       const std::string exponent = literal(Type::Real, tape()[value.args[1]].literal);
       print_power(guards_.power_form(value) == PowerForm::PositivePart ? positive_part() : text(base),
-                  fmt::format("{}#{}", st_type(Type::Real, float32_), exponent), out);
+                  st_typed_literal(st_type(Type::Real, float32_), exponent), out);
       out += brackets ? ")" : "";
     }
   }
+}
+
+/// Whether an integer is the number of a WORD that the text can name: of a WORD, or a literal.
+bool StPrinter::is_word(ValueId id) const {
+  const Value& value = tape()[id];
+  constexpr double largest_word = 65535.0;
+  return !is_named(id) && (value.op == Op::WordToInt ||
+                           (value.op == Op::IntLiteral && value.literal >= 0.0 && value.literal <= largest_word));
+}
+
+/// The lower 16 bits of an integer, as a WORD: by operations on WORDs as far as these are the same.
+void StPrinter::print_as_word(ValueId id, int outer, std::string& out) const {
+  constexpr double bits_of_word = 16.0;
+  const Value& value = tape()[id];
+  if (is_word(id)) {
+    return value.op == Op::WordToInt ? print(value.args[0], outer, out)
+                                     : append(out, literal(Type::Word, value.literal));
+  }
+  if (value.op == Op::IntLiteral && !is_named(id)) {
+    return append(out, literal(Type::Word, static_cast<std::uint16_t>(static_cast<std::int32_t>(value.literal))));
+  }
+  const bool logic = value.op == Op::IntAnd || value.op == Op::IntOr || value.op == Op::IntXor;
+  if (logic && !is_named(id)) {
+    return print_bits(value, outer, out);
+  }
+  const bool shift =
+      value.op == Op::IntShiftLeft || (value.op == Op::IntShiftRight && is_word(value.args[0]));  // no bit comes in
+  if (shift && !is_named(id) && tape()[value.args[1]].literal < bits_of_word) {
+    std::string word;
+    print_as_word(value.args[0], Strength::Loosest, word);
+    return print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"}, {word, text(value.args[1])}, out);
+  }
+  append(out, "DWORD_TO_WORD(DINT_TO_DWORD(", argument(id), ") AND DWORD#16#0000FFFF)");  // some compilers saturate
+}
+
+/// AND, OR and XOR of two WORDs, and NOT as what turns every bit.
+void StPrinter::print_bits(const Value& value, int outer, std::string& out) const {
+  constexpr double every_bit = 65535.0;
+  const Value& last = tape()[value.args[1]];
+  if (value.op == Op::IntXor && last.op == Op::IntLiteral && last.literal == every_bit && !is_named(value.args[1])) {
+    std::string turned;
+    print_as_word(value.args[0], Strength::Primary, turned);
+    const bool twice = turned.starts_with("NOT ");
+    return append(out, twice ? "NOT (" : "NOT ", turned, twice ? ")" : "");
+  }
+  const bool brackets = outer > Strength::Loosest;
+  out += brackets ? "(" : "";
+  print_as_word(value.args[0], Strength::Primary, out);
+  out += value.op == Op::IntAnd ? " AND " : (value.op == Op::IntOr ? " OR " : " XOR ");
+  print_as_word(value.args[1], Strength::Primary, out);
+  out += brackets ? ")" : "";
+}
+
+/// Of two WORDs, as WORDs where the text would convert one of them.
+void StPrinter::print_comparison(const Value& value, int outer, std::string& out) const {
+  const bool words = is_word(value.args[0]) && is_word(value.args[1]) &&
+                     (tape()[value.args[0]].op == Op::WordToInt || tape()[value.args[1]].op == Op::WordToInt);
+  const bool brackets = outer >= Strength::Equality;
+  out += brackets ? "(" : "";
+  const auto side = [&](ValueId id) {
+    words ? print_as_word(id, Strength::Primary, out) : print(id, Strength::Equality + 1, out);
+  };
+  side(value.args[0]);
+  out += value.op == Op::IntEqual ? " = " : " <> ";
+  side(value.args[1]);
+  out += brackets ? ")" : "";
+}
+
+/// A truth value turned round. NOT stands before single values alone: a compiler that makes C++ of it has no NOT of
+/// what AND, OR and XOR of truth values give there.
+void StPrinter::print_negated(ValueId id, int outer, std::string& out) const {
+  const Value& value = tape()[id];
+  if (!is_named(id) && value.op == Op::Not) {
+    return print(value.args[0], outer, out);
+  }
+  if (!is_named(id) && (value.op == Op::IntEqual || value.op == Op::IntNotEqual)) {
+    Value other = value;
+    other.op = value.op == Op::IntEqual ? Op::IntNotEqual : Op::IntEqual;
+    return print_comparison(other, outer, out);
+  }
+  if (!is_named(id) && (value.op == Op::And || value.op == Op::Or || value.op == Op::Xor)) {
+    const bool brackets = outer > Strength::Loosest;
+    out += brackets ? "(" : "";
+    if (value.op == Op::Xor) {
+      print(value.args[0], Strength::Primary, out);
+      out += " = ";
+      print(value.args[1], Strength::Primary, out);
+    } else {
+      print_negated(value.args[0], Strength::Primary, out);
+      out += value.op == Op::And ? " OR " : " AND ";
+      print_negated(value.args[1], Strength::Primary, out);
+    }
+    out += brackets ? ")" : "";
+    return;
+  }
+  out += "NOT ";
+  print(id, Strength::Primary, out);
 }
 
 void StPrinter::print_special(const Value& value, int outer, std::string& out) const {
@@ -223,23 +331,28 @@ void StPrinter::print_special(const Value& value, int outer, std::string& out) c
     case Op::At:
       print(first, out);
       return print_place(value.args[1], length_of(first), out);
+    case Op::Not:
+      return print_negated(first, outer, out);
+    case Op::IntEqual:
+    case Op::IntNotEqual:
+      return print_comparison(value, outer, out);
     case Op::IntAnd:
     case Op::IntOr:
     case Op::IntXor:
-      return append(out, "DWORD_TO_DINT(DINT_TO_DWORD(", argument(first), ")",
-                    value.op == Op::IntAnd ? " AND " : (value.op == Op::IntOr ? " OR " : " XOR "), "DINT_TO_DWORD(",
-                    argument(value.args[1]), "))");
+      return append(out, "DWORD_TO_DINT(", pattern(first),
+                    value.op == Op::IntAnd ? " AND " : (value.op == Op::IntOr ? " OR " : " XOR "),
+                    pattern(value.args[1]), ")");
     case Op::IntShiftLeft:
     case Op::IntShiftRight: {
       std::string shifted;
-      print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"},
-                 {"DINT_TO_DWORD(" + argument(first) + ")", text(value.args[1])}, shifted);
+      print_call(value.op == Op::IntShiftLeft ? "SHL" : "SHR", {"IN", "N"}, {pattern(first), text(value.args[1])},
+                 shifted);
       return append(out, "DWORD_TO_DINT(", shifted, ")");
     }
     case Op::WordToInt:
       return append(out, "WORD_TO_DINT(", text(first), ")");
-    case Op::IntToWord:  // from its lower bits, since some compilers saturate
-      return append(out, "DWORD_TO_WORD(DINT_TO_DWORD(", argument(first), ") AND DWORD#16#0000FFFF)");
+    case Op::IntToWord:
+      return print_as_word(first, outer, out);
     case Op::ToSingle:
       return float32_ ? print(first, outer, out) : append(out, "REAL_TO_LREAL(LREAL_TO_REAL(", text(first), "))");
     case Op::ToReal:

@@ -38,6 +38,9 @@ struct StReals {
 /// A literal as an initial value; infinities are the largest number that the dialect can write.
 std::string st_literal(Type type, double value, const StReals& reals);
 
+/// A literal with its type. The sign stands before: LREAL#-0.5 is no number for some compilers.
+std::string st_typed_literal(std::string_view type, std::string_view digits);
+
 class StPrinter final : public ExpressionPrinter {
  public:
   StPrinter(const Graph& graph, const Routine& routine, const Layout& layout, const StNames& names,
@@ -64,7 +67,7 @@ class StPrinter final : public ExpressionPrinter {
                   std::initializer_list<std::string_view> arguments, std::string& out) const;
   /// A real literal in the body, and 0.
   [[nodiscard]] std::string real(std::string_view digits) const {
-    return (float32_ ? "REAL#" : "") + std::string(digits);
+    return float32_ ? st_typed_literal("REAL", digits) : std::string(digits);
   }
   [[nodiscard]] std::string zero() const { return real("0.0"); }
   [[nodiscard]] std::string text(ValueId id, int outer = Strength::Loosest) const;
@@ -73,11 +76,18 @@ class StPrinter final : public ExpressionPrinter {
   mutable bool uses_largest = false;
 
  private:
+  void print_name(std::string_view name, std::string& out) const override { print_variable(name, out); }
   void print_leaf(const Value& value, int outer, std::string& out) const override;
   void print_special(const Value& value, int outer, std::string& out) const override;
   [[nodiscard]] bool sign_needs_brackets(int outer) const override { return outer > Strength::Loosest; }
   void print_power_inside(const Value& value, int outer, std::string& out) const;
   [[nodiscard]] std::string argument(ValueId id) const;
+  [[nodiscard]] std::string pattern(ValueId id) const;
+  [[nodiscard]] bool is_word(ValueId id) const;
+  void print_as_word(ValueId id, int outer, std::string& out) const;
+  void print_bits(const Value& value, int outer, std::string& out) const;
+  void print_negated(ValueId id, int outer, std::string& out) const;
+  void print_comparison(const Value& value, int outer, std::string& out) const;
 
   const Graph& graph_;
   const Routine& routine_;
@@ -120,6 +130,9 @@ class StWriter final : public StepWriter {
   void call(const Statement& statement, bool reset, std::string& text) override;
   [[nodiscard]] std::string_view output_name(std::uint32_t output) const override { return layout_.outputs[output]; }
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
+  [[nodiscard]] std::string_view place_name() override;
+  void begin_loop(std::uint32_t count, std::string& text) override;
+  void end_loop(std::string& text) override { text += "END_FOR;\n"; }
 
  private:
   void assign(std::string_view target, ValueId value, std::string& text);
@@ -133,6 +146,7 @@ class StWriter final : public StepWriter {
   StPrinter& printer_;
   const Layout& layout_;
   const StNames& names_;
+  std::string place_;
 };
 
 }  // namespace hysteron

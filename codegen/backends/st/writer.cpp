@@ -114,6 +114,17 @@ void StWriter::fill_cell(std::uint32_t cell, ValueId value, std::string& text) {
   text += "; END_FOR;\n";
 }
 
+std::string_view StWriter::place_name() {
+  place_.clear();
+  printer_.print_variable(names_.place, place_);
+  return place_;
+}
+
+void StWriter::begin_loop(std::uint32_t count, std::string& text) {
+  uses_place = true;
+  append(text, fmt::format("FOR {} := 0 TO {} DO\n", place_name(), count - 1));
+}
+
 // --- values that have a name ---
 
 void StWriter::line(std::string_view words, std::string& text) const {
@@ -181,8 +192,8 @@ void StWriter::define_power(const Value& value, const std::string& name, std::st
   }
   const bool whole = printer_.guards().power_form(value) == PowerForm::NonZero;
   const std::string base = printer_.text(value.args[0], Strength::Primary);
-  const std::string exponent = fmt::format("{}#{}", st_type(Type::Real, printer_.float32()),
-                                           printer_.literal(Type::Real, routine.tape[value.args[1]].literal));
+  const std::string exponent = st_typed_literal(st_type(Type::Real, printer_.float32()),
+                                                printer_.literal(Type::Real, routine.tape[value.args[1]].literal));
   std::string power;
   printer_.print_power(base, exponent, power);
   std::string largest;

@@ -1,7 +1,7 @@
 // Every back-end against every other, over random diagrams of the whole catalogue, of all types, at several rates, with
-// with vectors and the blocks that take them, with inputs that are no numbers, infinite or denormal among them. Every
-// diagram is run by the interpreter, by C or C++ from the system's compilers, and, in LREAL, by both texts of
-// Structured Text read back by our own front end: the one block, and the calls of the library.
+// vectors and the blocks that take them, with inputs that are no numbers, infinite or denormal among them. Every
+// diagram is run by the interpreter, by C or C++ from the system's compilers, one in four as an FMU, and, in LREAL, by
+// both texts of Structured Text read back by our own front end: the one block, and the calls of the library.
 //
 // HYSTERON_SEED repeats the fresh part of a run, which prints its seed; HYSTERON_EVERY_BACKEND_DIAGRAMS sets the number
 // of diagrams.
@@ -19,11 +19,14 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "codegen/backends/c/c.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp.hpp"
+#include "codegen/backends/fmu/fmu.hpp"
+#include "codegen/backends/fmu/model_description.hpp"
 #include "codegen/backends/st/st.hpp"
 #include "codegen/interpreter/machine.hpp"
 #include "tests/codegen/backends/recorded_run.hpp"
@@ -50,6 +53,7 @@ struct EveryDiagram {
 
   [[nodiscard]] std::string name() const { return fmt::format("P{}", number); }
   [[nodiscard]] bool has_words() const { return program.graph.inputs.size() > RecordedRun::columns; }
+  [[nodiscard]] bool has_vectors() const { return find_port(program.graph.inputs, "XV[0]") != nullptr; }
 };
 
 EveryDiagram every_diagram(std::uint64_t seed, std::size_t number) {
@@ -84,6 +88,15 @@ std::vector<double> every_row(const EveryDiagram& diagram, same::source& from) {
   row.push_back(static_cast<double>(same::whole_number(&from, diagram.float32 ? 0 : 1)));
   if (diagram.has_words()) {
     row.push_back(static_cast<double>(same::next_number(&from) % 65536));
+  }
+  if (diagram.has_vectors()) {
+    for (int i = 0; i < 3; ++i) {
+      const double value = same::real_number(&from, diagram.extremes);
+      row.push_back(diagram.float32 ? static_cast<double>(static_cast<float>(value)) : value);
+    }
+    for (int i = 0; i < 2; ++i) {
+      row.push_back(static_cast<double>(same::next_number(&from) % 2));
+    }
   }
   return row;
 }
@@ -169,23 +182,45 @@ int main(void) {{
 }}
 )";
 
-/// The body of a step's loop, with the ports as members of `in` and `out`.
-std::string every_loop(const EveryDiagram& diagram, std::string_view reset, std::string_view step) {
-  const std::string_view real = diagram.float32 ? "float" : "double";
-  std::string outputs;
-  for (const std::string& member : port_members(diagram.program.graph.outputs)) {
-    outputs += fmt::format("    mix(&hash, (double)out.{});\n", member);
+/// The values of a step's inputs in C, in the order of the ports.
+std::vector<std::string> every_values(const EveryDiagram& diagram) {
+  const std::string real =
+      fmt::format("({})real_number(&from, {})", diagram.float32 ? "float" : "double", diagram.extremes);
+  std::vector<std::string> values(3, real);
+  values.insert(values.end(), {"next_number(&from) % 2 != 0", "next_number(&from) % 8 == 0",
+                               fmt::format("whole_number(&from, {})", diagram.float32 ? 0 : 1)});
+  if (diagram.has_words()) {
+    values.emplace_back("(uint16_t)(next_number(&from) % 65536)");
   }
+  if (diagram.has_vectors()) {
+    values.insert(values.end(), 3, real);
+    values.insert(values.end(), 2, "next_number(&from) % 2 != 0");
+  }
+  return values;
+}
+
+/// A loop over the steps, between the random inputs and the hash of what comes of them.
+std::string every_loop_of(const EveryDiagram& diagram, std::string_view reset, std::string_view step) {
   return fmt::format(
       "  source from = {{{}u}};\n  uint64_t hash = 14695981039346656037u;\n  int k;\n"
-      "  for (k = 0; k < {}; ++k) {{\n    if (k == {}) {{ {} }}\n"
-      "    in.x1 = ({})real_number(&from, {});\n    in.x2 = ({})real_number(&from, {});\n"
-      "    in.x3 = ({})real_number(&from, {});\n"
-      "    in.b1 = next_number(&from) % 2 != 0;\n    in.b2 = next_number(&from) % 8 == 0;\n"
-      "    in.n1 = whole_number(&from, {});\n{}    {}\n{}  }}\n  printf(\"%llu\\n\", (unsigned long long)hash);\n",
-      every_source(diagram), every_steps, every_middle, reset, real, diagram.extremes, real, diagram.extremes, real,
-      diagram.extremes, diagram.float32 ? 0 : 1,
-      diagram.has_words() ? "    in.w1 = (uint16_t)(next_number(&from) % 65536);\n" : "", step, outputs);
+      "  for (k = 0; k < {}; ++k) {{\n    if (k == {}) {{ {} }}\n{}  }}\n"
+      "  printf(\"%llu\\n\", (unsigned long long)hash);\n",
+      every_source(diagram), every_steps, every_middle, reset, step);
+}
+
+/// With the ports as members of `in` and `out`.
+std::string every_loop(const EveryDiagram& diagram, std::string_view reset, std::string_view step) {
+  std::string text;
+  const std::vector<std::string> values = every_values(diagram);
+  const std::vector<std::string> inputs = port_members(diagram.program.graph.inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    text += fmt::format("    in.{} = {};\n", inputs[i], values.at(i));
+  }
+  text += fmt::format("    {}\n", step);
+  for (const std::string& member : port_members(diagram.program.graph.outputs)) {
+    text += fmt::format("    mix(&hash, (double)out.{});\n", member);
+  }
+  return every_loop_of(diagram, reset, text);
 }
 
 /// Each source of C has functions of its own that help: in one file with others they get the name of the diagram.
@@ -206,11 +241,17 @@ std::string with_own_helpers(const std::string& source, const std::string& name)
   return text;
 }
 
+/// One in four diagrams is an FMU, too: of FMI 2.0 and of FMI 3.0 by turns.
+bool is_fmu(const EveryDiagram& diagram) {
+  return diagram.number % 4 == 0;
+}
+
 std::string every_in_c(const std::vector<EveryDiagram>& batch) {
   std::string text =
       "#include <math.h>\n#include <stdbool.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <string.h>\n";
   text += std::string(same::text) + "\n";
   std::string calls;
+  std::string fmus;
   for (const EveryDiagram& diagram : batch) {
     const std::string name = fmt::format("p{}", diagram.number);
     const std::vector<GeneratedFile> files = generate_c(diagram.program, {.float32 = diagram.float32});
@@ -224,12 +265,16 @@ std::string every_in_c(const std::vector<EveryDiagram>& batch) {
         "  {0}_defaults(&params, &in);\n  {1}\n{2}}}\n",
         name, reset, every_loop(diagram, reset, fmt::format("{}_step(&params, &state, &in, &out);", name)));
     calls += fmt::format("  run_{}();\n", name);
+    if (is_fmu(diagram)) {
+      text += fmt::format("void run_{}_fmu(void);\n", name);
+      fmus += fmt::format("  run_{}_fmu();\n", name);
+    }
   }
-  return text + fmt::format(every_main, calls);
+  return text + fmt::format(every_main, calls + fmus);
 }
 
 std::string every_in_cpp(const std::vector<EveryDiagram>& batch) {
-  std::string text = "#include <cmath>\n#include <cstdint>\n#include <cstdio>\n#include <cstring>\n";
+  std::string text = "#include <array>\n#include <cmath>\n#include <cstdint>\n#include <cstdio>\n#include <cstring>\n";
   std::string own = std::string(same::text) + "\n";
   std::string calls;
   for (const EveryDiagram& diagram : batch) {
@@ -246,13 +291,71 @@ std::string every_in_cpp(const std::vector<EveryDiagram>& batch) {
   return text + own + fmt::format(every_main, calls);
 }
 
+/// An FMU as a source of its own, with an importer of a few lines behind it. It shares the step of the C file.
+std::string every_fmu(const EveryDiagram& diagram, const test::ScratchFolder& folder) {
+  const bool three = diagram.number % 8 == 0;
+  const FmuOptions options{.version = three ? FmiVersion::Three : FmiVersion::Two, .float32 = diagram.float32};
+  const FmuContents fmu = generate_fmu(diagram.program, options);
+  const std::string name = fmt::format("p{}", diagram.number);
+  std::string wrapper;
+  for (const GeneratedFile& file : fmu.files) {
+    if (file.name.ends_with(".h")) {
+      folder.write(name + ".h", file.text);
+    } else if (file.name == fmu.sources.back()) {
+      wrapper = file.text;
+    }
+  }
+  const std::string start =
+      three ? "status |= FMI(EnterInitializationMode)(one, false, 0.0, 0.0, false, 0.0);"
+            : "status |= FMI(SetupExperiment)(one, 0, 0.0, 0.0, 0, 0.0) | FMI(EnterInitializationMode)(one);";
+  const std::string begin = start + " status |= FMI(ExitInitializationMode)(one); first = k;";
+  const auto access = [&](std::string_view verb, Type type, std::size_t reference) {
+    return fmt::format("{{ const unsigned r = {}u; status |= FMI({}{})(one, &r, 1, &v{}); }}", reference, verb,
+                       fmi_type_name(type, options), three ? ", 1" : "");
+  };
+  const auto c_type = [&](Type type) -> std::string {
+    if (!three) {
+      return type == Type::Real ? "double" : "int";
+    }
+    return type == Type::Real   ? (diagram.float32 ? "float" : "double")
+           : type == Type::Bool ? "bool"
+           : type == Type::Int  ? "int32_t"
+                                : "uint16_t";
+  };
+  const std::vector<std::string> values = every_values(diagram);
+  const auto& [inputs, outputs] = std::tie(diagram.program.graph.inputs, diagram.program.graph.outputs);
+  std::string step;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    step += fmt::format("    {{ const {} v = {}; {} }}\n", c_type(inputs[i].type), values.at(i),
+                        access("Set", inputs[i].type, i + 1));
+  }
+  step += three
+              ? "    { bool e, t, y; double at; status |= FMI(DoStep)(one, (k - first) * FMU_PERIOD, FMU_PERIOD, true, "
+                "&e, &t, &y, &at); }\n"
+              : "    status |= FMI(DoStep)(one, (k - first) * FMU_PERIOD, FMU_PERIOD, 1);\n";
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    step += fmt::format("    {{ {} v = 0; {} mix(&hash, (double)v); }}\n", c_type(outputs[i].type),
+                        access("Get", outputs[i].type, inputs.size() + i + 1));
+  }
+  step += "    if (status != 0) { hash = 0; }\n";
+  const std::string instantiate =
+      three ? "FMI(InstantiateCoSimulation)(\"one\", FMU_TOKEN, \"\", 0, 0, 0, 0, 0, 0, 0, 0, 0)"
+            : "FMI(Instantiate)(\"one\", 1, FMU_TOKEN, \"\", &callbacks, 0, 0)";
+  folder.write(name + "_fmu.c",
+               fmt::format("#define FMI{0}_FUNCTION_PREFIX {1}_\n#include <stdio.h>\n{2}\n{3}\n"
+                           "void run_{1}_fmu(void) {{\n{4}  void *one = {5};\n  int status = one == 0;\n"
+                           "  int first = 0;\n  {{ int k = 0; {6} }}\n{7}  FMI(FreeInstance)(one);\n}}\n",
+                           three ? 3 : 2, name, wrapper, same::text,
+                           three ? "" : "  static const fmi2CallbackFunctions callbacks = {0};\n", instantiate, begin,
+                           every_loop_of(diagram, "status |= FMI(Reset)(one); " + begin, step)));
+  return name + "_fmu.c";
+}
+
 /// Compiled without optimisation: what is tried is the text, and its bits are the same.
-std::size_t hold_compiled(const std::vector<EveryDiagram>& batch, const std::string& file, const std::string& text,
-                          std::string_view compiler) {
-  const test::ScratchFolder folder;
-  folder.write(file, text);
+std::size_t hold_compiled(const std::vector<EveryDiagram>& batch, const std::vector<std::string>& files,
+                          const test::ScratchFolder& folder, std::string_view compiler) {
   const std::string build = fmt::format("cd {} && {} -O0 -w {} {} -o run -lm > log 2>&1 && ./run > out",
-                                        folder.path().string(), compiler, cpp_numeric_flags, file);
+                                        folder.path().string(), compiler, cpp_numeric_flags, fmt::join(files, " "));
   EXPECT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
   std::istringstream hashes(test::contents_of(folder / "out"));
   std::size_t steps = 0;
@@ -266,9 +369,33 @@ std::size_t hold_compiled(const std::vector<EveryDiagram>& batch, const std::str
   return steps;
 }
 
+std::size_t hold_in_cpp(const std::vector<EveryDiagram>& batch) {
+  const test::ScratchFolder folder;
+  folder.write("all.cpp", every_in_cpp(batch));
+  return hold_compiled(batch, {"all.cpp"}, folder, "c++ -std=c++11");
+}
+
+/// The steps of C, and those of FMUs behind them.
+void hold_in_c(const std::vector<EveryDiagram>& batch, std::size_t& in_c, std::size_t& in_fmus) {
+  const test::ScratchFolder folder;
+  std::vector<std::string> files{"all.c"};
+  std::vector<EveryDiagram> printed = batch;
+  for (const EveryDiagram& diagram : batch) {
+    if (is_fmu(diagram)) {
+      files.push_back(every_fmu(diagram, folder));
+      printed.push_back(diagram);
+    }
+  }
+  folder.write("all.c", every_in_c(batch));
+  const std::size_t steps = hold_compiled(printed, files, folder, "cc -std=c99");
+  in_c += batch.size() * every_steps;
+  in_fmus += steps - batch.size() * every_steps;
+}
+
 struct EveryCount {
   std::size_t diagrams = 0;
   std::size_t compiled = 0;
+  std::size_t fmus = 0;
   std::size_t flat = 0;
   std::size_t structured = 0;
 };
@@ -289,8 +416,8 @@ void hold_batch(std::uint64_t first_seed, std::size_t count, EveryCount& total) 
     }
     (i % 2 == 0 ? in_c : in_cpp).push_back(std::move(diagram));
   }
-  total.compiled += hold_compiled(in_c, "all.c", every_in_c(in_c), "cc -std=c99");
-  total.compiled += hold_compiled(in_cpp, "all.cpp", every_in_cpp(in_cpp), "c++ -std=c++11");
+  hold_in_c(in_c, total.compiled, total.fmus);
+  total.compiled += hold_in_cpp(in_cpp);
   total.diagrams += count;
 }
 
@@ -314,9 +441,9 @@ TEST_P(EveryBackend, HasTheBitsOfEveryOther) {
     hold_batch(seed + first, std::min(every_batch, diagrams - first), total);
   }
   fmt::print(
-      "{} diagrams; steps of equal bits: {} compiled, {} read back as one block, {} read back as calls of the "
-      "library\n",
-      total.diagrams, total.compiled, total.flat, total.structured);
+      "{} diagrams; steps of equal bits: {} compiled, {} as FMUs, {} read back as one block, {} read back as calls of "
+      "the library\n",
+      total.diagrams, total.compiled, total.fmus, total.flat, total.structured);
 }
 
 INSTANTIATE_TEST_SUITE_P(FixedAndFreshSeeds, EveryBackend, ::testing::Range(0, parts));

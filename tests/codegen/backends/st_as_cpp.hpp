@@ -23,20 +23,24 @@ inline constexpr std::string_view st_prelude = R"(#include <array>
 using LREAL = double;
 using REAL = float;
 using DINT = std::int32_t;
-using WORD = std::uint16_t;
 using BOOL = bool;
-struct DWORD {  // AND, OR and XOR are written as those of truth values
-  std::uint32_t bits;
-  friend DWORD operator&&(DWORD a, DWORD b) { return {a.bits & b.bits}; }
-  friend DWORD operator||(DWORD a, DWORD b) { return {a.bits | b.bits}; }
-  friend DWORD operator!=(DWORD a, DWORD b) { return {a.bits ^ b.bits}; }
+template <class Bits>
+struct Pattern {  // AND, OR and NOT are written as those of truth values
+  Bits bits = 0;
+  friend Pattern operator&&(Pattern a, Pattern b) { return {Bits(a.bits & b.bits)}; }
+  friend Pattern operator||(Pattern a, Pattern b) { return {Bits(a.bits | b.bits)}; }
+  friend Pattern operator^(Pattern a, Pattern b) { return {Bits(a.bits ^ b.bits)}; }
+  friend Pattern operator!(Pattern a) { return {Bits(~a.bits)}; }
+  friend bool operator==(Pattern a, Pattern b) { return a.bits == b.bits; }
+  friend Pattern SHL(Pattern x, int places) { return {Bits(x.bits << places)}; }
+  friend Pattern SHR(Pattern x, int places) { return {Bits(x.bits >> places)}; }
 };
+using WORD = Pattern<std::uint16_t>;
+using DWORD = Pattern<std::uint32_t>;
 inline DWORD DINT_TO_DWORD(DINT x) { return {static_cast<std::uint32_t>(x)}; }
 inline DINT DWORD_TO_DINT(DWORD x) { return static_cast<DINT>(x.bits); }
-inline WORD DWORD_TO_WORD(DWORD x) { return static_cast<WORD>(x.bits); }
-inline DINT WORD_TO_DINT(WORD x) { return x; }
-inline DWORD SHL(DWORD x, int places) { return {x.bits << places}; }
-inline DWORD SHR(DWORD x, int places) { return {x.bits >> places}; }
+inline WORD DWORD_TO_WORD(DWORD x) { return {static_cast<std::uint16_t>(x.bits)}; }
+inline DINT WORD_TO_DINT(WORD x) { return x.bits; }
 inline REAL LREAL_TO_REAL(LREAL x) { return static_cast<REAL>(x); }
 inline LREAL REAL_TO_LREAL(REAL x) { return x; }
 template <class T> T MIN(T a, T b) { return b < a ? b : a; }
@@ -168,7 +172,7 @@ class StAsCpp {
       return token;
     }
     if (token.starts_with("WORD#16#")) {
-      return "WORD(0x" + token.substr(8) + ")";
+      return "WORD{0x" + token.substr(8) + "}";
     }
     if (token.starts_with("DWORD#16#")) {
       return "DWORD{0x" + token.substr(9) + "}";
@@ -179,7 +183,7 @@ class StAsCpp {
   std::string in_cpp(const std::string& token) {
     static const std::map<std::string, std::string> words{
         {":=", "="},     {"=", "=="},      {"<>", "!="},         {"AND", "&&"},
-        {"OR", "||"},    {"XOR", "!="},    {"NOT", "!"},         {"MOD", "%"},
+        {"OR", "||"},    {"XOR", "^"},     {"NOT", "!"},         {"MOD", "%"},
         {"IF", "if ("},  {"THEN", ") {"},  {"ELSE", "} else {"}, {"ELSIF", "} else if ("},
         {"END_IF", "}"}, {"END_FOR", "}"}, {"TRUE", "true"},     {"FALSE", "false"},
         {";", ";\n"}};

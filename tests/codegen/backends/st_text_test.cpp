@@ -11,8 +11,8 @@
 
 #include "codegen/backends/st/words.hpp"
 #include "support/errors.hpp"
-#include "tests/codegen/random_program.hpp"
 #include "tests/codegen/backends/st_as_cpp.hpp"
+#include "tests/codegen/random_program.hpp"
 
 namespace hysteron::testing {
 namespace {
@@ -139,8 +139,8 @@ TEST(StText, WhatWouldStopAPlcIsGuarded) {
   EXPECT_THAT(y("X ** 3.0"), HasSubstr("  Y := EXPT(X, LREAL#3.0);\n"));
   EXPECT_THAT(y("X ** 2.0"), HasSubstr("  Y := X * X;\n"));
   EXPECT_THAT(y("X ** 1.5"), HasSubstr("  Y := EXPT(MAX(X, 0.0), LREAL#1.5);\n"));
-  EXPECT_THAT(y("X ** (-2.0)"), HasSubstr("IF X <> 0.0 THEN Y_POWER := EXPT(X, LREAL#-2.0);\n"));
-  EXPECT_THAT(y("X ** (-0.5)"), HasSubstr("IF X > 0.0 THEN Y_POWER := EXPT(X, LREAL#-0.5);\n"));
+  EXPECT_THAT(y("X ** (-2.0)"), HasSubstr("IF X <> 0.0 THEN Y_POWER := EXPT(X, -LREAL#2.0);\n"));
+  EXPECT_THAT(y("X ** (-0.5)"), HasSubstr("IF X > 0.0 THEN Y_POWER := EXPT(X, -LREAL#0.5);\n"));
   EXPECT_THAT(y("X ** Z"), HasSubstr("  ELSIF X > 0.0 THEN Y_POWER := EXPT(X, Z);\n"));
 }
 
@@ -161,7 +161,41 @@ TEST(StText, OperatorsOfTruthValuesKeepTheirOrder) {
   };
   EXPECT_THAT(q("(B XOR C) AND D"), HasSubstr("  Q := (B XOR C) AND D;\n"));
   EXPECT_THAT(q("B XOR (C AND D)"), HasSubstr("  Q := B XOR (C AND D);\n"));
-  EXPECT_THAT(q("NOT (B OR C)"), HasSubstr("  Q := NOT (B OR C);\n"));
+  EXPECT_THAT(q("NOT (B OR C)"), HasSubstr("  Q := NOT B AND NOT C;\n"));
+  EXPECT_THAT(q("NOT (B AND (C OR NOT D))"), HasSubstr("  Q := NOT B OR (NOT C AND D);\n"));
+  EXPECT_THAT(q("B = C"), HasSubstr("  Q := B = C;\n"));
+  EXPECT_THAT(q("NOT (N = M)"), HasSubstr("  Q := N <> M;\n"));
+  EXPECT_THAT(q("NOT (X < Z)"), HasSubstr("  Q := NOT (X < Z);\n"));  // not X >= Z: one may be no number
+}
+
+TEST(StText, WordsStayWords) {
+  const auto z = [](const std::string& expression) {
+    return st_of(
+        "FUNCTION_BLOCK C (* @ts 1ms *) VAR_INPUT W, V : WORD; N : DINT; END_VAR\nVAR_OUTPUT Z : WORD; Q : BOOL; "
+        "END_VAR Z := " +
+        expression + "; Q := (W AND V) = 16#27 AND NOT W.3; END_FUNCTION_BLOCK");
+  };
+  EXPECT_THAT(z("(W AND 16#6F) XOR V"), HasSubstr("  Z := (W AND WORD#16#006F) XOR V;\n"));
+  EXPECT_THAT(z("NOT (NOT W)"), HasSubstr("  Z := NOT (NOT W);\n"));
+  EXPECT_THAT(z("SHL(W OR V, 4)"), HasSubstr("  Z := SHL(W OR V, 4);\n"));
+  EXPECT_THAT(z("SHR(NOT W, 15)"), HasSubstr("  Z := SHR(NOT W, 15);\n"));
+  EXPECT_THAT(z("DINT_TO_WORD(N) OR W"),
+              HasSubstr("  Z := DWORD_TO_WORD(DINT_TO_DWORD(N) AND DWORD#16#0000FFFF) OR W;\n"));
+  EXPECT_THAT(z("W"), HasSubstr("  Q := (W AND V) = WORD#16#0027 AND ((W AND WORD#16#0008) = WORD#16#0000);\n"));
+}
+
+TEST(StText, OneOperationOnAllElementsIsALoop) {
+  const auto body = [](const std::string& statements) {
+    return st_of(
+        "FUNCTION_BLOCK C (* @ts 1ms *) VAR_INPUT A, B : ARRAY[0..10] OF LREAL; X : LREAL; END_VAR\n"
+        "VAR_OUTPUT Y : ARRAY[0..10] OF LREAL; END_VAR " +
+        statements + " END_FUNCTION_BLOCK");
+  };
+  EXPECT_THAT(body("Y := A * X + B[0];"),
+              HasSubstr("  FOR PLACE := 0 TO 10 DO\n    Y[PLACE] := A[PLACE] * X + B[0];\n  END_FOR;\n"));
+  EXPECT_THAT(body("Y := A - B;"), HasSubstr("Y[PLACE] := A[PLACE] - B[PLACE];"));
+  EXPECT_THAT(body("Y := [A[0], A[1], A[2], A[3], A[4], A[5], A[6], A[7], A[8], A[10], A[9]];"),
+              HasSubstr("  Y[9] := A[10];\n"));
 }
 
 TEST(StText, DialectsDifferWhereTheirCompilersDo) {

@@ -1,5 +1,5 @@
-// Structured Text against the interpreter through an outside compiler: MATIEC, where HYSTERON_MATIEC names its folder.
-// HYSTERON_MATIEC_DIAGRAMS says how many random diagrams are tried.
+// Structured Text against the interpreter through outside compilers: MATIEC, where HYSTERON_MATIEC names its folder,
+// and STruC++, where HYSTERON_STRUCPP does. HYSTERON_OUTSIDE_DIAGRAMS says how many random diagrams are tried.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace hysteron::testing {
 namespace {
 
-constexpr std::size_t matiec_steps = 400;  // the host resets in the middle
+constexpr std::size_t outside_steps = 400;  // the host resets in the middle
 
 constexpr std::string_view matiec_host_head = R"(#include <stdio.h>
 #include "iec_std_lib.h"
@@ -51,6 +51,51 @@ int main(int argc, char** argv) {
   const char* folder = argv[argc - 1];
 )";
 
+constexpr std::string_view strucpp_host_head = R"(#include <cstdio>
+#include "all.hpp"
+using namespace strucpp;
+template <class Block> void run(const char* folder, int number) {
+  static Block block;
+  char name[500];
+  std::snprintf(name, sizeof(name), "%s/in%d", folder, number);
+  std::FILE* in = std::fopen(name, "rb");
+  std::snprintf(name, sizeof(name), "%s/out%d", folder, number);
+  std::FILE* out = std::fopen(name, "wb");
+  int step = 0;
+  for (double row[6]; std::fread(row, sizeof(row), 1, in) == 1; ++step) {
+    block.RESET = step == 200;
+    block.X1 = row[0]; block.X2 = row[1]; block.X3 = row[2];
+    block.B1 = row[3] != 0; block.B2 = row[4] != 0; block.N1 = int(row[5]);
+    block();
+    const double results[6] = {double(block.Y0), double(block.Y1), double(block.Y2), double(block.Y3),
+                               double(bool(block.Q)), double(int(block.N))};
+    std::fwrite(results, sizeof(results), 1, out);
+  }
+  std::fclose(in);
+  std::fclose(out);
+}
+#define RUN(BLOCK, NUMBER) run<BLOCK>(folder, NUMBER);
+int main(int argc, char** argv) {
+  const char* folder = argv[argc - 1];
+)";
+
+struct OutsideCompiler {
+  std::string_view name;
+  std::string_view variable;  ///< of the environment: names its folder
+  std::string_view host_name;
+  std::string_view host;
+  std::string_view build;  ///< {0}: the folder of the test, {1}: the compiler's, {2}: flags
+};
+
+constexpr OutsideCompiler matiec{"MATIEC", "HYSTERON_MATIEC", "main.c", matiec_host_head,
+                                 "cd {0} && {1}/iec2c -I {1}/lib -T {0} all.st > log 2>&1 && cc -O0 -w -fwrapv {2} "
+                                 "-I{1}/lib/C -I. main.c -lm -o run "
+                                 ">> log 2>&1 && ./run {0}"};
+constexpr OutsideCompiler strucpp{
+    "STruC++", "HYSTERON_STRUCPP", "main.cpp", strucpp_host_head,
+    "cd {0} && node {1}/dist/node/cli.js all.st -o all.cpp > log 2>&1 && c++ -std=c++17 -O0 -w -fwrapv {2} "
+    "-I{1}/src/runtime/include -I. all*.cpp main.cpp -o run >> log 2>&1 && ./run {0}"};
+
 /// The blocks and types of a text, each once: diagrams that stand in one file share the library.
 class TextsTogether {
  public:
@@ -79,13 +124,13 @@ class TextsTogether {
   std::string text_;
 };
 
-void hold_through_matiec(std::string_view what,
-                         std::vector<GeneratedFile> (*generate)(const Program& program, const StOptions& options)) {
-  const char* const matiec = std::getenv("HYSTERON_MATIEC");
-  if (matiec == nullptr) {
-    GTEST_SKIP() << "HYSTERON_MATIEC names no folder of MATIEC";
+void hold_through(const OutsideCompiler& compiler, std::string_view what,
+                  std::vector<GeneratedFile> (*generate)(const Program& program, const StOptions& options)) {
+  const char* const its_folder = std::getenv(std::string(compiler.variable).c_str());
+  if (its_folder == nullptr) {
+    GTEST_SKIP() << compiler.variable << " names no folder of " << compiler.name;
   }
-  const char* const wanted = std::getenv("HYSTERON_MATIEC_DIAGRAMS");
+  const char* const wanted = std::getenv("HYSTERON_OUTSIDE_DIAGRAMS");
   const std::size_t diagrams = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 20;
   constexpr std::size_t at_once = 20;  // in one file
   std::size_t equal = 0;
@@ -94,45 +139,44 @@ void hold_through_matiec(std::string_view what,
   for (std::size_t first = 0; first < diagrams; first += at_once) {
     const test::ScratchFolder folder;
     TextsTogether text;
-    std::string host(matiec_host_head);
+    std::string host(compiler.host);
     std::vector<RecordedRun> runs;
     for (std::size_t i = 0; i < std::min(at_once, diagrams - first); ++i) {
       const std::size_t seed = first + i;
       const Program program = RandomDiagram(seed + 3000, fmt::format("DIAGRAM{}", i), seed % 2 == 0 ? 8 : 30).program();
-      runs.push_back(record<double>(program, matiec_steps, seed));
+      runs.push_back(record<double>(program, outside_steps, seed));
       write_doubles(folder / fmt::format("in{}", i), runs.back().inputs);
       text.add(generate(program, {.dialect = *st_dialect("portable")})[0].text);
       host += fmt::format("  RUN(DIAGRAM{0}, {0})\n", i);
     }
     folder.write("all.st", text.text());
-    folder.write("main.c", host + "  return 0;\n}\n");
-    const std::string path = folder.path().string();
-    const std::string build = fmt::format(
-        "cd {0} && {1}/iec2c -I {1}/lib -T {0} all.st > log 2>&1 && cc -O0 -w -fwrapv {2} -I{1}/lib/C -I. main.c -lm "
-        "-o "
-        "run >> log 2>&1 && ./run {0}",
-        path, matiec, cpp_numeric_flags);
+    folder.write(std::string(compiler.host_name), host + "  return 0;\n}\n");
+    const std::string build =
+        fmt::format(fmt::runtime(compiler.build), folder.path().string(), its_folder, cpp_numeric_flags);
     ASSERT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log").substr(0, 3000);
     for (std::size_t i = 0; i < runs.size(); ++i) {
       // MATIEC's ABS leaves -0 as it is.
       const std::size_t same = equal_steps(runs[i], read_doubles(folder / fmt::format("out{}", i)), true);
-      EXPECT_GE(same, std::min(runs[i].first_exception, matiec_steps)) << "diagram " << first + i;
-      equal += same == matiec_steps ? 1 : 0;
-      finite += runs[i].first_exception > matiec_steps ? 1 : 0;
+      EXPECT_GE(same, std::min(runs[i].first_exception, outside_steps)) << "diagram " << first + i;
+      equal += same == outside_steps ? 1 : 0;
+      finite += runs[i].first_exception > outside_steps ? 1 : 0;
       steps += same;
     }
   }
   std::printf(
-      "MATIEC, %s: %zu random diagrams, %zu of them without an exception of arithmetic; %zu equal in all %zu steps; "
+      "%s, %s: %zu random diagrams, %zu of them without an exception of arithmetic; %zu equal in all %zu steps; "
       "%zu steps equal\n",
-      std::string(what).c_str(), diagrams, finite, equal, matiec_steps, steps);
+      std::string(compiler.name).c_str(), std::string(what).c_str(), diagrams, finite, equal, outside_steps, steps);
 }
 
 TEST(StructuredText, ThroughMatiecRandomProgramsHaveTheBitsOfTheInterpreter) {
-  hold_through_matiec("one block", generate_st);
+  hold_through(matiec, "one block", generate_st);
+}
+TEST(StructuredText, ThroughStrucppRandomProgramsHaveTheBitsOfTheInterpreter) {
+  hold_through(strucpp, "one block", generate_st);
 }
 TEST(StructuredText, ThroughMatiecRandomProgramsOfCallsHaveTheBitsOfTheInterpreter) {
-  hold_through_matiec("calls of the library", generate_st_structured);
+  hold_through(matiec, "calls of the library", generate_st_structured);
 }
 
 }  // namespace

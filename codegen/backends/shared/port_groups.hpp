@@ -1,0 +1,45 @@
+// Ports as a caller sees them: a vector of the diagram is one array, everything else a variable of its own.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codegen/graph/graph.hpp"
+
+namespace hysteron {
+
+/// A single port, or the elements of a vector from 0 on, which stand behind each other.
+struct PortGroup {
+  std::string_view name{};   ///< of the port, or of the vector without an index
+  std::uint32_t first = 0;   ///< its place in the list of ports
+  std::uint32_t length = 1;  ///< 1: a single port
+  [[nodiscard]] bool is_array() const { return length > 1; }
+};
+
+/// In the order of the ports. A vector of one element is a single port.
+[[nodiscard]] std::vector<PortGroup> port_groups(const std::vector<Port>& ports);
+
+[[nodiscard]] bool has_arrays(const std::vector<Port>& ports);
+
+/// By port what it is called: of an array the elements, `x[2]`. `make` gives the name of a group.
+template <class Make>
+[[nodiscard]] std::vector<std::string> port_names(const std::vector<Port>& ports, Make make) {
+  std::vector<std::string> names;
+  names.reserve(ports.size());
+  for (const PortGroup& group : port_groups(ports)) {
+    const std::string name(make(group));
+    for (std::uint32_t i = 0; i < group.length; ++i) {
+      names.push_back(group.is_array() ? name + "[" + std::to_string(i) + "]" : name);
+    }
+  }
+  return names;
+}
+
+/// The variable that a name of `port_names` belongs to: of `x[2]`, x.
+[[nodiscard]] inline std::string_view variable_of(std::string_view name) {
+  return name.substr(0, name.find('['));
+}
+
+}  // namespace hysteron

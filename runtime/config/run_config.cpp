@@ -101,6 +101,7 @@ class Reader {
     if (found_.has_errors()) {
       throw InputError(sorted());
     }
+    config_.warnings = sorted();
     return std::move(config_);
   }
 
@@ -154,6 +155,7 @@ class Reader {
     table.read_duration("time", config_.task.watchdog.time);
     table.read_whole("sensitivity", config_.task.watchdog.sensitivity);
     table.read("guard", config_.guard);
+    table.read_duration("guard_wait", config_.guard_wait);
     table.read_duration("silence", config_.silence, std::max<std::int64_t>(2 * shape_.period, 1'000'000),
                         1000 * second);
   }
@@ -269,6 +271,7 @@ class Reader {
   void read_online_change(TomlReader table) {
     ChangeConfig change{.place = table.place("socket")};
     table.read("socket", change.socket);
+    table.read("load", change.most_load);
     if (!table.has("socket")) {
       found_.error(error::wrong_run_value, change.place, "[online_change] needs the key socket, a file's name.",
                    "write it as in socket = \"online-change.socket\", or remove the table.");

@@ -155,6 +155,9 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
   return true;
 }
 
+/// The reason of what the program alone has.
+constexpr std::string_view only_here = "new";
+
 std::string unit_text(const std::string& unit) {
   return unit.empty() ? "no unit" : unit;
 }
@@ -167,7 +170,7 @@ std::string difference(PointType type, const std::string& unit, PointType wanted
   return unit == wanted_unit ? "" : fmt::format("{} there, {} here", unit_text(unit), unit_text(wanted_unit));
 }
 
-std::string left(const std::string& name, const std::string& reason) {
+std::string left(std::string_view name, std::string_view reason) {
   return fmt::format("{} ({})", name, reason);
 }
 
@@ -207,6 +210,14 @@ std::string refusal_of(const StateField& was, const StateField& is) {
 
 }  // namespace
 
+bool is_new(std::string_view one) {
+  return one == left(without_reason(one), only_here);
+}
+
+std::string without_reason(std::string_view one) {
+  return std::string(one.substr(0, one.find(" (")));
+}
+
 std::string describe(const ProgramShape& shape) {
   std::string text;
   text += fmt::format("t\t{}\n", shape.period);
@@ -241,7 +252,7 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
     const ProgramSignal& own = shape.parameters[i];
     const auto found = places.find(own.name);
     if (found == places.end()) {
-      carried.left.push_back(left(own.name, "new"));
+      carried.left.push_back(left(own.name, only_here));
       continue;
     }
     const KeptLayout::Parameter& was = kept.parameters[found->second];
@@ -273,7 +284,7 @@ std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShap
     const StateField& own = shape.state[i];
     const auto found = places.find(own.name);
     if (found == places.end()) {
-      left_out.push_back(left(own.name, "new"));
+      left_out.push_back(left(own.name, only_here));
       continue;
     }
     const StateField& was = kept.state[found->second];

@@ -44,6 +44,11 @@ struct CarriedValues {
   std::vector<std::string> left{};  ///< what was not taken over, with the reason: "LAG.Y (um there, mm here)"
 };
 
+/// Of what was not taken over: whether it is there for want of another of its name, and not for its kind or value.
+[[nodiscard]] bool is_new(std::string_view left);
+/// Its name: LAG.Y of "LAG.Y (um there, mm here)".
+[[nodiscard]] std::string without_reason(std::string_view left);
+
 /// Parameters whose name, type and unit are the same, and whose value lies within the program's limits.
 [[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
                                              const ProgramShape& shape, std::span<const double> given);

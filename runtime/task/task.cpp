@@ -210,6 +210,7 @@ void Task::publish(const LoopStatistics& statistics) noexcept {
   status_.last_fault = faults_.newest().last;
   if (attachments_.field != nullptr) {
     attachments_.field->count(field_counts_);
+    status_.absent = attachments_.field->absent();
   }
   door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
 }
@@ -224,7 +225,8 @@ void Task::count_writes() noexcept {
   }
   if (attachments_.trace != nullptr) {
     status_.dropped = attachments_.trace->dropped();
-    status_.write_failures += attachments_.trace->is_cut() ? 1 : 0;
+    status_.trace_is_cut = attachments_.trace->is_cut();
+    status_.write_failures += status_.trace_is_cut ? 1 : 0;
   }
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
   status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();

@@ -20,8 +20,8 @@ enum class PointKind {
   command,    ///< what a client asks of the task: commit, discard, reset, heartbeat
 };
 
-/// What a task cannot have now, and tries again while it controls: bits of task.troubles. None of them is a fault.
-enum class Trouble : std::uint16_t {
+/// What a task cannot have now, and tries again while it controls: bits of task.shortages. None of them is a fault.
+enum class Shortage : std::uint16_t {
   address = 1,   ///< the Modbus server listens on no address yet
   page = 2,      ///< nor does the live page
   line = 4,      ///< the serial line of the Modbus server cannot be used
@@ -57,6 +57,7 @@ struct Point {
   std::string meaning{};
   WriteRight right = WriteRight::parameters;  ///< where it is writable
   bool counts = false;      ///< begins at zero with the task and only grows: of use as a rate, not as a level
+  bool is_retained = false;  ///< kept through a restart
   bool comes_last = false;  ///< on a register map behind all others, whose addresses do not move where it is there
 };
 
@@ -100,7 +101,7 @@ class PointDoor {
   /// The caller has checked that each is writable, finite and within its limits.
   virtual std::string write(std::span<const PointWrite> writes) = 0;
   /// What the server cannot have now, or has again.
-  virtual void trouble(Trouble /*what*/, bool /*is_there*/) noexcept {}
+  virtual void shortage(Shortage /*what*/, bool /*is_there*/) noexcept {}
 };
 
 }  // namespace hysteron::runtime

@@ -190,6 +190,11 @@ void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlRe
   }
   read_told(port, "age_of", Tells::age, table);
   read_told(port, "quality_of", Tells::quality, table);
+  table.read("retain", settings.is_retained);
+  if (settings.is_retained && settings.from_device) {
+    wrong(table.place("retain"), shape_->inputs[port].name + " is given by a device, and each start reads it anew.",
+          "remove retain; it is of inputs that clients write.");
+  }
   // A device's value has its age from the device; a server's is counted in cycles.
   settings.longest_age = settings.from_device ? 0 : static_cast<std::uint64_t>(longest_age / shape_->period);
 }

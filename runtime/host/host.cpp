@@ -58,6 +58,16 @@ std::string status_line(const Task& task, const std::string& how, const std::str
       static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), besides, name_of(fault));
 }
 
+std::vector<std::size_t> retained_inputs(const TaskSettings& settings) {
+  std::vector<std::size_t> inputs;
+  for (std::size_t i = 0; i < settings.inputs.size(); ++i) {
+    if (settings.inputs[i].is_retained) {
+      inputs.push_back(i);
+    }
+  }
+  return inputs;
+}
+
 /// What stands at the trace's name is put aside by number, and in the end deleted: it has to be a trace.
 void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
   std::array<char, 16> begin{};
@@ -72,6 +82,13 @@ void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
                      fmt::format("{} is there already, and is no trace.", settings.file.string()),
                      "name another file: what stands at this name is put aside and, some runs later, deleted.");
   }
+}
+
+/// What waits in memory until the trigger fires.
+std::string trigger_text(const TraceTrigger& trigger, const ProgramShape& shape) {
+  const double memory = static_cast<double>(memory_before(trigger, shape.inputs.size(), shape.outputs.size()));
+  return fmt::format("; trace armed for {} capture{}, up to {:.3g} MB in memory", trigger.captures,
+                     trigger.captures == 1 ? "" : "s", memory * 1e-6);
 }
 
 std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
@@ -314,8 +331,14 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
         SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
   }
   std::string how = fmt::format("{}: {}", shape.name, options.how);
-  const auto retained = config.retain ? std::make_unique<RetainedState>(*config.retain, program) : nullptr;
+  const auto retained =
+      config.retain ? std::make_unique<RetainedState>(*config.retain, program, retained_inputs(config.task)) : nullptr;
   how += retained ? retained->told() : "";
+  if (retained) {
+    for (std::size_t input = 0; input < config.task.inputs.size(); ++input) {
+      config.task.inputs[input].start = retained->starts()[input];
+    }
+  }
   Task task(program, config.task);
   const auto history =
       config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
@@ -341,10 +364,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   auto changer = change ? options.take_changes(*change, how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
+  how += config.trace && config.trace->trigger ? trigger_text(*config.trace->trigger, shape) : "";
   std::unique_ptr<Retainer> retainer;
   if (retained) {
     retained->put_aside();
-    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset());
+    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset(),
+                                          retained->inputs());
     tell_of_what_is_left(retained->left());
   }
   std::unique_ptr<DeviceField> field;

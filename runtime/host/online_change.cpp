@@ -271,7 +271,7 @@ ChangeVerdict OnlineChange::propose(Plan& plan) {
   if (retainer_ != nullptr && plan.next.retained == nullptr) {
     StepProgram& next = plan.next.program();
     next.reset();
-    plan.next.retained = std::make_unique<RetainImage>(next, state_of(next));
+    plan.next.retained = std::make_unique<RetainImage>(next, state_of(next), retainer_->inputs());
   }
   retained_before_ = retainer_ == nullptr ? 0 : plan.next.retained->written();
   if (trace_ != nullptr) {

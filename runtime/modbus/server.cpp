@@ -66,7 +66,7 @@ class Server::Loop {
     }
     if (!options_.listen.empty()) {
       listener_.emplace(options_.listen, options_.port, options_.place, options_.tell);
-      door_.trouble(Trouble::address, !listener_->is_open());
+      door_.shortage(Shortage::address, !listener_->is_open());
       if (listener_->is_open() && !watch(listener_->socket(), listening_mark, EPOLLIN)) {
         throw std::system_error(errno, std::system_category(), "Modbus server");
       }
@@ -244,7 +244,7 @@ class Server::Loop {
   void follow_listener(Instant now) {
     if (listener_ && listener_->try_again(now)) {
       (void)watch(listener_->socket(), listening_mark, EPOLLIN);
-      door_.trouble(Trouble::address, false);
+      door_.shortage(Shortage::address, false);
     }
   }
 
@@ -257,7 +257,7 @@ class Server::Loop {
       line_watched_ = EPOLLIN;
       (void)watch(line_->descriptor(), line_mark, line_watched_);
     }
-    door_.trouble(Trouble::line, !line_->is_open());
+    door_.shortage(Shortage::line, !line_->is_open());
     if (const auto deadline = line_->next_deadline(); line_->is_open() && deadline && now >= *deadline) {
       serve_line(false, now);
     }

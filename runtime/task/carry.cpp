@@ -128,12 +128,12 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
     layout.period = static_cast<std::int64_t>(period);
     return read;
   }
-  if (cells[0] == "p" && cells.size() == 7) {
+  if ((cells[0] == "p" || cells[0] == "i") && cells.size() == 7) {
     const auto type = type_of(cells[2]);
     double low = 0.0;
     double high = 0.0;
     const bool is_read = type && read_number(cells[4], low) && read_number(cells[5], high);
-    layout.parameters.push_back({.name = std::string(cells[1]),
+    (cells[0] == "p" ? layout.parameters : layout.inputs).push_back({.name = std::string(cells[1]),
                                  .type = type.value_or(PointType::real64),
                                  .unit = std::string(cells[3]),
                                  .low = low,
@@ -218,16 +218,22 @@ std::string without_reason(std::string_view one) {
   return std::string(one.substr(0, one.find(" (")));
 }
 
-std::string describe(const ProgramShape& shape) {
+std::string describe(const ProgramShape& shape, std::span<const std::size_t> inputs) {
   std::string text;
   text += fmt::format("t\t{}\n", shape.period);
+  const auto add = [&](char kind, const ProgramSignal& one) {
+    text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\n", kind, one.name, about(one.type).name, one.unit, one.low,
+                        one.high, one.low_excluded ? 1 : 0);
+  };
   for (const ProgramSignal& one : shape.parameters) {
-    text += fmt::format("p\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, about(one.type).name, one.unit, one.low, one.high,
-                        one.low_excluded ? 1 : 0);
+    add('p', one);
   }
   for (const StateField& one : shape.state) {
     text += fmt::format("s\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, one.block, about(one.type).name, one.length,
                         one.offset, one.unit);
+  }
+  for (const std::size_t input : inputs) {
+    add('i', shape.inputs[input]);
   }
   return text;
 }
@@ -268,6 +274,32 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
     }
   }
   tell_gone(kept.parameters, shape.parameters, carried.left);
+  return carried;
+}
+
+std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::span<const double> values,
+                                                const ProgramShape& shape, std::span<const std::size_t> wanted,
+                                                std::vector<std::string>& left_out) {
+  std::vector<std::optional<double>> carried(shape.inputs.size());
+  const auto places = by_name(kept.inputs);
+  for (const std::size_t input : wanted) {
+    const ProgramSignal& own = shape.inputs[input];
+    const auto found = places.find(own.name);
+    if (found == places.end() || found->second >= values.size()) {
+      continue;  // it was not retained before: it begins as the diagram says
+    }
+    const KeptLayout::Parameter& was = kept.inputs[found->second];
+    const double value = values[found->second];
+    std::string why = difference(was.type, was.unit, own.type, own.unit);
+    if (why.empty() && !refusal_of(own, value).empty()) {
+      why = fmt::format("{:.6g} is outside of its limits", value);
+    }
+    if (why.empty()) {
+      carried[input] = value;
+    } else {
+      left_out.push_back(left(own.name, why));
+    }
+  }
   return carried;
 }
 

@@ -38,9 +38,11 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       ages_(program.shape().inputs.size(), 0) {
   settings_.loop.period = program.shape().period;
   status_.field = field_counts_;
-  for (const ProgramSignal& input : program.shape().inputs) {
-    inputs_.push_back(input.preset);
-    last_good_.push_back(input.preset);
+  for (std::size_t i = 0; i < program.shape().inputs.size(); ++i) {
+    const double start = settings_.inputs[i].start.value_or(program.shape().inputs[i].preset);
+    inputs_.push_back(start);
+    last_good_.push_back(start);
+    door_.begin_with(i, start, settings_.inputs[i].is_retained);
   }
 }
 
@@ -194,7 +196,7 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
   if (attachments_.retainer != nullptr) {
     const bool is_due = settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0;
     if ((is_due || applied_commits_ != offered_commits_ || has_changed_) && !tripped_) {
-      attachments_.retainer->offer(running(), applied_commits_);
+      attachments_.retainer->offer(running(), applied_commits_, inputs_);
       offered_commits_ = applied_commits_;
       has_changed_ = false;
     }
@@ -266,7 +268,7 @@ void Task::settle(Clock& clock, Fault fault) {
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
-    attachments_.retainer->offer(running(), applied_commits_);
+    attachments_.retainer->offer(running(), applied_commits_, inputs_);
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;

@@ -299,7 +299,7 @@ class Server::Loop final : public Host {
       : door_(door), options_(options), responder_(door, subject, options.access) {
     check_access(options.endpoint, options.access);
     listener_.emplace(options.endpoint.address, options.endpoint.port, Place{}, options.tell);
-    door_.trouble(Trouble::page, !listener_->is_open());
+    door_.shortage(Shortage::page, !listener_->is_open());
     listen();
     tick(Clock::now());
     thread_ = std::thread([this] { run(); });
@@ -377,7 +377,7 @@ class Server::Loop final : public Host {
     pause_.expires_at(*listener_->next_try());
     pause_.async_wait([this](beast::error_code /*fault*/) {
       if (listener_->try_again(Clock::now())) {
-        door_.trouble(Trouble::page, false);
+        door_.shortage(Shortage::page, false);
       }
       listen();
     });

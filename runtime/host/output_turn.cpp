@@ -60,9 +60,9 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
       if (!waits_since) {
         waits_since = now;
         const std::string process = *holder->guard == 0 ? "" : fmt::format(", process {}", *holder->guard);
-        print(fmt::format("{}: waits {} at the most for the guard of an earlier run{}, which brings outputs on {} to "
-                          "their safe values\n",
-                          title, time_text(static_cast<double>(config.guard_wait)), process, device));
+        print(fmt::format("{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values, "
+                          "{} at the most\n",
+                          title, process, device, time_text(static_cast<double>(config.guard_wait))));
       }
       if (now - *waits_since >= std::chrono::nanoseconds(config.guard_wait)) {
         give_up_waiting(claims, title, device, print);

@@ -2,7 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstddef>
@@ -112,6 +117,88 @@ TEST(RefusedStart, OnceTheTaskIsGoneTheNextOneWaitsForItsGuard) {
   EXPECT_EQ(second.end().first, 0);
 }
 
+/// A process that is to its outputs what a guard is that reaches no device; it ends by a signal alone.
+pid_t guard_for_ever(const std::string& text) {
+  std::array<int, 2> ready{};
+  EXPECT_EQ(::pipe(ready.data()), 0);
+  const pid_t guard = ::fork();
+  if (guard == 0) {
+    const test::Twice program;
+    OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
+    (void)claims.claim();
+    claims.guard_listens();
+    [[maybe_unused]] const ssize_t written = ::write(ready[1], "r", 1);
+    for (;;) {
+      ::pause();
+    }
+  }
+  char byte = 0;
+  EXPECT_EQ(::read(ready[0], &byte, 1), 1);
+  ::close(ready[0]);
+  ::close(ready[1]);
+  return guard;
+}
+
+/// The device is gone for good, and its guard with it: the task starts after its wait, and says so.
+TEST(RefusedStart, AGuardThatReachesItsDeviceNoMoreKeepsNoTaskDown) {
+  const auto port = hysteron::test::free_port();
+  auto text = run_file(port, "");
+  text.replace(text.find("silence = \"5s\""), 14, "silence = \"5s\"\nguard_wait = \"200ms\"");
+  const pid_t guard = guard_for_ever(text);
+  HostProcess host(text);
+  int status = 0;
+  EXPECT_EQ(::waitpid(guard, &status, 0), guard);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  EXPECT_NE(host.said_before().find(fmt::format("process {}, which brings outputs on stage to their safe values, 200ms at "
+                                                "the most\nTWICE: that guard has not reached stage and is ended; the "
+                                                "task starts, and goes on trying\n",
+                                                guard)),
+            std::string::npos)
+      << host.said_before();
+  // It is the task that brings the outputs to where they belong, as soon as the device is there.
+  Stage stage;
+  stage.port = port;
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return stage.door.writes() > 0; }));
+  EXPECT_EQ(host.end().first, 0);
+}
+
+/// Whoever takes the name by which an output is claimed, and may not be trusted, keeps nobody from starting.
+TEST(RefusedStart, AnotherUserKeepsNoTaskDown) {
+  if (::geteuid() != 0) {
+    GTEST_SKIP() << "another user cannot be played by who is none but himself";
+  }
+  const auto text = run_file(hysteron::test::free_port(), "");
+  for (const bool listens : {true, false}) {
+    std::array<int, 2> ready{};
+    ASSERT_EQ(::pipe(ready.data()), 0);
+    const pid_t other = ::fork();
+    if (other == 0) {
+      const test::Twice program;
+      OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
+      const bool held = ::setuid(65534) == 0 && !claims.claim();
+      if (!listens) {
+        for (int number = 3; number < 4096; ++number) {  // its claims: who connects is refused from now on
+          (void)::shutdown(number, SHUT_RDWR);
+        }
+      }
+      [[maybe_unused]] const ssize_t written = ::write(ready[1], held ? "r" : "x", 1);
+      ::pause();
+      ::_exit(0);
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    EXPECT_EQ(byte, 'r');
+    HostProcess host(text);
+    EXPECT_NE(host.said_before().find("the name by which holding register 0 of stage is claimed is held by another user"),
+              std::string::npos)
+        << host.said_before();
+    EXPECT_EQ(host.end().first, 0);
+    ::kill(other, SIGKILL);
+    ::waitpid(other, nullptr, 0);
+  }
+}
+
 TEST(RefusedStart, AWaitForAGuardEndsWhenAsked) {
   Stage stage;
   stage.give(0.25);
@@ -132,7 +219,8 @@ TEST(RefusedStart, AWaitForAGuardEndsWhenAsked) {
                                said += line;
                                stop = true;
                              }));
-  EXPECT_NE(said.find(fmt::format("process {}, which brings outputs on stage to their safe values\n", *guard)),
+  EXPECT_NE(said.find(fmt::format("process {}, which brings outputs on stage to their safe values, 60s at the most\n",
+                                  *guard)),
             std::string::npos)
       << said;
   ::kill(*guard, SIGKILL);

@@ -1,8 +1,10 @@
 // A trace holds every step or counts it, and gives the same bits when it is replayed.
 #include "runtime/task/trace.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -125,6 +127,48 @@ TEST(Trace, ATriggerKeepsWhatWasBefore) {
   for (std::size_t i = 1; i < steps.size(); ++i) {
     EXPECT_EQ(steps[i].number, steps[i - 1].number + 1);
   }
+}
+
+/// Armed again, it captures each further crossing, in a file of its own that replays by itself; then it is done.
+TEST(Trace, ATriggerIsArmedAgainUntilItHasFiredSoOften) {
+  const hysteron::test::ScratchFolder scratch;
+  for (const std::uint64_t captures : {1U, 3U, 8U}) {
+    const std::string file = scratch / fmt::format("trace{}", captures);
+    const TraceTrigger trigger{.signal = TraceTrigger::Signal::input,
+                               .index = 0,
+                               .level = 0.3,
+                               .before = 15,
+                               .after = 20,
+                               .captures = captures};
+    // X is a sine of 62.8 steps: it passes 0.3 once in each.
+    (void)traced_run({.file = file, .trigger = trigger, .files = 8}, 1000);
+    std::set<std::uint64_t> fired;
+    for (std::uint64_t number = 0; number < 9; ++number) {
+      const std::string one = number == 0 ? file : fmt::format("{}.{}", file, number);
+      EXPECT_EQ(std::filesystem::exists(one), number < captures) << one;
+      if (number >= captures) {
+        continue;
+      }
+      std::vector<TraceStep> steps;
+      const auto result = replayed(hysteron::test::contents_of(one), &steps);
+      EXPECT_EQ(result.different + result.without_state, 0U) << one;
+      const auto crossing = std::adjacent_find(steps.begin(), steps.end(), [](const TraceStep& a, const TraceStep& b) {
+        return a.inputs[0] <= 0.3 && b.inputs[0] > 0.3;
+      });
+      ASSERT_NE(crossing, steps.end()) << one;
+      EXPECT_EQ(steps.end() - crossing, 22) << "the step before, that of the crossing, and 20 more";
+      fired.insert(crossing->number);
+    }
+    EXPECT_EQ(fired.size(), captures) << "each of another crossing";
+  }
+}
+
+/// What it keeps in memory stays within what it says, whatever comes.
+TEST(Trace, MemoryBeforeATriggerIsBounded) {
+  const TraceTrigger trigger{.level = 1e9, .before = 100, .after = 1};
+  // A record of a step: its length and kind, number, period and fault, one input, computed and given outputs.
+  EXPECT_EQ(memory_before(trigger, 1, 2), 2 * 100 * (5 + 20 + 8 * 5));
+  EXPECT_EQ(memory_before({.before = 0}, 1, 2), 2 * (5 + 20 + 8 * 5));
 }
 
 TEST(Trace, WhatIsDroppedIsCountedExactlyAndTheRestReplays) {

@@ -20,7 +20,9 @@
 #include "runtime/host/output_turn.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "support/text_file.hpp"
+#include "tests/runtime/host/dead_guard.hpp"
 #include "tests/runtime/host/host_process.hpp"
+#include "tests/runtime/host/setpoint_kills.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
@@ -117,34 +119,13 @@ TEST(RefusedStart, OnceTheTaskIsGoneTheNextOneWaitsForItsGuard) {
   EXPECT_EQ(second.end().first, 0);
 }
 
-/// A process that is to its outputs what a guard is that reaches no device; it ends by a signal alone.
-pid_t guard_for_ever(const std::string& text) {
-  std::array<int, 2> ready{};
-  EXPECT_EQ(::pipe(ready.data()), 0);
-  const pid_t guard = ::fork();
-  if (guard == 0) {
-    const test::Twice program;
-    OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
-    (void)claims.claim();
-    claims.guard_listens();
-    [[maybe_unused]] const ssize_t written = ::write(ready[1], "r", 1);
-    for (;;) {
-      ::pause();
-    }
-  }
-  char byte = 0;
-  EXPECT_EQ(::read(ready[0], &byte, 1), 1);
-  ::close(ready[0]);
-  ::close(ready[1]);
-  return guard;
-}
-
 /// The device is gone for good, and its guard with it: the task starts after its wait, and says so.
 TEST(RefusedStart, AGuardThatReachesItsDeviceNoMoreKeepsNoTaskDown) {
   const auto port = hysteron::test::free_port();
   auto text = run_file(port, "");
   text.replace(text.find("silence = \"5s\""), 14, "silence = \"5s\"\nguard_wait = \"200ms\"");
-  const pid_t guard = guard_for_ever(text);
+  const test::Twice program;
+  const pid_t guard = test::guard_for_ever(parse_run_config("RUN.toml", text, program.shape()));
   HostProcess host(text);
   int status = 0;
   EXPECT_EQ(::waitpid(guard, &status, 0), guard);
@@ -161,6 +142,19 @@ TEST(RefusedStart, AGuardThatReachesItsDeviceNoMoreKeepsNoTaskDown) {
   stage.start();
   EXPECT_TRUE(test::soon([&] { return stage.door.writes() > 0; }));
   EXPECT_EQ(host.end().first, 0);
+}
+
+/// What a client wrote is what the next start begins with, whenever the task is killed.
+TEST(RetainedSetpoint, IsNeverOlderThanWhatWasOnTheDisk) {
+  const hysteron::test::ScratchFolder folder;
+  double before = 0.0;
+  for (int kills = 0; kills < 10; ++kills) {
+    const auto result = test::kill_while_setpoints_come(folder.path() / "kept", 2'000'000 + kills * 7'000'000);
+    EXPECT_TRUE(result.holds()) << result.confirmed << " to " << result.written << ", and " << result.begun_with;
+    EXPECT_GE(result.begun_with, before) << "each run goes on from the one before";
+    before = result.begun_with;
+  }
+  EXPECT_GT(before, 0.0);
 }
 
 /// Whoever takes the name by which an output is claimed, and may not be trusted, keeps nobody from starting.

@@ -56,9 +56,9 @@ struct Point {
   bool writable = false;
   std::string meaning{};
   WriteRight right = WriteRight::parameters;  ///< where it is writable
-  bool counts = false;      ///< begins at zero with the task and only grows: of use as a rate, not as a level
+  bool counts = false;       ///< begins at zero with the task and only grows: of use as a rate, not as a level
   bool is_retained = false;  ///< kept through a restart
-  bool comes_last = false;  ///< on a register map behind all others, whose addresses do not move where it is there
+  bool comes_last = false;   ///< on a register map behind all others, whose addresses do not move where it is there
 };
 
 struct PointWrite {

@@ -88,15 +88,16 @@ std::string jitter_text(const JitterRequest& request, const Jitter& jitter) {
   }
   for (const JitterClass& one : jitter.classes) {
     // By the logarithm: one late wake-up of ten thousand is what counts.
-    const double part = one.count == 0 ? 0.0
-                                       : std::log1p(static_cast<double>(one.count)) / std::log1p(static_cast<double>(most));
+    const double part =
+        one.count == 0 ? 0.0 : std::log1p(static_cast<double>(one.count)) / std::log1p(static_cast<double>(most));
     const std::string bar(static_cast<std::size_t>(std::lround(part * longest_bar)), '#');
     text += fmt::format("  below {:>6}  {:>8}  {}\n", time(one.below), one.count, bar);
   }
   return text;
 }
 
-Json as_json(const std::vector<HostFinding>& findings, const JitterRequest& request, const std::optional<Jitter>& jitter) {
+Json as_json(const std::vector<HostFinding>& findings, const JitterRequest& request,
+             const std::optional<Jitter>& jitter) {
   Json list = Json::array();
   for (const HostFinding& one : findings) {
     list.push_back({{"name", one.name},
@@ -132,8 +133,8 @@ int doctor(const DoctorOptions& options, Console& console) {
   request.cycles = static_cast<std::uint64_t>(options.seconds * 1e9 / static_cast<double>(request.period));
   request.scheduling = {.priority = options.priority,
                         .processor = options.processor ? static_cast<int>(*options.processor) : -1};
-  const auto findings = look_at_host(
-      {.root = options.root, .processor = options.processor, .priority = options.priority});
+  const auto findings =
+      look_at_host({.root = options.root, .processor = options.processor, .priority = options.priority});
   if (!options.json) {
     console.print(findings_text(findings));
   }
@@ -166,8 +167,9 @@ Action add_doctor(CLI::App& app) {
   app.add_option("--priority", options->priority, "Of the task, as priority under [task]; else 80.")
       ->check(CLI::Range(1, 99))
       ->option_text("N");
-  app.add_option("--root", options->root, "Another machine's /proc and /sys are below this folder; without a measurement "
-                                          "of it.")
+  app.add_option("--root", options->root,
+                 "Another machine's /proc and /sys are below this folder; without a measurement "
+                 "of it.")
       ->option_text("FOLDER");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(doctor_examples));

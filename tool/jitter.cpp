@@ -26,8 +26,7 @@ class EmptyStep final : public runtime::CycleBody {
   EmptyStep(Jitter& jitter, std::int64_t period) : jitter_(&jitter), period_(period) {}
   bool cycle(const runtime::CycleMoment& moment) noexcept override {
     // Behind its own time, also where whole periods passed.
-    const std::int64_t late =
-        moment.start - moment.due + static_cast<std::int64_t>(moment.skipped) * period_;
+    const std::int64_t late = moment.start - moment.due + static_cast<std::int64_t>(moment.skipped) * period_;
     jitter_->lateness.add(late, moment.number);
     const auto found = std::ranges::find_if(jitter_->classes, [&](const JitterClass& one) { return late < one.below; });
     ++(found == jitter_->classes.end() ? jitter_->classes.back() : *found).count;
@@ -50,8 +49,8 @@ Jitter measure_jitter(const JitterRequest& request, runtime::Clock& clock) {
   std::thread([&] {
     runtime::touch_stack();
     const auto obtained = runtime::obtain_scheduling(request.scheduling);
-    jitter.obtained = runtime::description_of(obtained) +
-                      (obtained.refused.empty() ? "" : " (refused: " + obtained.refused + ")");
+    jitter.obtained =
+        runtime::description_of(obtained) + (obtained.refused.empty() ? "" : " (refused: " + obtained.refused + ")");
     EmptyStep body(jitter, request.period);
     runtime::LoopStatistics statistics;
     const std::atomic<bool> stop{false};

@@ -201,8 +201,8 @@ class FilesBack {
   }
 
  private:
-  std::vector<OutputFile> kept_{};          ///< beside each file, what stood there
-  std::vector<OutputFile> as_they_were_{};  ///< the files themselves
+  std::vector<OutputFile> kept_{};                ///< beside each file, what stood there
+  std::vector<OutputFile> as_they_were_{};        ///< the files themselves
   std::vector<std::filesystem::path> missing_{};  ///< files that were not there
 };
 

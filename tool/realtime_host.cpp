@@ -50,7 +50,8 @@ std::vector<unsigned> numbered(const fs::path& folder, std::string_view prefix) 
   std::error_code none;
   for (fs::directory_iterator next(folder, none), end; !none && next != end; next.increment(none)) {
     const std::string name = next->path().filename().string();
-    const auto number = name.starts_with(prefix) ? number_of(std::string_view(name).substr(prefix.size())) : std::nullopt;
+    const auto number =
+        name.starts_with(prefix) ? number_of(std::string_view(name).substr(prefix.size())) : std::nullopt;
     if (number) {
       numbers.push_back(static_cast<unsigned>(*number));
     }
@@ -66,14 +67,14 @@ class Host {
         priority_(question.priority),
         cpu_(root_ / "sys/devices/system/cpu"),
         isolated_(parse_processors(line_of(cpu_ / "isolated").value_or("")).value_or(std::vector<unsigned>())),
-        processor_(question.processor   ? question.processor
+        processor_(question.processor  ? question.processor
                    : isolated_.empty() ? std::nullopt
                                        : std::optional(isolated_.front())),
         all_(numbered(cpu_, "cpu")) {}
 
   [[nodiscard]] std::vector<HostFinding> findings() const {
-    return {kernel(),   preemption(), throttling(),  clock_source(), governor(), idle_states(),
-            isolation(), interrupts(), memory_lock(), priority()};
+    return {kernel(),      preemption(), throttling(), clock_source(), governor(),
+            idle_states(), isolation(),  interrupts(), memory_lock(),  priority()};
   }
 
  private:
@@ -89,14 +90,15 @@ class Host {
   [[nodiscard]] HostFinding preemption() const {
     HostFinding finding{.name = "preemption"};
     const std::string version = line_of(root_ / "proc/version").value_or("");
-    const bool is_realtime = line_of(root_ / "sys/kernel/realtime").value_or("") == "1" ||
-                             version.find("PREEMPT_RT") != std::string::npos;
+    const bool is_realtime =
+        line_of(root_ / "sys/kernel/realtime").value_or("") == "1" || version.find("PREEMPT_RT") != std::string::npos;
     if (is_realtime) {
       finding.found = "real-time (PREEMPT_RT)";
       return finding;
     }
     finding.rating = Rating::improvable;
-    finding.why = "A kernel without PREEMPT_RT holds a task up where it does work of its own, for milliseconds at worst.";
+    finding.why =
+        "A kernel without PREEMPT_RT holds a task up where it does work of its own, for milliseconds at worst.";
     finding.command = "apt-get install linux-image-rt-amd64   # or the PREEMPT_RT kernel of your distribution";
     // "none voluntary (full)": the one in parentheses counts.
     const std::string models = line_of(root_ / "sys/kernel/debug/sched/preempt").value_or("");
@@ -105,7 +107,8 @@ class Host {
       finding.found = models.substr(begin + 1, models.find(')', begin) - begin - 1) + ", chosen at run time";
       if (finding.found.starts_with("none") || finding.found.starts_with("voluntary")) {
         finding.rating = Rating::bad;
-        finding.command += "\necho full > /sys/kernel/debug/sched/preempt   # until the next start; preempt=full for ever";
+        finding.command +=
+            "\necho full > /sys/kernel/debug/sched/preempt   # until the next start; preempt=full for ever";
       }
     } else if (version.find("PREEMPT_DYNAMIC") != std::string::npos) {
       finding.found = "chosen at run time; which, root alone can read";
@@ -116,7 +119,8 @@ class Host {
       finding.found = "none or voluntary";
       finding.rating = Rating::bad;
     } else {
-      return {.name = "preemption", .found = "not told", .rating = Rating::unknown, .why = "/proc/version cannot be read."};
+      return {
+          .name = "preemption", .found = "not told", .rating = Rating::unknown, .why = "/proc/version cannot be read."};
     }
     return finding;
   }
@@ -136,8 +140,9 @@ class Host {
     return {.name = "throttling",
             .found = fmt::format("real-time threads run {} us of {} us", *runtime, period),
             .rating = Rating::improvable,
-            .why = "A task that computes for longer in a row is stopped for the rest. One that sleeps in each period "
-                   "never is.",
+            .why =
+                "A task that computes for longer in a row is stopped for the rest. One that sleeps in each period "
+                "never is.",
             .command = "sysctl -w kernel.sched_rt_runtime_us=-1   # only where no other real-time program may hang"};
   }
 
@@ -151,7 +156,7 @@ class Host {
               .why = "/sys/devices/system/clocksource cannot be read."};
     }
     // Those that a program reads without a call to the kernel.
-    static const std::set<std::string, std::less<>> quick{"tsc",          "kvm-clock",        "hyperv_clocksource_tsc_page",
+    static const std::set<std::string, std::less<>> quick{"tsc", "kvm-clock", "hyperv_clocksource_tsc_page",
                                                           "arch_sys_counter", "riscv_clocksource"};
     if (quick.contains(*source)) {
       return {.name = "clock source", .found = *source};
@@ -165,9 +170,10 @@ class Host {
             .found = *source,
             .rating = has_better ? Rating::bad : Rating::improvable,
             .why = "Each look at the time is a call to the kernel, of a microsecond and more.",
-            .command = has_better
-                           ? fmt::format("echo {} > /sys/devices/system/clocksource/clocksource0/current_clocksource", *better)
-                           : ""};
+            .command =
+                has_better
+                    ? fmt::format("echo {} > /sys/devices/system/clocksource/clocksource0/current_clocksource", *better)
+                    : ""};
   }
 
   [[nodiscard]] HostFinding governor() const {
@@ -181,8 +187,9 @@ class Host {
       return {.name = "governor",
               .found = "none",
               .rating = Rating::unknown,
-              .why = "The kernel does not steer the clock of the processor: firmware or a hypervisor may. See there "
-                     "that power saving is off."};
+              .why =
+                  "The kernel does not steer the clock of the processor: firmware or a hypervisor may. See there "
+                  "that power saving is off."};
     }
     std::vector<unsigned> slow;
     for (const auto& [name, processors] : of) {
@@ -194,7 +201,9 @@ class Host {
     return {.name = "governor",
             .found = by_processors(of),
             .rating = slow.empty() ? Rating::good : Rating::bad,
-            .why = slow.empty() ? "" : "After a sleep the processor is slow at first, and a step takes several times as long.",
+            .why = slow.empty()
+                       ? ""
+                       : "After a sleep the processor is slow at first, and a step takes several times as long.",
             .command = slow.empty() ? "" : each(slow, "performance", "cpufreq/scaling_governor")};
   }
 
@@ -241,7 +250,8 @@ class Host {
       finding.rating = Rating::bad;
       finding.why = "A processor that sleeps deeper wakes later, and the task with it.";
       for (const unsigned state : states) {
-        finding.command += (finding.command.empty() ? "" : "\n") + each(deep, "1", fmt::format("cpuidle/state{}/disable", state));
+        finding.command +=
+            (finding.command.empty() ? "" : "\n") + each(deep, "1", fmt::format("cpuidle/state{}/disable", state));
       }
     }
     return finding;
@@ -250,25 +260,28 @@ class Host {
   [[nodiscard]] HostFinding isolation() const {
     const unsigned wanted = processor_.value_or(all_.empty() ? 0 : all_.back());
     const std::string line = fmt::format(
-        "add isolcpus=managed_irq,domain,{0} nohz_full={0} rcu_nocbs={0} to GRUB_CMDLINE_LINUX in /etc/default/grub, then: "
-        "update-grub && reboot   # and processor = {0} under [task]",
+        "sed -i 's/^GRUB_CMDLINE_LINUX=\"/&isolcpus=managed_irq,domain,{0} nohz_full={0} rcu_nocbs={0} /' "
+        "/etc/default/grub "
+        "&& update-grub && reboot   # and processor = {0} under [task]",
         wanted);
     if (isolated_.empty() || (processor_ && std::ranges::find(isolated_, *processor_) == isolated_.end())) {
       const bool is_single = all_.size() < 2;
-      return {.name = "isolated processors",
-              .found = isolated_.empty() ? "none" : fmt::format("{}, and not {}", processors_text(isolated_), *processor_),
-              .rating = Rating::improvable,
-              .why = is_single ? "The machine has one processor, which the task shares with everything else."
-                               : "Other programs and the kernel's own work run on the task's processor.",
-              .command = is_single ? "" : line};
+      return {
+          .name = "isolated processors",
+          .found = isolated_.empty() ? "none" : fmt::format("{}, and not {}", processors_text(isolated_), *processor_),
+          .rating = Rating::improvable,
+          .why = is_single ? "The machine has one processor, which the task shares with everything else."
+                           : "Other programs and the kernel's own work run on the task's processor.",
+          .command = is_single ? "" : line};
     }
     const auto quiet = parse_processors(line_of(cpu_ / "nohz_full").value_or("")).value_or(std::vector<unsigned>());
     const bool is_quiet = std::ranges::find(quiet, wanted) != quiet.end();
-    return {.name = "isolated processors",
-            .found = processors_text(isolated_) + (is_quiet ? ", without a tick" : ", with a tick"),
-            .rating = is_quiet ? Rating::good : Rating::improvable,
-            .why = is_quiet ? "" : "The kernel's tick interrupts the task 100 to 1000 times a second, for microseconds.",
-            .command = is_quiet ? "" : line};
+    return {
+        .name = "isolated processors",
+        .found = processors_text(isolated_) + (is_quiet ? ", without a tick" : ", with a tick"),
+        .rating = is_quiet ? Rating::good : Rating::improvable,
+        .why = is_quiet ? "" : "The kernel's tick interrupts the task 100 to 1000 times a second, for microseconds.",
+        .command = is_quiet ? "" : line};
   }
 
   /// Interrupts that the task's processor may get, and that another could.
@@ -277,9 +290,9 @@ class Host {
     std::vector<unsigned> there;
     bool is_read = false;
     for (const unsigned number : numbered(folder, "")) {
-      const auto on = parse_processors(
-          line_of(folder / std::to_string(number) / "effective_affinity_list")
-              .value_or(line_of(folder / std::to_string(number) / "smp_affinity_list").value_or("?")));
+      const auto on =
+          parse_processors(line_of(folder / std::to_string(number) / "effective_affinity_list")
+                               .value_or(line_of(folder / std::to_string(number) / "smp_affinity_list").value_or("?")));
       is_read = is_read || on.has_value();
       if (on && (!processor_ ? on->size() > 1 : std::ranges::find(*on, *processor_) != on->end())) {
         there.push_back(number);
@@ -295,15 +308,14 @@ class Host {
       return {.name = "interrupts",
               .found = there.empty() ? "each on one processor" : fmt::format("{} on any processor", there.size()),
               .rating = Rating::improvable,
-              .why = "The task keeps to no processor that interrupts could be kept from.",
-              .command = "isolate a processor first, as above"};
+              .why = "The task keeps to no processor that interrupts could be kept from: isolate one first."};
     }
     std::vector<unsigned> others;
     std::ranges::copy_if(all_, std::back_inserter(others), [&](unsigned one) { return one != *processor_; });
     HostFinding finding{.name = "interrupts",
-                        .found = there.empty() ? fmt::format("none on {}", *processor_)
-                                               : fmt::format("{} on {}: {}", there.size(), *processor_,
-                                                             processors_text(there))};
+                        .found = there.empty()
+                                     ? fmt::format("none on {}", *processor_)
+                                     : fmt::format("{} on {}: {}", there.size(), *processor_, processors_text(there))};
     if (!there.empty()) {
       finding.rating = others.empty() ? Rating::improvable : Rating::bad;
       finding.why = "Each of them holds the task up for tens of microseconds.";
@@ -323,11 +335,14 @@ class Host {
     }
     const bool is_free = *limit == "unlimited" || has_right(lock_memory_right);
     return {.name = "locked memory",
-            .found = *limit == "unlimited" ? "no limit" : is_free ? "the right is there" : *limit + " bytes",
+            .found = *limit == "unlimited" ? "no limit"
+                     : is_free             ? "the right is there"
+                                           : *limit + " bytes",
             .rating = is_free ? Rating::good : Rating::bad,
             .why = is_free ? "" : "A page that was put out to the disk holds a step up for milliseconds.",
-            .command = is_free ? "" : "LimitMEMLOCK=infinity below [Service] of the unit, or in /etc/security/limits.conf: "
-                                      "USER - memlock unlimited"};
+            .command = is_free ? ""
+                               : "echo 'USER - memlock unlimited' >> /etc/security/limits.conf   # in a unit: "
+                                 "LimitMEMLOCK=infinity"};
   }
 
   [[nodiscard]] HostFinding priority() const {
@@ -340,12 +355,14 @@ class Host {
     return {.name = "real-time priority",
             .found = has_right(nice_right) ? "the right is there" : "up to " + *limit,
             .rating = is_allowed ? Rating::good : Rating::bad,
-            .why = is_allowed ? "" : fmt::format("SCHED_FIFO with priority {} is refused, and any program may come before "
-                                                 "the task.",
-                                                 priority_),
-            .command = is_allowed ? "" : fmt::format("LimitRTPRIO={0} below [Service] of the unit, or in "
-                                                     "/etc/security/limits.conf: USER - rtprio {0}",
-                                                     priority_)};
+            .why = is_allowed ? ""
+                              : fmt::format("SCHED_FIFO with priority {} is refused, and any program may come before "
+                                            "the task.",
+                                            priority_),
+            .command = is_allowed ? ""
+                                  : fmt::format("echo 'USER - rtprio {0}' >> /etc/security/limits.conf   # in a unit: "
+                                                "LimitRTPRIO={0}",
+                                                priority_)};
   }
 
   static HostFinding unknown_limit(const std::string& name) {

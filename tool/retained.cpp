@@ -280,10 +280,8 @@ std::string json_of(const Newest& newest) {
     const auto& one = newest.layout.inputs[i];
     inputs.push_back({{"name", one.name}, {"value", newest.values.inputs[i]}, {"unit", one.unit}});
   }
-  const nlohmann::ordered_json all{{"sequence", newest.values.sequence},
-                                   {"parameters", parameters},
-                                   {"inputs", inputs},
-                                   {"states", states}};
+  const nlohmann::ordered_json all{
+      {"sequence", newest.values.sequence}, {"parameters", parameters}, {"inputs", inputs}, {"states", states}};
   return all.dump(2) + "\n";
 }
 

@@ -112,10 +112,10 @@ int serve(const ServeOptions& options, Console& console) {
   const auto take_changes = [&, where = config.online_change](runtime::OnlineChange& change,
                                                               std::string& said) -> std::shared_ptr<void> {
     said += fmt::format("; online change on {}", where->socket);
-    return std::make_shared<ChangeListener>(
-        where->socket, where->place, [&](const std::string& request, const ChangeListener::Progress& progress) {
-          return versions.answer(change, request, progress);
-        });
+    return std::make_shared<ChangeListener>(where->socket, where->place,
+                                            [&](const std::string& request, const ChangeListener::Progress& progress) {
+                                              return versions.answer(change, request, progress);
+                                            });
   };
   const bool well = runtime::run_host(running, std::move(config),
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",

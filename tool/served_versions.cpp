@@ -131,11 +131,11 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
   try {
     const Json asked = Json::parse(request);
     const std::string what = asked.at("what");
-    const runtime::ChangeWish wish{.only_check = what == "check" || what == "check-back",
-                                   .bumps = asked.at("bumps"),
-                                   .as_given = asked.at("as_given"),
-                                   .load = asked.contains("load") ? std::optional(asked.at("load").get<double>())
-                                                                  : std::nullopt};
+    const runtime::ChangeWish wish{
+        .only_check = what == "check" || what == "check-back",
+        .bumps = asked.at("bumps"),
+        .as_given = asked.at("as_given"),
+        .load = asked.contains("load") ? std::optional(asked.at("load").get<double>()) : std::nullopt};
     if (what == "files") {
       answer["files"] = as_json(former_);
     } else if (what == "back" || what == "check-back") {

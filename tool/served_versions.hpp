@@ -33,7 +33,7 @@ struct LoadedVersion {
 /// What the task was started with beside its diagram.
 struct StartFiles {
   std::string run_file{};
-  std::string text{};              ///< of the run file, as it counts
+  std::string text{};               ///< of the run file, as it counts
   std::vector<InputFile> inputs{};  ///< that nothing may be written over
 };
 
@@ -54,8 +54,7 @@ class ServedVersions {
   /// A request as `hysteron online-change` makes it, one line of JSON: `what` is check, change, check-back, back or
   /// files; `bumps`, `as_given` and `load` as ChangeWish has them. The answer: `report` or `files`, and `warnings`; or
   /// `errors`.
-  [[nodiscard]] std::string answer(runtime::OnlineChange& change, const std::string& request,
-                                   const Progress& progress);
+  [[nodiscard]] std::string answer(runtime::OnlineChange& change, const std::string& request, const Progress& progress);
 
  private:
   struct NextVersion {

@@ -21,7 +21,9 @@ struct DeviceCount {
 };
 
 constexpr std::array device_counts{
-    DeviceCount{"link", "0 connecting, 1 running, 2 waiting to connect again, 3 never answered, and the task goes on without it"},
+    DeviceCount{
+        "link",
+        "0 connecting, 1 running, 2 waiting to connect again, 3 never answered, and the task goes on without it"},
     DeviceCount{"connections", "links that were opened: the first, and one for each reconnect",
                 &DeviceStatus::connections},
     DeviceCount{"unreachable", "attempts to open a link that failed", &DeviceStatus::no_link},

@@ -47,8 +47,8 @@ class DeviceField final : public FieldIo {
   /// Has never answered, and may be left out.
   [[nodiscard]] bool is_absent(std::size_t device) const noexcept;
 
-  std::vector<std::string> names_{};        ///< of the devices
-  std::vector<bool> may_be_absent_{};       ///< by device
+  std::vector<std::string> names_{};   ///< of the devices
+  std::vector<bool> may_be_absent_{};  ///< by device
   std::vector<DeviceInput> inputs_;
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;

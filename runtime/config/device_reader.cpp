@@ -162,8 +162,9 @@ void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlR
   const modbus::PointFormat& format = config_->devices[link->device].values[link->value].format;
   const auto [low, high] = modbus::limits_of(format);
   OutputSafety& output = config_->task.outputs[port];
-  warn_of_range(shape_->outputs[port].name, format, output.low, output.high, table,
-                "the output is limited to what it reaches: choose a wider type or another scale, or state low and high.");
+  warn_of_range(
+      shape_->outputs[port].name, format, output.low, output.high, table,
+      "the output is limited to what it reaches: choose a wider type or another scale, or state low and high.");
   output.low = std::max(output.low, low);
   output.high = std::min(output.high, high);
 }

@@ -84,8 +84,7 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
   }
   if (!modbus.listen.empty() && !modbus::address_bytes(modbus.listen)) {
     const bool is_off = edit_distance(modbus.listen, "off", 1) <= 1;
-    found_->error(error::unusable_listen_address, table.place("listen"),
-                  modbus.listen + " is no numeric address.",
+    found_->error(error::unusable_listen_address, table.place("listen"), modbus.listen + " is no numeric address.",
                   is_off ? "did you mean \"off\"? It serves the line of [modbus_rtu] alone."
                          : "name an address of this machine: 127.0.0.1 for this machine alone, 0.0.0.0 for all "
                            "networks; \"off\" with [modbus_rtu] serves a serial line alone.");

@@ -353,11 +353,11 @@ class Reader {
     constexpr std::uint64_t most_memory = 256'000'000;
     const std::uint64_t memory = memory_before(trigger, shape_.inputs.size(), shape_.outputs.size());
     if (memory > most_memory) {
-      found_.error(error::run_value_out_of_range, table.place("before"),
-                   "What is kept of " + std::to_string(trigger.before) + " cycles before the trigger takes up to " +
-                       std::to_string(memory / 1'000'000) + " MB of memory.",
-                   "choose " + std::to_string(trigger.before / (memory / most_memory + 1)) +
-                       " or fewer: 256 MB are the most.");
+      found_.error(
+          error::run_value_out_of_range, table.place("before"),
+          "What is kept of " + std::to_string(trigger.before) + " cycles before the trigger takes up to " +
+              std::to_string(memory / 1'000'000) + " MB of memory.",
+          "choose " + std::to_string(trigger.before / (memory / most_memory + 1)) + " or fewer: 256 MB are the most.");
     }
     if (trigger.captures > files) {
       found_.error(error::run_value_out_of_range, table.place("captures"),

@@ -58,8 +58,9 @@ std::string time_text(double nanoseconds) {
     return number_text(nanoseconds / day) + "d";
   }
   constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
-  const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
-  return number_text(nanoseconds / unit->first) + unit->second;
+  const auto* const found = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
+  const auto& [size, name] = found == units.end() ? units.back() : *found;
+  return number_text(nanoseconds / size) + name;
 }
 
 std::string short_time_text(double nanoseconds) {

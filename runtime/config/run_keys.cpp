@@ -100,10 +100,10 @@ constexpr std::array watchdog_keys{
            1000.0 * s,
            {},
            "two periods at the least"},
-    RunKey{"guard_wait", time, "\"1min\"",
+    RunKey{"guard_wait", time, "\"60s\"",
            "a start waits so long for the guard of an earlier run, which brings a device to its safe values; then it "
            "ends that guard, and starts",
-           0.0, 86400.0 * s},
+           ms, 86400.0 * s},
 };
 constexpr std::array output_keys{
     RunKey{"safe", number, "(required)", "the value of the output when something is wrong, in its unit"},
@@ -241,7 +241,7 @@ constexpr std::array trace_keys{
            "1000",
            "with a trigger: cycles kept from before, in memory until it fires",
            0.0,
-           many,
+           1e6,
            {},
            "256 MB of memory at the most"},
     RunKey{"after", whole, "1000", "with a trigger: cycles kept from then on", 0.0, many},

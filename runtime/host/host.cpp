@@ -101,9 +101,7 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
                        "end that task first, or name another file.");
     }
     throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
-                     problem.code() == std::errc::no_space_on_device || problem.code() == std::errc::file_too_large
-                         ? "make room on the disk, or name a file on another one."
-                         : "name an ordinary file, in a folder that is there and may be written to.");
+                     "name an ordinary file, in a folder that is there and may be written to.");
   }
 }
 
@@ -210,14 +208,15 @@ class CertificateCare {
 };
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, CertificateCare& certificate,
-              nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const OutputClaims& claims, RunNotices& notices,
+              CertificateCare& certificate, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
   std::uint64_t beats = 0;
   auto moved = Clock::now();
   auto told = moved;
+  auto drained = moved;
   bool is_stopping = false;
   while (!cyclic.is_done()) {
     std::this_thread::sleep_for(milliseconds(5));
@@ -231,6 +230,10 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& 
       is_stopping = true;
     }
     const auto now = Clock::now();
+    if (now - drained > std::chrono::seconds(1)) {
+      claims.drain();
+      drained = now;
+    }
     if (interval.count() == 0 || now - told < interval) {
       continue;
     }
@@ -408,7 +411,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     if (change) {
       change->begin(retainer.get(), trace.get());
     }
-    wait_for(cyclic, task, guard.get(), notices, certificate, nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), claims, notices, certificate, nanoseconds(shape.period));
     end = cyclic.end();
     if (change) {
       change->end();

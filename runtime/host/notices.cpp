@@ -149,9 +149,10 @@ std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& a
   }
   for (const std::string& device : absent) {
     if (std::ranges::find(told_, device) == told_.end()) {
-      lines.push_back(fmt::format("{} has not answered since the start: the task goes on without it, and its outputs go "
-                                  "nowhere. It is tried on; see that it is on and reached as [devices.{}] says.",
-                                  device, device));
+      lines.push_back(
+          fmt::format("{} has not answered since the start: the task goes on without it, and its outputs go "
+                      "nowhere. It is tried on; see that it is on and reached as [devices.{}] says.",
+                      device, device));
     }
   }
   for (const std::string& device : told_) {

@@ -167,8 +167,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   for (std::size_t i = 0; i < carried.parameters.size(); ++i) {
     const ProgramSignal& one = shape.parameters[i];
     if (!is_same(carried.parameters[i], plan.given[i])) {
-      report.other_values.push_back(fmt::format("{} = {}{} ({} {})", one.name,
-                                                number_text(carried.parameters[i]),
+      report.other_values.push_back(fmt::format("{} = {}{} ({} {})", one.name, number_text(carried.parameters[i]),
                                                 one.unit.empty() ? "" : " " + one.unit, number_text(plan.given[i]),
                                                 plan.own_state ? "before the change" : "in the files"));
     }

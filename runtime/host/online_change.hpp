@@ -44,11 +44,11 @@ struct ChangeReport {
   std::vector<std::string> without_register{};  ///< parameters that servers reach after a restart alone
   /// On the way back: what only the version before has, which goes on as it was when that was changed.
   std::vector<std::string> as_before{};
-  double step_time = 0.0;    ///< of the other version, beside the task: the mean of its own CPU time, in ns
+  double step_time = 0.0;     ///< of the other version, beside the task: the mean of its own CPU time, in ns
   std::size_t rehearsed = 0;  ///< of so many steps
   double load = 0.0;          ///< step_time as a part of the period
   double most_load = 1.0;     ///< the most that it may be
-  bool is_retained = true;  ///< where values are retained: those of the other version are on the disk
+  bool is_retained = true;    ///< where values are retained: those of the other version are on the disk
 };
 
 class OnlineChange {
@@ -65,8 +65,8 @@ class OnlineChange {
   /// another, HY730 where the wish names what it does not have.
   void require_sound(const ProgramShape& next, const ChangeWish& wish) const;
   /// Changes to another version of the diagram, as it begins. Throws InputError as require_sound, HY851 where an output
-  /// would jump, HY853 where it cannot be now or its step takes too much of the period, HY855 where parameters do not go
-  /// together. Then the running version goes on as if nothing had been.
+  /// would jump, HY853 where it cannot be now or its step takes too much of the period, HY855 where parameters do not
+  /// go together. Then the running version goes on as if nothing had been.
   ChangeReport change_to(std::unique_ptr<StepProgram> next, const ChangeWish& wish);
   /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
   /// have is carried back, but for parameters that were taken as given and that nobody has changed since: they are as

@@ -24,9 +24,10 @@ void give_up_waiting(OutputClaims& claims, const std::string& title, const std::
     print(fmt::format("{}: that guard has not reached {} and is ended; the task starts, and goes on trying\n", title,
                       device));
   } else {
-    print(fmt::format("{}: that guard has not reached {} and cannot be ended; the task waits on. End the process "
-                      "hysteron-guard\n",
-                      title, device));
+    print(
+        fmt::format("{}: that guard has not reached {} and cannot be ended; the task waits on. End the process "
+                    "hysteron-guard\n",
+                    title, device));
   }
 }
 
@@ -60,9 +61,10 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
       if (!waits_since) {
         waits_since = now;
         const std::string process = *holder->guard == 0 ? "" : fmt::format(", process {}", *holder->guard);
-        print(fmt::format("{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values, "
-                          "{} at the most\n",
-                          title, process, device, time_text(static_cast<double>(config.guard_wait))));
+        print(
+            fmt::format("{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values, "
+                        "{} at the most\n",
+                        title, process, device, time_text(static_cast<double>(config.guard_wait))));
       }
       if (now - *waits_since >= std::chrono::nanoseconds(config.guard_wait)) {
         give_up_waiting(claims, title, device, print);
@@ -71,9 +73,10 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
       // The service manager's time for a start counts from here anew.
       tell_service_manager("EXTEND_TIMEOUT_USEC=30000000");
     } else if (++tries > most_tries && holder->is_foreign) {
-      print(fmt::format("{}: the name by which {} is claimed is held by another user, or by a program that is no task; "
-                        "it starts, and nothing watches that nobody else writes there\n",
-                        title, place));
+      print(
+          fmt::format("{}: the name by which {} is claimed is held by another user, or by a program that is no task; "
+                      "it starts, and nothing watches that nobody else writes there\n",
+                      title, place));
       claims.pass_over_foreign();
       tries = 0;
     } else if (tries > most_tries) {

@@ -13,6 +13,7 @@
 #include <array>
 #include <condition_variable>
 #include <csignal>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -94,7 +95,7 @@ bool read_answer(Asking& asking, Clock::time_point until) {
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     pollfd one{asking.answer.number(), POLLIN, 0};
-    const int ready = left <= 0 ? 0 : ::poll(&one, 1, static_cast<int>(left));
+    const int ready = ::poll(&one, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));  // what is there counts
     if (ready < 0 && errno == EINTR) {
       continue;
     }

@@ -16,8 +16,8 @@ namespace hysteron::runtime::modbus {
 /// localhost is this machine (RFC 6761), also without a table of hosts.
 [[nodiscard]] std::vector<std::string> addresses_of(const std::string& host);
 
-/// The same for many hosts, all at once, in processes of their own: none of those that did not answer in time. A numeric
-/// host needs no name server. To be called while the process has one thread.
+/// The same for many hosts, all at once, in processes of their own: none of those that did not answer in time. A
+/// numeric host needs no name server. To be called while the process has one thread.
 [[nodiscard]] std::vector<std::vector<std::string>> addresses_within(std::span<const std::string> hosts,
                                                                      std::chrono::milliseconds patience);
 

@@ -29,9 +29,10 @@ Listener::Listener(std::string address, std::uint16_t port, const Place& place, 
   }
   next_ = std::chrono::steady_clock::now() + wait_;
   if (tell_) {
-    tell_(fmt::format("{} port {} cannot be listened on yet: {}. It is tried again, every 2 s at last; the control "
-                      "goes on. See that the network is up and has this address.",
-                      address_, port, std::system_category().message(first.problem)));
+    tell_(
+        fmt::format("{} port {} cannot be listened on yet: {}. It is tried again, every 2 s at last; the control "
+                    "goes on. See that the network is up and has this address.",
+                    address_, port, std::system_category().message(first.problem)));
   }
 }
 

@@ -80,10 +80,9 @@ std::string range_flaw_of(const PointFormat& format, double low, double high) {
   const double half = is_real(format.type) ? 0.0 : 0.5 * std::abs(format.scale);
   const bool is_below = std::isfinite(low) && low < least - half;
   const bool is_above = std::isfinite(high) && high > most + half;
-  return !is_below && !is_above
-             ? ""
-             : fmt::format("goes from {} to {}, and its format, {}, reaches {} to {} alone", number_text(low),
-                           number_text(high), name_of(format.type), number_text(least), number_text(most));
+  return !is_below && !is_above ? ""
+                                : fmt::format("goes from {} to {}, and its format, {}, reaches {:.6g} to {:.6g} alone",
+                                              number_text(low), number_text(high), name_of(format.type), least, most);
 }
 
 std::optional<RawCode> encoded(double value, const PointFormat& format) {

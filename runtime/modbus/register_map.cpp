@@ -123,7 +123,7 @@ class Placer {
       }
       known.emplace_back(&given, point->second);
     }
-    for (const auto& [given, point] : known) {  // the width of each is known now
+    for (const auto& [given, point] : known) {            // the width of each is known now
       if (given->address.empty() || is_flawed_[point]) {  // how wide the flawed one would be is not known
         continue;
       }
@@ -262,8 +262,8 @@ class Placer {
 
   /// What may be written instead: beside what was meant, if that can be told.
   static std::string fitting_address(bool is_writable, RegisterType type, const Stretch& at) {
-    const Area registers = is_writable || at.area == Area::holding_register ? Area::holding_register
-                                                                            : Area::input_register;
+    const Area registers =
+        is_writable || at.area == Area::holding_register ? Area::holding_register : Area::input_register;
     const Area bits = is_writable || at.area == Area::coil ? Area::coil : Area::discrete_input;
     if (type == PointType::boolean) {
       const unsigned bit = at.is_bit() ? at.shift() : 0U;

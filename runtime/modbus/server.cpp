@@ -184,11 +184,12 @@ class Server::Loop {
     for (int i = 0; i < accepted_a_turn; ++i) {
       sockaddr_storage peer{};
       socklen_t size = sizeof peer;
-      Descriptor socket(
-          ::accept4(listener_->socket().number(), reinterpret_cast<sockaddr*>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      Descriptor socket(::accept4(listener_->socket().number(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                  SOCK_NONBLOCK | SOCK_CLOEXEC));
       if (!socket.is_open()) {
         if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-          change_watch(listener_->socket(), listening_mark, 0);  // or the loop would spin on a connection it cannot take
+          change_watch(listener_->socket(), listening_mark,
+                       0);  // or the loop would spin on a connection it cannot take
           listen_again_ = now + accept_pause;
         }
         return;

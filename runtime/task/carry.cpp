@@ -133,12 +133,13 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
     double low = 0.0;
     double high = 0.0;
     const bool is_read = type && read_number(cells[4], low) && read_number(cells[5], high);
-    (cells[0] == "p" ? layout.parameters : layout.inputs).push_back({.name = std::string(cells[1]),
-                                 .type = type.value_or(PointType::real64),
-                                 .unit = std::string(cells[3]),
-                                 .low = low,
-                                 .high = high,
-                                 .low_excluded = cells[6] == "1"});
+    (cells[0] == "p" ? layout.parameters : layout.inputs)
+        .push_back({.name = std::string(cells[1]),
+                    .type = type.value_or(PointType::real64),
+                    .unit = std::string(cells[3]),
+                    .low = low,
+                    .high = high,
+                    .low_excluded = cells[6] == "1"});
     return is_read;
   }
   if (cells[0] != "s" || cells.size() != 7) {

@@ -56,8 +56,8 @@ struct CarriedValues {
                                              const ProgramShape& shape, std::span<const double> given);
 
 /// Retained inputs that the program has by the same name, type and unit, whose value lies within its limits: by input
-/// of the program, nothing where it begins as the diagram says. `wanted`: those that are to be retained. The reasons for
-/// what is left are added.
+/// of the program, nothing where it begins as the diagram says. `wanted`: those that are to be retained. The reasons
+/// for what is left are added.
 [[nodiscard]] std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::span<const double> values,
                                                               const ProgramShape& shape,
                                                               std::span<const std::size_t> wanted,

@@ -2,8 +2,8 @@
 //
 // The newest state goes into the slot that holds the older one, under a temporary name, flushed, and renamed; so a
 // power cut at any byte leaves the other slot whole. A slot is a sequence number, the layout of the program, what its
-// values mean (carry.hpp), parameters, state, inputs and a CRC32C over all of it. Files are written by a thread of their own;
-// the cyclic thread only copies.
+// values mean (carry.hpp), parameters, state, inputs and a CRC32C over all of it. Files are written by a thread of
+// their own; the cyclic thread only copies.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct RetainedValues {
   std::vector<double> parameters{};
   std::vector<std::byte> state{};
   std::vector<double> inputs{};  ///< those that clients write and that are retained, as they are described
-  std::uint64_t commits = 0;  ///< sets of parameters that the run had applied; in no file
+  std::uint64_t commits = 0;     ///< sets of parameters that the run had applied; in no file
 };
 
 enum class SlotStatus : std::uint8_t { whole, missing, broken };
@@ -125,7 +125,8 @@ class RetainImage {
   /// A state is not written in which a number is not finite that is so in `after_reset`, the program's state when it
   /// begins; empty: whatever it is. `inputs`: those of the program that are retained. The program's shape must outlive
   /// it.
-  RetainImage(const StepProgram& program, std::vector<std::byte> after_reset, const std::vector<std::size_t>& inputs = {});
+  RetainImage(const StepProgram& program, std::vector<std::byte> after_reset,
+              const std::vector<std::size_t>& inputs = {});
 
   /// How many of them are on the disk; from any thread.
   [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }

@@ -153,7 +153,10 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
   if (file_.write(head_) < head_.size()) {
     const int reason = errno;
     file_.give_back();
-    throw std::system_error(reason, std::generic_category(), settings.file.string());
+    if (!is_want_of_room(reason)) {
+      throw std::system_error(reason, std::generic_category(), settings.file.string());
+    }
+    cut(0);  // it is begun as soon as there is room
   }
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {

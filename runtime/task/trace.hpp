@@ -95,7 +95,8 @@ struct TraceProgram {
 
 class Trace {
  public:
-  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does.
+  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where
+  /// only room is wanting, it is cut from the start, and begun once there is some.
   Trace(const TraceSettings& settings, const StepProgram& program);
   ~Trace() { finish(); }
   Trace(const Trace&) = delete;

@@ -35,8 +35,8 @@ Counted formats(std::uint64_t count) {
 Counted noisy_line(std::uint64_t count) {
   const auto result = test::talk_on_a_noisy_line(count);
   return {result.frames,
-          fmt::format("{} answered; {} sound ones without their answer, {} answers and {} writes unasked", result.answered,
-                      result.unanswered, result.unasked, result.writes),
+          fmt::format("{} answered; {} sound ones without their answer, {} answers and {} writes unasked",
+                      result.answered, result.unanswered, result.unasked, result.writes),
           result.unanswered + result.unasked + result.writes == 0 && result.answered > 0};
 }
 
@@ -77,13 +77,15 @@ Counted setpoint_kills(std::uint64_t count) {
   std::uint64_t lost = 0;
   double last = 0.0;
   for (std::uint64_t k = 0; k < count; ++k) {
-    const auto result = rt::test::kill_while_setpoints_come(folder, static_cast<std::int64_t>(500'000 + random() % 30'000'000));
+    const auto result =
+        rt::test::kill_while_setpoints_come(folder, static_cast<std::int64_t>(500'000 + random() % 30'000'000));
     lost += result.holds() && result.begun_with >= last ? 0 : 1;
     last = result.begun_with;
   }
   std::filesystem::remove_all(folder);
-  return {count, fmt::format("{} began with an older one than was on the disk, or with none that was written; {:.0f} written",
-                             lost, last),
+  return {count,
+          fmt::format("{} began with an older one than was on the disk, or with none that was written; {:.0f} written",
+                      lost, last),
           lost == 0 && last > 0.0};
 }
 

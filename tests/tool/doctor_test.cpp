@@ -110,14 +110,15 @@ TEST(RealtimeHost, EachFindingComesWithItsCauseAndGoesWithIt) {
        "for i in 3; do echo 1 > /sys/devices/system/cpu/cpu$i/cpuidle/state1/disable; done"},
       {"proc/irq/24/smp_affinity_list", "0-3", "interrupts", Rating::bad, "1 on 3: 24",
        "for i in 24; do echo 0-2 > /proc/irq/$i/smp_affinity_list; done"},
-      {"proc/irq/25/effective_affinity_list", "3", "interrupts", Rating::bad, "1 on 3: 25", "systemctl disable --now irqbalance"},
+      {"proc/irq/25/effective_affinity_list", "3", "interrupts", Rating::bad, "1 on 3: 25",
+       "systemctl disable --now irqbalance"},
       {cpu + "nohz_full", "", "isolated processors", Rating::improvable, "3, with a tick", "nohz_full=3"},
       {"proc/sys/kernel/sched_rt_runtime_us", "950000", "throttling", Rating::improvable, "950000 us of 1000000 us",
        "sysctl -w kernel.sched_rt_runtime_us=-1"},
       {"sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet", "clock source", Rating::bad, "hpet",
        "echo tsc > /sys/devices/system/clocksource/clocksource0/current_clocksource"},
-      {"proc/self/limits", "Max locked memory   65536   65536   bytes\nMax realtime priority   99   99", "locked memory",
-       Rating::bad, "65536 bytes", "LimitMEMLOCK=infinity"},
+      {"proc/self/limits", "Max locked memory   65536   65536   bytes\nMax realtime priority   99   99",
+       "locked memory", Rating::bad, "65536 bytes", "LimitMEMLOCK=infinity"},
       {"proc/self/limits", "Max locked memory   unlimited   65536   bytes\nMax realtime priority   0   0",
        "real-time priority", Rating::bad, "up to 0", "LimitRTPRIO=80"},
   };
@@ -226,7 +227,8 @@ TEST(Jitter, EveryWakeUpIsInTheClassOfItsLateness) {
       counts[one.below] = one.count;
     }
   }
-  EXPECT_EQ(counts, (std::map<std::int64_t, std::uint64_t>{{1'000, 3}, {2'000, 1}, {5'000, 1}, {10'000, 1}, {5'000'000, 1}}));
+  EXPECT_EQ(counts,
+            (std::map<std::int64_t, std::uint64_t>{{1'000, 3}, {2'000, 1}, {5'000, 1}, {10'000, 1}, {5'000'000, 1}}));
   EXPECT_EQ(jitter.classes.back().below, 5'000'000) << "none that is empty at the end";
   EXPECT_EQ(jitter.lateness.worst(), 2'300'000) << "behind its own time, not behind the newest period";
   EXPECT_EQ(jitter.skipped, 2U);
@@ -257,8 +259,10 @@ TEST(DoctorCommand, SaysWhatToType) {
     sum += one.at("count").get<std::uint64_t>();
   }
   EXPECT_EQ(sum, 50U);
-  EXPECT_THAT(bench.shell("hysteron doctor").err, testing::StartsWith("HY730 error: The doctor was not asked anything."));
-  EXPECT_THAT(bench.shell("hysteron doctor --rt --period 1").err, testing::StartsWith("HY730 error: --period does not"));
+  EXPECT_THAT(bench.shell("hysteron doctor").err,
+              testing::StartsWith("HY730 error: The doctor was not asked anything."));
+  EXPECT_THAT(bench.shell("hysteron doctor --rt --period 1").err,
+              testing::StartsWith("HY730 error: --period does not"));
 }
 
 }  // namespace

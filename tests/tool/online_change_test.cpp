@@ -228,8 +228,9 @@ TEST(OnlineChangeCommand, ARunFileThatCouldNotStartTheNewVersionRefusesIt) {
   bench.write("stage.st", stage(true));
   const auto edited = bench.shell("hysteron online-change run.toml");
   EXPECT_EQ(edited.code, 0) << edited.err;
-  EXPECT_THAT(edited.out, HasSubstr("the run file was edited since the start of the task: what it says now counts from the "
-                                    "next start on\n"));
+  EXPECT_THAT(edited.out,
+              HasSubstr("the run file was edited since the start of the task: what it says now counts from the "
+                        "next start on\n"));
   EXPECT_EQ(bench.shell("hysteron online-change run.toml --back").code, 0) << "no file stands in the way back";
 }
 

@@ -24,12 +24,11 @@ namespace {
 RunConfig config_of(const std::string& link, const std::string& place, const std::string& more = "") {
   const ProgramShape shape{
       .name = "PLANT", .period = 1'000'000, .outputs = {{.name = "Y"}, {.name = "Z", .type = PointType::real64}}};
-  RunConfig config =
-      parse_run_config("RUN.toml",
-                       fmt::format("[devices.stage]\n{}\n[outputs.Y]\nsafe = 0\ndevice = \"stage\"\n{}\n"
-                                   "[outputs.Z]\nsafe = 0\n{}",
-                                   link, place, more),
-                       shape);
+  RunConfig config = parse_run_config("RUN.toml",
+                                      fmt::format("[devices.stage]\n{}\n[outputs.Y]\nsafe = 0\ndevice = \"stage\"\n{}\n"
+                                                  "[outputs.Z]\nsafe = 0\n{}",
+                                                  link, place, more),
+                                      shape);
   look_up_hosts(config, std::chrono::seconds(30));
   return config;
 }

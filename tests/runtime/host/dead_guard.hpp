@@ -43,11 +43,12 @@ inline pid_t guard_for_ever(const RunConfig& config) {
 /// Whether a start has its outputs after its wait, and the guard is gone.
 inline bool starts_after_a_dead_guard() {
   const ProgramShape shape{.name = "PLANT", .period = 1'000'000, .outputs = {{.name = "Y"}}};
-  const RunConfig config = parse_run_config("RUN.toml",
-                                            fmt::format("[watchdog]\nguard_wait = \"20ms\"\n[devices.stage]\nport = {}\n"
-                                                        "[outputs.Y]\nsafe = 0.0\ndevice = \"stage\"\n",
-                                                        free_port()),
-                                            shape);
+  const RunConfig config =
+      parse_run_config("RUN.toml",
+                       fmt::format("[watchdog]\nguard_wait = \"20ms\"\n[devices.stage]\nport = {}\n"
+                                   "[outputs.Y]\nsafe = 0.0\ndevice = \"stage\"\n",
+                                   free_port()),
+                       shape);
   const pid_t guard = guard_for_ever(config);
   OutputClaims claims(config);
   const std::atomic<bool> stop{false};

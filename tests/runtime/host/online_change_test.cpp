@@ -25,9 +25,9 @@ namespace {
 
 using hysteron::test::soon;
 using test::Integrator;
+using test::integrators;
 using test::Plant;
 using test::refusal_by;
-using test::integrators;
 using test::value;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

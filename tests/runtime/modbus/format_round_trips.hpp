@@ -14,9 +14,9 @@ namespace hysteron::test {
 struct RoundTrips {
   std::uint64_t formats = 0;
   std::uint64_t numbers = 0;
-  std::uint64_t wrong = 0;     ///< raw numbers that came back as others
-  std::uint64_t too_far = 0;   ///< values that came back further away than half a step
-  std::uint64_t silent = 0;    ///< values beyond the format that were not said to be so, or wrapped
+  std::uint64_t wrong = 0;    ///< raw numbers that came back as others
+  std::uint64_t too_far = 0;  ///< values that came back further away than half a step
+  std::uint64_t silent = 0;   ///< values beyond the format that were not said to be so, or wrapped
 };
 
 /// A thousand numbers of each format whose scale and offset are sound.

@@ -148,19 +148,21 @@ TEST(FormattedPoints, OverlapsAndUnfitFormatsAreRefusedByName) {
 
 /// What is wrong is said, and nothing that follows from it.
 TEST(FormattedPoints, AnUnfitFormatMakesNoOverlap) {
-  const MapRequest request{.title = "T",
-                           .given = {given("SET", "holding 8", {.scale = 0.0}),
-                                     given("COUNT", "holding 9", {.type = PointType::int16})},
-                           .lock_file = "a.lock",
-                           .lock_text = "input 12 real64 TEMPERATURE\nholding 8 real64 SET\n"};
-  EXPECT_EQ(refusal(request), "860 SET has the scale 0 and the offset 0, and a scale is a finite number that is not 0.\n");
+  const MapRequest request{
+      .title = "T",
+      .given = {given("SET", "holding 8", {.scale = 0.0}), given("COUNT", "holding 9", {.type = PointType::int16})},
+      .lock_file = "a.lock",
+      .lock_text = "input 12 real64 TEMPERATURE\nholding 8 real64 SET\n"};
+  EXPECT_EQ(refusal(request),
+            "860 SET has the scale 0 and the offset 0, and a scale is a finite number that is not 0.\n");
 }
 
 /// A range that is declared and does not fit is a warning, of each limit, and none where it fits.
 TEST(FormattedPoints, AFormatThatDoesNotHoldTheDeclaredRangeIsSaid) {
-  const std::vector<Point> points{{.name = "FLOW", .kind = PointKind::output, .low = -10.0, .high = 10.0},
-                                  {.name = "SET", .kind = PointKind::parameter, .low = 0.0, .high = 400.0, .writable = true},
-                                  {.name = "ANY", .kind = PointKind::output}};
+  const std::vector<Point> points{
+      {.name = "FLOW", .kind = PointKind::output, .low = -10.0, .high = 10.0},
+      {.name = "SET", .kind = PointKind::parameter, .low = 0.0, .high = 400.0, .writable = true},
+      {.name = "ANY", .kind = PointKind::output}};
   const auto warnings = [&](const std::string& name, GivenFormat format) {
     std::vector<std::string> all;
     const auto map = make_register_map(points, {.title = "T", .given = {given(name, "", format)}});
@@ -179,7 +181,8 @@ TEST(FormattedPoints, AFormatThatDoesNotHoldTheDeclaredRangeIsSaid) {
   EXPECT_THAT(warnings("FLOW", {.type = PointType::int16, .scale = 0.0003}), testing::SizeIs(1));
   EXPECT_THAT(warnings("SET", {.type = RegisterType(PointType::uint16, true), .scale = 0.01}),
               ElementsAre("SET goes from 0 to 400, and its format, bcd16, reaches 0 to 99.99 alone."));
-  EXPECT_THAT(warnings("SET", {.type = PointType::int16, .scale = -0.1}), testing::SizeIs(0)) << "3276.7 down to -3276.8";
+  EXPECT_THAT(warnings("SET", {.type = PointType::int16, .scale = -0.1}), testing::SizeIs(0))
+      << "3276.7 down to -3276.8";
   EXPECT_THAT(warnings("SET", {.type = PointType::real32}), IsEmpty());
   EXPECT_THAT(warnings("ANY", {.type = PointType::uint16}), IsEmpty()) << "no range is declared";
 }
@@ -202,7 +205,8 @@ TEST(FormattedPoints, TheMendOfAnUnfitAddressFitsThePoint) {
             "write a bit of the register, input 102.0 (0 is the lowest, 15 the highest), or discrete 102.");
   EXPECT_EQ(mend("ENABLE", "discrete 7"), "write coil 7, which may be written.");
   EXPECT_EQ(mend("SET", "coil 7"), "write holding 7; it takes 4 registers from there on, as %ML0 and its like do.");
-  EXPECT_EQ(mend("SET", "holding 9.3", {.type = PointType::int16}), "write holding 9; it takes one register from there on.");
+  EXPECT_EQ(mend("SET", "holding 9.3", {.type = PointType::int16}),
+            "write holding 9; it takes one register from there on.");
   // What it says is taken.
   EXPECT_EQ(mend("ENABLE", "holding 102.0") + mend("ENABLE", "coil 102") + mend("READY", "discrete 102") +
                 mend("SET", "holding 7"),

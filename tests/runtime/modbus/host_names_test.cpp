@@ -32,6 +32,16 @@ class HostNames : public testing::Test {
   HostNames& operator=(const HostNames&) = delete;
 };
 
+/// The first that comes, and not one more.
+std::string first_address(HostName& name) {
+  std::string found;
+  (void)soon([&] {
+    found = found.empty() ? name.next_address(milliseconds(10)) : found;
+    return !found.empty();
+  });
+  return found;
+}
+
 TEST_F(HostNames, OfManyThoseThatAnswerInTime) {
   const std::vector<std::string> hosts{"silent.test", "127.0.0.1", "known.test", "::1", "localhost"};
   const auto found = addresses_within(hosts, milliseconds(300));
@@ -49,7 +59,7 @@ TEST_F(HostNames, ANameIsAskedForOnceAndItsAnswerTakenWhenItComes) {
   }
   EXPECT_TRUE(soon([] { return test::name_server_asked == 1; }));
   test::name_server_is_silent = false;
-  EXPECT_TRUE(soon([&] { return name.next_address(milliseconds(10)) == "127.0.0.9"; }));
+  EXPECT_EQ(first_address(name), "127.0.0.9");
   EXPECT_EQ(test::name_server_asked, 1);
 }
 

@@ -1,7 +1,9 @@
 // A server that is started before its network is there, in a process with a network of its own.
 #pragma once
 
+#include <arpa/inet.h>
 #include <net/if.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -36,12 +38,30 @@ class NotedDoor final : public MemoryDoor {
   std::atomic<bool> lacks_address{false};
 };
 
+inline constexpr const char* late_address = "10.1.2.3";
+
+inline ifreq request_to(const char* name) {
+  ifreq request{};
+  std::strncpy(static_cast<char*>(request.ifr_name), name, IFNAMSIZ - 1);
+  return request;
+}
+
 inline void bring_up_loopback() {
   const runtime::modbus::Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
-  ifreq request{};
-  std::strncpy(static_cast<char*>(request.ifr_name), "lo", IFNAMSIZ - 1);
+  ifreq request = request_to("lo");
   request.ifr_flags = IFF_UP | IFF_RUNNING;
   (void)::ioctl(any.number(), SIOCSIFFLAGS, &request);
+}
+
+/// The loopback has the late address, too, from now on.
+inline void give_address() {
+  const runtime::modbus::Descriptor any(::socket(AF_INET, SOCK_DGRAM, 0));
+  ifreq request = request_to("lo:1");
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  (void)::inet_pton(AF_INET, late_address, &address.sin_addr);
+  std::memcpy(&request.ifr_addr, &address, sizeof address);
+  (void)::ioctl(any.number(), SIOCSIFADDR, &request);
 }
 
 inline LateNetwork serve_before_the_network() {
@@ -49,27 +69,28 @@ inline LateNetwork serve_before_the_network() {
     return LateNetwork::none;  // this machine lets nobody have one
   }
   namespace modbus = runtime::modbus;
+  bring_up_loopback();
   NotedDoor door;
   std::string told;
   const modbus::Server server(
       modbus::make_register_map(door.points(), {}), door,
-      {.listen = "127.0.0.1", .port = 1502, .tell = [&](const std::string& line) { told += line; }});
+      {.listen = late_address, .port = 1502, .tell = [&](const std::string& line) { told += line; }});
   if (!door.lacks_address || told.find("cannot be listened on yet") == std::string::npos) {
     return LateNetwork::not_told;
   }
-  bring_up_loopback();
+  give_address();
   if (!soon([&] { return !door.lacks_address; })) {
     return LateNetwork::never_listened;
   }
   door.set(0, 4.5);
   const auto& entry = server.map().entries()[0];
-  const modbus::Device client({.link = modbus::TcpLink{.port = 1502},
+  const modbus::Device client({.link = modbus::TcpLink{.host = late_address, .port = 1502},
                                .values = {{.at = entry.at, .format = entry.format}},
                                .response = std::chrono::seconds(2)});
   return soon([&] { return client.read(0).value == 4.5; }) ? LateNetwork::served : LateNetwork::not_served;
 }
 
-/// The loopback comes up later than the server.
+/// The address comes later than the server.
 inline LateNetwork meet_a_late_network() {
   const pid_t process = ::fork();
   if (process == 0) {

@@ -24,7 +24,8 @@ struct NoisyLine {
 inline NoisyLine talk_on_a_noisy_line(std::uint64_t count) {
   namespace modbus = runtime::modbus;
   constexpr std::uint8_t own = 17;
-  const modbus::RtuTiming timing{.silence = std::chrono::microseconds(1750), .longest_gap = std::chrono::milliseconds(20)};
+  const modbus::RtuTiming timing{.silence = std::chrono::microseconds(1750),
+                                 .longest_gap = std::chrono::milliseconds(20)};
   MemoryDoor door(points_of_every_type());
   const auto map = modbus::make_register_map(door.points(), {.title = "B"});
   modbus::Responder responder(map, door, {});

@@ -1,5 +1,5 @@
-// A name server that gives no answer for some names, for as long as a test wants: for the whole test program, getaddrinfo
-// is this one, which hands all other names on.
+// A name server that gives no answer for some names, for as long as a test wants: for the whole test program,
+// getaddrinfo is this one, which hands all other names on.
 #include "tests/runtime/modbus/silent_name_server.hpp"
 
 #include <dlfcn.h>

@@ -140,7 +140,8 @@ TEST(Carry, WhatHasBecomeSomethingElseIsLeftAndSaid) {
 
 TEST(Carry, WhatIsNewIsToldFromWhatIsOtherwiseLeft) {
   EXPECT_TRUE(is_new("NEW.K (new)"));
-  for (const char* const other : {"L.MX (5 is outside of its limits)", "OLD.K (gone)", "NEW.K", "A (newer there, b here)"}) {
+  for (const char* const other :
+       {"L.MX (5 is outside of its limits)", "OLD.K (gone)", "NEW.K", "A (newer there, b here)"}) {
     EXPECT_FALSE(is_new(other)) << other;
   }
   EXPECT_EQ(without_reason("L.MX (5 is outside of its limits)"), "L.MX");

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -161,6 +163,31 @@ TEST(Trace, ATriggerIsArmedAgainUntilItHasFiredSoOften) {
     }
     EXPECT_EQ(fired.size(), captures) << "each of another crossing";
   }
+}
+
+/// No room at the start: the trace of before has its name, and another is begun where there is room.
+TEST(Trace, AFullDiskAtTheStartIsACutThatIsMended) {
+  const hysteron::test::ScratchFolder scratch;
+  const auto before = traced_run({.file = scratch / "trace"}, 50);
+  Accumulator program;
+  {
+    auto limit = std::make_unique<test::FileSizeLimit>(0);
+    Trace trace({.file = scratch / "trace"}, program);
+    EXPECT_TRUE(trace.is_cut());
+    EXPECT_EQ(trace.problem(), (scratch / "trace") + ": File too large");
+    EXPECT_EQ(hysteron::test::contents_of(scratch / "trace"), before);
+    limit.reset();
+    // It is tried again every 10 s; a step comes every millisecond until one is in a file.
+    std::uint64_t k = 0;
+    EXPECT_TRUE(hysteron::test::soon([&] {
+      trace.before_step(k, program);
+      trace.step(k, k, Fault::none, std::array{1.0}, std::array{1.0, 0.0}, std::array{1.0, 0.0});
+      ++k;
+      return !trace.is_cut();
+    }));
+  }
+  EXPECT_EQ(hysteron::test::contents_of(scratch / "trace.1"), before);
+  EXPECT_NE(hysteron::test::contents_of(scratch / "trace"), "");
 }
 
 /// What it keeps in memory stays within what it says, whatever comes.

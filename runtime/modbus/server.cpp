@@ -66,10 +66,7 @@ class Server::Loop {
     }
     if (!options_.listen.empty()) {
       listener_.emplace(options_.listen, options_.port, options_.place, options_.tell);
-      door_.shortage(Shortage::address, !listener_->is_open());
-      if (listener_->is_open() && !watch(listener_->socket(), listening_mark, EPOLLIN)) {
-        throw std::system_error(errno, std::system_category(), "Modbus server");
-      }
+      watch_listener();
     }
     if (options_.rtu) {
       line_.emplace(*options_.rtu, options_.tell);
@@ -147,7 +144,9 @@ class Server::Loop {
         listen_again_.reset();
         change_watch(listener_->socket(), listening_mark, EPOLLIN);
       }
-      follow_listener(now);
+      if (listener_ && listener_->try_again(now)) {
+        watch_listener();
+      }
     }
   }
 
@@ -241,12 +240,9 @@ class Server::Loop {
     return true;
   }
 
-  /// The address may come later than the start.
-  void follow_listener(Instant now) {
-    if (listener_ && listener_->try_again(now)) {
-      (void)watch(listener_->socket(), listening_mark, EPOLLIN);
-      door_.shortage(Shortage::address, false);
-    }
+  void watch_listener() {
+    const bool listens = listener_->is_open() && watch(listener_->socket(), listening_mark, EPOLLIN);
+    door_.shortage(Shortage::address, !listens);
   }
 
   /// The serial line: opened where that is due, and served where a silence on it has lasted.

@@ -43,20 +43,27 @@ bool are_same_files(const std::vector<OutputFile>& a, const std::vector<OutputFi
   });
 }
 
-/// Read until nothing was written meanwhile, or a second has passed.
+/// Read until nothing was written meanwhile, or a second has passed. A text that is half written is an error of that
+/// moment alone.
 LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings, bool& is_steady) {
   constexpr int most_tries = 10;
   constexpr std::chrono::milliseconds pause{100};
   for (int tries = 1;; ++tries) {
     Diagnostics own;
     auto files = files_of(options);
-    Program diagram = load_diagram(options, own);
-    is_steady = are_same_files(files, files_of(options));
-    if (is_steady || tries == most_tries) {
-      for (const Diagnostic& one : own.all()) {
-        warnings.add(one);
+    try {
+      Program diagram = load_diagram(options, own);
+      is_steady = are_same_files(files, files_of(options));
+      if (is_steady || tries == most_tries) {
+        for (const Diagnostic& one : own.all()) {
+          warnings.add(one);
+        }
+        return {.diagram = std::move(diagram), .files = std::move(files)};
       }
-      return {.diagram = std::move(diagram), .files = std::move(files)};
+    } catch (const InputError&) {
+      if (tries == most_tries || are_same_files(files, files_of(options))) {
+        throw;
+      }
     }
     std::this_thread::sleep_for(pause);
   }

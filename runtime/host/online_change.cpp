@@ -226,7 +226,8 @@ void OnlineChange::rehearse(Plan& plan, const ChangeWish& wish) const {
     throw InputError(std::move(found));
   }
   ChangeReport& report = plan.report;
-  report.most_load = wish.load.value_or(most_load_);
+  // What ran before may run again: it has to fit into the period, and no more.
+  report.most_load = wish.load.value_or(plan.own_state ? 1.0 : most_load_);
   const auto period = static_cast<double>(program_->shape().period);
   const auto begin = SteadyClock::now();
   const std::int64_t began = own_cpu_now();

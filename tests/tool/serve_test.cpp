@@ -335,5 +335,24 @@ TEST(Serve, ErrorPagesKeepTheirWord) {
   }
 }
 
+/// An editor that saves, or a copy that is under way: no start ends by it.
+TEST(ServeCommand, ADiagramThatIsWrittenMeanwhileEndsNoStart) {
+  const test::Workbench bench;
+  bench.write("plant.st", served_plant);
+  bench.write("a.st", served_plant);
+  bench.write("b.st", std::string(served_plant) + "\n");
+  bench.write("RUN.toml", run_file);
+  const auto served = bench.shell(
+      "(for i in $(seq 300); do cp a.st next.st; mv next.st plant.st; cp b.st next.st; mv next.st plant.st; done) & "
+      "writer=$!; for i in 1 2 3 4 5; do hysteron serve plant.st --config RUN.toml --virtual --cycles 5 "
+      "--engine interpreter || exit 9; done; wait $writer");
+  EXPECT_EQ(served.code, 0) << served.err;
+  // From a pipe it is read once.
+  const auto piped = bench.shell(
+      "mkfifo pipe.st; cat plant.st > pipe.st & timeout 20 hysteron serve pipe.st --config RUN.toml "
+      "--virtual --cycles 5 --engine interpreter");
+  EXPECT_EQ(piped.code, 0) << piped.err;
+}
+
 }  // namespace
 }  // namespace hysteron

@@ -20,6 +20,18 @@ enum class PointKind {
   command,    ///< what a client asks of the task: commit, discard, reset, heartbeat
 };
 
+/// What a task cannot have now, and tries again while it controls: bits of task.shortages. None of them is a fault.
+enum class Shortage : std::uint16_t {
+  address = 1,   ///< the Modbus server listens on no address yet
+  page = 2,      ///< nor does the live page
+  line = 4,      ///< the serial line of the Modbus server cannot be used
+  device = 8,    ///< a device with on_absence = "go_on" has not answered since the start
+  tls = 16,      ///< task.tls_fault is not 0
+  mqtt = 32,     ///< task.mqtt_fault is not 0
+  history = 64,  ///< task.history_fault is not 0
+  trace = 128,   ///< the trace is written to no file
+};
+
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
 
 /// Any number within its precision; else whole numbers, or two values.
@@ -44,8 +56,9 @@ struct Point {
   bool writable = false;
   std::string meaning{};
   WriteRight right = WriteRight::parameters;  ///< where it is writable
-  bool counts = false;      ///< begins at zero with the task and only grows: of use as a rate, not as a level
-  bool comes_last = false;  ///< on a register map behind all others, whose addresses do not move where it is there
+  bool counts = false;       ///< begins at zero with the task and only grows: of use as a rate, not as a level
+  bool is_retained = false;  ///< kept through a restart
+  bool comes_last = false;   ///< on a register map behind all others, whose addresses do not move where it is there
 };
 
 struct PointWrite {
@@ -87,6 +100,8 @@ class PointDoor {
   /// All of the writes or none. Empty where taken; otherwise the reason, as a sentence that names the point.
   /// The caller has checked that each is writable, finite and within its limits.
   virtual std::string write(std::span<const PointWrite> writes) = 0;
+  /// What the server cannot have now, or has again.
+  virtual void shortage(Shortage /*what*/, bool /*is_there*/) noexcept {}
 };
 
 }  // namespace hysteron::runtime

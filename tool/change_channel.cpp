@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -31,6 +32,8 @@ using SteadyClock = std::chrono::steady_clock;
 /// A request is small; an answer has the text of a diagram at the most.
 constexpr std::size_t most_bytes = 64'000'000;
 constexpr milliseconds time_for_a_line{5'000};
+/// Who asks is told what he waits for after this, and whenever it is something else.
+constexpr milliseconds first_word{1'000};
 /// A large diagram is compiled within this.
 constexpr milliseconds time_for_an_answer{600'000};
 
@@ -75,28 +78,57 @@ bool send_line(const Descriptor& to, std::string line) {
   return true;
 }
 
-/// Nothing where the other side ends, or is too slow, before the line does.
-std::optional<std::string> read_line(const Descriptor& from, milliseconds time) {
-  const auto until = SteadyClock::now() + time;
-  std::string text;
-  std::array<char, 65536> part{};
-  while (text.empty() || text.back() != '\n') {
-    const auto left = std::chrono::duration_cast<milliseconds>(until - SteadyClock::now()).count();
-    pollfd wait{.fd = from.number(), .events = POLLIN, .revents = 0};
-    if (left <= 0 || text.size() > most_bytes || ::poll(&wait, 1, static_cast<int>(left)) < 0) {
-      return {};
+/// Lines as they come.
+class LineReader {
+ public:
+  enum class Outcome : std::uint8_t { line, late, ended };
+
+  explicit LineReader(const Descriptor& from) : from_(&from) {}
+
+  Outcome read(std::string& line, milliseconds time) {
+    const auto until = SteadyClock::now() + time;
+    std::array<char, 65536> part{};
+    for (;;) {
+      if (const auto end = text_.find('\n', searched_); end != std::string::npos) {
+        line = text_.substr(0, end);
+        text_.erase(0, end + 1);
+        searched_ = 0;
+        return Outcome::line;
+      }
+      searched_ = text_.size();
+      const auto left = std::chrono::ceil<milliseconds>(until - SteadyClock::now()).count();
+      pollfd wait{.fd = from_->number(), .events = POLLIN, .revents = 0};
+      if (text_.size() > most_bytes) {
+        return Outcome::ended;
+      }
+      if (left <= 0) {
+        return Outcome::late;
+      }
+      if (::poll(&wait, 1, static_cast<int>(left)) < 0 && errno != EINTR) {
+        return Outcome::ended;
+      }
+      if (wait.revents == 0) {
+        continue;
+      }
+      const ssize_t read = ::recv(from_->number(), part.data(), part.size(), 0);
+      if (read <= 0) {
+        return Outcome::ended;
+      }
+      text_.append(part.data(), static_cast<std::size_t>(read));
     }
-    if (wait.revents == 0) {
-      continue;
-    }
-    const ssize_t read = ::recv(from.number(), part.data(), part.size(), 0);
-    if (read <= 0) {
-      return {};
-    }
-    text.append(part.data(), static_cast<std::size_t>(read));
   }
-  text.pop_back();
-  return text;
+
+ private:
+  const Descriptor* from_;
+  std::string text_{};
+  std::size_t searched_ = 0;  ///< no line ends before
+};
+
+/// What is being done, of a line that is no answer yet.
+std::optional<std::string> progress_of(const std::string& line) {
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  return json.is_object() && json.contains("progress") ? std::optional(json.at("progress").get<std::string>())
+                                                       : std::nullopt;
 }
 
 [[noreturn]] void refuse_socket(const std::string& path, const Place& place, const std::string& why) {
@@ -167,12 +199,17 @@ void ChangeListener::serve() {
 void ChangeListener::serve_one(const Descriptor& client) const {
   const timeval patience{.tv_sec = 5, .tv_usec = 0};
   (void)::setsockopt(client.number(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));
-  if (const auto request = read_line(client, time_for_a_line)) {
-    (void)send_line(client, answer_(*request));
+  std::string request;
+  if (LineReader(client).read(request, time_for_a_line) == LineReader::Outcome::line) {
+    const auto progress = [&](std::string_view what) {
+      (void)send_line(client, nlohmann::json{{"progress", what}}.dump());
+    };
+    (void)send_line(client, answer_(request, progress));
   }
 }
 
-std::string ask_task(const std::string& path, const Place& place, const std::string& request) {
+std::string ask_task(const std::string& path, const Place& place, const std::string& request,
+                     const ChangeListener::Progress& waits) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(error::no_online_change, place,
                      fmt::format("No task takes an online change on {}: {}.", path, why),
@@ -192,11 +229,32 @@ std::string ask_task(const std::string& path, const Place& place, const std::str
   if (!send_line(socket, request)) {
     refuse(problem_text(errno));
   }
-  const auto answer = read_line(socket, time_for_an_answer);
-  if (!answer) {
-    refuse("it ended before it gave an answer; its last line says whether the version had changed");
+  const auto begin = SteadyClock::now();
+  LineReader reader(socket);
+  std::string line;
+  std::string doing = "looks after another request";
+  for (std::string told;;) {
+    const auto outcome = reader.read(line, first_word);
+    if (outcome == LineReader::Outcome::ended) {
+      refuse("it ended before it gave an answer; its last line says whether the version had changed");
+    }
+    if (outcome == LineReader::Outcome::late) {
+      const auto waited = SteadyClock::now() - begin;
+      if (waited > time_for_an_answer) {
+        refuse(fmt::format("it gave no answer within {} min", duration_cast<std::chrono::minutes>(waited).count()));
+      }
+      if (doing != told) {
+        waits(doing);
+        told = doing;
+      }
+      continue;
+    }
+    const auto progress = progress_of(line);
+    if (!progress) {
+      return line;
+    }
+    doing = *progress;
   }
-  return *answer;
 }
 
 }  // namespace hysteron::tool

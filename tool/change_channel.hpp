@@ -2,11 +2,12 @@
 //
 // Its owner alone may open it (mode 0600), and each side asks the kernel who the other is: a request counts only from
 // the user of the task, and an answer only from a task of one's own user. A request is a line of JSON, and so is the
-// answer.
+// answer; before it there may be lines that tell what is being done: {"progress": "compiles the new version"}.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "runtime/modbus/descriptor.hpp"
@@ -17,7 +18,9 @@ namespace hysteron::tool {
 /// The task's side; requests are answered one after the other, in a thread of their own.
 class ChangeListener {
  public:
-  using Answer = std::function<std::string(const std::string& request)>;
+  /// Tells who asked what is being done, as the end of a sentence that begins with "the task".
+  using Progress = std::function<void(std::string_view)>;
+  using Answer = std::function<std::string(const std::string& request, const Progress& progress)>;
 
   /// A socket of a task that is gone is replaced. Throws InputError at `place`: HY815 where another task listens there,
   /// HY854 where there can be no socket.
@@ -40,7 +43,9 @@ class ChangeListener {
   std::thread thread_;
 };
 
-/// The answer of the task that listens there. Throws InputError HY852 where there is none of this user.
-[[nodiscard]] std::string ask_task(const std::string& path, const Place& place, const std::string& request);
+/// The answer of the task that listens there; where it takes longer than a second, `waits` is told for what. Throws
+/// InputError HY852 where there is none of this user.
+[[nodiscard]] std::string ask_task(const std::string& path, const Place& place, const std::string& request,
+                                   const ChangeListener::Progress& waits);
 
 }  // namespace hysteron::tool

@@ -39,7 +39,11 @@ Json as_json(const runtime::ChangeReport& report) {
           {"left", report.left},
           {"other_values", report.other_values},
           {"without_register", report.without_register},
+          {"as_before", report.as_before},
           {"step_time_ns", report.step_time},
+          {"steps_tried", report.rehearsed},
+          {"load", report.load},
+          {"load_limit", report.most_load},
           {"retained", report.is_retained}};
 }
 

@@ -30,6 +30,7 @@ std::span<const Command> commands() {
       Command{"map", "Prints the registers of a served diagram.", add_map},
       Command{"retained", "Shows what a task keeps through a restart, and brings it back into a parameter file.",
               add_retained},
+      Command{"doctor", "Says what of this machine makes a cyclic task late, and how to mend it.", add_doctor},
       Command{"blocks", "Lists the blocks of the library, or describes one.", add_blocks},
       Command{"lsp", "Serves an editor: diagnostics, hover, completion, layout.", add_lsp},
       Command{"explain", "Explains an error by its number.", add_explain},

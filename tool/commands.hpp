@@ -55,6 +55,7 @@ Action add_replay(CLI::App& app);
 Action add_history(CLI::App& app);
 Action add_map(CLI::App& app);
 Action add_retained(CLI::App& app);
+Action add_doctor(CLI::App& app);
 Action add_blocks(CLI::App& app);
 Action add_explain(CLI::App& app);
 Action add_man(CLI::App& app);

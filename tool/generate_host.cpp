@@ -7,6 +7,7 @@
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/backends/cpp/cpp_step.hpp"
 #include "runtime/host/host.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/numbers.hpp"

@@ -5,8 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,6 +17,7 @@
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
+#include "runtime/config/run_keys.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
@@ -29,12 +33,14 @@ constexpr std::string_view online_change_examples = R"(Examples:
   hysteron online-change RUN.toml --check
   hysteron online-change RUN.toml
   hysteron online-change RUN.toml --bump U=0.5
+  hysteron online-change RUN.toml --load 0.9
   hysteron online-change RUN.toml --back
 
 Edit the diagram that `hysteron serve` was started with, and its parameter file. --check says what would be carried over
 and how far each output would jump; without it the task changes to what stands in the files now, between two steps, or
 refuses with the reason. --back brings the version before back, and its files; what stood there is kept beside as
-FILE.undone. The run file names the socket of the task: socket under [online_change].
+FILE.undone. The run file names the socket of the task: socket under [online_change]. What else it says counts from the
+next start on; a run file with which the new version could not be started is refused.
 Exit codes: 0 changed, or nothing stands against it; 2 refused: the running version goes on.
 )";
 
@@ -42,6 +48,7 @@ struct OnlineChangeOptions {
   std::string config{};
   std::vector<std::string> bumps{};
   std::vector<std::string> as_given{};
+  std::optional<double> load{};
   bool check = false;
   bool back = false;
   bool json = false;
@@ -73,8 +80,14 @@ std::map<std::string, double> bumps_of(const std::vector<std::string>& words) {
 }
 
 Json ask(const Socket& socket, const OnlineChangeOptions& options, std::string_view what) {
-  const Json request{{"what", what}, {"bumps", bumps_of(options.bumps)}, {"as_given", options.as_given}};
-  const Json answer = Json::parse(ask_task(socket.socket, socket.place, request.dump()), nullptr, false);
+  Json request{{"what", what}, {"bumps", bumps_of(options.bumps)}, {"as_given", options.as_given}};
+  if (options.load) {
+    request["load"] = *options.load;
+  }
+  const auto waits = [&](std::string_view doing) {
+    Console::note(options.config, fmt::format("waits; the task {}", doing));
+  };
+  const Json answer = Json::parse(ask_task(socket.socket, socket.place, request.dump(), waits), nullptr, false);
   if (!answer.is_object()) {
     throw InputError(error::no_online_change, socket.place, "What listens there gives no answer that is understood.",
                      "give the command of the same version as the task.");
@@ -110,18 +123,26 @@ std::string change_text(const Json& report, bool is_back) {
                         one.at("limit_from").get<std::string>());
   }
   text += list_text("not carried over", report.at("left"));
-  text += list_text("as they run, and not as in the files", report.at("other_values"));
+  text += list_text("as before the change", report.at("as_before"));
+  text += list_text(is_back ? "as they run, and not as before the change" : "as they run, and not as in the files",
+                    report.at("other_values"));
   text += list_text("without a register until a restart", report.at("without_register"));
-  text += fmt::format("a step of it takes {:.2g} us\n", report.at("step_time_ns").get<double>() * 1e-3);
+  text += fmt::format("a step of it takes {}, {:.2g} % of the period; the limit is {:.3g} %\n",
+                      runtime::short_time_text(report.at("step_time_ns").get<double>()),
+                      100.0 * report.at("load").get<double>(), 100.0 * report.at("load_limit").get<double>());
   if (!report.at("retained").get<bool>()) {
     text += "its values are not on the disk yet: see task.write_failures\n";
+  }
+  if (report.at("run_file_edited").get<bool>()) {
+    text += "the run file was edited since the start of the task: what it says now counts from the next start on\n";
   }
   return text;
 }
 
-std::string text_on_disk(const std::filesystem::path& path) {
+/// Nothing where there is no file.
+std::optional<std::string> text_on_disk(const std::filesystem::path& path) {
   std::error_code unknown;
-  return std::filesystem::exists(path, unknown) ? read_text_file(path.string()) : std::string();
+  return std::filesystem::exists(path, unknown) ? std::optional(read_text_file(path.string())) : std::nullopt;
 }
 
 /// FILE.undone, or the first of FILE.undone.2, … that is free.
@@ -141,11 +162,16 @@ class FilesBack {
   explicit FilesBack(const std::vector<OutputFile>& former) {
     std::vector<OutputFile> changed;
     for (const OutputFile& one : former) {
-      std::string found = text_on_disk(one.path);
-      if (found != one.contents) {
-        kept_.push_back({.path = free_name(one.path), .contents = found});
-        as_they_were_.push_back({.path = one.path, .contents = std::move(found)});
-        changed.push_back(one);
+      std::optional<std::string> found = text_on_disk(one.path);
+      if (found == one.contents) {
+        continue;
+      }
+      changed.push_back(one);
+      if (found) {
+        kept_.push_back({.path = free_name(one.path), .contents = *found});
+        as_they_were_.push_back({.path = one.path, .contents = std::move(*found)});
+      } else {
+        missing_.push_back(one.path);
       }
     }
     std::vector<OutputFile> all = kept_;
@@ -155,9 +181,11 @@ class FilesBack {
   /// The task goes on with the version that it had.
   void undo() const {
     write_files_atomically(as_they_were_);
-    for (const OutputFile& one : kept_) {
+    std::vector<std::filesystem::path> made = missing_;
+    std::ranges::transform(kept_, std::back_inserter(made), &OutputFile::path);
+    for (const std::filesystem::path& path : made) {
       std::error_code unknown;
-      std::filesystem::remove(one.path, unknown);
+      std::filesystem::remove(path, unknown);
     }
   }
   [[nodiscard]] std::string text() const {
@@ -166,12 +194,16 @@ class FilesBack {
       text += fmt::format("{} is as before; what stood there is in {}\n", as_they_were_[i].path.string(),
                           kept_[i].path.string());
     }
+    for (const std::filesystem::path& path : missing_) {
+      text += fmt::format("{} was missing, and is as before\n", path.string());
+    }
     return text;
   }
 
  private:
-  std::vector<OutputFile> kept_{};          ///< beside each file, what stood there
-  std::vector<OutputFile> as_they_were_{};  ///< the files themselves
+  std::vector<OutputFile> kept_{};                ///< beside each file, what stood there
+  std::vector<OutputFile> as_they_were_{};        ///< the files themselves
+  std::vector<std::filesystem::path> missing_{};  ///< files that were not there
 };
 
 int go_back(const Socket& socket, const OnlineChangeOptions& options, Console& console) {
@@ -220,6 +252,10 @@ Action add_online_change(CLI::App& app) {
   app.add_option("--as-given", options->as_given,
                  "A parameter that is taken as the files give it, and not carried over; may be repeated.")
       ->option_text("NAME");
+  app.add_option("--load", options->load,
+                 "What part of the period a step of the new version may take at this change: 0.9.")
+      ->check(CLI::Range(std::numeric_limits<double>::min(), 1.0))
+      ->option_text("NUMBER");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(online_change_examples));
   return [options](Console& console) { return online_change(*options, console); };

@@ -253,6 +253,11 @@ std::string table_of(const Newest& newest) {
     text += fmt::format("  {:<{}}  {}{}{}\n", one.name, widest, number_text(newest.values.parameters[i]),
                         one.unit.empty() ? "" : " ", one.unit);
   }
+  for (std::size_t i = 0; i < newest.layout.inputs.size() && i < newest.values.inputs.size(); ++i) {
+    const auto& one = newest.layout.inputs[i];
+    text += fmt::format("{}  {}  {}{}{}\n", i == 0 ? "inputs that clients wrote:\n" : "", one.name,
+                        number_text(newest.values.inputs[i]), one.unit.empty() ? "" : " ", one.unit);
+  }
   return text;
 }
 
@@ -270,8 +275,13 @@ std::string json_of(const Newest& newest) {
   for (const runtime::StateField& one : newest.layout.state) {
     states.push_back({{"name", one.name}, {"block", one.block}, {"unit", one.unit}, {"length", one.length}});
   }
+  nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < newest.layout.inputs.size() && i < newest.values.inputs.size(); ++i) {
+    const auto& one = newest.layout.inputs[i];
+    inputs.push_back({{"name", one.name}, {"value", newest.values.inputs[i]}, {"unit", one.unit}});
+  }
   const nlohmann::ordered_json all{
-      {"sequence", newest.values.sequence}, {"parameters", parameters}, {"states", states}};
+      {"sequence", newest.values.sequence}, {"parameters", parameters}, {"inputs", inputs}, {"states", states}};
   return all.dump(2) + "\n";
 }
 

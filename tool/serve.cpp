@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/host/host.hpp"
+#include "runtime/host/notices.hpp"
 #include "runtime/task/changeable_program.hpp"
 #include "runtime/web/server.hpp"
 #include "support/text_file.hpp"
@@ -57,7 +58,8 @@ std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& optio
   if (options.web.empty()) {
     return {};
   }
-  runtime::web::ServerOptions web{.endpoint = runtime::web::parse_endpoint(options.web)};
+  runtime::web::ServerOptions web{.endpoint = runtime::web::parse_endpoint(options.web),
+                                  .tell = [](const std::string& line) { runtime::tell("Live page", line); }};
   web.access.is_loopback = web.endpoint.is_loopback;
   if (!options.token_file.empty()) {
     web.access.token = runtime::web::read_token(options.token_file);
@@ -71,18 +73,22 @@ std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& optio
 
 int serve(const ServeOptions& options, Console& console) {
   Diagnostics warnings;
-  LoadedVersion version = load_version(options.diagram, warnings);
+  LoadedVersion version = first_version(options.diagram, warnings);
   const Program& diagram = version.diagram;
   const Engine engine = engine_of(options.engine);
   const auto web = web_options(options);
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
   auto program = step_program(diagram, engine, options.diagram.float32, inner);
-  auto config = runtime::parse_run_config(options.config, read_text_file(options.config), program->shape());
+  const std::string run_text = read_text_file(options.config);
+  auto config = runtime::parse_run_config(options.config, run_text, program->shape());
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
   inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
   inputs.push_back({.file = options.read_token_file, .named_by = "--web-read-token-file"});
-  runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
+  runtime::refuse_to_overwrite_inputs(config, inputs);
+  for (const Diagnostic& one : config.warnings.all()) {
+    warnings.add(one);
+  }
   console.report(warnings);
   const auto history = config.history.value_or(runtime::HistoryConfig{});
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
@@ -100,12 +106,16 @@ int serve(const ServeOptions& options, Console& console) {
     changeable = std::make_unique<runtime::ChangeableProgram>(std::move(program));
   }
   runtime::StepProgram& running = changeable ? *changeable : *program;
-  ServedVersions versions(options.diagram, engine, web.has_value(), std::move(version.files));
+  ServedVersions versions(options.diagram, engine, web.has_value(),
+                          {.run_file = options.config, .text = run_text, .inputs = std::move(inputs)},
+                          std::move(version.files));
   const auto take_changes = [&, where = config.online_change](runtime::OnlineChange& change,
                                                               std::string& said) -> std::shared_ptr<void> {
     said += fmt::format("; online change on {}", where->socket);
-    return std::make_shared<ChangeListener>(
-        where->socket, where->place, [&](const std::string& request) { return versions.answer(change, request); });
+    return std::make_shared<ChangeListener>(where->socket, where->place,
+                                            [&](const std::string& request, const ChangeListener::Progress& progress) {
+                                              return versions.answer(change, request, progress);
+                                            });
   };
   const bool well = runtime::run_host(running, std::move(config),
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",

@@ -1,10 +1,12 @@
 // hysteron map: the registers under which a served diagram shows itself.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "runtime/host/host.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/modbus/map_text.hpp"
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
@@ -59,6 +61,9 @@ Action add_map(CLI::App& app) {
     inputs.push_back({.file = options->config, .named_by = "--config"});
     runtime::refuse_to_overwrite_inputs(config, std::move(inputs));
     const auto map = runtime::register_map_of(config, *program);
+    for (const Diagnostics* const more : {&config.warnings, &map.warnings()}) {
+      std::ranges::for_each(more->all(), [&](const Diagnostic& one) { warnings.add(one); });
+    }
     console.report(warnings);
     console.print(options->format == "csv"    ? runtime::modbus::as_csv(map)
                   : options->format == "json" ? runtime::modbus::as_json(map)

@@ -1,11 +1,21 @@
 #include "tool/served_versions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <thread>
 #include <utility>
 
+#include "runtime/config/run_config.hpp"
+#include "runtime/host/host.hpp"
+#include "runtime/host/notices.hpp"
+#include "runtime/host/served_map.hpp"
 #include "support/errors.hpp"
 #include "support/render.hpp"
 #include "support/text_file.hpp"
@@ -19,7 +29,8 @@ namespace {
 std::vector<OutputFile> files_of(const DiagramOptions& options) {
   std::vector<OutputFile> files;
   for (const InputFile& one : inputs_of(options)) {
-    if (!one.file.empty()) {
+    // Only what can be read again, and brought back: a pipe is read once.
+    if (std::error_code unknown; std::filesystem::is_regular_file(one.file, unknown)) {
       files.push_back({.path = std::filesystem::absolute(one.file), .contents = read_text_file(one.file)});
     }
   }
@@ -32,26 +43,72 @@ bool are_same_files(const std::vector<OutputFile>& a, const std::vector<OutputFi
   });
 }
 
+/// Read until nothing was written meanwhile, or a second has passed. A text that is half written is an error of that
+/// moment alone.
+LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings, bool& is_steady) {
+  constexpr int most_tries = 10;
+  constexpr std::chrono::milliseconds pause{100};
+  for (int tries = 1;; ++tries) {
+    Diagnostics own;
+    auto files = files_of(options);
+    try {
+      Program diagram = load_diagram(options, own);
+      is_steady = are_same_files(files, files_of(options));
+      if (is_steady || tries == most_tries) {
+        for (const Diagnostic& one : own.all()) {
+          warnings.add(one);
+        }
+        return {.diagram = std::move(diagram), .files = std::move(files)};
+      }
+    } catch (const InputError&) {
+      if (tries == most_tries || are_same_files(files, files_of(options))) {
+        throw;
+      }
+    }
+    std::this_thread::sleep_for(pause);
+  }
+}
+
 }  // namespace
 
 LoadedVersion load_version(const DiagramOptions& options, Diagnostics& warnings) {
-  auto files = files_of(options);
-  Program diagram = load_diagram(options, warnings);
-  if (!are_same_files(files, files_of(options))) {
+  bool is_steady = false;
+  LoadedVersion loaded = load(options, warnings, is_steady);
+  if (!is_steady) {
     throw InputError(error::online_change_not_now, {.file = options.file},
                      "The diagram or its parameters were written while they were read.",
                      "ask again once they are whole.");
   }
-  return {.diagram = std::move(diagram), .files = std::move(files)};
+  return loaded;
+}
+
+LoadedVersion first_version(const DiagramOptions& options, Diagnostics& warnings) {
+  bool is_steady = false;
+  LoadedVersion loaded = load(options, warnings, is_steady);
+  if (!is_steady) {
+    runtime::tell("Start", fmt::format("{} or its parameters are written again and again; what was read last runs.",
+                                       options.file));
+  }
+  return loaded;
 }
 
 ServedVersions::NextVersion ServedVersions::next_version(const runtime::OnlineChange& change,
-                                                         const runtime::ChangeWish& wish, Diagnostics& warnings) const {
+                                                         const runtime::ChangeWish& wish, Diagnostics& warnings,
+                                                         const Progress& progress) const {
   try {
+    progress("reads the diagram");
     LoadedVersion loaded = load_version(options_, warnings);
     const auto inner = shows_inner_ ? inner_signals(loaded.diagram) : std::vector<InnerSignal>();
-    return {.program = step_program(loaded.diagram, engine_, options_.float32, inner),
-            .files = std::move(loaded.files)};
+    // Interpreted, it is there at once: what is refused anyway does not wait for a compiler.
+    auto program = step_program(loaded.diagram, Engine::interpreter, options_.float32, inner);
+    change.require_sound(program->shape(), wish);
+    require_next_start(*program);
+    if (engine_ == Engine::compiled) {
+      progress("compiles the new version");
+      program = step_program(loaded.diagram, engine_, options_.float32, inner);
+    }
+    progress("steps the new version beside the running one");
+    return {.program = std::move(program), .files = std::move(loaded.files)};
   } catch (const InputError& refused) {
     if (!wish.only_check) {
       change.tell_refused(refused);
@@ -60,15 +117,32 @@ ServedVersions::NextVersion ServedVersions::next_version(const runtime::OnlineCh
   }
 }
 
-std::string ServedVersions::answer(runtime::OnlineChange& change, const std::string& request) {
+void ServedVersions::require_next_start(const runtime::StepProgram& program) const {
+  const auto config = runtime::parse_run_config(start_.run_file, read_text_file(start_.run_file), program.shape());
+  runtime::refuse_to_overwrite_inputs(config, start_.inputs);
+  runtime::check_register_map(config, program);
+}
+
+bool ServedVersions::is_run_file_edited() const {
+  try {
+    return read_text_file(start_.run_file) != start_.text;
+  } catch (const InputError&) {
+    return true;  // it is gone
+  }
+}
+
+std::string ServedVersions::answer(runtime::OnlineChange& change, const std::string& request,
+                                   const Progress& progress) {
   Json answer = Json::object();
   Diagnostics warnings;
   try {
     const Json asked = Json::parse(request);
     const std::string what = asked.at("what");
-    const runtime::ChangeWish wish{.only_check = what == "check" || what == "check-back",
-                                   .bumps = asked.at("bumps"),
-                                   .as_given = asked.at("as_given")};
+    const runtime::ChangeWish wish{
+        .only_check = what == "check" || what == "check-back",
+        .bumps = asked.at("bumps"),
+        .as_given = asked.at("as_given"),
+        .load = asked.contains("load") ? std::optional(asked.at("load").get<double>()) : std::nullopt};
     if (what == "files") {
       answer["files"] = as_json(former_);
     } else if (what == "back" || what == "check-back") {
@@ -77,11 +151,14 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
         std::swap(running_, former_);
       }
     } else {
-      NextVersion next = next_version(change, wish, warnings);
+      NextVersion next = next_version(change, wish, warnings, progress);
       answer["report"] = as_json(change.change_to(std::move(next.program), wish));
       if (!wish.only_check) {
         former_ = std::exchange(running_, std::move(next.files));
       }
+    }
+    if (answer.contains("report")) {
+      answer["report"]["run_file_edited"] = is_run_file_edited();
     }
     answer["warnings"] = as_json(warnings);
   } catch (const InputError& refused) {

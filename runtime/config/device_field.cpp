@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,9 @@ struct DeviceCount {
 };
 
 constexpr std::array device_counts{
-    DeviceCount{"link", "0 connecting, 1 running, 2 waiting to connect again"},
+    DeviceCount{
+        "link",
+        "0 connecting, 1 running, 2 waiting to connect again, 3 never answered, and the task goes on without it"},
     DeviceCount{"connections", "links that were opened: the first, and one for each reconnect",
                 &DeviceStatus::connections},
     DeviceCount{"unreachable", "attempts to open a link that failed", &DeviceStatus::no_link},
@@ -67,6 +70,8 @@ DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::funct
     devices_.push_back(std::make_unique<modbus::Device>(
         config.devices[i], modbus::DeviceWork{.own_thread = !in_turn, .may_write = may_write, .link = links[i]}));
     rounds_since_good_.emplace_back(config.devices[i].values.size());
+    names_.push_back(config.devices[i].name);
+    may_be_absent_.push_back(config.devices[i].may_be_absent);
   }
 }
 
@@ -79,7 +84,36 @@ RemoteReading DeviceField::reading_of(const DeviceLink& link) const noexcept {
   return reading;
 }
 
+bool DeviceField::is_absent(std::size_t device) const noexcept {
+  if (!may_be_absent_[device]) {
+    return false;
+  }
+  const DeviceStatus status = devices_[device]->status();
+  return status.answers == 0 && status.exceptions == 0;
+}
+
+std::size_t DeviceField::absent() const noexcept {
+  std::size_t count = 0;
+  for (std::size_t device = 0; device < devices_.size(); ++device) {
+    count += is_absent(device) ? 1 : 0;
+  }
+  return count;
+}
+
+std::vector<std::string> DeviceField::absent_devices() const {
+  std::vector<std::string> names;
+  for (std::size_t device = 0; device < devices_.size(); ++device) {
+    if (is_absent(device)) {
+      names.push_back(names_[device]);
+    }
+  }
+  return names;
+}
+
 Fault DeviceField::fault_of(const DeviceLink& link, const RemoteReading& reading) const noexcept {
+  if (is_absent(link.device)) {
+    return Fault::none;
+  }
   // In turn, a value is of this cycle, or there is none.
   const bool is_fresh =
       in_turn_ ? reading.quality == Quality::good
@@ -144,10 +178,11 @@ std::uint64_t DeviceField::not_taken() const noexcept {
 
 void DeviceField::count(std::span<double> into) const noexcept {
   auto at = into.begin();
-  for (const auto& device : devices_) {
-    const DeviceStatus status = device->status();
+  for (std::size_t device = 0; device < devices_.size(); ++device) {
+    const DeviceStatus status = devices_[device]->status();
+    const double state = is_absent(device) ? 3.0 : static_cast<double>(status.state);
     for (const DeviceCount& one : device_counts) {
-      *at++ = one.count == nullptr ? static_cast<double>(status.state) : static_cast<double>(status.*one.count);
+      *at++ = one.count == nullptr ? state : static_cast<double>(status.*one.count);
     }
   }
 }
@@ -165,6 +200,9 @@ Delivery DeviceField::delivery() noexcept {
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const DeviceLink& link = outputs_[i].link;
+    if (is_absent(link.device)) {
+      continue;  // it never had a value of this task
+    }
     const RemoteReading reading = reading_of(link);
     const bool is_taken = in_turn_ ? reading.quality == Quality::good && reading.value == written_[i]
                                    : devices_[link.device]->has_taken(link.value, written_[i]);
@@ -176,7 +214,7 @@ Delivery DeviceField::delivery() noexcept {
   return Delivery::done;
 }
 
-DeviceOutputs::DeviceOutputs(const RunConfig& config, const OutputClaims* claims)
+DeviceOutputs::DeviceOutputs(const RunConfig& config, OutputClaims* claims)
     : options_(config.devices), outputs_(config.device_outputs), claims_(claims) {
   for (modbus::DeviceOptions& device : options_) {
     device.values.clear();
@@ -190,7 +228,11 @@ DeviceOutputs::DeviceOutputs(const RunConfig& config, const OutputClaims* claims
 
 void DeviceOutputs::task_is_gone() noexcept {
   if (claims_ != nullptr) {
-    claims_->listen();
+    try {
+      claims_->guard_listens();
+    } catch (const std::bad_alloc&) {
+      return;  // who starts then takes this guard for a task, and waits
+    }
   }
 }
 

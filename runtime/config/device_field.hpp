@@ -34,6 +34,8 @@ class DeviceField final : public FieldIo {
   [[nodiscard]] std::uint64_t not_taken() const noexcept override;
   void count(std::span<double> into) const noexcept override;
   [[nodiscard]] std::size_t faulty_port() const noexcept override { return faulty_port_; }
+  [[nodiscard]] std::size_t absent() const noexcept override;
+  [[nodiscard]] std::vector<std::string> absent_devices() const override;
   void write(std::span<const double> outputs) noexcept override;
   /// In turn, it is tried once.
   Delivery delivery() noexcept override;
@@ -42,7 +44,11 @@ class DeviceField final : public FieldIo {
   [[nodiscard]] modbus::RemoteReading reading_of(const DeviceLink& link) const noexcept;
   [[nodiscard]] Fault fault_of(const DeviceLink& link, const modbus::RemoteReading& reading) const noexcept;
   void rounds() noexcept;
+  /// Has never answered, and may be left out.
+  [[nodiscard]] bool is_absent(std::size_t device) const noexcept;
 
+  std::vector<std::string> names_{};   ///< of the devices
+  std::vector<bool> may_be_absent_{};  ///< by device
   std::vector<DeviceInput> inputs_;
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;
@@ -59,7 +65,7 @@ class DeviceField final : public FieldIo {
 class DeviceOutputs final : public OutputDevice {
  public:
   /// The claims, if any, must outlive it.
-  explicit DeviceOutputs(const RunConfig& config, const OutputClaims* claims = nullptr);
+  explicit DeviceOutputs(const RunConfig& config, OutputClaims* claims = nullptr);
   void open() override {}
   void task_is_gone() noexcept override;
   /// True once every device has taken these values.
@@ -69,7 +75,7 @@ class DeviceOutputs final : public OutputDevice {
   std::vector<modbus::DeviceOptions> options_;  ///< with what is written alone
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;
-  const OutputClaims* claims_;
+  OutputClaims* claims_;
 };
 
 }  // namespace hysteron::runtime

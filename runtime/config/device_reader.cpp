@@ -65,6 +65,9 @@ void DeviceReader::read_device(const std::string& name, TomlReader table) {
   std::size_t order = 0;
   table.read_choice("word_order", order);
   orders_.push_back(modbus::word_orders.at(order));
+  std::size_t absence = 0;
+  table.read_choice("on_absence", absence);
+  device.may_be_absent = absence == 1;
   table.read_duration("cycle", device.period);
   table.read_duration("timeout", device.response);
   config_->devices.push_back(std::move(device));
@@ -156,10 +159,22 @@ void DeviceReader::read_output(std::size_t port, std::int64_t longest_age, TomlR
     return;
   }
   config_->device_outputs.push_back({.port = port, .link = *link, .place = table.place("device")});
-  const auto [low, high] = modbus::limits_of(config_->devices[link->device].values[link->value].format);
+  const modbus::PointFormat& format = config_->devices[link->device].values[link->value].format;
+  const auto [low, high] = modbus::limits_of(format);
   OutputSafety& output = config_->task.outputs[port];
+  warn_of_range(
+      shape_->outputs[port].name, format, output.low, output.high, table,
+      "the output is limited to what it reaches: choose a wider type or another scale, or state low and high.");
   output.low = std::max(output.low, low);
   output.high = std::min(output.high, high);
+}
+
+void DeviceReader::warn_of_range(const std::string& name, const modbus::PointFormat& format, double low, double high,
+                                 const TomlReader& table, const std::string& mend) {
+  if (const std::string flaw = modbus::range_flaw_of(format, low, high); !flaw.empty()) {
+    found_->warning(error::unfit_format, table.place(table.has("type") ? "type" : "device"), name + " " + flaw + ".",
+                    mend);
+  }
 }
 
 void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlReader& table) {
@@ -169,11 +184,18 @@ void DeviceReader::read_input(std::size_t port, std::int64_t longest_age, TomlRe
     modbus::RemoteValue& value = config_->devices[link->device].values[link->value];
     value.low = shape_->inputs[port].low;
     value.high = shape_->inputs[port].high;
+    warn_of_range(shape_->inputs[port].name, value.format, value.low, value.high, table,
+                  "the input never comes near its limit: see in the device's manual whether type and scale are right.");
     config_->device_inputs.push_back({.port = port, .link = *link});
     settings.from_device = true;
   }
   read_told(port, "age_of", Tells::age, table);
   read_told(port, "quality_of", Tells::quality, table);
+  table.read("retain", settings.is_retained);
+  if (settings.is_retained && settings.from_device) {
+    wrong(table.place("retain"), shape_->inputs[port].name + " is given by a device, and each start reads it anew.",
+          "remove retain; it is of inputs that clients write.");
+  }
   // A device's value has its age from the device; a server's is counted in cycles.
   settings.longest_age = settings.from_device ? 0 : static_cast<std::uint64_t>(longest_age / shape_->period);
 }

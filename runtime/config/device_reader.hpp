@@ -46,6 +46,9 @@ class DeviceReader {
                                       TomlReader& table);
   /// Where it lies and how, checked; the device is known.
   bool read_place(modbus::RemoteValue& value, modbus::WordOrder usual, TomlReader& table);
+  /// HY860 as a warning, where a place on a device does not hold the declared range.
+  void warn_of_range(const std::string& name, const modbus::PointFormat& format, double low, double high,
+                     const TomlReader& table, const std::string& mend);
   void read_told(std::size_t port, std::string_view key, Tells tells, TomlReader& table);
   void wrong(Place place, const std::string& cause, const std::string& mend);
   void refuse_twice();

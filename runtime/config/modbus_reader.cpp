@@ -8,7 +8,9 @@
 
 #include "runtime/config/format_reader.hpp"
 #include "runtime/config/line_reader.hpp"
+#include "runtime/modbus/allow_list.hpp"
 #include "support/errors.hpp"
+#include "support/names.hpp"
 
 namespace hysteron::runtime {
 
@@ -79,6 +81,13 @@ void ModbusReader::read_server(TomlReader table, bool over_tls) {
                       "remove the key, or write an address for listen.");
       }
     }
+  }
+  if (!modbus.listen.empty() && !modbus::address_bytes(modbus.listen)) {
+    const bool is_off = edit_distance(modbus.listen, "off", 1) <= 1;
+    found_->error(error::unusable_listen_address, table.place("listen"), modbus.listen + " is no numeric address.",
+                  is_off ? "did you mean \"off\"? It serves the line of [modbus_rtu] alone."
+                         : "name an address of this machine: 127.0.0.1 for this machine alone, 0.0.0.0 for all "
+                           "networks; \"off\" with [modbus_rtu] serves a serial line alone.");
   }
   modbus.port = over_tls ? 802 : modbus.port;
   table.read_whole("port", modbus.port);

@@ -3,26 +3,27 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <netdb.h>
 #include <netinet/in.h>
-#include <strings.h>
 #include <sys/resource.h>
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <system_error>
 #include <utility>
 #include <variant>
 
+#include "runtime/modbus/host_names.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/sha256.hpp"
 
@@ -30,19 +31,22 @@ namespace hysteron::runtime {
 namespace {
 
 /// As digits; what leads to this machine without naming it, and IPv4 in the clothes of IPv6, as what it stands for.
-std::string digits_of(const addrinfo& found) {
+std::string digits_of(const std::string& address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
-  if (found.ai_family == AF_INET6) {
-    in6_addr address = reinterpret_cast<const sockaddr_in6*>(found.ai_addr)->sin6_addr;
-    if (IN6_IS_ADDR_V4MAPPED(&address)) {
-      return ::inet_ntop(AF_INET, &address.s6_addr[12], text.data(), text.size());
+  in6_addr six{};
+  in_addr four{};
+  if (::inet_pton(AF_INET6, address.c_str(), &six) == 1) {
+    if (IN6_IS_ADDR_V4MAPPED(&six)) {
+      return ::inet_ntop(AF_INET, &six.s6_addr[12], text.data(), text.size());
     }
-    address = IN6_IS_ADDR_UNSPECIFIED(&address) ? in6addr_loopback : address;
-    return ::inet_ntop(AF_INET6, &address, text.data(), text.size());
+    six = IN6_IS_ADDR_UNSPECIFIED(&six) ? in6addr_loopback : six;
+    return ::inet_ntop(AF_INET6, &six, text.data(), text.size());
   }
-  in_addr address = reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr;
-  address.s_addr = address.s_addr == htonl(INADDR_ANY) ? htonl(INADDR_LOOPBACK) : address.s_addr;
-  return ::inet_ntop(AF_INET, &address, text.data(), text.size());
+  if (::inet_pton(AF_INET, address.c_str(), &four) == 1) {
+    four.s_addr = four.s_addr == htonl(INADDR_ANY) ? htonl(INADDR_LOOPBACK) : four.s_addr;
+    return ::inet_ntop(AF_INET, &four, text.data(), text.size());
+  }
+  return address;  // of one network interface: fe80::1%eth0
 }
 
 /// By what the system reaches a device: all addresses of a host, the one file of a serial line. As the run file spells
@@ -54,24 +58,11 @@ std::set<std::string> ways_to(const std::variant<modbus::TcpLink, modbus::Serial
     return {none ? serial->path : path.string()};
   }
   const auto& tcp = std::get<modbus::TcpLink>(link);
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  // localhost is this machine (RFC 6761), also in a container without a table of hosts.
-  const bool resolved =
-      ::getaddrinfo(tcp.host.c_str(), nullptr, &hints, &found) == 0 ||
-      (::strcasecmp(tcp.host.c_str(), "localhost") == 0 && ::getaddrinfo("127.0.0.1", nullptr, &hints, &found) == 0);
-  if (!resolved) {
-    return {text_of(link)};
-  }
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> release(found, &::freeaddrinfo);
   std::set<std::string> ways;
-  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
-    if (one->ai_family == AF_INET || one->ai_family == AF_INET6) {
-      ways.insert(fmt::format("{}:{}", digits_of(*one), tcp.port));
-    }
+  for (const std::string& address : tcp.known) {
+    ways.insert(fmt::format("{}:{}", digits_of(address), tcp.port));
   }
-  return ways;
+  return ways.empty() ? std::set<std::string>{text_of(link)} : ways;
 }
 
 std::string name_of(const std::string& way, std::uint8_t unit, modbus::Area area, std::uint32_t address) {
@@ -130,6 +121,24 @@ bool bind_to(const modbus::Descriptor& socket, const std::string& name) {
   return false;
 }
 
+bool connect_to(const modbus::Descriptor& socket, const std::string& name) {
+  const Address address = address_of(name);
+  return ::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) == 0;
+}
+
+/// Who listens at the other end: nothing where that is neither this user nor root, whose word would not count.
+std::optional<pid_t> trusted_peer(const modbus::Descriptor& socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  const bool is_known = ::getsockopt(socket.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  return is_known && (peer.uid == ::geteuid() || peer.uid == 0) ? std::optional(peer.pid) : std::nullopt;
+}
+
+/// The name under which the guard listens once its task is gone.
+std::string guard_name(const std::string& name) {
+  return name + "-guard";
+}
+
 /// Whether who is at the other end is still there: nobody sends anything.
 bool is_there(const modbus::Descriptor& socket) {
   char nothing = 0;
@@ -172,9 +181,15 @@ std::optional<OutputClaims::Holder> OutputClaims::claim() {
     sockets.push_back(socket_or_throw());
     move_up(sockets.back());
     if (!bind_to(sockets.back(), claim.name)) {
+      Holder holder{.output = claim.output, .address = claim.address, .guard = guard_of(claim)};
+      holder.is_foreign = !holder.guard && !is_of_a_task(claim);
+      if (holder.is_foreign && passes_over_foreign_) {
+        continue;
+      }
       // None is kept: of two tasks that wait for one another's outputs, each would wait for ever.
-      return Holder{.output = claim.output, .address = claim.address, .guard = guard_of(claim)};
+      return holder;
     }
+    (void)::listen(sockets.back().number(), SOMAXCONN);
   }
   sockets_ = std::move(sockets);
   asked_.reset();
@@ -188,20 +203,65 @@ std::optional<pid_t> OutputClaims::guard_of(const Claim& claim) {
   }
   asked_.reset();
   modbus::Descriptor socket = socket_or_throw();
-  const Address address = address_of(claim.name);
-  if (::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) != 0) {
+  if (!connect_to(socket, guard_name(claim.name))) {
     return errno == EAGAIN ? std::optional<pid_t>(0) : std::nullopt;
   }
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  (void)::getsockopt(socket.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size);
-  asked_ = Asked{.name = claim.name, .socket = std::move(socket), .guard = peer.pid};
-  return asked_->guard;
+  const auto guard = trusted_peer(socket);
+  if (guard) {
+    asked_ = Asked{.name = claim.name, .socket = std::move(socket), .guard = *guard};
+  }
+  return guard;
 }
 
-void OutputClaims::listen() const noexcept {
+bool OutputClaims::is_of_a_task(const Claim& claim) {
+  const modbus::Descriptor socket = socket_or_throw();
+  return connect_to(socket, claim.name) && trusted_peer(socket);
+}
+
+bool OutputClaims::end_guard() {
+  // The connection ends with the guard: while it is there, the number of its process is no other's.
+  const auto process = asked_ && is_there(asked_->socket) ? asked_->guard : 0;
+  return process > 0 && ::kill(process, SIGKILL) == 0;
+}
+
+void OutputClaims::guard_listens() {
+  guards_.clear();
+  for (const Claim& claim : claims_) {
+    const int number = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    guards_.emplace_back(number);
+    const Address address = address_of(guard_name(claim.name));
+    (void)::bind(number, reinterpret_cast<const sockaddr*>(&address.text), address.size);
+    (void)::listen(number, SOMAXCONN);
+  }
+}
+
+void OutputClaims::drain() const noexcept {
   for (const modbus::Descriptor& socket : sockets_) {
-    (void)::listen(socket.number(), SOMAXCONN);
+    for (int taken = 0; taken >= 0 && socket.is_open();) {
+      taken = ::accept4(socket.number(), nullptr, nullptr, SOCK_CLOEXEC);
+      if (taken >= 0) {
+        (void)::close(taken);
+      }
+    }
+  }
+}
+
+void look_up_hosts(RunConfig& config, std::chrono::milliseconds patience) {
+  std::vector<std::string> hosts;
+  std::vector<modbus::TcpLink*> links;
+  for (modbus::DeviceOptions& device : config.devices) {
+    if (auto* const link = std::get_if<modbus::TcpLink>(&device.link)) {
+      hosts.push_back(link->host);
+      links.push_back(link);
+    }
+  }
+  // Each name once: devices that share a connection have the same link.
+  std::vector<std::string> names = hosts;
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  const auto found = modbus::addresses_within(names, patience);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    links[i]->known = found[static_cast<std::size_t>(std::ranges::lower_bound(names, hosts[i]) - names.begin())];
   }
 }
 

@@ -2,13 +2,15 @@
 //
 // A claim is a socket bound to a name, one for each register or coil that an output covers. The name follows from the
 // device's address, however the run file spells it, unit, area and register. Task and guard share it, so the system
-// frees it when the last of them is gone, however they end; no file is left over. A guard whose task is gone listens on
-// its claims: so a new task knows that it has to wait, and for which process. Names count within one network namespace,
-// where such tasks reach the same devices.
+// frees it when the last of them is gone, however they end; no file is left over. A task listens on its claims, so that
+// it can be asked whose it is: a name that another user has taken, who is not root, is no claim. A guard whose task is
+// gone listens on names of its own: so a new task knows that it has to wait, and for which process. Names count within
+// one network namespace, where such tasks reach the same devices.
 #pragma once
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -28,13 +30,20 @@ class OutputClaims {
     std::uint32_t address = 0;         ///< of the register or coil
     std::optional<pid_t> guard{};      ///< the process of the guard that works there alone, 0 where it is not known;
                                        ///< none: a task
+    bool is_foreign = false;           ///< the name is held by another user, or by who does not say whose he is
     std::optional<std::size_t> own{};  ///< another output of the same run file, which covers the same register
   };
   /// Claims all outputs on devices, or none, and then says who has one of them. Throws std::system_error where the
   /// system gives no socket.
   [[nodiscard]] std::optional<Holder> claim();
+  /// From now on, a name that is no task's is passed over: its output has no claim.
+  void pass_over_foreign() { passes_over_foreign_ = true; }
+  /// Ends the guard that claim() gave last; false where that cannot be.
+  [[nodiscard]] bool end_guard();
   /// From the guard's process: its task is gone.
-  void listen() const noexcept;
+  void guard_listens();
+  /// To be called now and then: connections of those who asked leave the queue.
+  void drain() const noexcept;
 
  private:
   struct Claim {
@@ -43,10 +52,13 @@ class OutputClaims {
     std::uint32_t address = 0;
   };
   [[nodiscard]] std::optional<pid_t> guard_of(const Claim& claim);
+  [[nodiscard]] static bool is_of_a_task(const Claim& claim);
 
   std::vector<Claim> claims_{};
   std::optional<Holder> own_{};                ///< where two outputs of the run file meet
   std::vector<modbus::Descriptor> sockets_{};  ///< as claims_, where claimed
+  std::vector<modbus::Descriptor> guards_{};   ///< in the guard's process, once its task is gone
+  bool passes_over_foreign_ = false;
   /// To the guard that is waited for: it ends with the guard, so that each start asks once and not in each try.
   struct Asked {
     std::string name{};
@@ -55,5 +67,9 @@ class OutputClaims {
   };
   std::optional<Asked> asked_{};
 };
+
+/// Finds the addresses of all hosts of devices, as far as they answer in time: claims and links begin with them. To be
+/// called while the process has one thread, before OutputClaims is made.
+void look_up_hosts(RunConfig& config, std::chrono::milliseconds patience);
 
 }  // namespace hysteron::runtime

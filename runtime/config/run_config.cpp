@@ -74,6 +74,7 @@ class Reader {
     if (const auto* const table = table_at(root_, "retain")) {
       read_retain({file_, "[retain]", *table, run_table("retain").keys, found_});
     }
+    check_retained_inputs();
     if (const auto* const table = table_at(root_, "trace")) {
       read_trace({file_, "[trace]", *table, run_table("trace").keys, found_});
     }
@@ -101,6 +102,7 @@ class Reader {
     if (found_.has_errors()) {
       throw InputError(sorted());
     }
+    config_.warnings = sorted();
     return std::move(config_);
   }
 
@@ -154,6 +156,7 @@ class Reader {
     table.read_duration("time", config_.task.watchdog.time);
     table.read_whole("sensitivity", config_.task.watchdog.sensitivity);
     table.read("guard", config_.guard);
+    table.read_duration("guard_wait", config_.guard_wait);
     table.read_duration("silence", config_.silence, std::max<std::int64_t>(2 * shape_.period, 1'000'000),
                         1000 * second);
   }
@@ -269,6 +272,7 @@ class Reader {
   void read_online_change(TomlReader table) {
     ChangeConfig change{.place = table.place("socket")};
     table.read("socket", change.socket);
+    table.read("load", change.most_load);
     if (!table.has("socket")) {
       found_.error(error::wrong_run_value, change.place, "[online_change] needs the key socket, a file's name.",
                    "write it as in socket = \"online-change.socket\", or remove the table.");
@@ -309,11 +313,12 @@ class Reader {
     TraceTrigger kept;
     table.read_whole("before", kept.before);
     table.read_whole("after", kept.after);
+    table.read_whole("captures", kept.captures);
     if (trigger.empty()) {
-      for (const char* const key : {"before", "after"}) {
+      for (const char* const key : {"before", "after", "captures"}) {
         if (table.has(key)) {
           found_.error(error::wrong_run_value, table.place(key),
-                       std::string(key) + " counts cycles around a trigger, and none is given.",
+                       std::string(key) + " is of a trigger, and none is given.",
                        "write one as in trigger = \"fault\", or remove the key.");
         }
       }
@@ -326,10 +331,40 @@ class Reader {
       } else {
         trace.trigger->before = kept.before;
         trace.trigger->after = kept.after;
+        trace.trigger->captures = kept.captures;
+        check_trigger(*trace.trigger, trace.files, table);
       }
     }
     config_.trace = std::move(trace);
     config_.trace_place = table.place("file");
+  }
+
+  void check_retained_inputs() {
+    const auto is_any =
+        std::ranges::any_of(config_.task.inputs, [](const InputSettings& one) { return one.is_retained; });
+    if (is_any && !config_.retain && !root_.contains("retain")) {
+      found_.error(error::wrong_run_value, {.file = file_}, "An input has retain = true, and nothing is retained.",
+                   "add [retain] with folder = \"retained\", or remove the key.");
+    }
+  }
+
+  /// What is kept before it has room in memory, and what it captures on the disk.
+  void check_trigger(const TraceTrigger& trigger, std::size_t files, const TomlReader& table) {
+    constexpr std::uint64_t most_memory = 256'000'000;
+    const std::uint64_t memory = memory_before(trigger, shape_.inputs.size(), shape_.outputs.size());
+    if (memory > most_memory) {
+      found_.error(
+          error::run_value_out_of_range, table.place("before"),
+          "What is kept of " + std::to_string(trigger.before) + " cycles before the trigger takes up to " +
+              std::to_string(memory / 1'000'000) + " MB of memory.",
+          "choose " + std::to_string(trigger.before / (memory / most_memory + 1)) + " or fewer: 256 MB are the most.");
+    }
+    if (trigger.captures > files) {
+      found_.error(error::run_value_out_of_range, table.place("captures"),
+                   "Each capture takes a file, and files = " + std::to_string(files) + " lets the first of " +
+                       std::to_string(trigger.captures) + " go.",
+                   "choose captures = " + std::to_string(files) + " or fewer, or more files.");
+    }
   }
 
   /// In the order of the file; the library gives keys in that of their names.

@@ -56,6 +56,7 @@ struct RetainConfig {
 
 struct ChangeConfig {
   std::string socket{};
+  double most_load = 0.8;  ///< of the period, what a step of a new version may take
   Place place{};
 };
 
@@ -126,6 +127,7 @@ struct RunConfig {
   SchedulingRequest scheduling{};
   bool guard = true;
   std::int64_t silence = 50'000'000;
+  std::int64_t guard_wait = 60'000'000'000;  ///< of a start, for the guard of an earlier run
   std::optional<RetainConfig> retain{};
   std::optional<TraceSettings> trace{};
   Place trace_place{};
@@ -137,6 +139,7 @@ struct RunConfig {
   std::vector<modbus::DeviceOptions> devices{};
   std::vector<DeviceInput> device_inputs{};
   std::vector<DeviceOutput> device_outputs{};
+  Diagnostics warnings{};
 };
 
 /// Reads a run file for a program. Throws InputError with all that is wrong, HY801 to HY810, HY813, HY835, HY836

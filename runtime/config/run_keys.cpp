@@ -1,15 +1,10 @@
 #include "runtime/config/run_keys.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "runtime/modbus/value_bits.hpp"
-#include "support/numbers.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -27,6 +22,7 @@ constexpr std::array<Words, 3> missed_words{"skip", "catch_up", "stop"};
 constexpr std::array<Words, 3> scheduling_words{"fifo", "deadline", "other"};
 constexpr std::array<Words, 3> on_fault_words{"value", "ramp", "hold"};
 constexpr std::array<Words, 2> loss_words{"fault", "keep"};
+constexpr std::array<Words, 2> absence_words{"fault", "go_on"};
 constexpr std::array<Words, 4> area_words{"holding", "input", "coil", "discrete"};
 constexpr std::array<Words, 2> written_area_words{"holding", "coil"};
 constexpr auto type_words = [] {
@@ -104,6 +100,10 @@ constexpr std::array watchdog_keys{
            1000.0 * s,
            {},
            "two periods at the least"},
+    RunKey{"guard_wait", time, "\"60s\"",
+           "a start waits so long for the guard of an earlier run, which brings a device to its safe values; then it "
+           "ends that guard, and starts",
+           ms, 86400.0 * s},
 };
 constexpr std::array output_keys{
     RunKey{"safe", number, "(required)", "the value of the output when something is wrong, in its unit"},
@@ -175,6 +175,7 @@ constexpr std::array input_keys{
            1000.0 * s,
            {},
            "a period at the least"},
+    RunKey{"retain", flag, "false", "written by clients: its value is kept through a restart, with [retain]"},
     RunKey{"age_of", text, "(none)", "it is told the age of this input or output on a device, in seconds"},
     RunKey{"quality_of", text, "(none)", "the same, the quality: 0 never, 1 good, 2 old, 3 refused, 4 lost"},
 };
@@ -209,6 +210,13 @@ constexpr std::array device_keys{
            .words = order_words},
     RunKey{"cycle", time, "\"5ms\"", "how often its values are exchanged", 100.0 * us, 3600.0 * s},
     RunKey{"timeout", time, "\"200ms\"", "for a whole answer, and for a connection", ms, 60.0 * s},
+    RunKey{.name = "on_absence",
+           .kind = choice,
+           .otherwise = "\"fault\"",
+           .meaning =
+               "where it has never answered since the start: a fault of the task, as its loss is; or the task goes on "
+               "without it, and it counts from its first answer on",
+           .words = absence_words},
 };
 constexpr std::array retain_keys{
     RunKey{"folder", text, "(required)", "where the state and the parameters are kept"},
@@ -228,13 +236,30 @@ constexpr std::array trace_keys{
            1000.0},
     RunKey{"trigger", text, "(none: every cycle is kept)",
            "\"U > 5.0\", an input or output and a number; or \"fault\""},
-    RunKey{"before", whole, "1000", "with a trigger: cycles kept from before", 0.0, many},
+    RunKey{"before",
+           whole,
+           "1000",
+           "with a trigger: cycles kept from before, in memory until it fires",
+           0.0,
+           1e6,
+           {},
+           "256 MB of memory at the most"},
     RunKey{"after", whole, "1000", "with a trigger: cycles kept from then on", 0.0, many},
+    RunKey{"captures",
+           whole,
+           "1",
+           "with a trigger: it is armed again until it has fired so often; each time begins another file",
+           1.0,
+           1000.0,
+           {},
+           "`files` at the most"},
 };
 constexpr std::array online_change_keys{
     RunKey{"socket", text, "(required)",
            "the file of the socket on which the task of `hysteron serve` takes an online change from its own user; "
            "`hysteron online-change` finds it here"},
+    RunKey{"load", number, "0.8", "of the period, what a step of a new version may take; longer, it is refused",
+           above_zero, 1.0},
 };
 constexpr std::array history_keys{
     RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},
@@ -411,50 +436,7 @@ constexpr std::array tables{
              register_keys},
 };
 
-std::string kind_text(const RunKey& key) {
-  constexpr std::array<const char*, 6> names{"true or false", "text",         "list of texts",
-                                             "number",        "whole number", "time"};
-  if (key.kind != choice) {
-    return names.at(static_cast<std::size_t>(key.kind));
-  }
-  std::string list;
-  for (const Words word : key.words) {
-    list += (list.empty() ? "`\"" : ", `\"") + std::string(word) + "\"`";
-  }
-  return list;
-}
-
-std::string range_text(const RunKey& key) {
-  const auto text_of = [&](double value) {
-    return key.kind == time ? time_text(value) : fmt::format("{}", number_text(value));
-  };
-  std::string range = key.low == above_zero ? "above 0"
-                      : std::isfinite(key.low) && std::isfinite(key.high)
-                          ? text_of(key.low) + " to " + text_of(key.high)
-                          : "";
-  if (!key.also.empty()) {
-    range += "; " + std::string(key.also);
-  }
-  return range;
-}
-
-std::string default_text(const RunKey& key) {
-  const bool words = key.otherwise.starts_with('(');
-  return words ? std::string(key.otherwise.substr(1, key.otherwise.size() - 2))
-               : "`" + std::string(key.otherwise) + "`";
-}
-
 }  // namespace
-
-std::string time_text(double nanoseconds) {
-  constexpr double day = 86'400.0 * s;
-  if (nanoseconds >= day && std::fmod(nanoseconds, day) == 0.0) {
-    return number_text(nanoseconds / day) + "d";
-  }
-  constexpr std::array<std::pair<double, const char*>, 4> units{{{s, "s"}, {ms, "ms"}, {us, "us"}, {1.0, "ns"}}};
-  const auto* const unit = std::ranges::find_if(units, [&](const auto& one) { return nanoseconds >= one.first; });
-  return number_text(nanoseconds / unit->first) + unit->second;
-}
 
 std::span<const RunTable> run_tables() {
   return tables;
@@ -471,28 +453,6 @@ const RunTable& run_table(std::string_view name) {
     throw std::invalid_argument("there is no such table in a run file");
   }
   return *found;
-}
-
-std::string run_file_page() {
-  std::string page =
-      "# The run file\n\n"
-      "What `hysteron serve --config RUN.toml` reads, in [TOML](https://toml.io): how a diagram is run. Every key but "
-      "the\n"
-      "safe values may be left out. A time is a text with one of `ns`, `us`, `ms`, `s`, `min`, `h`, `d`, as `\"5ms\"`. "
-      "Names of inputs and\n"
-      "outputs are the diagram's, without regard to case. The page is printed from `runtime/config/run_keys.cpp`, by "
-      "which\n"
-      "the reader goes as well; `RunKeys.ThePageIsCurrent` in `test_runtime` holds it, and prints it anew.\n";
-  for (const RunTable& table : tables) {
-    page +=
-        fmt::format("\n## `{}`\n\n{}\n\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n",
-                    table.name, table.meaning);
-    for (const RunKey& key : table.keys) {
-      page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, kind_text(key), range_text(key),
-                          default_text(key), key.meaning);
-    }
-  }
-  return page;
 }
 
 }  // namespace hysteron::runtime

@@ -38,6 +38,9 @@ struct RunTable {
 /// A length of time in the largest unit that it fills, whole days but for that: 50us, 1.5ms, 2s, 30d.
 [[nodiscard]] std::string time_text(double nanoseconds);
 
+/// The same to three digits, for what was measured: 831us.
+[[nodiscard]] std::string short_time_text(double nanoseconds);
+
 /// docs/reference/run-file.md.
 [[nodiscard]] std::string run_file_page();
 

@@ -23,19 +23,20 @@
 #include "runtime/host/retained_state.hpp"
 #include "runtime/host/running_history.hpp"
 #include "runtime/host/running_mqtt.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/host/service_notice.hpp"
-#include "runtime/modbus/lock_file.hpp"
 #include "runtime/modbus/server.hpp"
 #include "runtime/modbus/tls_renewal.hpp"
-#include "support/atomic_file.hpp"
 #include "support/errors.hpp"
-#include "support/text_file.hpp"
 
 namespace hysteron::runtime {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
+
+/// What a slow name server may cost a start: devices whose host has no address by then are looked up as they are tried.
+constexpr milliseconds longest_look_up{1000};
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
@@ -57,6 +58,16 @@ std::string status_line(const Task& task, const std::string& how, const std::str
       static_cast<double>(s.lateness.worst()) * 1e-3, s.lateness.worst_cycle(), besides, name_of(fault));
 }
 
+std::vector<std::size_t> retained_inputs(const TaskSettings& settings) {
+  std::vector<std::size_t> inputs;
+  for (std::size_t i = 0; i < settings.inputs.size(); ++i) {
+    if (settings.inputs[i].is_retained) {
+      inputs.push_back(i);
+    }
+  }
+  return inputs;
+}
+
 /// What stands at the trace's name is put aside by number, and in the end deleted: it has to be a trace.
 void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
   std::array<char, 16> begin{};
@@ -73,6 +84,13 @@ void refuse_foreign_trace(const TraceSettings& settings, const Place& place) {
   }
 }
 
+/// What waits in memory until the trigger fires.
+std::string trigger_text(const TraceTrigger& trigger, const ProgramShape& shape) {
+  const double memory = static_cast<double>(memory_before(trigger, shape.inputs.size(), shape.outputs.size()));
+  return fmt::format("; trace armed for {} capture{}, up to {:.3g} MB in memory", trigger.captures,
+                     trigger.captures == 1 ? "" : "s", memory * 1e-6);
+}
+
 std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& place, const StepProgram& program) {
   try {
     return std::make_unique<Trace>(settings, program);
@@ -83,83 +101,8 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
                        "end that task first, or name another file.");
     }
     throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
-                     problem.code() == std::errc::no_space_on_device || problem.code() == std::errc::file_too_large
-                         ? "make room on the disk, or name a file on another one."
-                         : "name an ordinary file, in a folder that is there and may be written to.");
+                     "name an ordinary file, in a folder that is there and may be written to.");
   }
-}
-
-/// An error about a file that the run file names is said at the place that names it.
-template <class Work>
-auto placed(const Place& place, const Work& work) {
-  try {
-    return work();
-  } catch (const InputError& refused) {
-    Diagnostics diagnostics;
-    for (Diagnostic one : refused.diagnostics().all()) {
-      one.place = one.place.line == 0 ? place : one.place;
-      diagnostics.add(std::move(one));
-    }
-    throw InputError(std::move(diagnostics));
-  }
-}
-
-/// A register map, and what its lock file has to say from now on.
-struct PlannedMap {
-  modbus::RegisterMap map{};
-  std::string lock_text{};  ///< empty where the file stays as it is
-};
-
-PlannedMap planned_map(const ModbusConfig& config, const std::string& title, PointDoor& door) {
-  modbus::MapRequest request{.title = title,
-                             .placing = config.placing,
-                             .order = config.word_order,
-                             .has_discovery = config.has_discovery,
-                             .expose = config.expose,
-                             .expose_place = config.expose_place,
-                             .given = config.registers,
-                             .lock_file = config.lock_file};
-  // Where that cannot be told, reading it says why.
-  std::error_code unknown;
-  const bool has_lock =
-      !config.lock_file.empty() && (std::filesystem::exists(config.lock_file, unknown) || unknown != std::error_code{});
-  request.lock_text =
-      has_lock ? placed(config.place, [&] { return read_text_file(config.lock_file); }) : config.first_addresses;
-  PlannedMap planned{.map = modbus::make_register_map(door.points(), request)};
-  if (!config.lock_file.empty()) {
-    const auto text = modbus::lock_text(planned.map);
-    planned.lock_text = has_lock && text == request.lock_text ? "" : text;
-  }
-  return planned;
-}
-
-void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
-  if (!planned.lock_text.empty()) {
-    placed(config.place, [&] { write_file_atomically(config.lock_file, planned.lock_text); });
-  }
-}
-
-std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const std::string& title, Task& task,
-                                             const std::shared_ptr<const modbus::TlsContext>& tls) {
-  const PlannedMap planned = planned_map(config, title, task.door());
-  auto server = std::make_unique<modbus::Server>(
-      planned.map, task.door(),
-      modbus::ServerOptions{.listen = config.listen,
-                            .port = config.port,
-                            .allow = config.allow,
-                            .connections = config.connections,
-                            .connections_per_address = config.connections_per_address,
-                            .evict = config.evict,
-                            .read_only = config.read_only,
-                            .rtu = config.rtu,
-                            .limits = {.idle = config.idle},
-                            .heartbeat = config.heartbeat,
-                            .client_lost = [&task](bool lost) { task.client_lost(lost); },
-                            .tls = tls,
-                            .tell = [](const std::string& line) { tell("Modbus", line); },
-                            .place = config.place});
-  write_lock_file(config, planned);
-  return server;
 }
 
 /// The cyclic thread, and what it ends with.
@@ -265,14 +208,15 @@ class CertificateCare {
 };
 
 /// Until the cyclic thread is done; the service manager hears that this lives for as long as cycles go on.
-void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& notices, CertificateCare& certificate,
-              nanoseconds period) {
+void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, const OutputClaims& claims, RunNotices& notices,
+              CertificateCare& certificate, nanoseconds period) {
   using Clock = std::chrono::steady_clock;
   const nanoseconds interval = service_watchdog() / 2;
   const nanoseconds longest = std::max<nanoseconds>(3 * period, milliseconds(500));
   std::uint64_t beats = 0;
   auto moved = Clock::now();
   auto told = moved;
+  auto drained = moved;
   bool is_stopping = false;
   while (!cyclic.is_done()) {
     std::this_thread::sleep_for(milliseconds(5));
@@ -286,6 +230,10 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& 
       is_stopping = true;
     }
     const auto now = Clock::now();
+    if (now - drained > std::chrono::seconds(1)) {
+      claims.drain();
+      drained = now;
+    }
     if (interval.count() == 0 || now - told < interval) {
       continue;
     }
@@ -301,15 +249,6 @@ void wait_for(const CyclicThread& cyclic, Task& task, Guard* guard, RunNotices& 
 }
 
 }  // namespace
-
-modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
-  const TaskSettings& task = config.task;
-  TaskDoor door(program, device_inputs(task), task.outputs, task.field_points);
-  const ModbusConfig modbus = config.modbus.value_or(ModbusConfig{});
-  PlannedMap planned = planned_map(modbus, program.shape().name, door);
-  write_lock_file(modbus, planned);
-  return std::move(planned.map);
-}
 
 void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> inputs) {
   if (config.modbus && config.modbus->tls) {
@@ -380,6 +319,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   }
   // What can refuse the start comes first: the outputs' claims, the guard, which writes nothing before the first cycle,
   // what was retained, and the servers. Only then files are begun and devices reached.
+  look_up_hosts(config, longest_look_up);
   OutputClaims claims(config);
   if (!claim_outputs(claims, config, shape.name, stop_asked, print)) {
     print(fmt::format("{}: stopped before it began\n", shape.name));
@@ -394,8 +334,14 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
         SafeOutputs(config.task.outputs, static_cast<double>(shape.period) * 1e-9), device_outputs);
   }
   std::string how = fmt::format("{}: {}", shape.name, options.how);
-  const auto retained = config.retain ? std::make_unique<RetainedState>(*config.retain, program) : nullptr;
+  const auto retained =
+      config.retain ? std::make_unique<RetainedState>(*config.retain, program, retained_inputs(config.task)) : nullptr;
   how += retained ? retained->told() : "";
+  if (retained) {
+    for (std::size_t input = 0; input < config.task.inputs.size(); ++input) {
+      config.task.inputs[input].start = retained->starts()[input];
+    }
+  }
   Task task(program, config.task);
   const auto history =
       config.history ? std::make_unique<RunningHistory>(*config.history, shape, task, options.virtual_time) : nullptr;
@@ -421,10 +367,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   auto changer = change ? options.take_changes(*change, how) : nullptr;
 
   const auto trace = config.trace ? open_trace(*config.trace, config.trace_place, program) : nullptr;
+  how += config.trace && config.trace->trigger ? trigger_text(*config.trace->trigger, shape) : "";
   std::unique_ptr<Retainer> retainer;
   if (retained) {
     retained->put_aside();
-    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset());
+    retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset(),
+                                          retained->inputs());
     tell_of_what_is_left(retained->left());
   }
   std::unique_ptr<DeviceField> field;
@@ -463,7 +411,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     if (change) {
       change->begin(retainer.get(), trace.get());
     }
-    wait_for(cyclic, task, guard.get(), notices, certificate, nanoseconds(shape.period));
+    wait_for(cyclic, task, guard.get(), claims, notices, certificate, nanoseconds(shape.period));
     end = cyclic.end();
     if (change) {
       change->end();

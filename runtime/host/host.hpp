@@ -11,7 +11,6 @@
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/host/online_change.hpp"
-#include "runtime/modbus/register_map.hpp"
 #include "runtime/point.hpp"
 #include "runtime/task/changeable_program.hpp"
 #include "runtime/task/step_program.hpp"
@@ -30,10 +29,6 @@ struct HostOptions {
   ChangeableProgram* changeable = nullptr;
   std::function<std::shared_ptr<void>(OnlineChange& change, std::string& where)> take_changes{};
 };
-
-/// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew
-/// where points came.
-[[nodiscard]] modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program);
 
 /// Throws InputError HY709 where the run file has the trace or the one before it, the lock file or what is retained
 /// written over one of the inputs, or over a file that it names itself. The inputs are those that the run file does not

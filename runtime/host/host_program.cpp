@@ -13,6 +13,7 @@
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/host/host.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/modbus/map_text.hpp"
 #include "support/errors.hpp"
 #include "support/failed_writes.hpp"
@@ -82,6 +83,12 @@ void print(std::string_view text) {
   (void)std::fflush(stdout);
 }
 
+/// To the standard error, with the lines that they speak of.
+void say(const Diagnostics& diagnostics) {
+  Sources sources;
+  (void)std::fputs(as_text(diagnostics, sources, {.colour = wants_colour(stderr)}).c_str(), stderr);
+}
+
 int run(StepProgram& program, const HostProgram& host, std::span<const char* const> words) {
   const CommandLine line = parse(words, host.name);
   if (line.help) {
@@ -94,9 +101,13 @@ int run(StepProgram& program, const HostProgram& host, std::span<const char* con
     config.modbus->first_addresses = host.addresses;
   }
   if (line.map) {
-    print(modbus::as_csv(register_map_of(config, program)));
+    const modbus::RegisterMap map = register_map_of(config, program);
+    say(config.warnings);
+    say(map.warnings());
+    print(modbus::as_csv(map));
     return 0;
   }
+  say(config.warnings);
   const bool well = run_host(program, std::move(config),
                              {.how = "generated", .cycles = line.cycles, .virtual_time = line.virtual_time}, print);
   return well ? 0 : 1;
@@ -109,8 +120,7 @@ int host_program(StepProgram& program, const HostProgram& host, int argc, const 
   try {
     return run(program, host, {argv, static_cast<std::size_t>(argc)});
   } catch (const InputError& refused) {
-    Sources sources;
-    (void)std::fputs(as_text(refused.diagnostics(), sources, {.colour = wants_colour(stderr)}).c_str(), stderr);
+    say(refused.diagnostics());
   } catch (const std::exception& fault) {
     (void)std::fputs(fmt::format("{}: {}\n", host.name, fault.what()).c_str(), stderr);
   }

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
 constexpr std::chrono::seconds pace{1};
+constexpr std::chrono::seconds time_to_answer{5};
 
 /// What to look for.
 std::string_view meaning_of(Fault fault) {
@@ -135,12 +137,40 @@ RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, const
                        const TaskAttachments& attachments, std::map<std::string, Remarks*> beside)
     : task_(&task),
       guard_(attachments.guard),
+      field_(attachments.field),
       beside_(std::move(beside)),
       writes_(attachments.retainer, attachments.trace),
       faults_(config, shape) {}
 
+std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& absent, Clock::time_point now) {
+  std::vector<std::string> lines;
+  if (now - start_ < time_to_answer) {
+    return lines;
+  }
+  for (const std::string& device : absent) {
+    if (std::ranges::find(told_, device) == told_.end()) {
+      lines.push_back(
+          fmt::format("{} has not answered since the start: the task goes on without it, and its outputs go "
+                      "nowhere. It is tried on; see that it is on and reached as [devices.{}] says.",
+                      device, device));
+    }
+  }
+  for (const std::string& device : told_) {
+    if (std::ranges::find(absent, device) == absent.end()) {
+      lines.push_back(fmt::format("{} answers, and counts from now on.", device));
+    }
+  }
+  told_ = absent;
+  return lines;
+}
+
 void RunNotices::look() {
   writes_.look();
+  if (field_ != nullptr) {
+    for (const std::string& line : absences_.lines(field_->absent_devices(), AbsenceNotices::Clock::now())) {
+      tell("Device", line);
+    }
+  }
   look_beside();
   FaultReport report = task_->faults();
   if (guard_ != nullptr && !guard_->may_write() && report.fault == Fault::none) {

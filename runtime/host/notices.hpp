@@ -57,6 +57,21 @@ class FaultNotices {
   Clock::time_point next_{};
 };
 
+/// Devices that have never answered, and that the task goes on without: told once they have had some time, and told
+/// again where one answers.
+class AbsenceNotices {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit AbsenceNotices(Clock::time_point start) : start_(start) {}
+  /// What is to be said; `absent`: as FieldIo::absent_devices gives them.
+  [[nodiscard]] std::vector<std::string> lines(const std::vector<std::string>& absent, Clock::time_point now);
+
+ private:
+  Clock::time_point start_;
+  std::vector<std::string> told_{};
+};
+
 /// A line for each device that no input and no output of the task lies on.
 void tell_of_unused_devices(const RunConfig& config);
 
@@ -83,6 +98,8 @@ class RunNotices {
 
   const Task* task_;
   const Guard* guard_;
+  const FieldIo* field_;
+  AbsenceNotices absences_{AbsenceNotices::Clock::now()};
   std::map<std::string, Remarks*> beside_;
   WriteNotices writes_;
   FaultNotices faults_;

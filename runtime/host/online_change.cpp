@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/config/run_keys.hpp"
 #include "runtime/host/notices.hpp"
 #include "runtime/task/carry.hpp"
 #include "runtime/task/clock.hpp"
@@ -22,60 +24,15 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Of the range of an output: what the EnTech Control Valve Dynamic Specification (version 3.0, 1998) counts as a small
-/// step of a valve's input, "1% and less".
-constexpr double part_of_range = 0.01;
 /// How long the other version is stepped before it may count: far enough for what grows without bound to show.
-constexpr std::size_t rehearsed_steps = 1000;
+constexpr std::size_t most_rehearsed = 1000;
+/// But no longer than this: a step that takes a second is known after two.
+constexpr std::chrono::seconds longest_rehearsal{2};
+/// A step that is far too long is refused as soon as its mean is of that many steps and of so much time.
+constexpr std::size_t least_rehearsed = 20;
+constexpr std::chrono::milliseconds least_rehearsal{200};
 /// Sets of parameters that are committed while a change is planned make it be planned again.
 constexpr int most_plans = 5;
-
-std::string signal_text(const ProgramSignal& signal) {
-  return signal.name + (signal.unit.empty() ? "" : " in " + signal.unit);
-}
-
-/// What of a signal must stay, as its registers and devices were planned with it.
-void require_same_signals(const char* kind, const std::vector<ProgramSignal>& has,
-                          const std::vector<ProgramSignal>& next, Diagnostics& found) {
-  const auto refuse = [&](const std::string& cause) {
-    found.error(error::other_interface, {}, cause,
-                fmt::format("leave the {}s as they are, or end the task and start it with the new version: retained "
-                            "values are carried over.",
-                            kind));
-  };
-  for (std::size_t i = 0; i < has.size() || i < next.size(); ++i) {
-    if (i >= next.size()) {
-      refuse(fmt::format("The {} {} is gone.", kind, signal_text(has[i])));
-    } else if (i >= has.size()) {
-      refuse(fmt::format("The {} {} is new.", kind, signal_text(next[i])));
-    } else if (has[i].name != next[i].name) {
-      refuse(fmt::format("The {} {} stands where {} was.", kind, signal_text(next[i]), signal_text(has[i])));
-      return;  // all behind it are shifted
-    } else if (has[i].unit != next[i].unit) {
-      refuse(fmt::format("The {} {} has another unit: {}.", kind, signal_text(has[i]), next[i].unit));
-    } else if (has[i].type != next[i].type) {
-      refuse(fmt::format("The {} {} has another type.", kind, has[i].name));
-    } else if (has[i].low != next[i].low || has[i].high != next[i].high) {
-      refuse(fmt::format("The range of the {} {} was {} to {}, and is {} to {}.", kind, has[i].name,
-                         number_text(has[i].low), number_text(has[i].high), number_text(next[i].low),
-                         number_text(next[i].high)));
-    }
-  }
-}
-
-void require_same_interface(const ProgramShape& has, const ProgramShape& next) {
-  Diagnostics found;
-  if (has.period != next.period) {
-    found.error(error::other_interface, {},
-                fmt::format("The sample time was {} ns, and is {} ns.", has.period, next.period),
-                "keep it, or end the task and start it with the new version.");
-  }
-  require_same_signals("input", has.inputs, next.inputs, found);
-  require_same_signals("output", has.outputs, next.outputs, found);
-  if (found.has_errors()) {
-    throw InputError(std::move(found));
-  }
-}
 
 /// Nothing where there is none of that name.
 std::optional<std::size_t> place_of(const std::vector<ProgramSignal>& signals, const std::string& name) {
@@ -83,10 +40,15 @@ std::optional<std::size_t> place_of(const std::vector<ProgramSignal>& signals, c
   return found == signals.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - signals.begin()));
 }
 
-/// No number where there is none of that name.
-double parameter_named(const StepProgram& program, const std::string& name) {
+/// Nothing where there is none of that name.
+std::optional<double> parameter_named(const StepProgram& program, const std::string& name) {
   const auto place = place_of(program.shape().parameters, name);
-  return place ? program.parameter(*place) : not_a_number;
+  return place ? std::optional(program.parameter(*place)) : std::nullopt;
+}
+
+/// By their bits: a limit that is off is no number.
+bool is_same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 void refuse_bump(Diagnostics& found, const OutputChange& output, const std::string& when) {
@@ -112,28 +74,6 @@ std::shared_ptr<void> held_commits(TaskDoor& door) {
 
 }  // namespace
 
-std::vector<OutputLimit> bump_limits(const RunConfig& config, const ProgramShape& shape) {
-  std::vector<OutputLimit> limits;
-  for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
-    const OutputSafety& safety = config.task.outputs[i];
-    const double low = std::max(shape.outputs[i].low, safety.low);
-    const double high = std::min(shape.outputs[i].high, safety.high);
-    const bool is_analog = is_real(shape.outputs[i].type);
-    OutputLimit one{.limit = {.low = low, .high = high}};
-    if (const auto given = config.bumps.find(i); given != config.bumps.end()) {
-      one.limit.most = given->second;
-      one.origin = "bump in the run file";
-    } else if (is_analog && std::isfinite(low) && std::isfinite(high)) {
-      one.limit.most = part_of_range * (high - low);
-      one.origin = fmt::format("1 % of {:.6g} to {:.6g}", low, high);
-    } else {
-      one.origin = is_analog ? "it has no low and high" : "it is no real number";
-    }
-    limits.push_back(std::move(one));
-  }
-  return limits;
-}
-
 struct OnlineChange::Plan {
   ProgramVersion& next;
   std::vector<double> given;  ///< parameters as the next version has them
@@ -144,8 +84,8 @@ struct OnlineChange::Plan {
   ChangeReport report{};
 };
 
-OnlineChange::OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits)
-    : program_(&program), task_(&task), limits_(std::move(limits)) {}
+OnlineChange::OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits, double most_load)
+    : program_(&program), task_(&task), limits_(std::move(limits)), most_load_(most_load) {}
 
 void OnlineChange::begin(Retainer* retainer, const Trace* trace) {
   retainer_ = retainer;
@@ -177,10 +117,11 @@ bool OnlineChange::wait_or_withdraw(const Ready& ready, const Withdraw& withdraw
   return true;
 }
 
-void OnlineChange::refuse_for_now(const std::string& why) const {
+void OnlineChange::refuse_for_now(const std::string& why, const std::string& mend) const {
   throw InputError(error::online_change_not_now, {}, why,
-                   has_ended_.load() ? "start the task with the new version: retained values are carried over."
-                                     : "see to that, and ask for the change again.");
+                   !mend.empty()       ? mend
+                   : has_ended_.load() ? "start the task with the new version: retained values are carried over."
+                                       : "see to that, and ask for the change again.");
 }
 
 StepImage OnlineChange::image() {
@@ -209,12 +150,8 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   const KeptLayout layout = read_description(describe(running.shape()), running.state_size());
   CarriedValues carried = carry_parameters(layout, plan.image.parameters, shape, plan.given);
   for (const std::string& name : wish.as_given) {
-    const auto place = place_of(shape.parameters, name);
-    if (!place) {
-      throw InputError(error::bad_usage, {}, fmt::format("The new version has no parameter {}.", name),
-                       "write a name as `hysteron map` lists it.");
-    }
-    carried.parameters[*place] = plan.given[*place];
+    const std::size_t place = place_of(shape.parameters, name).value();
+    carried.parameters[place] = plan.given[place];
     const auto is_left = [&](const std::string& left) { return left.starts_with(name + " ("); };
     if (std::ranges::none_of(carried.left, is_left)) {
       carried.left.push_back(name + " (as given)");
@@ -229,10 +166,10 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   set_parameters(next, carried.parameters);
   for (std::size_t i = 0; i < carried.parameters.size(); ++i) {
     const ProgramSignal& one = shape.parameters[i];
-    if (carried.parameters[i] != plan.given[i]) {
-      report.other_values.push_back(fmt::format("{} = {}{} ({} in the diagram)", one.name,
-                                                number_text(carried.parameters[i]),
-                                                one.unit.empty() ? "" : " " + one.unit, number_text(plan.given[i])));
+    if (!is_same(carried.parameters[i], plan.given[i])) {
+      report.other_values.push_back(fmt::format("{} = {}{} ({} {})", one.name, number_text(carried.parameters[i]),
+                                                one.unit.empty() ? "" : " " + one.unit, number_text(plan.given[i]),
+                                                plan.own_state ? "before the change" : "in the files"));
     }
     const bool is_reached = std::ranges::any_of(plan.next.parameters(), [&](const auto& place) { return place == i; });
     if (!is_reached) {
@@ -248,12 +185,6 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   change.shared = carry_state(layout, plan.image.state, shape, change.into, carried);
   change.outputs.resize(shape.outputs.size());
   change.bumps.resize(shape.outputs.size());
-  for (const auto& [name, most] : wish.bumps) {
-    if (!place_of(shape.outputs, name)) {
-      throw InputError(error::bad_usage, {}, fmt::format("There is no output {} whose jump could be limited.", name),
-                       "write a name as `hysteron map` lists it.");
-    }
-  }
   for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
     const auto own = wish.bumps.find(shape.outputs[i].name);
     BumpLimit limit = limits_[i].limit;
@@ -270,11 +201,15 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   report.parameters_carried = carried.parameters_taken;
   report.states = shape.state.size();
   report.states_carried = carried.states_taken;
-  report.left = std::move(carried.left);
+  for (std::string& one : carried.left) {
+    // What only this version has is new in it; on the way back it goes on as it was.
+    auto& list = plan.own_state && is_new(one) ? report.as_before : report.left;
+    list.push_back(&list == &report.left ? std::move(one) : without_reason(one));
+  }
 }
 
 /// The other version steps on the inputs of the image, and goes on with them for a while.
-void OnlineChange::rehearse(Plan& plan) const {
+void OnlineChange::rehearse(Plan& plan, const ChangeWish& wish) const {
   StepProgram& next = plan.next.program();
   ProposedChange& change = plan.change;
   Diagnostics found;
@@ -290,29 +225,53 @@ void OnlineChange::rehearse(Plan& plan) const {
   if (found.has_errors()) {
     throw InputError(std::move(found));
   }
+  ChangeReport& report = plan.report;
+  // What ran before may run again: it has to fit into the period, and no more.
+  report.most_load = wish.load.value_or(plan.own_state ? 1.0 : most_load_);
+  const auto period = static_cast<double>(program_->shape().period);
+  const auto begin = SteadyClock::now();
   const std::int64_t began = own_cpu_now();
-  for (std::size_t step = 1; step <= rehearsed_steps; ++step) {
+  for (bool goes_on = true; goes_on;) {
     next.step(plan.image.inputs, change.outputs);
+    ++report.rehearsed;
     const auto bad = std::ranges::find_if(change.outputs, [](double value) { return !std::isfinite(value); });
     if (bad != change.outputs.end()) {
-      OutputChange& output = plan.report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
+      OutputChange& output = report.outputs[static_cast<std::size_t>(bad - change.outputs.begin())];
       output.bump.after = *bad;
-      refuse_bump(found, output, fmt::format(" {} steps after the change", step));
+      refuse_bump(found, output, fmt::format(" {} steps after the change", report.rehearsed));
       throw InputError(std::move(found));
     }
+    report.step_time = static_cast<double>(own_cpu_now() - began) / static_cast<double>(report.rehearsed);
+    report.load = report.step_time / period;
+    const auto passed = SteadyClock::now() - begin;
+    const bool is_known = report.rehearsed >= least_rehearsed && passed >= least_rehearsal;
+    goes_on = report.rehearsed < most_rehearsed && passed < longest_rehearsal &&
+              !(is_known && report.load > report.most_load);
   }
-  plan.report.step_time = static_cast<double>(own_cpu_now() - began) / static_cast<double>(rehearsed_steps);
-  if (plan.report.step_time > static_cast<double>(program_->shape().period)) {
-    refuse_for_now(fmt::format("A step of the new version takes {:.0f} us, and the period is {:.0f} us.",
-                               plan.report.step_time * 1e-3, static_cast<double>(program_->shape().period) * 1e-3));
+  require_room(report, wish.load.has_value());
+}
+
+void OnlineChange::require_room(const ChangeReport& report, bool by_wish) const {
+  if (report.load <= report.most_load) {
+    return;
   }
+  const bool is_too_long = report.load > 1.0;
+  throw InputError(
+      error::online_change_not_now, {},
+      fmt::format("A step of the new version takes {}, {:.3g} % of the period of {}; the limit is {:.3g} % ({}).",
+                  short_time_text(report.step_time), 100.0 * report.load,
+                  time_text(static_cast<double>(program_->shape().period)), 100.0 * report.most_load,
+                  by_wish ? "--load" : "load under [online_change] in the run file at the start"),
+      is_too_long ? "leave out what costs most, or state a longer sample time and start the task with it."
+                  : fmt::format("leave out what costs most, or allow it for this change: --load {:.2g}.",
+                                std::min(1.0, 1.1 * report.load)));
 }
 
 ChangeVerdict OnlineChange::propose(Plan& plan) {
   if (retainer_ != nullptr && plan.next.retained == nullptr) {
     StepProgram& next = plan.next.program();
     next.reset();
-    plan.next.retained = std::make_unique<RetainImage>(next, state_of(next));
+    plan.next.retained = std::make_unique<RetainImage>(next, state_of(next), retainer_->inputs());
   }
   retained_before_ = retainer_ == nullptr ? 0 : plan.next.retained->written();
   if (trace_ != nullptr) {
@@ -329,7 +288,7 @@ ChangeReport OnlineChange::carry_out(const Plan& begin, const ChangeWish& wish) 
   for (int i = 0; i < most_plans; ++i) {
     Plan made{.next = begin.next, .given = begin.given, .own_state = begin.own_state, .image = image()};
     plan(made, wish);
-    rehearse(made);
+    rehearse(made, wish);
     if (wish.only_check) {
       return std::move(made.report);
     }
@@ -372,7 +331,9 @@ void OnlineChange::tell_refused(const InputError& refused) const {
 void OnlineChange::keep_as_given(const std::vector<std::string>& names) {
   as_given_.clear();
   for (const std::string& name : names) {
-    as_given_[name] = parameter_named(program_->version().program(), name);
+    if (const auto value = parameter_named(program_->version().program(), name)) {
+      as_given_[name] = *value;
+    }
   }
 }
 
@@ -388,10 +349,16 @@ void OnlineChange::tell_changed(ChangeReport& report, ChangeOutcome outcome) {
                    report.parameters_carried, report.parameters, report.states_carried, report.states));
 }
 
-ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const ChangeWish& wish) {
+void OnlineChange::require_sound(const ProgramShape& next, const ChangeWish& wish) const {
+  require_same_interface(program_->shape(), next);
+  (void)as_named(wish, next);
+}
+
+ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const ChangeWish& asked) {
   try {
     const auto lock = one_at_a_time();
-    require_same_interface(program_->shape(), program->shape());
+    require_sound(program->shape(), asked);
+    const ChangeWish wish = as_named(asked, program->shape());
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
     auto held = wish.only_check ? nullptr : held_commits(task_->door());
     ChangeReport report = carry_out({.next = *next, .given = parameters_of(next->program())}, wish);
@@ -408,7 +375,7 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     }
     return report;
   } catch (const InputError& refused) {
-    if (!wish.only_check) {
+    if (!asked.only_check) {
       tell_refused(refused);
     }
     throw;
@@ -416,17 +383,18 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
 }
 
 ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
-  ChangeWish wish = asked;
   try {
     const auto lock = one_at_a_time();
     ProgramVersion* const former = program_->former();
     if (former == nullptr) {
-      refuse_for_now("There is no version before this one: none was changed since the start.");
+      refuse_for_now("There is no version before this one: none was changed since the start.",
+                     "put the files as you want them, and give the command without --back.");
     }
     StepProgram& program = former->program();
+    ChangeWish wish = as_named(asked, program.shape());
     for (const auto& [name, value] : as_given_) {
-      if (parameter_named(program_->version().program(), name) == value &&
-          !std::isnan(parameter_named(program, name))) {
+      const auto now = parameter_named(program_->version().program(), name);
+      if (now && is_same(*now, value) && parameter_named(program, name)) {
         wish.as_given.push_back(name);
       }
     }
@@ -453,7 +421,7 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       throw;
     }
   } catch (const InputError& refused) {
-    if (!wish.only_check) {
+    if (!asked.only_check) {
       tell_refused(refused);
     }
     throw;
@@ -465,7 +433,8 @@ std::unique_ptr<OnlineChange> online_change(const RunConfig& config, ChangeableP
     tell("Online change", "[online_change] has no effect here: only `hysteron serve` can compile a new version.");
   }
   return config.online_change && program != nullptr
-             ? std::make_unique<OnlineChange>(*program, task, bump_limits(config, program->shape()))
+             ? std::make_unique<OnlineChange>(*program, task, bump_limits(config, program->shape()),
+                                              config.online_change->most_load)
              : nullptr;
 }
 

@@ -14,17 +14,12 @@
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
+#include "runtime/host/change_checks.hpp"
 #include "runtime/task/changeable_program.hpp"
 #include "runtime/task/task.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime {
-
-struct ChangeWish {
-  bool only_check = false;
-  std::map<std::string, double> bumps{};  ///< by output: a limit for this change alone, in its unit
-  std::vector<std::string> as_given{};  ///< parameters that are not carried over, but taken as the new version has them
-};
 
 /// What an output does, or would do, in the first step of the other version.
 struct OutputChange {
@@ -47,31 +42,31 @@ struct ChangeReport {
   std::vector<std::string> left{};          ///< what is not carried over, with the reason: there is the running version
   std::vector<std::string> other_values{};  ///< parameters carried over that the other version gives other values
   std::vector<std::string> without_register{};  ///< parameters that servers reach after a restart alone
-  double step_time = 0.0;                       ///< of the other version, beside the task, in ns
-  bool is_retained = true;  ///< where values are retained: those of the other version are on the disk
+  /// On the way back: what only the version before has, which goes on as it was when that was changed.
+  std::vector<std::string> as_before{};
+  double step_time = 0.0;     ///< of the other version, beside the task: the mean of its own CPU time, in ns
+  std::size_t rehearsed = 0;  ///< of so many steps
+  double load = 0.0;          ///< step_time as a part of the period
+  double most_load = 1.0;     ///< the most that it may be
+  bool is_retained = true;    ///< where values are retained: those of the other version are on the disk
 };
-
-/// How far an output may jump, where the run file says it: bump under [outputs.NAME]; else 1 % of the range between low
-/// and high; else, without a range, not at all.
-struct OutputLimit {
-  BumpLimit limit{};
-  std::string origin{};
-};
-[[nodiscard]] std::vector<OutputLimit> bump_limits(const RunConfig& config, const ProgramShape& shape);
 
 class OnlineChange {
  public:
-  /// Program, task and what it is begun with must outlive it.
-  OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits);
+  /// Program, task and what it is begun with must outlive it. `most_load`: of the period, what a step may take.
+  OnlineChange(ChangeableProgram& program, Task& task, std::vector<OutputLimit> limits, double most_load = 1.0);
 
   /// The task runs from now on. Each may be null.
   void begin(Retainer* retainer, const Trace* trace);
   /// The task ends: who waits for it is refused, and so is who comes.
   void end() noexcept { has_ended_.store(true); }
 
-  /// Changes to another version of the diagram, as it begins. Throws InputError HY850 where its interface is another,
-  /// HY851 where an output would jump, HY853 where it cannot be now, HY855 where parameters do not go together. Then
-  /// the running version goes on as if nothing had been.
+  /// What of a change is refused whatever its steps do, before the version is compiled: HY850 where its interface is
+  /// another, HY730 where the wish names what it does not have.
+  void require_sound(const ProgramShape& next, const ChangeWish& wish) const;
+  /// Changes to another version of the diagram, as it begins. Throws InputError as require_sound, HY851 where an output
+  /// would jump, HY853 where it cannot be now or its step takes too much of the period, HY855 where parameters do not
+  /// go together. Then the running version goes on as if nothing had been.
   ChangeReport change_to(std::unique_ptr<StepProgram> next, const ChangeWish& wish);
   /// Changes back to the version before. What it has of its own goes on as it was when it was changed; all that both
   /// have is carried back, but for parameters that were taken as given and that nobody has changed since: they are as
@@ -86,7 +81,9 @@ class OnlineChange {
   ChangeReport carry_out(const Plan& begin, const ChangeWish& wish);
   [[nodiscard]] StepImage image();
   void plan(Plan& plan, const ChangeWish& wish) const;
-  void rehearse(Plan& plan) const;
+  void rehearse(Plan& plan, const ChangeWish& wish) const;
+  /// The mean time of its steps against the period.
+  void require_room(const ChangeReport& report, bool by_wish) const;
   [[nodiscard]] ChangeVerdict propose(Plan& plan);
   /// Remembers parameters that were not carried over.
   void keep_as_given(const std::vector<std::string>& names);
@@ -99,11 +96,13 @@ class OnlineChange {
   /// What was asked of the cyclic thread; false where that did not begin with it in time, and it is withdrawn.
   template <class Ready, class Withdraw>
   [[nodiscard]] bool wait_or_withdraw(const Ready& ready, const Withdraw& withdraw) const;
-  [[noreturn]] void refuse_for_now(const std::string& why) const;
+  /// `mend` where another than to see to the cause, and to ask again.
+  [[noreturn]] void refuse_for_now(const std::string& why, const std::string& mend = "") const;
 
   ChangeableProgram* program_;
   Task* task_;
   std::vector<OutputLimit> limits_;
+  double most_load_;
   Retainer* retainer_ = nullptr;
   const Trace* trace_ = nullptr;
   std::map<std::string, double> as_given_{};  ///< parameters that were taken so, as the running version then had them

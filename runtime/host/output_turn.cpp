@@ -3,22 +3,39 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
+#include "runtime/config/run_keys.hpp"
 #include "runtime/host/service_notice.hpp"
 #include "support/errors.hpp"
 
 namespace hysteron::runtime {
 namespace {
 
+using SteadyClock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds pause{10};
 constexpr int most_tries = 100;  ///< a task that ends, or whose guard is about to see its end, is given a second
+
+/// The guard is of no use any more: what it could not do, the task goes on trying.
+void give_up_waiting(OutputClaims& claims, const std::string& title, const std::string& device,
+                     const std::function<void(std::string_view)>& print) {
+  if (claims.end_guard()) {
+    print(fmt::format("{}: that guard has not reached {} and is ended; the task starts, and goes on trying\n", title,
+                      device));
+  } else {
+    print(
+        fmt::format("{}: that guard has not reached {} and cannot be ended; the task waits on. End the process "
+                    "hysteron-guard\n",
+                    title, device));
+  }
+}
 
 }  // namespace
 
 bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::string& title,
                    const std::atomic<bool>& stop, const std::function<void(std::string_view)>& print) {
-  bool told = false;
+  std::optional<SteadyClock::time_point> waits_since;
   for (int tries = 0;;) {
     const auto holder = claims.claim();
     if (!holder) {
@@ -40,16 +57,29 @@ bool claim_outputs(OutputClaims& claims, const RunConfig& config, const std::str
     }
     if (holder->guard) {
       tries = 0;
-      if (!told) {
+      const auto now = SteadyClock::now();
+      if (!waits_since) {
+        waits_since = now;
         const std::string process = *holder->guard == 0 ? "" : fmt::format(", process {}", *holder->guard);
-        print(fmt::format(
-            "{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values\n", title,
-            process, device));
-        told = true;
+        print(
+            fmt::format("{}: waits for the guard of an earlier run{}, which brings outputs on {} to their safe values, "
+                        "{} at the most\n",
+                        title, process, device, time_text(static_cast<double>(config.guard_wait))));
+      }
+      if (now - *waits_since >= std::chrono::nanoseconds(config.guard_wait)) {
+        give_up_waiting(claims, title, device, print);
+        waits_since = now;
       }
       // The service manager's time for a start counts from here anew.
       tell_service_manager("EXTEND_TIMEOUT_USEC=30000000");
-    } else if (++tries > most_tries) {
+    } else if (++tries > most_tries && holder->is_foreign) {
+      print(
+          fmt::format("{}: the name by which {} is claimed is held by another user, or by a program that is no task; "
+                      "it starts, and nothing watches that nobody else writes there\n",
+                      title, place));
+      claims.pass_over_foreign();
+      tries = 0;
+    } else if (tries > most_tries) {
       throw InputError(
           error::output_of_another_task, output.place,
           fmt::format("Another task that runs on this machine writes {}.", place),

@@ -34,8 +34,12 @@ std::string names_text(const std::vector<std::string>& names) {
 
 }  // namespace
 
-RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
-    : config_(config), folder_(config.folder), after_reset_(state_of(program)) {
+RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, std::vector<std::size_t> inputs)
+    : config_(config),
+      folder_(config.folder),
+      inputs_(std::move(inputs)),
+      starts_(program.shape().inputs.size()),
+      after_reset_(state_of(program)) {
   const std::vector<double> given = parameters_of(program);
   try {
     folder_.open();
@@ -68,6 +72,9 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program)
     } else {
       take(program, given);
     }
+    const RetainedValues& values = *recovery_.values;
+    starts_ = carry_inputs(read_description(values.described, values.state.size()), values.inputs, program.shape(),
+                           inputs_, left_);
   }
   told_ += recovery_.note.empty() ? "" : ", " + recovery_.note;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,10 +15,16 @@ namespace hysteron::runtime {
 
 class RetainedState {
  public:
-  /// Takes parameters and state into the program, which is as after its reset; changes nothing in the folder. Throws
+  /// Takes parameters and state into the program, which is as after its reset; changes nothing in the folder. `inputs`:
+  /// those that clients write and that are retained. Throws
   /// InputError HY811 where what is there is of no use, HY815 where another task holds the folder, HY816 where it
   /// cannot be used.
-  RetainedState(const RetainConfig& config, StepProgram& program);
+  RetainedState(const RetainConfig& config, StepProgram& program, std::vector<std::size_t> inputs = {});
+
+  /// The inputs that are retained, as it was told.
+  [[nodiscard]] const std::vector<std::size_t>& inputs() const { return inputs_; }
+  /// By input of the program: what it goes on from; nothing where it begins as the diagram says.
+  [[nodiscard]] const std::vector<std::optional<double>>& starts() const { return starts_; }
 
   /// For the status line, beginning with a comma: what the program goes on from, and the parameters that are retained
   /// and not as they were given. Empty at a first start.
@@ -40,6 +47,8 @@ class RetainedState {
   Recovery recovery_{};
   std::string told_{};
   std::vector<std::string> left_{};
+  std::vector<std::size_t> inputs_;
+  std::vector<std::optional<double>> starts_{};
   std::vector<std::byte> after_reset_{};
 };
 

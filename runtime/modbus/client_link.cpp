@@ -25,12 +25,13 @@ modbus_t* of(const Pointer& context) {
   return static_cast<modbus_t*>(context.get());
 }
 
-modbus_t* new_context(const std::variant<TcpLink, SerialLink>& to) {
-  if (const auto* tcp = std::get_if<TcpLink>(&to)) {
-    return ::modbus_new_tcp_pi(tcp->host.c_str(), std::to_string(tcp->port).c_str());
+/// How long it waits is the caller's; the response time is for the whole answer, however it drips.
+void set_patience(modbus_t* context, std::chrono::milliseconds response) {
+  if (context != nullptr) {
+    const auto microseconds = static_cast<std::uint32_t>(std::chrono::microseconds(response).count());
+    ::modbus_set_response_timeout(context, microseconds / 1'000'000, microseconds % 1'000'000);
+    ::modbus_set_byte_timeout(context, 0, 0);
   }
-  const auto& line = std::get<SerialLink>(to);
-  return ::modbus_new_rtu(line.path.c_str(), line.baud, line.parity, line.data_bits, line.stop_bits);
 }
 
 constexpr std::size_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -70,15 +71,17 @@ void ClientLink::Free::operator()(void* context) const {
 }
 
 ClientLink::ClientLink(const std::variant<TcpLink, SerialLink>& to, std::chrono::milliseconds response)
-    : context_(new_context(to)),
-      serial_(std::holds_alternative<SerialLink>(to)),
+    : serial_(std::holds_alternative<SerialLink>(to)),
       has_echo_(serial_ && std::get<SerialLink>(to).has_echo),
       response_(response) {
-  if (context_ != nullptr) {
-    const auto microseconds = static_cast<std::uint32_t>(std::chrono::microseconds(response).count());
-    ::modbus_set_response_timeout(of(context_), microseconds / 1'000'000, microseconds % 1'000'000);
-    ::modbus_set_byte_timeout(of(context_), 0, 0);  // the response time is for the whole answer, however it drips
+  if (const auto* const tcp = std::get_if<TcpLink>(&to)) {
+    name_.emplace(tcp->host, tcp->known);
+    port_ = std::to_string(tcp->port);
+    return;
   }
+  const auto& line = std::get<SerialLink>(to);
+  context_.reset(::modbus_new_rtu(line.path.c_str(), line.baud, line.parity, line.data_bits, line.stop_bits));
+  set_patience(of(context_), response_);
 }
 
 ClientLink::~ClientLink() {
@@ -90,7 +93,24 @@ bool ClientLink::open() {
   return open_ || connect();
 }
 
+bool ClientLink::aim_at(const std::string& address) {
+  if (address.empty()) {
+    return false;
+  }
+  if (address != aimed_at_) {
+    const std::scoped_lock lock(socket_lock_);
+    context_.reset(::modbus_new_tcp_pi(address.c_str(), port_.c_str()));
+    set_patience(of(context_), response_);
+    aimed_at_ = address;
+  }
+  return true;
+}
+
 bool ClientLink::connect() {
+  // libmodbus would ask the name server itself, and wait for it as long as the system does.
+  if (name_ && !aim_at(name_->next_address(response_))) {
+    return false;
+  }
   if (context_ == nullptr || ::modbus_connect(of(context_)) != 0) {
     return false;
   }
@@ -99,6 +119,8 @@ bool ClientLink::connect() {
   open_ = !interrupted_ && ::modbus_get_socket(of(context_)) < FD_SETSIZE;
   if (!open_) {
     ::modbus_close(of(context_));
+  } else if (name_) {
+    name_->was_reached();
   }
   return open_;
 }

@@ -13,16 +13,20 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "runtime/modbus/host_names.hpp"
 
 namespace hysteron::runtime::modbus {
 
 struct TcpLink {
   std::string host = "127.0.0.1";
   std::uint16_t port = 502;
+  std::vector<std::string> known{};  ///< numeric addresses of the host, as found at the start; tried first
   friend bool operator==(const TcpLink&, const TcpLink&) = default;
 };
 
@@ -61,7 +65,8 @@ class ClientLink {
   ~ClientLink();
 
   [[nodiscard]] bool is_open() const { return open_; }
-  /// False where the device is not there within the response time. Nothing to do where it is open.
+  /// False where the device is not there within the response time, or its name has no address by then. Nothing to do
+  /// where it is open.
   bool open();
   void close();
   /// Sends a request to a unit and waits for its answer, at most the response time. All but answered and exception
@@ -75,11 +80,16 @@ class ClientLink {
     void operator()(void* context) const;
   };
   bool connect();
+  /// Over TCP: the context is for this address from now on; false where there is none.
+  bool aim_at(const std::string& address);
   Exchange transfer(std::uint8_t unit, std::span<const std::uint8_t> request, std::vector<std::uint8_t>& answer);
   [[nodiscard]] Exchange send(std::uint8_t unit, std::span<const std::uint8_t> request);
   [[nodiscard]] Exchange take_echo(std::span<const std::uint8_t> sent);
 
   std::unique_ptr<void, Free> context_;
+  std::optional<HostName> name_{};  ///< over TCP
+  std::string aimed_at_{};          ///< the address of the context
+  std::string port_{};
   bool serial_;
   bool has_echo_;
   std::chrono::milliseconds response_;

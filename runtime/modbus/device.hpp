@@ -40,6 +40,7 @@ struct DeviceOptions {
   std::string name{};
   std::variant<TcpLink, SerialLink> link{};
   std::uint8_t unit = 1;
+  bool may_be_absent = false;      ///< while it has never answered, the task goes on without it
   bool shares_connection = false;  ///< over TCP, with the other devices at this host and port that share it
   std::vector<RemoteValue> values{};
   std::chrono::nanoseconds period = std::chrono::milliseconds(5);

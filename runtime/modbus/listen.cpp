@@ -10,13 +10,13 @@
 #include <cstring>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "support/errors.hpp"
 
 namespace hysteron::runtime::modbus {
-namespace {
 
-[[noreturn]] void refuse(int reason, const std::string& address, std::uint16_t port, const Place& place) {
+void refuse_to_listen(int reason, const std::string& address, std::uint16_t port, const Place& place) {
   if (reason == EADDRINUSE) {
     throw InputError(error::port_in_use, place, fmt::format("Another program listens on {} port {}.", address, port),
                      fmt::format("end it, or choose another port; ss -ltnp sport = :{} names it", port));
@@ -31,24 +31,35 @@ namespace {
       "name a numeric address of this machine: 127.0.0.1 for this machine alone, 0.0.0.0 for all networks");
 }
 
-}  // namespace
+bool passes(int problem) {
+  return problem == EADDRNOTAVAIL || problem == ENETDOWN || problem == ENOBUFS || problem == ENOMEM ||
+         problem == EMFILE || problem == ENFILE;
+}
 
-Descriptor listen_on(const std::string& address, std::uint16_t port, const Place& place) {
+Listening try_to_listen(const std::string& address, std::uint16_t port) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) {
-    refuse(EINVAL, address, port, place);
+    return {.problem = EINVAL};
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> release(found, &::freeaddrinfo);
   Descriptor socket(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   if (!socket.is_open() || ::setsockopt(socket.number(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
       ::bind(socket.number(), found->ai_addr, found->ai_addrlen) != 0 || ::listen(socket.number(), SOMAXCONN) != 0) {
-    refuse(errno, address, port, place);
+    return {.problem = errno};
   }
-  return socket;
+  return {.socket = std::move(socket)};
+}
+
+Descriptor listen_on(const std::string& address, std::uint16_t port, const Place& place) {
+  Listening tried = try_to_listen(address, port);
+  if (!tried.socket.is_open()) {
+    refuse_to_listen(tried.problem, address, port, place);
+  }
+  return std::move(tried.socket);
 }
 
 std::uint16_t port_of(const Descriptor& listening) {

@@ -126,6 +126,7 @@ std::string as_json(const RegisterMap& map) {
                     {"low", number_or_null<nlohmann::ordered_json>(point.low)},
                     {"high", number_or_null<nlohmann::ordered_json>(point.high)},
                     {"writable", point.writable},
+                    {"retained", point.is_retained},
                     {"kind", kind_name(point.kind)},
                     {"meaning", point.meaning}});
   }
@@ -150,7 +151,8 @@ std::string as_markdown(const RegisterMap& map) {
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(entry.at.area),
                         std::to_string(entry.at.address) + bit_text(entry.at), reference_number(entry.at),
                         format_text(entry, map.order()), markdown_cell(point.name), markdown_cell(point.unit),
-                        bound(point.low), bound(point.high), access_of(point), markdown_cell(point.meaning));
+                        bound(point.low), bound(point.high), access_of(point) + (point.is_retained ? ", retained" : ""),
+                        markdown_cell(point.meaning));
   }
   return text;
 }

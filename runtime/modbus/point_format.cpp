@@ -75,6 +75,16 @@ std::string order_flaw_of(const GivenFormat& given, RegisterType type) {
   return given.order && registers_of(type) == 1 ? "lies in one register, which has no word order" : "";
 }
 
+std::string range_flaw_of(const PointFormat& format, double low, double high) {
+  const auto [least, most] = limits_of(format);
+  const double half = is_real(format.type) ? 0.0 : 0.5 * std::abs(format.scale);
+  const bool is_below = std::isfinite(low) && low < least - half;
+  const bool is_above = std::isfinite(high) && high > most + half;
+  return !is_below && !is_above ? ""
+                                : fmt::format("goes from {} to {}, and its format, {}, reaches {:.6g} to {:.6g} alone",
+                                              number_text(low), number_text(high), name_of(format.type), least, most);
+}
+
 std::optional<RawCode> encoded(double value, const PointFormat& format) {
   if (is_real(format.type)) {
     return encoded_real(value, format);

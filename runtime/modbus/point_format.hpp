@@ -44,6 +44,10 @@ struct GivenFormat {
 /// The same of a word order that was given to what lies in one register.
 [[nodiscard]] std::string order_flaw_of(const GivenFormat& given, RegisterType type);
 
+/// The same of a format that does not hold what is declared between low and high, but for half a step; empty too where
+/// no range is declared.
+[[nodiscard]] std::string range_flaw_of(const PointFormat& format, double low, double high);
+
 struct RawCode {
   std::uint64_t bits = 0;     ///< the low 16·registers_of(type) of them
   bool is_saturated = false;  ///< the value is beyond what the format reaches, by more than half a step

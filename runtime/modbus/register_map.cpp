@@ -77,6 +77,7 @@ class Placer {
       formats_.push_back({.type = points[i].type, .order = request.order});
     }
     is_exposed_.resize(points.size(), request.expose.empty());
+    is_flawed_.resize(points.size(), false);
   }
 
   void choose_exposed() {
@@ -116,13 +117,14 @@ class Placer {
                            "add it to expose, or remove its place");
         continue;
       }
-      if (given.format) {
-        set_format(point->second, given);
+      if (given.format && !set_format(point->second, given)) {
+        is_flawed_[point->second] = true;
+        continue;
       }
       known.emplace_back(&given, point->second);
     }
-    for (const auto& [given, point] : known) {  // the width of each is known now
-      if (given->address.empty()) {
+    for (const auto& [given, point] : known) {            // the width of each is known now
+      if (given->address.empty() || is_flawed_[point]) {  // how wide the flawed one would be is not known
         continue;
       }
       if (const auto at = given_stretch(point, *given)) {
@@ -135,6 +137,9 @@ class Placer {
     const std::uint32_t holding_end = size_of(Area::holding_register);
     for (const LockLine& line : read_lock(request_.lock_file, request_.lock_text, holding_end, diagnostics_)) {
       const auto point = index_.find(line.name);
+      if (point != index_.end() && is_flawed_[point->second]) {
+        continue;
+      }
       const bool stays = point != index_.end() && is_exposed_[point->second] &&
                          formats_[point->second].type == line.type && fits(point->second, line.at);
       if (stays && placed_[point->second]) {
@@ -154,7 +159,7 @@ class Placer {
       for (const std::uint32_t width : {4U, 2U, 1U}) {
         for (std::size_t i = 0; i < points_.size(); ++i) {
           const bool is_now = points_[i].comes_last == comes_last && registers_of(formats_[i].type) == width;
-          if (is_exposed_[i] && !placed_[i] && is_now) {
+          if (is_exposed_[i] && !placed_[i] && !is_flawed_[i] && is_now) {
             place_freely(i, width);
           }
         }
@@ -188,7 +193,8 @@ class Placer {
            (!points_[point].writable || at.area == Area::coil || at.area == Area::holding_register);
   }
 
-  void set_format(std::size_t point, const GivenRegister& given) {
+  /// False where the format does not serve.
+  bool set_format(std::size_t point, const GivenRegister& given) {
     const PointFormat format = given.format->or_else(points_[point].type, request_.order);
     std::string flaw = flaw_of(format);
     if (format.type == PointType::boolean && points_[point].type != PointType::boolean) {
@@ -202,9 +208,22 @@ class Placer {
           error::unfit_format, given.place, fmt::format("{} {}.", given.name, flaw),
           "choose a type, a scale and an offset in which each value of the point is near a step; leave out "
           "what does not apply");
-      return;
+      return false;
     }
     formats_[point] = format;
+    warn_of_range(points_[point], format, given.place);
+    return true;
+  }
+
+  /// What the type does not reach is read as the nearest that it does: nobody shall find that out at the machine.
+  void warn_of_range(const Point& point, const PointFormat& format, const Place& place) {
+    const std::string flaw = range_flaw_of(format, point.low, point.high);
+    if (!flaw.empty()) {
+      diagnostics_.warning(error::unfit_format, place, fmt::format("{} {}.", point.name, flaw),
+                           point.writable ? "choose a wider type or another scale, or narrow the range in the diagram."
+                                          : "choose a wider type or another scale; clients read a value beyond it as "
+                                            "the nearest that the type has.");
+    }
   }
 
   /// Keeps an address from being given anew. One that was given by hand is a point's, whoever had it before.
@@ -241,6 +260,26 @@ class Placer {
     placed_[point] = at;
   }
 
+  /// What may be written instead: beside what was meant, if that can be told.
+  static std::string fitting_address(bool is_writable, RegisterType type, const Stretch& at) {
+    const Area registers =
+        is_writable || at.area == Area::holding_register ? Area::holding_register : Area::input_register;
+    const Area bits = is_writable || at.area == Area::coil ? Area::coil : Area::discrete_input;
+    if (type == PointType::boolean) {
+      const unsigned bit = at.is_bit() ? at.shift() : 0U;
+      return holds_bits(at.area)
+                 ? fmt::format("write {} {}, which may be written.", name_of(bits), at.address)
+                 : fmt::format("write a bit of the register, {} {}.{} (0 is the lowest, 15 the highest), or {} {}.",
+                               name_of(registers), at.address, bit, name_of(bits), at.address);
+    }
+    const std::size_t width = registers_of(type);
+    return fmt::format("write {} {}; it takes {} from there on{}.", name_of(registers), at.address,
+                       width == 1 ? "one register" : fmt::format("{} registers", width),
+                       width == 1   ? ""
+                       : width == 2 ? ", as %MD0 and its like do"
+                                    : ", as %ML0 and its like do");
+  }
+
   std::optional<Stretch> given_stretch(std::size_t index, const GivenRegister& given) {
     const Point& point = points_[index];
     const RegisterType type = formats_[index].type;
@@ -257,9 +296,7 @@ class Placer {
       diagnostics_.error(error::unfit_address, given.place,
                          fmt::format("{} is {}{} and does not fit {}.", point.name,
                                      point.writable ? "a writable " : "a ", name_of(type), given.address),
-                         "booleans fit coil and discrete (%QX, %IX) and a bit of a register as holding 16.3, 16 bits "
-                         "%IW, %QW and %MW, "
-                         "32 bits %MD, 64 bits %ML; what may be written fits coil and holding alone");
+                         fitting_address(point.writable, type, at));
       return std::nullopt;
     }
     at.count = width;
@@ -314,6 +351,7 @@ class Placer {
   std::map<std::string, std::size_t, std::less<>> index_;
   std::vector<bool> is_exposed_;
   std::vector<PointFormat> formats_;
+  std::vector<bool> is_flawed_;  ///< by point: it was given a format that does not serve
   std::vector<std::optional<Stretch>> placed_;
   std::vector<RetiredAddress> retired_;
   /// Of a range by area, address and width of values: where to look for a free address.
@@ -359,6 +397,7 @@ RegisterMap make_register_map(std::span<const Point> points, const MapRequest& r
   map.points_.assign(points.begin(), points.end());
   map.order_ = request.order;
   map.entries_ = placer.entries();
+  map.warnings_ = placer.diagnostics();
   map.retired_ = placer.retired();
   for (const Area area : areas) {
     map.first_[index_of(area)] = static_cast<std::size_t>(

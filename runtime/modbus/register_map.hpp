@@ -121,6 +121,8 @@ class RegisterMap {
   /// The registers from chain_address on.
   [[nodiscard]] std::span<const std::uint16_t> chain_registers() const { return is_in_files() ? entrance_ : chain_; }
   [[nodiscard]] bool is_in_files() const { return !entrance_.empty(); }
+  /// HY860 of formats that do not hold the whole declared range of their point.
+  [[nodiscard]] const Diagnostics& warnings() const { return warnings_; }
 
  private:
   friend RegisterMap make_register_map(std::span<const Point> points, const MapRequest& request);
@@ -133,6 +135,7 @@ class RegisterMap {
   std::string hash_;
   std::vector<std::uint16_t> chain_;
   std::vector<std::uint16_t> entrance_;
+  Diagnostics warnings_;
 };
 
 /// Gives every point its address. Throws InputError HY820 to HY826, HY860 and HY861 with all that is wrong.

@@ -21,6 +21,7 @@
 #include "runtime/modbus/allow_list.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
+#include "runtime/modbus/listener.hpp"
 #include "runtime/modbus/transport.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -54,16 +55,18 @@ class Server::Loop {
       : tls_(std::move(options.tls)),
         options_(std::move(options)),
         map_(std::move(map)),
+        door_(door),
         responder_(map_, door, options_.identity),
         allow_(networks_of(options_.allow, options_.place)),
         heartbeat_(options_.heartbeat),
-        listening_(options_.listen.empty() ? Descriptor() : listen_on(options_.listen, options_.port, options_.place)),
-        port_(listening_.is_open() ? port_of(listening_) : std::uint16_t{0}),
         stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
-    if (!stop_.is_open() || !epoll_.is_open() || !watch(stop_, stop_mark, EPOLLIN) ||
-        (listening_.is_open() && !watch(listening_, listening_mark, EPOLLIN))) {
+    if (!stop_.is_open() || !epoll_.is_open() || !watch(stop_, stop_mark, EPOLLIN)) {
       throw std::system_error(errno, std::system_category(), "Modbus server");
+    }
+    if (!options_.listen.empty()) {
+      listener_.emplace(options_.listen, options_.port, options_.place, options_.tell);
+      watch_listener();
     }
     if (options_.rtu) {
       line_.emplace(*options_.rtu, options_.tell);
@@ -80,7 +83,7 @@ class Server::Loop {
   }
 
   void renew(std::shared_ptr<const TlsContext> tls) { tls_.store(std::move(tls)); }
-  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::uint16_t port() const { return listener_ ? listener_->port() : std::uint16_t{0}; }
   [[nodiscard]] const RegisterMap& map() const { return map_; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
@@ -139,7 +142,10 @@ class Server::Loop {
       follow_heartbeat(now);
       if (listen_again_ && now >= *listen_again_) {
         listen_again_.reset();
-        change_watch(listening_, listening_mark, EPOLLIN);
+        change_watch(listener_->socket(), listening_mark, EPOLLIN);
+      }
+      if (listener_ && listener_->try_again(now)) {
+        watch_listener();
       }
     }
   }
@@ -160,6 +166,9 @@ class Server::Loop {
     if (listen_again_) {
       earlier(*listen_again_);
     }
+    if (const auto again = listener_ ? listener_->next_try() : std::nullopt) {
+      earlier(*again);
+    }
     if (const auto deadline = line_ ? line_->next_deadline() : std::nullopt) {
       earlier(*deadline);
     }
@@ -174,11 +183,12 @@ class Server::Loop {
     for (int i = 0; i < accepted_a_turn; ++i) {
       sockaddr_storage peer{};
       socklen_t size = sizeof peer;
-      Descriptor socket(
-          ::accept4(listening_.number(), reinterpret_cast<sockaddr*>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      Descriptor socket(::accept4(listener_->socket().number(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                  SOCK_NONBLOCK | SOCK_CLOEXEC));
       if (!socket.is_open()) {
         if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-          change_watch(listening_, listening_mark, 0);  // or the loop would spin on a connection it cannot take
+          change_watch(listener_->socket(), listening_mark,
+                       0);  // or the loop would spin on a connection it cannot take
           listen_again_ = now + accept_pause;
         }
         return;
@@ -230,6 +240,11 @@ class Server::Loop {
     return true;
   }
 
+  void watch_listener() {
+    const bool listens = listener_->is_open() && watch(listener_->socket(), listening_mark, EPOLLIN);
+    door_.shortage(Shortage::address, !listens);
+  }
+
   /// The serial line: opened where that is due, and served where a silence on it has lasted.
   void follow_line(Instant now) {
     if (!line_) {
@@ -239,6 +254,7 @@ class Server::Loop {
       line_watched_ = EPOLLIN;
       (void)watch(line_->descriptor(), line_mark, line_watched_);
     }
+    door_.shortage(Shortage::line, !line_->is_open());
     if (const auto deadline = line_->next_deadline(); line_->is_open() && deadline && now >= *deadline) {
       serve_line(false, now);
     }
@@ -415,12 +431,12 @@ class Server::Loop {
   std::atomic<std::shared_ptr<const TlsContext>> tls_;
   const ServerOptions options_;  ///< but for TLS, which is renewed
   const RegisterMap map_;
+  PointDoor& door_;
   Responder responder_;
   const std::vector<Network> allow_;
   Heartbeat heartbeat_;
   Counters counters_;
-  Descriptor listening_;
-  std::uint16_t port_;
+  std::optional<Listener> listener_{};
   Descriptor stop_;
   Descriptor epoll_;
   Clients clients_;

@@ -128,17 +128,18 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
     layout.period = static_cast<std::int64_t>(period);
     return read;
   }
-  if (cells[0] == "p" && cells.size() == 7) {
+  if ((cells[0] == "p" || cells[0] == "i") && cells.size() == 7) {
     const auto type = type_of(cells[2]);
     double low = 0.0;
     double high = 0.0;
     const bool is_read = type && read_number(cells[4], low) && read_number(cells[5], high);
-    layout.parameters.push_back({.name = std::string(cells[1]),
-                                 .type = type.value_or(PointType::real64),
-                                 .unit = std::string(cells[3]),
-                                 .low = low,
-                                 .high = high,
-                                 .low_excluded = cells[6] == "1"});
+    (cells[0] == "p" ? layout.parameters : layout.inputs)
+        .push_back({.name = std::string(cells[1]),
+                    .type = type.value_or(PointType::real64),
+                    .unit = std::string(cells[3]),
+                    .low = low,
+                    .high = high,
+                    .low_excluded = cells[6] == "1"});
     return is_read;
   }
   if (cells[0] != "s" || cells.size() != 7) {
@@ -155,6 +156,9 @@ bool read_line(std::string_view line, std::size_t state_size, KeptLayout& layout
   return true;
 }
 
+/// The reason of what the program alone has.
+constexpr std::string_view only_here = "new";
+
 std::string unit_text(const std::string& unit) {
   return unit.empty() ? "no unit" : unit;
 }
@@ -167,7 +171,7 @@ std::string difference(PointType type, const std::string& unit, PointType wanted
   return unit == wanted_unit ? "" : fmt::format("{} there, {} here", unit_text(unit), unit_text(wanted_unit));
 }
 
-std::string left(const std::string& name, const std::string& reason) {
+std::string left(std::string_view name, std::string_view reason) {
   return fmt::format("{} ({})", name, reason);
 }
 
@@ -207,16 +211,30 @@ std::string refusal_of(const StateField& was, const StateField& is) {
 
 }  // namespace
 
-std::string describe(const ProgramShape& shape) {
+bool is_new(std::string_view one) {
+  return one == left(without_reason(one), only_here);
+}
+
+std::string without_reason(std::string_view one) {
+  return std::string(one.substr(0, one.find(" (")));
+}
+
+std::string describe(const ProgramShape& shape, std::span<const std::size_t> inputs) {
   std::string text;
   text += fmt::format("t\t{}\n", shape.period);
+  const auto add = [&](char kind, const ProgramSignal& one) {
+    text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\n", kind, one.name, about(one.type).name, one.unit, one.low,
+                        one.high, one.low_excluded ? 1 : 0);
+  };
   for (const ProgramSignal& one : shape.parameters) {
-    text += fmt::format("p\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, about(one.type).name, one.unit, one.low, one.high,
-                        one.low_excluded ? 1 : 0);
+    add('p', one);
   }
   for (const StateField& one : shape.state) {
     text += fmt::format("s\t{}\t{}\t{}\t{}\t{}\t{}\n", one.name, one.block, about(one.type).name, one.length,
                         one.offset, one.unit);
+  }
+  for (const std::size_t input : inputs) {
+    add('i', shape.inputs[input]);
   }
   return text;
 }
@@ -241,7 +259,7 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
     const ProgramSignal& own = shape.parameters[i];
     const auto found = places.find(own.name);
     if (found == places.end()) {
-      carried.left.push_back(left(own.name, "new"));
+      carried.left.push_back(left(own.name, only_here));
       continue;
     }
     const KeptLayout::Parameter& was = kept.parameters[found->second];
@@ -260,6 +278,32 @@ CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> v
   return carried;
 }
 
+std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::span<const double> values,
+                                                const ProgramShape& shape, std::span<const std::size_t> wanted,
+                                                std::vector<std::string>& left_out) {
+  std::vector<std::optional<double>> carried(shape.inputs.size());
+  const auto places = by_name(kept.inputs);
+  for (const std::size_t input : wanted) {
+    const ProgramSignal& own = shape.inputs[input];
+    const auto found = places.find(own.name);
+    if (found == places.end() || found->second >= values.size()) {
+      continue;  // it was not retained before: it begins as the diagram says
+    }
+    const KeptLayout::Parameter& was = kept.inputs[found->second];
+    const double value = values[found->second];
+    std::string why = difference(was.type, was.unit, own.type, own.unit);
+    if (why.empty() && !refusal_of(own, value).empty()) {
+      why = fmt::format("{:.6g} is outside of its limits", value);
+    }
+    if (why.empty()) {
+      carried[input] = value;
+    } else {
+      left_out.push_back(left(own.name, why));
+    }
+  }
+  return carried;
+}
+
 std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShape& shape,
                                        std::vector<std::string>& left_out) {
   std::vector<SharedNumber> shared;
@@ -273,7 +317,7 @@ std::vector<SharedNumber> shared_state(const KeptLayout& kept, const ProgramShap
     const StateField& own = shape.state[i];
     const auto found = places.find(own.name);
     if (found == places.end()) {
-      left_out.push_back(left(own.name, "new"));
+      left_out.push_back(left(own.name, only_here));
       continue;
     }
     const StateField& was = kept.state[found->second];

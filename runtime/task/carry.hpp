@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,11 +29,12 @@ struct KeptLayout {
   std::int64_t period = 0;  ///< ns
   std::vector<Parameter> parameters{};
   std::vector<StateField> state{};
+  std::vector<Parameter> inputs{};  ///< that clients wrote
 };
 
-/// As text: a line "t period", one for each parameter, "p name type unit low high excluded", and each number, "s name
-/// block type length offset unit", separated by tabs.
-[[nodiscard]] std::string describe(const ProgramShape& shape);
+/// As text: a line "t period", one for each parameter, "p name type unit low high excluded", each number of the state,
+/// "s name block type length offset unit", and each retained input, "i" as "p", separated by tabs.
+[[nodiscard]] std::string describe(const ProgramShape& shape, std::span<const std::size_t> inputs = {});
 /// Empty where a line is not of that form, or where a number lies beyond `state_size` bytes.
 [[nodiscard]] KeptLayout read_description(std::string_view text, std::size_t state_size);
 
@@ -44,9 +46,22 @@ struct CarriedValues {
   std::vector<std::string> left{};  ///< what was not taken over, with the reason: "LAG.Y (um there, mm here)"
 };
 
+/// Of what was not taken over: whether it is there for want of another of its name, and not for its kind or value.
+[[nodiscard]] bool is_new(std::string_view left);
+/// Its name: LAG.Y of "LAG.Y (um there, mm here)".
+[[nodiscard]] std::string without_reason(std::string_view left);
+
 /// Parameters whose name, type and unit are the same, and whose value lies within the program's limits.
 [[nodiscard]] CarriedValues carry_parameters(const KeptLayout& kept, std::span<const double> values,
                                              const ProgramShape& shape, std::span<const double> given);
+
+/// Retained inputs that the program has by the same name, type and unit, whose value lies within its limits: by input
+/// of the program, nothing where it begins as the diagram says. `wanted`: those that are to be retained. The reasons
+/// for what is left are added.
+[[nodiscard]] std::vector<std::optional<double>> carry_inputs(const KeptLayout& kept, std::span<const double> values,
+                                                              const ProgramShape& shape,
+                                                              std::span<const std::size_t> wanted,
+                                                              std::vector<std::string>& left);
 
 /// A number of the state, or a row of them, that two layouts have in common, as it lies in the bytes of each.
 struct SharedNumber {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "runtime/task/fault_log.hpp"
 #include "runtime/task/safe_outputs.hpp"
@@ -27,6 +29,10 @@ class FieldIo {
   virtual void count(std::span<double> /*into*/) const noexcept {}
   /// Whose value the fault is that read() or delivery() gave last: of the inputs, and then of the outputs.
   [[nodiscard]] virtual std::size_t faulty_port() const noexcept { return no_port; }
+  /// From any thread: devices that have never answered, and that the task goes on without.
+  [[nodiscard]] virtual std::size_t absent() const noexcept { return 0; }
+  /// The same by name. Not for the cyclic thread.
+  [[nodiscard]] virtual std::vector<std::string> absent_devices() const { return {}; }
   virtual void write(std::span<const double> outputs) noexcept = 0;
   /// Whether the devices have taken what was written last. Asked at the end, when nobody tries on.
   virtual Delivery delivery() noexcept { return Delivery::done; }

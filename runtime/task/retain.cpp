@@ -99,7 +99,14 @@ bool decode(std::span<const std::byte> bytes, RetainedValues& values) {
     return false;
   }
   values.state.resize(length);
-  return cursor.read(values.state.data(), length) && cursor.at_end();
+  if (!cursor.read(values.state.data(), length) || cursor.at_end()) {
+    return cursor.at_end();  // a file of before there were inputs in it, or one that is cut
+  }
+  if (!cursor.read_length(length, sizeof(double))) {
+    return false;
+  }
+  values.inputs.resize(length);
+  return cursor.read(values.inputs.data(), length * sizeof(double)) && cursor.at_end();
 }
 
 }  // namespace
@@ -124,6 +131,8 @@ std::vector<std::byte> encode_slot(const RetainedValues& values) {
   append(bytes, values.parameters.data(), values.parameters.size() * sizeof(double));
   append(bytes, static_cast<std::uint32_t>(values.state.size()));
   append(bytes, values.state.data(), values.state.size());
+  append(bytes, static_cast<std::uint32_t>(values.inputs.size()));
+  append(bytes, values.inputs.data(), values.inputs.size() * sizeof(double));
   append(bytes, crc32c(bytes));
   return bytes;
 }
@@ -202,18 +211,21 @@ std::string put_aside(RetainFiles& files, const Recovery& recovery) {
   return problems;
 }
 
-RetainImage::RetainImage(const StepProgram& program, std::vector<std::byte> after_reset)
+RetainImage::RetainImage(const StepProgram& program, std::vector<std::byte> after_reset,
+                         const std::vector<std::size_t>& inputs)
     : shape_(&program.shape()),
       after_reset_(std::move(after_reset)),
       newest_(RetainedValues{.layout = program.shape().layout,
-                             .described = describe(program.shape()),
+                             .described = describe(program.shape(), inputs),
                              .parameters = std::vector<double>(program.shape().parameters.size()),
-                             .state = std::vector<std::byte>(program.state_size())}) {}
+                             .state = std::vector<std::byte>(program.state_size()),
+                             .inputs = std::vector<double>(inputs.size())}) {}
 
 Retainer::Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
-                   std::vector<std::byte> after_reset)
+                   std::vector<std::byte> after_reset, std::vector<std::size_t> inputs)
     : files_(&files),
-      first_(program, std::move(after_reset)),
+      inputs_(std::move(inputs)),
+      first_(program, std::move(after_reset), inputs_),
       slot_(start.next_slot),
       sequence_(start.sequence),
       written_(start.sequence) {
@@ -238,12 +250,15 @@ std::string Retainer::problem() const {
   return problem_;
 }
 
-void Retainer::offer(const StepProgram& program, std::uint64_t commits) noexcept {
+void Retainer::offer(const StepProgram& program, std::uint64_t commits, std::span<const double> inputs) noexcept {
   Latest<RetainedValues>& newest = image_.load(std::memory_order_relaxed)->newest_;
   RetainedValues& values = newest.filling();
   values.commits = commits;
   copy_parameters(program, values.parameters);
   program.save(values.state);
+  for (std::size_t i = 0; i < values.inputs.size(); ++i) {
+    values.inputs[i] = inputs[inputs_[i]];
+  }
   newest.publish();
 }
 

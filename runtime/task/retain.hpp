@@ -2,8 +2,8 @@
 //
 // The newest state goes into the slot that holds the older one, under a temporary name, flushed, and renamed; so a
 // power cut at any byte leaves the other slot whole. A slot is a sequence number, the layout of the program, what its
-// values mean (carry.hpp), parameters, state and a CRC32C over all of it. Files are written by a thread of their own;
-// the cyclic thread only copies.
+// values mean (carry.hpp), parameters, state, inputs and a CRC32C over all of it. Files are written by a thread of
+// their own; the cyclic thread only copies.
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ struct RetainedValues {
   std::string described{};  ///< see describe(); empty in files of before it
   std::vector<double> parameters{};
   std::vector<std::byte> state{};
-  std::uint64_t commits = 0;  ///< sets of parameters that the run had applied; in no file
+  std::vector<double> inputs{};  ///< those that clients write and that are retained, as they are described
+  std::uint64_t commits = 0;     ///< sets of parameters that the run had applied; in no file
 };
 
 enum class SlotStatus : std::uint8_t { whole, missing, broken };
@@ -122,8 +123,10 @@ struct RetainChecks {
 class RetainImage {
  public:
   /// A state is not written in which a number is not finite that is so in `after_reset`, the program's state when it
-  /// begins; empty: whatever it is. The program's shape must outlive it.
-  RetainImage(const StepProgram& program, std::vector<std::byte> after_reset);
+  /// begins; empty: whatever it is. `inputs`: those of the program that are retained. The program's shape must outlive
+  /// it.
+  RetainImage(const StepProgram& program, std::vector<std::byte> after_reset,
+              const std::vector<std::size_t>& inputs = {});
 
   /// How many of them are on the disk; from any thread.
   [[nodiscard]] std::uint64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
@@ -141,13 +144,16 @@ class Retainer {
  public:
   /// As RetainImage says of the program and its state when it begins. The program must outlive it.
   Retainer(RetainFiles& files, const StepProgram& program, const Recovery& start,
-           std::vector<std::byte> after_reset = {});
+           std::vector<std::byte> after_reset = {}, std::vector<std::size_t> inputs = {});
   ~Retainer() { finish(); }
   Retainer(const Retainer&) = delete;
   Retainer& operator=(const Retainer&) = delete;
 
-  /// From the cyclic thread, between two steps; `commits`: the sets of parameters applied in this run.
-  void offer(const StepProgram& program, std::uint64_t commits = 0) noexcept;
+  /// From the cyclic thread, between two steps; `commits`: the sets of parameters applied in this run; `inputs`: all of
+  /// the program's, where some are retained.
+  void offer(const StepProgram& program, std::uint64_t commits = 0, std::span<const double> inputs = {}) noexcept;
+  /// The inputs that are retained, of a version as of all.
+  [[nodiscard]] const std::vector<std::size_t>& inputs() const noexcept { return inputs_; }
   /// From the cyclic thread: what is offered from now on is of another program, which has this image. What was offered
   /// before and is not written yet never is.
   void change(RetainImage& image) noexcept { image_.store(&image, std::memory_order_release); }
@@ -169,6 +175,7 @@ class Retainer {
   [[nodiscard]] std::string write(const RetainImage& image, const RetainedValues& values);
 
   RetainFiles* files_;
+  std::vector<std::size_t> inputs_;
   RetainImage first_;
   std::atomic<RetainImage*> image_{&first_};  ///< of the program that runs
   std::mutex writing_{};                      ///< held while an image is read; never taken by the cyclic thread

@@ -38,9 +38,11 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       ages_(program.shape().inputs.size(), 0) {
   settings_.loop.period = program.shape().period;
   status_.field = field_counts_;
-  for (const ProgramSignal& input : program.shape().inputs) {
-    inputs_.push_back(input.preset);
-    last_good_.push_back(input.preset);
+  for (std::size_t i = 0; i < program.shape().inputs.size(); ++i) {
+    const double start = settings_.inputs[i].start.value_or(program.shape().inputs[i].preset);
+    inputs_.push_back(start);
+    last_good_.push_back(start);
+    door_.begin_with(i, start, settings_.inputs[i].is_retained);
   }
 }
 
@@ -194,7 +196,7 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
   if (attachments_.retainer != nullptr) {
     const bool is_due = settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0;
     if ((is_due || applied_commits_ != offered_commits_ || has_changed_) && !tripped_) {
-      attachments_.retainer->offer(running(), applied_commits_);
+      attachments_.retainer->offer(running(), applied_commits_, inputs_);
       offered_commits_ = applied_commits_;
       has_changed_ = false;
     }
@@ -210,6 +212,7 @@ void Task::publish(const LoopStatistics& statistics) noexcept {
   status_.last_fault = faults_.newest().last;
   if (attachments_.field != nullptr) {
     attachments_.field->count(field_counts_);
+    status_.absent = attachments_.field->absent();
   }
   door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
 }
@@ -224,7 +227,8 @@ void Task::count_writes() noexcept {
   }
   if (attachments_.trace != nullptr) {
     status_.dropped = attachments_.trace->dropped();
-    status_.write_failures += attachments_.trace->is_cut() ? 1 : 0;
+    status_.trace_is_cut = attachments_.trace->is_cut();
+    status_.write_failures += status_.trace_is_cut ? 1 : 0;
   }
   status_.history = attachments_.history == nullptr ? KeptCount{} : attachments_.history->read();
   status_.mqtt = attachments_.mqtt == nullptr ? KeptCount{} : attachments_.mqtt->read();
@@ -264,7 +268,7 @@ void Task::settle(Clock& clock, Fault fault) {
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
-    attachments_.retainer->offer(running(), applied_commits_);
+    attachments_.retainer->offer(running(), applied_commits_, inputs_);
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/task/changeable_program.hpp"
@@ -25,6 +26,8 @@ namespace hysteron::runtime {
 struct InputSettings {
   bool from_device = false;
   std::uint64_t longest_age = 0;  ///< cycles since the last write of a server; 0: never stale
+  bool is_retained = false;       ///< what servers write is kept through a restart
+  std::optional<double> start{};  ///< what it begins with; else the diagram's
 };
 
 struct TaskSettings {

@@ -16,6 +16,7 @@ struct Status {
   const char* unit;
   const char* meaning;
   bool counts = false;
+  bool comes_last = false;
 };
 
 constexpr Status count_of(const char* name, const char* meaning) {
@@ -62,6 +63,10 @@ constexpr std::array statuses{
     Status{"task.version", PointType::uint64, "1",
            "the version of the diagram: 1, and one more with each online change"},
     Status{"task.online_change", PointType::uint16, "1", "0 none, 1 changed, 2 refused, 3 changed back"},
+    Status{"task.shortages", PointType::uint16, "1",
+           "what is tried again while the control goes on, by bits: 1 Modbus has no address yet, 2 nor has the page, "
+           "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace",
+           false, true},
 };
 constexpr std::size_t status_count = statuses.size();
 
@@ -134,7 +139,8 @@ TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, 
          .type = status.type,
          .unit = status.unit,
          .meaning = status.meaning,
-         .counts = status.counts});
+         .counts = status.counts,
+         .comes_last = status.comes_last});
   }
   for (const Point& point : field_points) {
     add(point);
@@ -250,6 +256,13 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   return {};
 }
 
+void TaskDoor::begin_with(std::size_t input, double value, bool is_retained) {
+  const std::lock_guard lock(servers_);
+  points_[input].is_retained = is_retained;
+  wanted_.inputs[input] = value;
+  orders_.filling() = wanted_;
+}
+
 void TaskDoor::hold_commits(bool held) {
   const std::lock_guard lock(servers_);
   commits_are_held_ = held;
@@ -289,6 +302,27 @@ void TaskDoor::version_changed(const StepProgram& version, std::span<const std::
       parameters_.stage(i, before.staged()[i]);
     }
   }
+}
+
+void TaskDoor::shortage(Shortage what, bool is_there) noexcept {
+  const auto bit = static_cast<std::uint16_t>(what);
+  if (is_there) {
+    shortages_.fetch_or(bit, std::memory_order_relaxed);
+  } else {
+    shortages_.fetch_and(static_cast<std::uint16_t>(~bit), std::memory_order_relaxed);
+  }
+}
+
+/// Those that servers tell, and those that other status values say already.
+std::uint16_t TaskDoor::shortages_of(const TaskStatus& status) const noexcept {
+  unsigned bits = shortages_.load(std::memory_order_relaxed);
+  const auto add = [&](Shortage what, bool is_there) { bits |= is_there ? static_cast<unsigned>(what) : 0U; };
+  add(Shortage::device, status.absent > 0);
+  add(Shortage::tls, status.tls_fault != 0);
+  add(Shortage::mqtt, status.mqtt.fault != 0);
+  add(Shortage::history, status.history.fault != 0);
+  add(Shortage::trace, status.trace_is_cut);
+  return static_cast<std::uint16_t>(bits);
 }
 
 void TaskDoor::publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
@@ -334,6 +368,7 @@ void TaskDoor::publish(const StepProgram& program, std::span<const double> input
       static_cast<double>(status.tls_fault),
       static_cast<double>(status.version),
       static_cast<double>(status.last_change),
+      static_cast<double>(shortages_of(status)),
   };
   at = std::ranges::copy(values, at).out;
   at = std::ranges::copy(status.field, at).out;

@@ -4,6 +4,7 @@
 // cyclic thread takes is always one whole set of orders, the newest, between two steps.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,8 @@ struct TaskStatus {
   KeptCount history{};
   KeptCount mqtt{};
   std::uint8_t tls_fault = 0;
+  std::size_t absent = 0;  ///< devices
+  bool trace_is_cut = false;
   std::uint64_t version = 1;     ///< of the diagram, since the start
   std::uint8_t last_change = 0;  ///< online, as task.online_change says it
   double heartbeat = 0.0;
@@ -70,6 +73,10 @@ class TaskDoor final : public PointDoor {
   std::string write(std::span<const PointWrite> writes) override;
   [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
   void read_live(LiveValues& into) override;
+  void shortage(Shortage what, bool is_there) noexcept override;
+
+  /// Before the task runs: what an input begins with, and whether it is retained.
+  void begin_with(std::size_t input, double value, bool is_retained);
 
   // For an online change, from a thread beside the cyclic one:
   /// While it is under way no set of parameters is committed, which would be judged by the version that goes.
@@ -90,6 +97,7 @@ class TaskDoor final : public PointDoor {
   enum class Command : std::uint8_t { commit, discard, reset, heartbeat };
 
   void add(Point point) { points_.push_back(std::move(point)); }
+  [[nodiscard]] std::uint16_t shortages_of(const TaskStatus& status) const noexcept;
   void add_command(const char* name, WriteRight right, const char* meaning);
 
   std::vector<Point> points_;
@@ -101,6 +109,7 @@ class TaskDoor final : public PointDoor {
   std::vector<double> published_;  ///< of the cyclic thread
   std::vector<SampleTap*> taps_{};
   std::int64_t high_lateness_ = 0;
+  std::atomic<std::uint16_t> shortages_{0};
 
   std::mutex servers_;      ///< between servers; the cyclic thread never takes it
   ProgramShape judged_by_;  ///< the parameters of the first version, as that judges them which runs

@@ -41,8 +41,16 @@ std::span<const std::byte> bytes_of(const T& value) {
 
 }  // namespace
 
+std::uint64_t memory_before(const TraceTrigger& trigger, std::size_t inputs, std::size_t outputs) {
+  const std::uint64_t step = record_head + 20 + sizeof(double) * (inputs + 2 * outputs);
+  return 2 * std::max<std::uint64_t>(1, trigger.before) * step;
+}
+
 TraceSelector::TraceSelector(const TraceHead& head, std::optional<TraceTrigger> trigger)
-    : inputs_(head.inputs.size()), outputs_(head.outputs.size()), trigger_(trigger) {}
+    : inputs_(head.inputs.size()), outputs_(head.outputs.size()), trigger_(trigger) {
+  const std::string text = text_of(head);
+  append_record(program_record_, TraceKind::program, std::as_bytes(std::span(text)));
+}
 
 void TraceSelector::feed(std::span<const std::byte> records, std::string& out) {
   const std::string_view all(reinterpret_cast<const char*>(records.data()), records.size());
@@ -57,19 +65,33 @@ void TraceSelector::feed_one(TraceKind kind, std::string_view record, std::strin
   const bool is_step = kind == TraceKind::step;
   if (kind == TraceKind::program) {
     kept_.clear();  // of the program before, which another file would not replay
+    program_record_ = record;
     out += record;
     return;
   }
   if (!trigger_ || fired_) {
     out += record;
-    finished_ = fired_ && is_step && --left_ == 0;
+    if (fired_ && is_step && --left_ == 0) {
+      end_capture();
+    }
     return;
   }
-  if (kind == TraceKind::state || kept_.empty()) {
+  keep(kind, record);
+  if (is_step && fires(record.substr(record_head)) && !kept_.empty()) {
+    begin_capture(out);
+  }
+}
+
+void TraceSelector::keep(TraceKind kind, std::string_view record) {
+  const bool is_armed_again = captures_ > 0;
+  if (kind == TraceKind::state || (kept_.empty() && !is_armed_again)) {
     kept_.emplace_back();
   }
+  if (kept_.empty()) {
+    return;  // without a state before it, it could not be replayed
+  }
   kept_.back().bytes += record;
-  kept_.back().steps += is_step ? 1 : 0;
+  kept_.back().steps += kind == TraceKind::step ? 1 : 0;
   // The oldest goes when the rest is enough.
   std::uint64_t later = 0;
   for (std::size_t i = 1; i < kept_.size(); ++i) {
@@ -78,15 +100,24 @@ void TraceSelector::feed_one(TraceKind kind, std::string_view record, std::strin
   if (later > trigger_->before) {
     kept_.pop_front();
   }
-  if (is_step && fires(record.substr(5))) {
-    fired_ = true;
-    left_ = trigger_->after;
-    finished_ = left_ == 0;
-    for (const Segment& segment : kept_) {
-      out += segment.bytes;
-    }
-    kept_.clear();
+}
+
+void TraceSelector::begin_capture(std::string& out) {
+  fired_ = true;
+  left_ = trigger_->after;
+  out += captures_++ > 0 ? program_record_ : "";
+  for (const Segment& segment : kept_) {
+    out += segment.bytes;
   }
+  kept_.clear();
+  if (left_ == 0) {
+    end_capture();
+  }
+}
+
+void TraceSelector::end_capture() {
+  finished_ = captures_ >= trigger_->captures;
+  fired_ = finished_;
 }
 
 bool TraceSelector::fires(std::string_view contents) {
@@ -122,7 +153,10 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
   if (file_.write(head_) < head_.size()) {
     const int reason = errno;
     file_.give_back();
-    throw std::system_error(reason, std::generic_category(), settings.file.string());
+    if (!is_want_of_room(reason)) {
+      throw std::system_error(reason, std::generic_category(), settings.file.string());
+    }
+    cut(0);  // it is begun as soon as there is room
   }
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {

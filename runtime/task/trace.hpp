@@ -1,7 +1,8 @@
 // The trace of a running task: every cycle goes into a ring, from there a thread of its own writes it to a file.
 //
 // Without a trigger everything is written. With one, so many steps before it, the step itself and so many after it; the
-// recording begins at a kept state, so that it can be replayed. What the ring has no room for is counted, exactly, and
+// recording begins at a kept state, so that it can be replayed. Armed again, it waits for the next state; each capture
+// begins another file. What the ring has no room for is counted, exactly, and
 // the next state makes what follows replayable again. Where the file takes no more, the trace ends with its last whole
 // record, and every step from there on is counted as dropped; now and then another file is tried, and begun where it
 // can be. A file that has grown to its size is followed by another, which begins at a state, so that each can be
@@ -36,7 +37,11 @@ struct TraceTrigger {
   double level = 0.0;
   std::uint64_t before = 1000;  ///< steps
   std::uint64_t after = 1000;
+  std::uint64_t captures = 1;  ///< it fires so often at the most: it is armed again once a capture is whole
 };
+
+/// The memory that steps before the trigger take at most: they are kept from state to state, so up to twice as many.
+[[nodiscard]] std::uint64_t memory_before(const TraceTrigger& trigger, std::size_t inputs, std::size_t outputs);
 
 struct TraceSettings {
   std::filesystem::path file{};
@@ -57,6 +62,10 @@ class TraceSelector {
 
  private:
   void feed_one(TraceKind kind, std::string_view record, std::string& out);
+  void keep(TraceKind kind, std::string_view record);
+  /// The trigger has fired with the newest kept step.
+  void begin_capture(std::string& out);
+  void end_capture();
   [[nodiscard]] bool fires(std::string_view contents);
 
   /// Records from a state up to the next.
@@ -72,6 +81,8 @@ class TraceSelector {
   bool was_beyond_ = true;  ///< a signal that begins beyond the level has not crossed it
   bool finished_ = false;
   std::uint64_t left_ = 0;
+  std::uint64_t captures_ = 0;    ///< that were begun
+  std::string program_record_{};  ///< of the program that is recorded: before it, another file begins
 };
 
 /// What a trace needs for a program: its head, and room for parameters and state.
@@ -84,7 +95,8 @@ struct TraceProgram {
 
 class Trace {
  public:
-  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does.
+  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where
+  /// only room is wanting, it is cut from the start, and begun once there is some.
   Trace(const TraceSettings& settings, const StepProgram& program);
   ~Trace() { finish(); }
   Trace(const Trace&) = delete;

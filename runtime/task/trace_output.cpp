@@ -62,13 +62,24 @@ bool shift(const std::filesystem::path& file, std::size_t kept) {
 
 }  // namespace
 
+bool is_want_of_room(int problem) {
+  return problem == ENOSPC || problem == EDQUOT || problem == EFBIG;
+}
+
 std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number) {
   return std::filesystem::path(file).concat("." + std::to_string(number));
 }
 
 TraceOutput::TraceOutput(std::filesystem::path file, std::size_t kept)
     : file_(std::move(file)), kept_(std::max<std::size_t>(1, kept)) {
-  open_next();
+  try {
+    open_next();
+  } catch (const std::system_error& failed) {
+    if (!is_want_of_room(failed.code().value())) {
+      throw;
+    }
+    problem_ = failed.what();
+  }
 }
 
 void TraceOutput::open_next() {
@@ -106,7 +117,9 @@ bool TraceOutput::begin_next() {
     (void)::flock(before, LOCK_EX | LOCK_NB);
     return false;
   }
-  (void)::close(before);
+  if (before >= 0) {
+    (void)::close(before);
+  }
   return true;
 }
 
@@ -118,11 +131,17 @@ bool TraceOutput::is_taken_away() const {
 }
 
 TraceOutput::~TraceOutput() {
-  (void)::close(descriptor_);
+  if (descriptor_ >= 0) {
+    (void)::close(descriptor_);
+  }
 }
 
 std::size_t TraceOutput::write(std::string_view bytes) {
   std::size_t done = 0;
+  if (descriptor_ < 0) {
+    errno = ENOSPC;  // it has not been begun for want of room
+    return done;
+  }
   while (done < bytes.size()) {
     const auto count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno != EINTR) {

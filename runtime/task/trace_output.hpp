@@ -11,6 +11,9 @@
 
 namespace hysteron::runtime {
 
+/// Whether a problem, as errno says it, goes by itself where somebody makes room.
+[[nodiscard]] bool is_want_of_room(int problem);
+
 /// Where the trace before is kept: FILE.1; those before it are FILE.2, …
 [[nodiscard]] std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number = 1);
 
@@ -18,7 +21,8 @@ class TraceOutput {
  public:
   /// What stands there is moved to previous_trace(file), where it has any bytes, and the others on by one: the one
   /// numbered `kept`, at least 1, goes. Throws std::system_error where it cannot be;
-  /// std::errc::resource_unavailable_try_again where another process writes it.
+  /// std::errc::resource_unavailable_try_again where another process writes it. Where only room is wanting, nothing is
+  /// written until begin_next() finds some.
   explicit TraceOutput(std::filesystem::path file, std::size_t kept = 1);
   ~TraceOutput();
   TraceOutput(const TraceOutput&) = delete;

@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "runtime/modbus/descriptor.hpp"
-#include "runtime/modbus/listen.hpp"
+#include "runtime/modbus/listener.hpp"
 #include "runtime/web/responder.hpp"
 
 namespace hysteron::runtime::web {
@@ -298,10 +298,9 @@ class Server::Loop final : public Host {
   Loop(PointDoor& door, const Subject& subject, const ServerOptions& options)
       : door_(door), options_(options), responder_(door, subject, options.access) {
     check_access(options.endpoint, options.access);
-    modbus::Descriptor listening = modbus::listen_on(options.endpoint.address, options.endpoint.port, {});
-    port_ = modbus::port_of(listening);
-    acceptor_.emplace(context_, protocol_of(options.endpoint), ::fcntl(listening.number(), F_DUPFD_CLOEXEC, 0));
-    accept();
+    listener_.emplace(options.endpoint.address, options.endpoint.port, Place{}, options.tell);
+    door_.shortage(Shortage::page, !listener_->is_open());
+    listen();
     tick(Clock::now());
     thread_ = std::thread([this] { run(); });
   }
@@ -316,7 +315,7 @@ class Server::Loop final : public Host {
     reader_.join();
   }
 
-  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::uint16_t port() const { return listener_->port(); }
   [[nodiscard]] const Counters& counted() const { return counters_; }
 
  private:
@@ -365,6 +364,23 @@ class Server::Loop final : public Host {
     }
     counters_.open.store(connections_.size(), std::memory_order_relaxed);
     counters_.streams.store(streams, std::memory_order_relaxed);
+  }
+
+  /// At once, or as soon as the address is there.
+  void listen() {
+    if (listener_->is_open()) {
+      acceptor_.emplace(context_, protocol_of(options_.endpoint),
+                        ::fcntl(listener_->socket().number(), F_DUPFD_CLOEXEC, 0));
+      accept();
+      return;
+    }
+    pause_.expires_at(*listener_->next_try());
+    pause_.async_wait([this](beast::error_code /*fault*/) {
+      if (listener_->try_again(Clock::now())) {
+        door_.shortage(Shortage::page, false);
+      }
+      listen();
+    });
   }
 
   void accept() {
@@ -440,7 +456,7 @@ class Server::Loop final : public Host {
   Counters counters_;
   LiveValues live_{};
   std::uint64_t next_number_ = 0;
-  std::uint16_t port_ = 0;
+  std::optional<modbus::Listener> listener_{};
   asio::io_context context_{1};
   asio::steady_timer timer_{context_};
   asio::steady_timer pause_{context_};

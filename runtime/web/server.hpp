@@ -9,7 +9,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "runtime/point.hpp"
 #include "runtime/web/access.hpp"
@@ -35,6 +37,7 @@ struct ServerOptions {
   Endpoint endpoint{};
   Access access{};
   Limits limits{};
+  std::function<void(const std::string& line)> tell{};  ///< takes a line for standard error
 };
 
 /// Counted since the start.

@@ -16,6 +16,7 @@
 #include "tests/runtime/task/linked_sets.hpp"
 #include "tests/runtime/task/retain_kill.hpp"
 #include "tests/runtime/task/scripted_loop.hpp"
+#include "tests/soak/ordinary_days.hpp"
 #include "tests/soak/rows.hpp"
 #include "tool/serve_program.hpp"
 
@@ -239,6 +240,8 @@ std::vector<Row> rows() {
                {"every_cut", "every way to cut a 12-byte request", 1, every_cut},
                {"bad_servers", "client role against a scripted bad server", 1000, bad_servers},
                {"clients", "word orders × types against other people's clients", 1, clients}});
+  const std::vector<Row> days = ordinary_days();
+  list.insert(list.end(), days.begin(), days.end());
   return list;
 }
 

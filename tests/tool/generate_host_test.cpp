@@ -162,12 +162,12 @@ TEST(GenerateHost, TheUnitHasTheRightsThatTheRunFileNeedsAndNoOther) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return bench.read("host/hysteron-plant.service.in");
   };
-  EXPECT_THAT(unit(""),
-              AllOf(HasSubstr("\nType=notify\n"), HasSubstr("\nWatchdogSec="), HasSubstr("\nDynamicUser=yes\n"),
-                    HasSubstr("\nNoNewPrivileges=yes\n"), HasSubstr("\nProtectSystem=strict\n"),
-                    HasSubstr("\nKillMode=control-group\n"), HasSubstr("\nRestart=on-failure\n"),
-                    HasSubstr("\nLimitRTPRIO=80\nLimitMEMLOCK=infinity\nCapabilityBoundingSet=\n"),
-                    HasSubstr("\nPrivateDevices=yes\n"), Not(HasSubstr("ReadWritePaths"))));
+  EXPECT_THAT(unit(""), AllOf(HasSubstr("\nType=notify\n"), HasSubstr("\nWatchdogSec="),
+                              HasSubstr("\nStartLimitIntervalSec=0\n"), HasSubstr("\nDynamicUser=yes\n"),
+                              HasSubstr("\nNoNewPrivileges=yes\n"), HasSubstr("\nProtectSystem=strict\n"),
+                              HasSubstr("\nKillMode=control-group\n"), HasSubstr("\nRestart=on-failure\n"),
+                              HasSubstr("\nLimitRTPRIO=80\nLimitMEMLOCK=infinity\nCapabilityBoundingSet=\n"),
+                              HasSubstr("\nPrivateDevices=yes\n"), Not(HasSubstr("ReadWritePaths"))));
   EXPECT_THAT(unit(""), HasSubstr("\nTimeoutStopSec=15\n"));
   EXPECT_THAT(unit("on_fault = \"ramp\"\nramp = 0.5\nlow = -10.0\nhigh = 20.0\nhold_cycles = 3000\n"),
               HasSubstr("\nTimeoutStopSec=58\n"))

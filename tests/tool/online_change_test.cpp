@@ -10,6 +10,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ namespace {
 
 using test::soon;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr std::string_view online_run_file = R"([task]
@@ -72,8 +74,9 @@ std::string stage(bool has_limiter, const std::string& gain = "0.25") {
 /// A task of its own process in the folder of the bench.
 class Served {
  public:
-  explicit Served(const test::Workbench& bench, const std::string& options = "") : bench_(&bench) {
-    (void)bench.shell("rm -f said.txt; hysteron serve stage.st --config run.toml " + options +
+  explicit Served(const test::Workbench& bench, const std::string& options = "", const std::string& environment = "")
+      : bench_(&bench) {
+    (void)bench.shell("rm -f said.txt; " + environment + "hysteron serve stage.st --config run.toml " + options +
                       " > said.txt 2> told.txt & echo $! > pid.txt");
     has_begun_ = soon([&] { return bench.has("said.txt") && bench.read("said.txt").find('\n') != std::string::npos; });
     process_ = std::stoi(bench.read("pid.txt"));
@@ -128,7 +131,7 @@ TEST(OnlineChangeCommand, ChangesAndChangesBackByBothEngines) {
     EXPECT_EQ(changed.code, 0) << changed.err;
     EXPECT_THAT(changed.out, StartsWith("STAGE: version 2 runs\n3 of 5 parameters and 5 of 5 states were carried"));
     EXPECT_THAT(changed.out, HasSubstr("\nnot carried over: TOP.MN (new), TOP.MX (new)\n"));
-    EXPECT_THAT(changed.out, HasSubstr("AMP.K = 0.25 V/um (0.3 in the diagram)\n"));
+    EXPECT_THAT(changed.out, HasSubstr("AMP.K = 0.25 V/um (0.3 in the files)\n"));
     const auto back = bench.shell("hysteron online-change run.toml --back");
     EXPECT_EQ(back.code, 0) << back.err;
     EXPECT_THAT(back.out, StartsWith("STAGE: back; version 3 runs\n"));
@@ -196,13 +199,80 @@ TEST(OnlineChangeCommand, WhatIsRefusedChangesNothing) {
   const auto jumps = bench.shell("hysteron online-change run.toml --as-given AMP.K");
   EXPECT_THAT(jumps.err, StartsWith("HY851 error: The output U would jump by 0.0789"));
   EXPECT_THAT(jumps.err, HasSubstr(" V from 5 to 5.0789"));
-  EXPECT_THAT(jumps.err, HasSubstr("; its limit is 0.01 V (bump in the run file).\n"));
+  EXPECT_THAT(jumps.err, HasSubstr("; its limit is 0.01 V (bump in the run file at the start).\n"));
   EXPECT_EQ(bench.shell("hysteron online-change run.toml --as-given AMP.K --bump U=0.3").code, 0);
   EXPECT_THAT(bench.shell("hysteron online-change run.toml --back").err, StartsWith("HY851 error: The output U"));
   EXPECT_EQ(bench.read("stage.st"), stage(false, "0.45"));
   EXPECT_FALSE(bench.has("stage.st.undone"));
   task.end(SIGTERM);
   EXPECT_THAT(task.told(), HasSubstr("Online change: refused, HY103: "));
+}
+
+/// What a restart would be refused with refuses the change: a restart has to come up with the version that runs.
+TEST(OnlineChangeCommand, ARunFileThatCouldNotStartTheNewVersionRefusesIt) {
+  const test::Workbench bench;
+  bench.write("stage.st", stage(false));
+  bench.write("run.toml", online_run_file);
+  Served task(bench, "--engine interpreter");
+  ASSERT_TRUE(task.has_begun()) << task.told();
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml --check").out, Not(HasSubstr("run file was edited")));
+  bench.write("run.toml", std::string(online_run_file) + "[modbus]\nport = 0\nlissten = \"127.0.0.1\"\n");
+  for (const char* const line : {"hysteron online-change run.toml --check", "hysteron online-change run.toml"}) {
+    const auto misspelt = bench.shell(line);
+    EXPECT_EQ(misspelt.code, 2);
+    EXPECT_THAT(misspelt.err, StartsWith("HY803 error: run.toml:18:"));
+  }
+  // An address of a parameter that only the new version lacks.
+  bench.write("run.toml", std::string(online_run_file) + "[modbus]\nport = 0\n[addresses]\nTOP.MX = \"holding 100\"\n");
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml").err, StartsWith("HY826 error: run.toml:18:"));
+  bench.write("stage.st", stage(true));
+  const auto edited = bench.shell("hysteron online-change run.toml");
+  EXPECT_EQ(edited.code, 0) << edited.err;
+  EXPECT_THAT(edited.out,
+              HasSubstr("the run file was edited since the start of the task: what it says now counts from the "
+                        "next start on\n"));
+  EXPECT_EQ(bench.shell("hysteron online-change run.toml --back").code, 0) << "no file stands in the way back";
+}
+
+/// A file that was deleted is brought back, and nothing is kept of what was not there.
+TEST(OnlineChangeCommand, AFileThatIsMissingAtTheWayBackLeavesNoEmptyOne) {
+  const test::Workbench bench;
+  bench.write("stage.st", stage(false));
+  bench.write("run.toml", online_run_file);
+  Served task(bench, "--engine interpreter");
+  ASSERT_TRUE(task.has_begun()) << task.told();
+  bench.write("stage.st", stage(true));
+  ASSERT_EQ(bench.shell("hysteron online-change run.toml").code, 0);
+  std::filesystem::remove(bench.path() / "stage.st");
+  const auto back = bench.shell("hysteron online-change run.toml --back");
+  EXPECT_EQ(back.code, 0) << back.err;
+  EXPECT_THAT(back.out, HasSubstr("stage.st was missing, and is as before\n"));
+  EXPECT_EQ(bench.read("stage.st"), stage(false));
+  EXPECT_FALSE(bench.has("stage.st.undone"));
+}
+
+/// What is refused whatever its steps do is refused before a compiler is started; what takes longer says what it does.
+TEST(OnlineChangeCommand, WhoWaitsIsToldForWhat) {
+  const test::Workbench bench;
+  bench.write("stage.st", stage(false));
+  bench.write("run.toml", online_run_file);
+  // Each call of this compiler takes its time, and is noted.
+  bench.write("slow.sh", "#!/bin/sh\necho called >> compiler.txt\nsleep 2\nexec c++ \"$@\"\n");
+  (void)bench.shell("chmod +x slow.sh");
+  Served slow(bench, "--engine compiled", "CXX=\"$PWD/slow.sh\" ");
+  ASSERT_TRUE(slow.has_begun()) << slow.told();
+  (void)bench.shell("rm -f compiler.txt");
+  std::string other = stage(true, "0.2501");
+  other.replace(other.find("@unit um"), 8, "@unit mm");
+  bench.write("stage.st", other);
+  const auto refused = bench.shell("hysteron online-change run.toml");
+  EXPECT_THAT(refused.err, StartsWith("HY850 error: The input Y_REF in um has another unit: mm."));
+  EXPECT_FALSE(bench.has("compiler.txt"));
+  bench.write("stage.st", stage(true, "0.2501"));
+  const auto compiled = bench.shell("hysteron online-change run.toml --check");
+  EXPECT_EQ(compiled.code, 0) << compiled.err;
+  EXPECT_TRUE(bench.has("compiler.txt"));
+  EXPECT_THAT(compiled.err, HasSubstr("note: run.toml: waits; the task compiles the new version\n"));
 }
 
 /// No other user: the file is its owner's alone, and who comes another way is not heard.

@@ -127,6 +127,43 @@ TEST(DeviceField, WhereTheDiagramLooksAfterItALossIsNoFault) {
   EXPECT_TRUE(test::soon([&] { return field.read(inputs) == Fault::none && inputs[2] == lost && inputs[1] > 0.3; }));
 }
 
+/// It never answered: the task goes on without it where it may, and from its first answer on a loss is a loss.
+TEST(DeviceField, ADeviceThatMayBeAbsentIsNoFaultUntilItHasAnswered) {
+  const std::uint16_t port = test::free_port();
+  RunConfig config = config_of(port);
+  config.devices[0].may_be_absent = true;
+  ServedDevice stage(port);
+  DeviceField field(config, false);
+  Inputs inputs{7.0};
+  std::vector<double> counts(device_points(config).size());
+  const auto link = [&] {
+    field.count(counts);
+    return counts[0];
+  };
+  // Beyond the longest age of X, and after some attempts.
+  const auto until = std::chrono::steady_clock::now() + milliseconds(400);
+  while (std::chrono::steady_clock::now() < until) {
+    field.write(std::array{0.5});
+    ASSERT_EQ(field.read(inputs), Fault::none);
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  EXPECT_EQ(inputs[0], 7.0) << "nothing was read: the default stays";
+  EXPECT_EQ(field.absent(), 1U);
+  EXPECT_EQ(field.absent_devices(), std::vector<std::string>{"stage"});
+  EXPECT_EQ(link(), 3.0);
+  EXPECT_EQ(field.delivery(), Delivery::done) << "an end does not wait for it";
+  stage.give(0.25);
+  stage.start();
+  EXPECT_TRUE(test::soon([&] {
+    field.write(std::array{0.5});
+    return field.read(inputs) == Fault::none && field.absent() == 0 && inputs[0] == 0.25 && stage.taken() == 0.5;
+  }));
+  EXPECT_EQ(link(), 1.0);
+  stage.stop();
+  EXPECT_TRUE(test::soon([&] { return field.read(inputs) == Fault::lost_link; }));
+  EXPECT_EQ(field.absent(), 0U);
+}
+
 TEST(DeviceField, WhatADeviceRefusesIsStale) {
   const std::uint16_t port = test::free_port();
   ServedDevice stage(port);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -23,11 +24,13 @@ namespace {
 RunConfig config_of(const std::string& link, const std::string& place, const std::string& more = "") {
   const ProgramShape shape{
       .name = "PLANT", .period = 1'000'000, .outputs = {{.name = "Y"}, {.name = "Z", .type = PointType::real64}}};
-  return parse_run_config("RUN.toml",
-                          fmt::format("[devices.stage]\n{}\n[outputs.Y]\nsafe = 0\ndevice = \"stage\"\n{}\n"
-                                      "[outputs.Z]\nsafe = 0\n{}",
-                                      link, place, more),
-                          shape);
+  RunConfig config = parse_run_config("RUN.toml",
+                                      fmt::format("[devices.stage]\n{}\n[outputs.Y]\nsafe = 0\ndevice = \"stage\"\n{}\n"
+                                                  "[outputs.Z]\nsafe = 0\n{}",
+                                                  link, place, more),
+                                      shape);
+  look_up_hosts(config, std::chrono::seconds(30));
+  return config;
 }
 
 std::string at(std::string_view host, int port) {
@@ -95,7 +98,7 @@ TEST(OutputClaims, AGuardIsAGuardHoweverOftenItIsAsked) {
   const auto config = config_of(at("127.0.0.1", test::free_port()), "register = 0");
   auto first = std::make_unique<OutputClaims>(config);
   ASSERT_FALSE(first->claim());
-  first->listen();
+  first->guard_listens();
   OutputClaims waiting(config);
   for (int tries = 0; tries < 10'000; ++tries) {
     const auto holder = waiting.claim();

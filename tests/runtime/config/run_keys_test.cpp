@@ -38,7 +38,8 @@ std::string before(const RunTable& table, std::string_view key) {
     return device + "[outputs.Y]\n" + (key == "safe" ? "" : "safe = 0.0\n") + (on_device ? "device = \"stage\"\n" : "");
   }
   if (name == "[inputs.NAME]") {
-    return others + device + "[inputs.X]\n" + (on_device ? "device = \"stage\"\n" : "");
+    return (key == "retain" ? "[retain]\nfolder = \"kept\"\n" : "") + others + device + "[inputs.X]\n" +
+           (on_device ? "device = \"stage\"\n" : "");
   }
   if (name == "[devices.NAME]") {
     return others + device + (serial ? "serial = \"/dev/ttyS0\"\n" : "");
@@ -48,7 +49,11 @@ std::string before(const RunTable& table, std::string_view key) {
   }
   if (name == "[trace]") {
     return others + "[trace]\n" + (key == "file" ? "" : "file = \"run.trace\"\n") +
-           (key == "before" || key == "after" ? "trigger = \"fault\"\n" : "");
+           (key == "before" || key == "after" || key == "captures" ? "trigger = \"fault\"\n" : "") +
+           (key == "captures" ? "files = 1000\n" : "");
+  }
+  if (name == "[online_change]") {
+    return others + "[online_change]\n" + (key == "socket" ? "" : "socket = \"a.socket\"\n");
   }
   if (name == "[history]") {
     return others + "[history]\n" + (key == "file" ? "" : "file = \"history.sqlite\"\n");

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "runtime/host/host.hpp"
+#include "runtime/host/served_map.hpp"
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/device.hpp"
 #include "runtime/modbus/server.hpp"

@@ -14,6 +14,7 @@
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
 #include "tests/runtime/host/many_changes.hpp"
+#include "tests/runtime/host/running_plant.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/runtime/task/integrators.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -25,109 +26,12 @@ namespace {
 using hysteron::test::soon;
 using test::Integrator;
 using test::integrators;
+using test::Plant;
+using test::refusal_by;
 using test::value;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-/// Virtual time that leaves others their turn; a step can take some of it.
-class PacedClock final : public Clock {
- public:
-  [[nodiscard]] std::int64_t now() noexcept override { return now_; }
-  void sleep_until(std::int64_t time) noexcept override {
-    std::this_thread::sleep_for(std::chrono::microseconds(20));
-    now_ = std::max(now_, time);
-  }
-  [[nodiscard]] std::int64_t own_cpu() noexcept override { return 0; }
-  [[nodiscard]] std::int64_t stolen() noexcept override { return 0; }
-  void pass(std::int64_t time) noexcept { now_ += time; }
-
- private:
-  std::int64_t now_ = 0;
-};
-
-TaskSettings plant_settings() {
-  return {.watchdog = {.time = 500'000'000}, .inputs = {{}}, .outputs = {{.low = -50.0, .high = 50.0}}};
-}
-
-/// A task in a thread of its own, with what is asked for attached.
-class Plant {
- public:
-  explicit Plant(std::unique_ptr<StepProgram> first, double most = 1e300)
-      : program_(std::move(first)),
-        task_(program_, plant_settings()),
-        change_(program_, task_, {{.limit = {.most = most, .low = -50.0, .high = 50.0}, .origin = "a test"}}) {}
-  ~Plant() { end(); }
-  Plant(const Plant&) = delete;
-  Plant& operator=(const Plant&) = delete;
-  Plant(Plant&&) = delete;
-  Plant& operator=(Plant&&) = delete;
-
-  void keep_in(const hysteron::test::ScratchFolder& folder) {
-    files_ = std::make_unique<RetainFolder>(folder.path() / "kept");
-    files_->open();
-    retainer_ = std::make_unique<Retainer>(*files_, program_, Recovery{}, state_of(program_));
-    trace_ = std::make_unique<Trace>(TraceSettings{.file = folder / "run.trace", .waits = true}, program_);
-  }
-  void start() {
-    task_.attach({.retainer = retainer_.get(), .trace = trace_.get(), .changes = &program_});
-    thread_ = std::thread([this] { (void)task_.run(clock_, stop_); });
-    change_.begin(retainer_.get(), trace_.get());
-    run(20);
-  }
-  /// So many cycles more.
-  void run(double cycles) {
-    const double now = value(door(), "task.cycles");
-    ASSERT_TRUE(soon([&] { return value(door(), "task.cycles") >= now + cycles; }));
-  }
-  void end() {
-    stop_ = true;
-    if (thread_.joinable()) {
-      thread_.join();
-    }
-    change_.end();
-  }
-  void finish_trace() { trace_->finish(); }
-  [[nodiscard]] std::string write(std::initializer_list<std::pair<const char*, double>> values) {
-    std::vector<PointWrite> writes;
-    for (const auto& [name, number] : values) {
-      writes.push_back({test::point(door(), name), number});
-    }
-    return door().write(writes);
-  }
-
-  [[nodiscard]] TaskDoor& door() { return task_.door(); }
-  [[nodiscard]] OnlineChange& change() { return change_; }
-  [[nodiscard]] Task& task() { return task_; }
-  [[nodiscard]] PacedClock& clock() { return clock_; }
-  [[nodiscard]] RetainFolder& files() { return *files_; }
-
- private:
-  std::unique_ptr<RetainFolder> files_{};
-  ChangeableProgram program_;
-  std::unique_ptr<Retainer> retainer_{};
-  std::unique_ptr<Trace> trace_{};
-  PacedClock clock_;
-  Task task_;
-  OnlineChange change_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_{};
-};
-
-/// What refuses it: HY850: The input X is gone.
-template <class Work>
-std::string refusal_by(const Work& work) {
-  try {
-    (void)work();
-  } catch (const InputError& refused) {
-    std::string text;
-    for (const Diagnostic& one : refused.diagnostics().all()) {
-      text += fmt::format("{}HY{}: {}", text.empty() ? "" : " ", one.number, one.cause);
-    }
-    return text;
-  }
-  return "";
-}
 
 ReplayResult steps_replayed(const std::string& file, std::unique_ptr<StepProgram> program) {
   ReplayResult result;
@@ -166,13 +70,15 @@ TEST(OnlineChange, EveryStepIsThatOfOneVersionAndNoneIsLost) {
   EXPECT_EQ(there.parameters_carried, 2U);
   EXPECT_EQ(there.states_carried, 2U);
   EXPECT_THAT(there.left, ElementsAre("NEW.K (new)", "NEW.Y (new)"));
-  EXPECT_THAT(there.other_values, ElementsAre("B.K = -0.001 (7 in the diagram)", "A.K = 0.001 (7 in the diagram)"));
+  EXPECT_THAT(there.other_values, ElementsAre("B.K = -0.001 (7 in the files)", "A.K = 0.001 (7 in the files)"));
   EXPECT_THAT(there.without_register, ElementsAre("NEW.K"));
   plant.run(50);
   EXPECT_EQ(value(plant.door(), "task.version"), 2.0);
   EXPECT_EQ(value(plant.door(), "task.online_change"), 1.0);
   const ChangeReport back = plant.change().change_back({});
   EXPECT_EQ(back.version, 3U);
+  EXPECT_THAT(back.left, ElementsAre("NEW.K (gone)", "NEW.Y (gone)"));
+  EXPECT_THAT(back.as_before, IsEmpty());
   plant.run(50);
   EXPECT_EQ(value(plant.door(), "task.online_change"), 3.0);
   plant.end();

@@ -1,8 +1,12 @@
 // A start that is refused leaves devices and files as they are, and one that is not waits for the guard before it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstddef>
@@ -15,7 +19,9 @@
 #include "runtime/host/output_turn.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "support/text_file.hpp"
+#include "tests/runtime/host/dead_guard.hpp"
 #include "tests/runtime/host/host_process.hpp"
+#include "tests/runtime/host/setpoint_kills.hpp"
 #include "tests/support/error_page.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/soon.hpp"
@@ -40,8 +46,8 @@ TEST(RefusedStart, TouchesNoDeviceAndNoFile) {
       fmt::format("lock_file = \"{}\"\n[trace]\nfile = \"{}\"\n[retain]\nfolder = \"{}\"\nmismatch = \"cold\"\n",
                   folder / "a.lock", trace, folder.path().string());
   const auto names = folder.names();
-  for (const auto& [listen, number] :
-       {std::pair(fmt::format("port = {}", modbus::port_of(taken)), "HY827 "), {"listen = \"nowhere\"", "HY829 "}}) {
+  for (const auto& [listen, number] : {std::pair(fmt::format("port = {}", modbus::port_of(taken)), "HY827 "),
+                                       {"port = 0\nallow = [\"nowhere\"]", "HY830 "}}) {
     auto text = run_file(stage.port, files);
     text.replace(text.find("port = 0"), 8, listen);
     HostProcess host(text);
@@ -112,6 +118,87 @@ TEST(RefusedStart, OnceTheTaskIsGoneTheNextOneWaitsForItsGuard) {
   EXPECT_EQ(second.end().first, 0);
 }
 
+/// The device is gone for good, and its guard with it: the task starts after its wait, and says so.
+TEST(RefusedStart, AGuardThatReachesItsDeviceNoMoreKeepsNoTaskDown) {
+  const auto port = hysteron::test::free_port();
+  auto text = run_file(port, "");
+  text.replace(text.find("silence = \"5s\""), 14, "silence = \"5s\"\nguard_wait = \"200ms\"");
+  const test::Twice program;
+  const pid_t guard = test::guard_for_ever(parse_run_config("RUN.toml", text, program.shape()));
+  HostProcess host(text);
+  int status = 0;
+  EXPECT_EQ(::waitpid(guard, &status, 0), guard);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  EXPECT_NE(
+      host.said_before().find(fmt::format("process {}, which brings outputs on stage to their safe values, 200ms at "
+                                          "the most\nTWICE: that guard has not reached stage and is ended; the "
+                                          "task starts, and goes on trying\n",
+                                          guard)),
+      std::string::npos)
+      << host.said_before();
+  // It is the task that brings the outputs to where they belong, as soon as the device is there.
+  Stage stage;
+  stage.port = port;
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return stage.door.writes() > 50; }));
+  EXPECT_EQ(host.end().first, 0);
+}
+
+/// What a client wrote is what the next start begins with, whenever the task is killed.
+TEST(RetainedSetpoint, IsNeverOlderThanWhatWasOnTheDisk) {
+  const hysteron::test::ScratchFolder folder;
+  double before = 0.0;
+  for (int kills = 0; kills < 10; ++kills) {
+    const auto result = test::kill_while_setpoints_come(folder.path() / "kept", 2'000'000 + kills * 7'000'000);
+    EXPECT_TRUE(result.holds()) << result.confirmed << " to " << result.written << ", and " << result.begun_with;
+    EXPECT_GE(result.begun_with, before) << "each run goes on from the one before";
+    before = result.begun_with;
+  }
+  EXPECT_GT(before, 0.0);
+}
+
+/// Whoever takes the name by which an output is claimed, and may not be trusted, keeps nobody from starting.
+TEST(RefusedStart, AnotherUserKeepsNoTaskDown) {
+  if (::geteuid() != 0) {
+    GTEST_SKIP() << "another user cannot be played by who is none but himself";
+  }
+  Stage stage;
+  const auto text = run_file(stage.port, "");
+  for (const bool listens : {true, false}) {
+    stage.server.reset();  // before a fork there are no threads
+    std::array<int, 2> ready{};
+    ASSERT_EQ(::pipe(ready.data()), 0);
+    const pid_t other = ::fork();
+    if (other == 0) {
+      const test::Twice program;
+      OutputClaims claims(parse_run_config("RUN.toml", text, program.shape()));
+      const bool held = ::setuid(65534) == 0 && !claims.claim();
+      if (!listens) {
+        for (int number = 3; number < 4096; ++number) {  // its claims: who connects is refused from now on
+          (void)::shutdown(number, SHUT_RDWR);
+        }
+      }
+      [[maybe_unused]] const ssize_t written = ::write(ready[1], held ? "r" : "x", 1);
+      ::pause();
+      ::_exit(0);
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    EXPECT_EQ(byte, 'r');
+    HostProcess host(text);
+    stage.start();
+    const auto before = stage.door.writes();
+    EXPECT_TRUE(test::soon([&] { return stage.door.writes() > before + 50; }));
+    EXPECT_NE(
+        host.said_before().find("the name by which holding register 0 of stage is claimed is held by another user"),
+        std::string::npos)
+        << host.said_before();
+    EXPECT_EQ(host.end().first, 0);
+    ::kill(other, SIGKILL);
+    ::waitpid(other, nullptr, 0);
+  }
+}
+
 TEST(RefusedStart, AWaitForAGuardEndsWhenAsked) {
   Stage stage;
   stage.give(0.25);
@@ -132,7 +219,8 @@ TEST(RefusedStart, AWaitForAGuardEndsWhenAsked) {
                                said += line;
                                stop = true;
                              }));
-  EXPECT_NE(said.find(fmt::format("process {}, which brings outputs on stage to their safe values\n", *guard)),
+  EXPECT_NE(said.find(fmt::format("process {}, which brings outputs on stage to their safe values, 60s at the most\n",
+                                  *guard)),
             std::string::npos)
       << said;
   ::kill(*guard, SIGKILL);

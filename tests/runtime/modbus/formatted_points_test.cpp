@@ -1,4 +1,5 @@
 // Points that lie on the server, and values that lie on a device, in formats and at addresses of one's choice.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -143,6 +144,73 @@ TEST(FormattedPoints, OverlapsAndUnfitFormatsAreRefusedByName) {
   EXPECT_EQ(refusal(with({given("NONE", "", {.scale = 2.0})})), "826 A format is given to NONE, which is no point.\n");
   EXPECT_EQ(refusal(with({given("SET", "%MD3", {.type = PointType::real32})})), "")
       << "the width is that of the format";
+}
+
+/// What is wrong is said, and nothing that follows from it.
+TEST(FormattedPoints, AnUnfitFormatMakesNoOverlap) {
+  const MapRequest request{
+      .title = "T",
+      .given = {given("SET", "holding 8", {.scale = 0.0}), given("COUNT", "holding 9", {.type = PointType::int16})},
+      .lock_file = "a.lock",
+      .lock_text = "input 12 real64 TEMPERATURE\nholding 8 real64 SET\n"};
+  EXPECT_EQ(refusal(request),
+            "860 SET has the scale 0 and the offset 0, and a scale is a finite number that is not 0.\n");
+}
+
+/// A range that is declared and does not fit is a warning, of each limit, and none where it fits.
+TEST(FormattedPoints, AFormatThatDoesNotHoldTheDeclaredRangeIsSaid) {
+  const std::vector<Point> points{
+      {.name = "FLOW", .kind = PointKind::output, .low = -10.0, .high = 10.0},
+      {.name = "SET", .kind = PointKind::parameter, .low = 0.0, .high = 400.0, .writable = true},
+      {.name = "ANY", .kind = PointKind::output}};
+  const auto warnings = [&](const std::string& name, GivenFormat format) {
+    std::vector<std::string> all;
+    const auto map = make_register_map(points, {.title = "T", .given = {given(name, "", format)}});
+    for (const Diagnostic& one : map.warnings().all()) {
+      EXPECT_EQ(one.severity, Severity::Warning);
+      EXPECT_EQ(one.place.line, 3U);
+      all.push_back(one.cause);
+    }
+    return all;
+  };
+  using ::testing::ElementsAre;
+  using ::testing::IsEmpty;
+  EXPECT_THAT(warnings("FLOW", {.type = PointType::uint16, .scale = 0.001}),
+              ElementsAre("FLOW goes from -10 to 10, and its format, uint16, reaches 0 to 65.535 alone."));
+  EXPECT_THAT(warnings("FLOW", {.type = PointType::int16, .scale = 0.001}), IsEmpty());
+  EXPECT_THAT(warnings("FLOW", {.type = PointType::int16, .scale = 0.0003}), testing::SizeIs(1));
+  EXPECT_THAT(warnings("SET", {.type = RegisterType(PointType::uint16, true), .scale = 0.01}),
+              ElementsAre("SET goes from 0 to 400, and its format, bcd16, reaches 0 to 99.99 alone."));
+  EXPECT_THAT(warnings("SET", {.type = PointType::int16, .scale = -0.1}), testing::SizeIs(0))
+      << "3276.7 down to -3276.8";
+  EXPECT_THAT(warnings("SET", {.type = PointType::real32}), IsEmpty());
+  EXPECT_THAT(warnings("ANY", {.type = PointType::uint16}), IsEmpty()) << "no range is declared";
+}
+
+/// The mend names an address that would do, beside the one that was meant.
+TEST(FormattedPoints, TheMendOfAnUnfitAddressFitsThePoint) {
+  const auto mend = [](const std::string& name, const std::string& address, GivenFormat format = {}) {
+    try {
+      (void)make_register_map(plant_points(), {.title = "T", .given = {given(name, address, format)}});
+    } catch (const InputError& refused) {
+      const Diagnostic& first = refused.diagnostics().all().front();
+      EXPECT_EQ(first.number, 825) << first.cause;
+      return first.mend;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(mend("ENABLE", "holding 102"),
+            "write a bit of the register, holding 102.0 (0 is the lowest, 15 the highest), or coil 102.");
+  EXPECT_EQ(mend("READY", "input 102"),
+            "write a bit of the register, input 102.0 (0 is the lowest, 15 the highest), or discrete 102.");
+  EXPECT_EQ(mend("ENABLE", "discrete 7"), "write coil 7, which may be written.");
+  EXPECT_EQ(mend("SET", "coil 7"), "write holding 7; it takes 4 registers from there on, as %ML0 and its like do.");
+  EXPECT_EQ(mend("SET", "holding 9.3", {.type = PointType::int16}),
+            "write holding 9; it takes one register from there on.");
+  // What it says is taken.
+  EXPECT_EQ(mend("ENABLE", "holding 102.0") + mend("ENABLE", "coil 102") + mend("READY", "discrete 102") +
+                mend("SET", "holding 7"),
+            "");
 }
 
 TEST(FormattedPoints, ALockFileAndTheDiscoveryTellThem) {

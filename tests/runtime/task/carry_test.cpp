@@ -138,6 +138,36 @@ TEST(Carry, WhatHasBecomeSomethingElseIsLeftAndSaid) {
                                         "OLD.Y (V there, no unit here)", "N.Q (gone)", "LINE.X (not finite)"));
 }
 
+TEST(Carry, WhatIsNewIsToldFromWhatIsOtherwiseLeft) {
+  EXPECT_TRUE(is_new("NEW.K (new)"));
+  for (const char* const other :
+       {"L.MX (5 is outside of its limits)", "OLD.K (gone)", "NEW.K", "A (newer there, b here)"}) {
+    EXPECT_FALSE(is_new(other)) << other;
+  }
+  EXPECT_EQ(without_reason("L.MX (5 is outside of its limits)"), "L.MX");
+}
+
+TEST(Carry, RetainedInputsAreFoundByNameTypeUnitAndLimits) {
+  const ProgramShape was{.inputs = {{.name = "A", .unit = "V"},
+                                    {.name = "SPEED", .unit = "rpm"},
+                                    {.name = "ON", .type = PointType::boolean},
+                                    {.name = "MM", .unit = "mm"},
+                                    {.name = "HIGH"}}};
+  const std::vector<std::size_t> kept_inputs{1, 2, 3, 4};
+  const KeptLayout kept = read_description(describe(was, kept_inputs), 0);
+  const ProgramShape is{.inputs = {{.name = "HIGH", .high = 1.0},
+                                   {.name = "ON", .type = PointType::boolean},
+                                   {.name = "MM", .unit = "um"},
+                                   {.name = "A", .unit = "V"},
+                                   {.name = "SPEED", .unit = "rpm"}}};
+  std::vector<std::string> left;
+  const auto starts =
+      carry_inputs(kept, std::vector{1500.0, 1.0, 2.0, 5.0}, is, std::vector<std::size_t>{0, 1, 2, 3}, left);
+  EXPECT_THAT(starts, ElementsAre(std::nullopt, std::optional(1.0), std::nullopt, std::nullopt, std::nullopt))
+      << "A was not retained, and SPEED is not to be";
+  EXPECT_THAT(left, ElementsAre("HIGH (5 is outside of its limits)", "MM (mm there, um here)"));
+}
+
 /// A delay of so many steps is another time then.
 TEST(Carry, TheStateOfAnotherPeriodIsLeft) {
   ProgramShape shape = before();

@@ -46,6 +46,23 @@ class MemoryFiles final : public RetainFiles {
   std::atomic<bool> full{false};
 };
 
+/// Inputs come last, and a file of before they were kept is whole without them.
+TEST(Retain, InputsComeBackAndOlderFilesHaveNone) {
+  RetainedValues values = some_values(7);
+  values.inputs = {1500.0, 0.0, -2.5};
+  const Slot slot = decode_slot(encode_slot(values));
+  EXPECT_EQ(slot.status, SlotStatus::whole);
+  EXPECT_EQ(slot.values.inputs, values.inputs);
+  EXPECT_EQ(slot.values.state, values.state);
+  auto older = encode_slot(some_values(7));
+  older.resize(older.size() - 2 * sizeof(std::uint32_t));  // the count of inputs, and the sum
+  const std::uint32_t sum = crc32c(older);
+  const auto* const bytes = reinterpret_cast<const std::byte*>(&sum);
+  older.insert(older.end(), bytes, bytes + sizeof(sum));
+  EXPECT_EQ(decode_slot(older).status, SlotStatus::whole);
+  EXPECT_TRUE(decode_slot(older).values.inputs.empty());
+}
+
 TEST(Retain, TheSumIsTheStandardsOwn) {
   // RFC 3720, B.4: 32 bytes of zeros, of ones, and 0 to 31.
   std::vector<std::byte> bytes(32, std::byte{0});

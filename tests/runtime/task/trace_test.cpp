@@ -1,10 +1,14 @@
 // A trace holds every step or counts it, and gives the same bits when it is replayed.
 #include "runtime/task/trace.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -125,6 +129,73 @@ TEST(Trace, ATriggerKeepsWhatWasBefore) {
   for (std::size_t i = 1; i < steps.size(); ++i) {
     EXPECT_EQ(steps[i].number, steps[i - 1].number + 1);
   }
+}
+
+/// Armed again, it captures each further crossing, in a file of its own that replays by itself; then it is done.
+TEST(Trace, ATriggerIsArmedAgainUntilItHasFiredSoOften) {
+  const hysteron::test::ScratchFolder scratch;
+  for (const std::uint64_t captures : {1U, 3U, 8U}) {
+    const std::string file = scratch / fmt::format("trace{}", captures);
+    const TraceTrigger trigger{.signal = TraceTrigger::Signal::input,
+                               .index = 0,
+                               .level = 0.3,
+                               .before = 15,
+                               .after = 20,
+                               .captures = captures};
+    // X is a sine of 62.8 steps: it passes 0.3 once in each.
+    (void)traced_run({.file = file, .trigger = trigger, .files = 8}, 1000);
+    std::set<std::uint64_t> fired;
+    for (std::uint64_t number = 0; number < 9; ++number) {
+      const std::string one = number == 0 ? file : fmt::format("{}.{}", file, number);
+      EXPECT_EQ(std::filesystem::exists(one), number < captures) << one;
+      if (number >= captures) {
+        continue;
+      }
+      std::vector<TraceStep> steps;
+      const auto result = replayed(hysteron::test::contents_of(one), &steps);
+      EXPECT_EQ(result.different + result.without_state, 0U) << one;
+      const auto crossing = std::adjacent_find(steps.begin(), steps.end(), [](const TraceStep& a, const TraceStep& b) {
+        return a.inputs[0] <= 0.3 && b.inputs[0] > 0.3;
+      });
+      ASSERT_NE(crossing, steps.end()) << one;
+      EXPECT_EQ(steps.end() - crossing, 22) << "the step before, that of the crossing, and 20 more";
+      fired.insert(crossing->number);
+    }
+    EXPECT_EQ(fired.size(), captures) << "each of another crossing";
+  }
+}
+
+/// No room at the start: the trace of before has its name, and another is begun where there is room.
+TEST(Trace, AFullDiskAtTheStartIsACutThatIsMended) {
+  const hysteron::test::ScratchFolder scratch;
+  const auto before = traced_run({.file = scratch / "trace"}, 50);
+  Accumulator program;
+  {
+    auto limit = std::make_unique<test::FileSizeLimit>(0);
+    Trace trace({.file = scratch / "trace"}, program);
+    EXPECT_TRUE(trace.is_cut());
+    EXPECT_EQ(trace.problem(), (scratch / "trace") + ": File too large");
+    EXPECT_EQ(hysteron::test::contents_of(scratch / "trace"), before);
+    limit.reset();
+    // It is tried again every 10 s; a step comes every millisecond until one is in a file.
+    std::uint64_t k = 0;
+    EXPECT_TRUE(hysteron::test::soon([&] {
+      trace.before_step(k, program);
+      trace.step(k, k, Fault::none, std::array{1.0}, std::array{1.0, 0.0}, std::array{1.0, 0.0});
+      ++k;
+      return !trace.is_cut();
+    }));
+  }
+  EXPECT_EQ(hysteron::test::contents_of(scratch / "trace.1"), before);
+  EXPECT_NE(hysteron::test::contents_of(scratch / "trace"), "");
+}
+
+/// What it keeps in memory stays within what it says, whatever comes.
+TEST(Trace, MemoryBeforeATriggerIsBounded) {
+  const TraceTrigger trigger{.level = 1e9, .before = 100, .after = 1};
+  // A record of a step: its length and kind, number, period and fault, one input, computed and given outputs.
+  EXPECT_EQ(memory_before(trigger, 1, 2), 2 * 100 * (5 + 20 + 8 * 5));
+  EXPECT_EQ(memory_before({.before = 0}, 1, 2), 2 * (5 + 20 + 8 * 5));
 }
 
 TEST(Trace, WhatIsDroppedIsCountedExactlyAndTheRestReplays) {

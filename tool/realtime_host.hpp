@@ -1,0 +1,42 @@
+// What of a machine makes a cyclic task late, as far as its files tell: kernel, power saving, interrupts, rights.
+//
+// Everything is read below a root folder, as /proc and /sys show it, and nothing is changed. No right is needed; what
+// cannot be read without one is said to be unknown.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hysteron::tool {
+
+enum class Rating : std::uint8_t { good, unknown, improvable, bad };
+[[nodiscard]] std::string_view name_of(Rating rating);
+
+struct HostFinding {
+  std::string name{};   ///< what was looked at: governor
+  std::string found{};  ///< powersave on 0-3
+  Rating rating = Rating::good;
+  std::string why{};      ///< what it does to a task; empty where it is good
+  std::string command{};  ///< what to type, as root; empty where nothing helps or nothing has to
+};
+
+struct HostQuestion {
+  std::filesystem::path root = "/";
+  std::optional<unsigned> processor{};  ///< of the task; else the first one that is isolated, else any
+  int priority = 80;                    ///< of SCHED_FIFO, that the task wants
+};
+
+/// In the order in which it is best mended.
+[[nodiscard]] std::vector<HostFinding> look_at_host(const HostQuestion& question);
+
+/// Of a list of processors as the kernel writes it, "0-2,5": 0, 1, 2, 5. Nothing where it is none.
+[[nodiscard]] std::optional<std::vector<unsigned>> parse_processors(std::string_view text);
+
+/// 0-2,5
+[[nodiscard]] std::string processors_text(const std::vector<unsigned>& processors);
+
+}  // namespace hysteron::tool

@@ -83,8 +83,8 @@ std::unique_ptr<Trace> open_trace(const TraceSettings& settings, const Place& pl
                        "end that task first, or name another file.");
     }
     throw InputError(error::trace_not_writable, place, fmt::format("The trace cannot be written: {}.", problem.what()),
-                     problem.code() == std::errc::no_space_on_device || problem.code() == std::errc::file_too_large
-                         ? "make room on the disk, or name a file on another one."
+                     problem.code() == std::errc::file_too_large
+                         ? "let files grow (ulimit -f), or name a file on another disk."
                          : "name an ordinary file, in a folder that is there and may be written to.");
   }
 }
@@ -427,12 +427,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
     retainer = std::make_unique<Retainer>(retained->folder(), program, retained->recovery(), retained->after_reset());
     tell_of_what_is_left(retained->left());
   }
-  std::unique_ptr<DeviceField> field;
-  if (!config.devices.empty()) {
-    field = std::make_unique<DeviceField>(config, options.virtual_time,
+  std::unique_ptr<DeviceField> devices;
+  if (!config.devices.empty() && options.field == nullptr) {
+    devices = std::make_unique<DeviceField>(config, options.virtual_time,
                                           [&guard] { return guard == nullptr || guard->may_write(); });
   }
-  const TaskAttachments attachments{.field = field.get(),
+  const TaskAttachments attachments{.field = options.field != nullptr ? options.field : devices.get(),
                                     .guard = guard.get(),
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),

@@ -14,6 +14,7 @@
 #include "runtime/modbus/register_map.hpp"
 #include "runtime/point.hpp"
 #include "runtime/task/changeable_program.hpp"
+#include "runtime/task/field_io.hpp"
 #include "runtime/task/step_program.hpp"
 #include "support/overwriting.hpp"
 
@@ -29,6 +30,8 @@ struct HostOptions {
   /// `beside`. Where the run file has no [online_change], it is not asked for.
   ChangeableProgram* changeable = nullptr;
   std::function<std::shared_ptr<void>(OnlineChange& change, std::string& where)> take_changes{};
+  /// The field, in place of the devices of the run file: a plant that is simulated. Null: those devices.
+  FieldIo* field = nullptr;
 };
 
 /// The register map of a program that is run so. With a lock file, addresses are as it says, and it is written anew

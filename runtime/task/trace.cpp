@@ -119,11 +119,7 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
                                     : std::numeric_limits<std::uint64_t>::max()),
       waits_(settings.waits),
       file_bytes_(settings.file_bytes) {
-  if (file_.write(head_) < head_.size()) {
-    const int reason = errno;
-    file_.give_back();
-    throw std::system_error(reason, std::generic_category(), settings.file.string());
-  }
+  begin_first(settings.file);
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
       write_out(false);
@@ -131,6 +127,21 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
     }
     write_out(true);
   });
+}
+
+/// A full disk keeps no task from starting: another file is tried later, as where a disk fills meanwhile.
+void Trace::begin_first(const std::filesystem::path& file) {
+  const std::size_t written = file_.is_open() ? file_.write(head_) : 0;
+  if (written == head_.size()) {
+    file_.flush();
+    return;
+  }
+  if (const int reason = errno; file_.is_open() && !is_want_of_room(reason)) {
+    file_.give_back();
+    throw std::system_error(reason, std::generic_category(), file.string());
+  }
+  file_.take_back(written);
+  cut(0);
 }
 
 void Trace::finish() {
@@ -261,6 +272,7 @@ bool Trace::begin_next() {
     cut(0);
     return false;
   }
+  file_.flush();
   kept_ = 0;
   dropped_before_ = dropped();
   cut_.store(false, std::memory_order_release);

@@ -62,13 +62,24 @@ bool shift(const std::filesystem::path& file, std::size_t kept) {
 
 }  // namespace
 
+bool is_want_of_room(int reason) {
+  return reason == ENOSPC || reason == EDQUOT;
+}
+
 std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number) {
   return std::filesystem::path(file).concat("." + std::to_string(number));
 }
 
 TraceOutput::TraceOutput(std::filesystem::path file, std::size_t kept)
     : file_(std::move(file)), kept_(std::max<std::size_t>(1, kept)) {
-  open_next();
+  try {
+    open_next();
+  } catch (const std::system_error& failed) {
+    if (!is_want_of_room(failed.code().value())) {
+      throw;
+    }
+    problem_ = failed.what();
+  }
 }
 
 void TraceOutput::open_next() {
@@ -135,6 +146,16 @@ std::size_t TraceOutput::write(std::string_view bytes) {
   }
   size_ += done;
   return done;
+}
+
+void TraceOutput::flush() const noexcept {
+  (void)::fsync(descriptor_);
+  const auto folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
+  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened >= 0) {
+    (void)::fsync(opened);
+    (void)::close(opened);
+  }
 }
 
 void TraceOutput::give_back() noexcept {

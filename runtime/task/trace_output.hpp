@@ -14,18 +14,25 @@ namespace hysteron::runtime {
 /// Where the trace before is kept: FILE.1; those before it are FILE.2, …
 [[nodiscard]] std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number = 1);
 
+/// Whether a write failed for a reason that passes by itself: the disk, or the user's part of it, is full.
+[[nodiscard]] bool is_want_of_room(int reason);
+
 class TraceOutput {
  public:
   /// What stands there is moved to previous_trace(file), where it has any bytes, and the others on by one: the one
   /// numbered `kept`, at least 1, goes. Throws std::system_error where it cannot be;
-  /// std::errc::resource_unavailable_try_again where another process writes it.
+  /// std::errc::resource_unavailable_try_again where another process writes it. Where the disk is full, it is not open.
   explicit TraceOutput(std::filesystem::path file, std::size_t kept = 1);
   ~TraceOutput();
   TraceOutput(const TraceOutput&) = delete;
   TraceOutput& operator=(const TraceOutput&) = delete;
 
+  [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
   /// The bytes that were written, from the first on; all of them, or problem() says why not.
   [[nodiscard]] std::size_t write(std::string_view bytes);
+  /// Brings the file and its name to the disk, so that after a power cut it is known for what it is. That it cannot be
+  /// is no fault: what is written next says so.
+  void flush() const noexcept;
   /// Takes back the last bytes that were written, as far as the file allows.
   void take_back(std::size_t bytes) noexcept;
   /// Nothing begins here after all: what was moved away has its name again.

@@ -208,7 +208,7 @@ TEST(Serve, AFileAtTheLimitOfItsSizeIsSaidAndEndsNothing) {
       "$?) "
       "2>&1 | cat");
   EXPECT_NE(none.out.find("HY812 error: RUN.toml:6:"), std::string::npos) << none.out;
-  EXPECT_NE(none.out.find("mend: make room on the disk, "), std::string::npos) << none.out;
+  EXPECT_NE(none.out.find("mend: let files grow (ulimit -f), "), std::string::npos) << none.out;
   EXPECT_NE(none.out.find("ended 2\n"), std::string::npos) << none.out;
   EXPECT_TRUE(bench.read("run.trace") == before) << "the trace of the run before has its name again";
 }

@@ -352,8 +352,9 @@ class Script {
   void look_at_certificate(std::int64_t now) {
     const Certificate& one = stage_->plan.certificates[certificate_];
     const std::int64_t today = SimulatedTime::utc() - utc_ahead - monotonic_begin;
-    const bool is_near = std::abs(today - one.until) < 5 * minute || std::abs(today - one.from) < 5 * minute;
-    if (is_near || now < unchanged_since_ + 5 * minute) {
+    const std::int64_t near = 5 * minute + 2 * stage_->quantum;
+    const bool is_near = std::abs(today - one.until) < near || std::abs(today - one.from) < near;
+    if (is_near || now < unchanged_since_ + 5 * minute + 3 * stage_->quantum) {
       return;
     }
     const bool counts = today > one.from && today < one.until;

@@ -98,7 +98,7 @@ class Year {
     std::filesystem::create_directories(folder_.path() / "certificates");
     stage_.plan = make_plan(options.plan);
     stage_.files = {.disk = disk_, .certificates = folder_.path() / "certificates"};
-    stage_.quantum = std::clamp<std::int64_t>(options.plan.span / 50'000, second, 60 * second);
+    stage_.quantum = std::clamp<std::int64_t>(options.plan.span / 50'000, second, 600 * second);
     const tool::Engine engine = tool::engine_of(options.engine);
     stage_.how = engine == tool::Engine::compiled ? "compiled" : "interpreted";
     stage_.program = [engine, period = options.plan.period](std::uint64_t version) {

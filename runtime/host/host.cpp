@@ -430,7 +430,7 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   std::unique_ptr<DeviceField> devices;
   if (!config.devices.empty() && options.field == nullptr) {
     devices = std::make_unique<DeviceField>(config, options.virtual_time,
-                                          [&guard] { return guard == nullptr || guard->may_write(); });
+                                            [&guard] { return guard == nullptr || guard->may_write(); });
   }
   const TaskAttachments attachments{.field = options.field != nullptr ? options.field : devices.get(),
                                     .guard = guard.get(),

@@ -84,8 +84,8 @@ struct TraceProgram {
 
 class Trace {
  public:
-  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where the
-  /// disk is full, it is cut from the begin.
+  /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where
+  /// the disk is full, it is cut from the begin.
   Trace(const TraceSettings& settings, const StepProgram& program);
   ~Trace() { finish(); }
   Trace(const Trace&) = delete;

@@ -174,9 +174,12 @@ Answer answer_of(const HistoryQuestion& question) {
 
 Answer Responder::write(const Request& request) {
   // By target: the command of the task. A set is staged from a body.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> targets{
-      {{"/api/stage", ""}, {"/api/commit", "task.commit"}, {"/api/discard", "task.discard"}, {"/api/reset", "task.reset"}}};
-  const auto* const target = std::ranges::find(targets, request.target, &std::pair<std::string_view, std::string_view>::first);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> targets{{{"/api/stage", ""},
+                                                                                  {"/api/commit", "task.commit"},
+                                                                                  {"/api/discard", "task.discard"},
+                                                                                  {"/api/reset", "task.reset"}}};
+  const auto* const target =
+      std::ranges::find(targets, request.target, &std::pair<std::string_view, std::string_view>::first);
   if (target == targets.end()) {
     return refusal(404, "There is nothing of this name.");
   }

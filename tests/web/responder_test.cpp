@@ -128,25 +128,25 @@ TEST(WebResponder, SavesTheParametersThatCountAndNotThoseThatWait) {
             "# Parameters that counted in ACCUMULATOR when this was saved.\n\n[parameters.G]\nA = 1.0\nB = -1.0\n");
   EXPECT_EQ(bench.post("/api/parameters.toml").status, 404U);
   PageBench beyond({.is_loopback = false, .token = test::token});
-  EXPECT_EQ(beyond.responder.answer({.method = "GET", .target = "/api/parameters.toml", .host = "machine:80"}).status, 401U);
+  EXPECT_EQ(beyond.responder.answer({.method = "GET", .target = "/api/parameters.toml", .host = "machine:80"}).status,
+            401U);
 }
 
 TEST(WebParameterText, EveryKindOfParameterIsWrittenAsAParameterFileHasIt) {
   const auto parameter = [](const char* name, PointType type) {
     return Point{.name = name, .kind = PointKind::parameter, .type = type};
   };
-  const std::vector<Point> points{{.name = "U", .kind = PointKind::input},
-                                  parameter("CTRL.INNER.KP", PointType::real64),
-                                  parameter("K[0]", PointType::real64),
-                                  parameter("K[1]", PointType::real64),
-                                  parameter("LAG.T1", PointType::real64),
-                                  parameter("LAG.MAX", PointType::real64),
-                                  parameter("ON", PointType::boolean),
-                                  parameter("N", PointType::int32),
-                                  parameter("TABLE.X[0]", PointType::real64),
-                                  parameter("TABLE.X[1]", PointType::real64)};
-  const std::vector<double> values{9.0, 0.1, 1.0, -2.5, 0.05, std::numeric_limits<double>::infinity(), 1.0, 7.0, 1.0,
-                                   std::numeric_limits<double>::infinity()};
+  const std::vector<Point> points{
+      {.name = "U", .kind = PointKind::input},    parameter("CTRL.INNER.KP", PointType::real64),
+      parameter("K[0]", PointType::real64),       parameter("K[1]", PointType::real64),
+      parameter("LAG.T1", PointType::real64),     parameter("LAG.MAX", PointType::real64),
+      parameter("ON", PointType::boolean),        parameter("N", PointType::int32),
+      parameter("TABLE.X[0]", PointType::real64), parameter("TABLE.X[1]", PointType::real64)};
+  const std::vector<double> values{9.0,  0.1,
+                                   1.0,  -2.5,
+                                   0.05, std::numeric_limits<double>::infinity(),
+                                   1.0,  7.0,
+                                   1.0,  std::numeric_limits<double>::infinity()};
   EXPECT_EQ(parameter_text("P", points, values),
             "# Parameters that counted in P when this was saved.\n\n"
             "[parameters]\nK = [1.0, -2.5]\nON = true\nN = 7\n\n"

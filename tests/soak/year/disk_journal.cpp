@@ -80,7 +80,8 @@ void apply_some(std::string& bytes, const std::vector<const DiskEntry*>& open, s
       for (std::size_t begin = 0; begin < size; begin += page) {
         const std::size_t length = std::min(page, size - begin);
         if (random() % 2 == 0) {
-          apply_bytes(bytes, {.deed = DiskDeed::Write, .at = entry.at + begin, .other = entry.other.substr(begin, length)},
+          apply_bytes(bytes,
+                      {.deed = DiskDeed::Write, .at = entry.at + begin, .other = entry.other.substr(begin, length)},
                       length);
         } else {
           lost += length;

@@ -14,7 +14,8 @@ class DiskWatch {
  public:
   /// From now on. The journal goes to the end of an open file.
   static void begin(const std::filesystem::path& folder, int journal);
-  /// The power goes with this byte of those written from now on, counted from 1; 0: with none. Files with `-shm` do not count.
+  /// The power goes with this byte of those written from now on, counted from 1; 0: with none. Files with `-shm` do not
+  /// count.
   static void cut_at_byte(std::uint64_t byte) noexcept;
   /// The power goes now: SIGKILL.
   [[noreturn]] static void cut() noexcept;

@@ -1,17 +1,16 @@
 #include "tests/soak/year/life.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "runtime/host/host.hpp"
@@ -80,17 +79,48 @@ class Script {
   }
 
  private:
-  enum Name : std::uint8_t { Cycles, Skipped, Elapsed, LateWake, LateCpu, LateSteal, Commits, Retained, Failures, Rows,
-                             HistoryFault, TlsFault, Fault, Uptime, Gain, Time, Commit, NameCount };
-  static constexpr std::array<const char*, NameCount> names{
-      "task.cycles",  "task.skipped",  "task.elapsed",        "task.late_wake",    "task.late_cpu",       "task.late_steal",
-      "task.commits", "task.retained", "task.write_failures", "task.history_rows", "task.history_fault", "task.tls_fault", "task.fault",
-      "UPTIME",       "PI.KP",         "PI.TR",               "task.commit"};
+  enum Name : std::uint8_t {
+    Cycles,
+    Skipped,
+    Elapsed,
+    LateWake,
+    LateCpu,
+    LateSteal,
+    Commits,
+    Retained,
+    Failures,
+    Rows,
+    HistoryFault,
+    TlsFault,
+    Fault,
+    Uptime,
+    Gain,
+    Time,
+    Commit,
+    NameCount
+  };
+  static constexpr std::array<const char*, NameCount> names{"task.cycles",
+                                                            "task.skipped",
+                                                            "task.elapsed",
+                                                            "task.late_wake",
+                                                            "task.late_cpu",
+                                                            "task.late_steal",
+                                                            "task.commits",
+                                                            "task.retained",
+                                                            "task.write_failures",
+                                                            "task.history_rows",
+                                                            "task.history_fault",
+                                                            "task.tls_fault",
+                                                            "task.fault",
+                                                            "UPTIME",
+                                                            "PI.KP",
+                                                            "PI.TR",
+                                                            "task.commit"};
 
   [[nodiscard]] double value(Name name) const { return snapshot_.values[places_[name]]; }
   [[nodiscard]] std::uint64_t count(Name name) const { return static_cast<std::uint64_t>(value(name)); }
 
-  /// Gives by how much the thread is woken late.
+  /// What is due by now. Gives by how much the thread is woken late.
   std::int64_t act(std::int64_t now, std::int64_t due) {
     look(now, due);
     std::int64_t late = 0;
@@ -101,6 +131,10 @@ class Script {
     const auto& events = stage_->plan.events;
     for (; next_event_ < events.size() && events[next_event_].at <= now && !is_ending_; ++next_event_) {
       const Event& event = events[next_event_];
+      const bool is_delay = event.what == Happening::LateWake || event.what == Happening::Overload;
+      if (is_delay && (now > due || late > 0 || field_->overload > 0)) {
+        continue;  // one delay at a time, or its cause could not be told
+      }
       if (event.what == Happening::LateWake) {
         ++ledger_->happened[static_cast<std::size_t>(event.what)];
         late = number_of_periods(event) + stage_->plan.settings.period / 2;
@@ -127,8 +161,8 @@ class Script {
     if (ends_otherwise && cut_until_ != never) {
       return;  // the power is about to go
     }
-    if (event.what == Happening::Restart && (field_->state.is_lost || field_->state.is_broken || full_until_ != never ||
-                                             operator_->is_busy())) {
+    if (event.what == Happening::Restart &&
+        (field_->state.is_lost || field_->state.is_broken || full_until_ != never || operator_->is_busy())) {
       return;  // its end could not be told from a loss
     }
     ++ledger_->happened[static_cast<std::size_t>(event.what)];
@@ -255,8 +289,8 @@ class Script {
 
   void commit() {
     const double by = static_cast<double>(ledger_->proposed + 1) * unit_of_sets;
-    const std::array<runtime::PointWrite, 3> set{{{places_[Gain], 1.0 + by}, {places_[Time], 20.0 + by},
-                                                  {places_[Commit], 1.0}}};
+    const std::array<runtime::PointWrite, 3> set{
+        {{places_[Gain], 1.0 + by}, {places_[Time], 20.0 + by}, {places_[Commit], 1.0}}};
     if (door_->write(set).empty()) {  // refused while an online change is under way
       ++ledger_->proposed;
       ++asked_;
@@ -305,12 +339,12 @@ class Script {
       const double begun = value(Uptime) - sample_time * value(Cycles);
       if (!std::exchange(knows_uptime_, true)) {
         const double slack = static_cast<double>(2 * stage_->quantum + second) * 1e-9;
-        const bool is_well = !was_known_ ? begun >= ledger_->uptime_kept
+        const bool is_well = !was_known_    ? begun >= ledger_->uptime_kept
                              : was_orderly_ ? std::abs(begun - ledger_->uptime) < 0.5 * sample_time
                                             : begun >= ledger_->uptime_kept && begun <= ledger_->uptime + slack;
         if (!is_well) {
-          (void)std::fprintf(stderr, "began with %.4f s after %.4f s, of which %.4f s were kept\n", begun, ledger_->uptime,
-                             ledger_->uptime_kept);
+          (void)std::fprintf(stderr, "began with %.4f s after %.4f s, of which %.4f s were kept\n", begun,
+                             ledger_->uptime, ledger_->uptime_kept);
           ++ledger_->lost_uptime;
         }
         begun_ = begun;
@@ -330,12 +364,13 @@ class Script {
                          count(LateWake) + count(LateSteal) == lates_ &&
                          count(LateCpu) == overloads_ - (field_->overload > 0 ? 1 : 0);
     if (!is_well) {
-      (void)std::fprintf(stderr, "at %.4f s the task counts %.0f cycles, %.0f skipped, %.0f/%.0f/%.0f late; the plant %llu, %llu, %llu/%llu\n",
-                         1e-9 * static_cast<double>(due), value(Cycles), value(Skipped),
-                         value(LateWake), value(LateSteal), value(LateCpu),
-                         static_cast<unsigned long long>(ledger_->cycles),
-                         static_cast<unsigned long long>(ledger_->skipped),
-                         static_cast<unsigned long long>(lates_), static_cast<unsigned long long>(overloads_));
+      (void)std::fprintf(
+          stderr,
+          "at %.4f s the task counts %.0f cycles, %.0f skipped, %.0f/%.0f/%.0f late; the plant %llu, %llu, %llu/%llu\n",
+          1e-9 * static_cast<double>(due), value(Cycles), value(Skipped), value(LateWake), value(LateSteal),
+          value(LateCpu), static_cast<unsigned long long>(ledger_->cycles),
+          static_cast<unsigned long long>(ledger_->skipped), static_cast<unsigned long long>(lates_),
+          static_cast<unsigned long long>(overloads_));
       ++ledger_->wrong_account;
     }
   }

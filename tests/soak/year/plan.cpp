@@ -58,10 +58,11 @@ Plan make_plan(const PlanSettings& settings) {
       if (at >= span) {
         break;
       }
-      plan.events.push_back({.at = static_cast<std::int64_t>(at),
-                             .what = rate.what,
-                             .lasts = static_cast<std::int64_t>(uniform(random) * std::max(60.0 * second, rate.longest * shrink)),
-                             .number = random()});
+      plan.events.push_back(
+          {.at = static_cast<std::int64_t>(at),
+           .what = rate.what,
+           .lasts = static_cast<std::int64_t>(uniform(random) * std::max(60.0 * second, rate.longest * shrink)),
+           .number = random()});
     }
   }
   // Certificates count for 90 days, or for a fifth of a short span; a new one is written up to 30 days before that, or

@@ -45,8 +45,8 @@ struct Edit {
 constexpr std::array<Edit, sound_versions + 1> edits{{
     {"", "", "LEVEL", ""},
     {"    SMOOTH : HY_LAG := (T1 := 2.0);\n", "SMOOTH(XIN := LEVEL);", "SMOOTH.XOUT", ""},
-    {"    FIRST : HY_LAG := (T1 := 1.0);\n    BEFORE : HY_DELAY;\n", "FIRST(XIN := LEVEL);\n  BEFORE(XIN := FIRST.XOUT);",
-     "0.5 * (FIRST.XOUT + BEFORE.XOUT)", ""},
+    {"    FIRST : HY_LAG := (T1 := 1.0);\n    BEFORE : HY_DELAY;\n",
+     "FIRST(XIN := LEVEL);\n  BEFORE(XIN := FIRST.XOUT);", "0.5 * (FIRST.XOUT + BEFORE.XOUT)", ""},
     {"", "", "LEVEL", " * 0.0 + SEL(PI.XOUT > 0.5, 1.0, 0.0)"},
 }};
 
@@ -72,7 +72,8 @@ runtime::RunConfig run_config(const PlantFiles& files, const runtime::ProgramSha
       "[history]\nfile = \"{0}/run.history\"\nevery = \"1min\"\nkeep = \"10000d\"\nmegabytes = 4\n"
       "[online_change]\nsocket = \"{1}/change.socket\"\n"
       "[modbus]\nport = 0\nlock_file = \"{0}/addresses.lock\"\n"
-      "[tls]\ncertificate = \"{1}/server.pem\"\nkey = \"{1}/server.key\"\nclients = \"{1}/clients.pem\"\nwithout_role = [\"read\"]\n",
+      "[tls]\ncertificate = \"{1}/server.pem\"\nkey = \"{1}/server.key\"\nclients = \"{1}/clients.pem\"\nwithout_role "
+      "= [\"read\"]\n",
       files.disk.string(), files.certificates.string());
   runtime::RunConfig config = runtime::parse_run_config("RUN.toml", text, shape);
   config.task.inputs[0].from_device = true;

@@ -45,9 +45,9 @@ class TankField final : public runtime::FieldIo {
   Ledger* ledger_;
   double sample_time_;
   runtime::OutputSafety valve_;
-  std::uint64_t longest_;        ///< cycles from the first of a fault on, in which the valve may be open
-  std::uint64_t bad_ = 0;        ///< cycles with a fault, one after the other
-  std::uint64_t good_ = 0;       ///< and without
+  std::uint64_t longest_;   ///< cycles from the first of a fault on, in which the valve may be open
+  std::uint64_t bad_ = 0;   ///< cycles with a fault, one after the other
+  std::uint64_t good_ = 0;  ///< and without
   bool was_safe_ = true;
   double level_ = 1.0;
   double flow_ = 0.0;

@@ -204,8 +204,7 @@ void begin_to_pass(World& one) {
   pthread_mutex_lock(&one.mutex);
   one.passes = true;
   const timespec until = as_timespec(real_time(CLOCK_REALTIME) + patience);
-  while (one.sleepers.size() < one.expected &&
-         pthread_cond_timedwait(&one.all_wait, &one.mutex, &until) != ETIMEDOUT) {
+  while (one.sleepers.size() < one.expected && pthread_cond_timedwait(&one.all_wait, &one.mutex, &until) != ETIMEDOUT) {
   }
   pthread_mutex_unlock(&one.mutex);
 }

@@ -15,12 +15,12 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <ctime>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <random>
 #include <set>
@@ -58,11 +58,11 @@ struct Sum {
   std::uint64_t cycles = 0;
   std::uint64_t skipped = 0;
   std::map<Happening, std::int64_t> down{};  ///< ns, by what ended the life before
-  std::int64_t starting = 0;                ///< ns, until the first cycle
+  std::int64_t starting = 0;                 ///< ns, until the first cycle
   std::uint64_t lives = 0;
   std::uint64_t starts_refused = 0;
   std::uint64_t ended_otherwise = 0;
-  std::int64_t unaccounted = 0;  ///< periods
+  std::int64_t unaccounted = 0;                 ///< periods
   std::map<std::string, std::uint64_t> cuts{};  ///< power cuts, by the file that was written
   std::uint64_t lost_bytes = 0;
   std::uint64_t lost_names = 0;
@@ -92,7 +92,8 @@ class Year {
   explicit Year(const Options& options)
       : options_(options),
         random_(options.plan.seed ^ 0x9E3779B97F4A7C15ULL),
-        ledger_(new(::mmap(nullptr, sizeof(Ledger), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Ledger),
+        ledger_(new (::mmap(nullptr, sizeof(Ledger), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
+                    Ledger),
         journal_(::memfd_create("journal", 0)) {
     std::filesystem::create_directories(disk_);
     std::filesystem::create_directories(folder_.path() / "certificates");
@@ -125,8 +126,8 @@ class Year {
       } else if (const bool is_over = from + lived >= settings.span;  // whatever is wrong then
                  !(WIFEXITED(status) && ledger_->ends_orderly && (WEXITSTATUS(status) == 0 || is_over))) {
         (ledger_->has_begun ? sum_.ended_otherwise : sum_.starts_refused) += 1;
-        fmt::print(stderr, "at {:.1f} s: the task ended by itself, status {}\n", static_cast<double>(from + lived) * 1e-9,
-                   status);
+        fmt::print(stderr, "at {:.1f} s: the task ended by itself, status {}\n",
+                   static_cast<double>(from + lived) * 1e-9, status);
         cause = Happening::Kill;
       }
       look_at_history();
@@ -318,10 +319,11 @@ bool Year::print(double seconds) const {
       static_cast<double>(options_.plan.span) / 86'400e9, static_cast<double>(options_.plan.period) * 1e-6,
       options_.plan.seed, stage_.how, seconds, static_cast<double>(sum_.cycles) / seconds);
   row("periods", static_cast<std::uint64_t>(all),
-      fmt::format("{} ran; skipped: {} late wake, {} overload; down: {}{} starting; {} not accounted for; the task counted "
-                  "otherwise {} times",
-                  sum_.cycles, l.skipped_late, l.skipped_overload, downs,
-                  sum_.starting / period, sum_.unaccounted, l.wrong_account),
+      fmt::format(
+          "{} ran; skipped: {} late wake, {} overload; down: {}{} starting; {} not accounted for; the task counted "
+          "otherwise {} times",
+          sum_.cycles, l.skipped_late, l.skipped_overload, downs, sum_.starting / period, sum_.unaccounted,
+          l.wrong_account),
       sum_.unaccounted == 0 && l.wrong_account == 0);
   row("power cuts", power_cuts,
       fmt::format("while written: {}; {} bytes and {} names that were not flushed are gone", cuts, sum_.lost_bytes,
@@ -344,11 +346,13 @@ bool Year::print(double seconds) const {
                   sum_.unreadable_traces),
       sum_.unreadable_traces == 0);
   row("devices lost, sensors broken", happened(Happening::DeviceLost) + happened(Happening::SensorBroken),
-      fmt::format("safe after {:.2f} s at the latest; {} cycles unsafe for longer, {} outputs out of range, {} times not "
-                  "back",
-                  static_cast<double>(l.longest_to_safety) * 1e-9, l.unsafe, l.out_of_range, l.not_back),
+      fmt::format(
+          "safe after {:.2f} s at the latest; {} cycles unsafe for longer, {} outputs out of range, {} times not "
+          "back",
+          static_cast<double>(l.longest_to_safety) * 1e-9, l.unsafe, l.out_of_range, l.not_back),
       l.unsafe == 0 && l.out_of_range == 0 && l.not_back == 0);
-  row("disk full for a while", happened(Happening::DiskFull), fmt::format("{} starts meanwhile; {} times a write failed and was told of", l.begun_full, l.full_noticed), true);
+  row("disk full for a while", happened(Happening::DiskFull),
+      fmt::format("{} starts meanwhile; {} times a write failed and was told of", l.begun_full, l.full_noticed), true);
   row("wall clock wrong for a while", happened(Happening::ClockStep), "judged by the rows above and below", true);
   row("certificates", stage_.plan.certificates.size(),
       fmt::format("{} ended before the next was written; task.tls_fault wrong at {} looks", l.certificate_ends,

@@ -120,7 +120,7 @@ class LivePage(unittest.TestCase):
         browser = self.open(port)
         browser.wait_for(LIVE)
         self.assertIn("Read-only", browser.text("#access"))
-        self.assertTrue(browser.evaluate("[...document.querySelectorAll('#parameters input, .tools button')].every(e => e.disabled)"))
+        self.assertTrue(browser.evaluate("[...document.querySelectorAll('#parameters input, .tools button:not(#save)')].every(e => e.disabled)"))
         self.expect_no_fault(browser, port)
 
     def test_parameters_are_staged_refused_and_committed(self):
@@ -193,7 +193,7 @@ class LivePage(unittest.TestCase):
         browser = self.open(task.web_port)
         browser.wait_for(LIVE)
         browser.type("#token", TOKEN)
-        browser.wait_for("Math.abs(Number(document.querySelector('#diagram [data-point=U]').textContent)) > 5")
+        browser.wait_for("Math.abs(parseFloat(document.querySelector('#diagram [data-point=U]').textContent)) > 5")
         browser.click("#reset")
         self.assertIn("begins anew?", browser.text("#reset"))
         browser.click("#reset")

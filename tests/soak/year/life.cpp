@@ -284,7 +284,7 @@ class Script {
   /// Threads beside run at their times for a while.
   void close_up(std::int64_t now) {
     SimulatedTime::set_quantum(0);
-    close_until_ = now + 200 * stage_->plan.settings.period;
+    close_until_ = now + 5 * stage_->plan.settings.period + second / 5;
   }
 
   void commit() {

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -328,6 +329,11 @@ int nanosleep(const timespec* request, timespec* rest) {
     return static_cast<int>(::syscall(SYS_nanosleep, request, rest));
   }
   sleep_beside(in_nanoseconds(*request));
+  return 0;
+}
+
+/// What is done beside the cycle takes no time here, and so must not wait for other programs of this machine.
+int setpriority(__priority_which_t /*which*/, id_t /*who*/, int /*priority*/) noexcept {
   return 0;
 }
 

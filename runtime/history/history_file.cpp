@@ -243,6 +243,12 @@ void HistoryFile::trim(std::optional<std::int64_t> oldest_ms) {
     }
   }
   for (int turn = 0; turn < portions && oldest_ms; ++turn) {
+    // Most turns end here: to look at a portion of rows takes milliseconds, and this is asked every second.
+    Statement first = database_->prepared("SELECT utc_ms FROM rows ORDER BY row LIMIT 1");
+    if (!first.step() || first.integer(0) >= *oldest_ms) {
+      break;
+    }
+    first.reset();
     // The first of the oldest that is young enough: nothing behind it is deleted, whatever its time.
     Statement asked = database_->prepared(
         "SELECT min(row), max(row), min(CASE WHEN utc_ms >= ? THEN row END) FROM (SELECT row, utc_ms FROM rows ORDER "

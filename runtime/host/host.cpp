@@ -375,12 +375,12 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
                                           retained->inputs());
     tell_of_what_is_left(retained->left());
   }
-  std::unique_ptr<DeviceField> field;
-  if (!config.devices.empty()) {
-    field = std::make_unique<DeviceField>(config, options.virtual_time,
-                                          [&guard] { return guard == nullptr || guard->may_write(); });
+  std::unique_ptr<DeviceField> devices;
+  if (!config.devices.empty() && options.field == nullptr) {
+    devices = std::make_unique<DeviceField>(config, options.virtual_time,
+                                            [&guard] { return guard == nullptr || guard->may_write(); });
   }
-  const TaskAttachments attachments{.field = field.get(),
+  const TaskAttachments attachments{.field = options.field != nullptr ? options.field : devices.get(),
                                     .guard = guard.get(),
                                     .retainer = retainer.get(),
                                     .trace = trace.get(),

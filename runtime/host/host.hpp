@@ -13,6 +13,7 @@
 #include "runtime/host/online_change.hpp"
 #include "runtime/point.hpp"
 #include "runtime/task/changeable_program.hpp"
+#include "runtime/task/field_io.hpp"
 #include "runtime/task/step_program.hpp"
 #include "support/overwriting.hpp"
 
@@ -28,6 +29,8 @@ struct HostOptions {
   /// `beside`. Where the run file has no [online_change], it is not asked for.
   ChangeableProgram* changeable = nullptr;
   std::function<std::shared_ptr<void>(OnlineChange& change, std::string& where)> take_changes{};
+  /// The field, in place of the devices of the run file: a plant that is simulated. Null: those devices.
+  FieldIo* field = nullptr;
 };
 
 /// Throws InputError HY709 where the run file has the trace or the one before it, the lock file or what is retained

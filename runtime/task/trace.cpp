@@ -150,14 +150,7 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
                                     : std::numeric_limits<std::uint64_t>::max()),
       waits_(settings.waits),
       file_bytes_(settings.file_bytes) {
-  if (file_.write(head_) < head_.size()) {
-    const int reason = errno;
-    file_.give_back();
-    if (!is_want_of_room(reason)) {
-      throw std::system_error(reason, std::generic_category(), settings.file.string());
-    }
-    cut(0);  // it is begun as soon as there is room
-  }
+  begin_first(settings.file);
   writer_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
       write_out(false);
@@ -165,6 +158,22 @@ Trace::Trace(const TraceSettings& settings, const StepProgram& program)
     }
     write_out(true);
   });
+}
+
+/// A full disk keeps no task from starting: another file is tried later, as where a disk fills meanwhile.
+void Trace::begin_first(const std::filesystem::path& file) {
+  const std::size_t written = file_.write(head_);
+  if (written == head_.size()) {
+    file_.flush();
+    return;
+  }
+  const int reason = errno;
+  file_.take_back(written);
+  file_.give_back();
+  if (!is_want_of_room(reason)) {
+    throw std::system_error(reason, std::generic_category(), file.string());
+  }
+  cut(0);
 }
 
 void Trace::finish() {
@@ -295,6 +304,7 @@ bool Trace::begin_next() {
     cut(0);
     return false;
   }
+  file_.flush();
   kept_ = 0;
   dropped_before_ = dropped();
   cut_.store(false, std::memory_order_release);

@@ -96,7 +96,7 @@ struct TraceProgram {
 class Trace {
  public:
   /// Throws std::system_error where the file cannot be opened or its head not be written, as TraceOutput does. Where
-  /// only room is wanting, it is cut from the start, and begun once there is some.
+  /// the disk is full, it is cut from the begin.
   Trace(const TraceSettings& settings, const StepProgram& program);
   ~Trace() { finish(); }
   Trace(const Trace&) = delete;
@@ -127,6 +127,7 @@ class Trace {
  private:
   bool push(TraceKind kind, std::span<const std::span<const std::byte>> contents) noexcept;
   void push_state(std::uint64_t number, const StepProgram& program) noexcept;
+  void begin_first(const std::filesystem::path& file);
   void write_out(bool last);
   void write_records(std::string_view records);
   /// Records up to the next state, or from one up to the next.

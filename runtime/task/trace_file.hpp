@@ -60,7 +60,7 @@ struct TraceStep {
   std::vector<double> outputs{};
 };
 
-/// Whether a file that begins so is a trace, or the begin of one that was cut off.
+/// Whether a file that begins so is a trace, or what a power cut left of one: its begin, or zeros.
 [[nodiscard]] bool is_begin_of_trace(std::string_view bytes);
 
 [[nodiscard]] TraceHead head_of(const StepProgram& program);

@@ -62,8 +62,8 @@ bool shift(const std::filesystem::path& file, std::size_t kept) {
 
 }  // namespace
 
-bool is_want_of_room(int problem) {
-  return problem == ENOSPC || problem == EDQUOT || problem == EFBIG;
+bool is_want_of_room(int reason) {
+  return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
 }
 
 std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number) {
@@ -154,6 +154,16 @@ std::size_t TraceOutput::write(std::string_view bytes) {
   }
   size_ += done;
   return done;
+}
+
+void TraceOutput::flush() const noexcept {
+  (void)::fsync(descriptor_);
+  const auto folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
+  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened >= 0) {
+    (void)::fsync(opened);
+    (void)::close(opened);
+  }
 }
 
 void TraceOutput::give_back() noexcept {

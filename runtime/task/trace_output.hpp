@@ -11,18 +11,18 @@
 
 namespace hysteron::runtime {
 
-/// Whether a problem, as errno says it, goes by itself where somebody makes room.
-[[nodiscard]] bool is_want_of_room(int problem);
-
 /// Where the trace before is kept: FILE.1; those before it are FILE.2, …
 [[nodiscard]] std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number = 1);
+
+/// Whether a write failed for a reason, as errno says it, that goes where somebody makes room: the disk, the user's
+/// part of it, or the largest size of a file.
+[[nodiscard]] bool is_want_of_room(int reason);
 
 class TraceOutput {
  public:
   /// What stands there is moved to previous_trace(file), where it has any bytes, and the others on by one: the one
   /// numbered `kept`, at least 1, goes. Throws std::system_error where it cannot be;
-  /// std::errc::resource_unavailable_try_again where another process writes it. Where only room is wanting, nothing is
-  /// written until begin_next() finds some.
+  /// std::errc::resource_unavailable_try_again where another process writes it. Where the disk is full, it is not open.
   explicit TraceOutput(std::filesystem::path file, std::size_t kept = 1);
   ~TraceOutput();
   TraceOutput(const TraceOutput&) = delete;
@@ -30,6 +30,9 @@ class TraceOutput {
 
   /// The bytes that were written, from the first on; all of them, or problem() says why not.
   [[nodiscard]] std::size_t write(std::string_view bytes);
+  /// Brings the file and its name to the disk, so that after a power cut it is known for what it is. That it cannot be
+  /// is no fault: what is written next says so.
+  void flush() const noexcept;
   /// Takes back the last bytes that were written, as far as the file allows.
   void take_back(std::size_t bytes) noexcept;
   /// Nothing begins here after all: what was moved away has its name again.

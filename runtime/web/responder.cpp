@@ -12,6 +12,7 @@
 
 #include "runtime/history/history_trend.hpp"
 #include "runtime/web/assets.hpp"
+#include "runtime/web/parameter_text.hpp"
 #include "support/diagnostic.hpp"
 #include "support/numbers.hpp"
 
@@ -62,6 +63,7 @@ const std::vector<Header>& common_headers() {
 
 Responder::Responder(PointDoor& door, const Subject& subject, Access access)
     : door_(door),
+      program_(subject.name),
       access_(std::move(access)),
       history_(subject.history),
       history_points_(subject.history_points),
@@ -106,9 +108,10 @@ Answer Responder::read(const Request& request) {
     }
   }
   const bool description = request.target == "/api/description";
+  const bool parameters = request.target == "/api/parameters.toml";
   const bool metrics = request.target == metrics_target;
   const bool history = request.target.starts_with(history_target);
-  if (!description && !metrics && !history && request.target != "/api/values") {
+  if (!description && !parameters && !metrics && !history && request.target != "/api/values") {
     return refusal(404, "There is nothing of this name.");
   }
   if (access_.reading_needs_token() && !may_read(access_, request.authorization)) {
@@ -121,6 +124,9 @@ Answer Responder::read(const Request& request) {
     return read_history(request.target.substr(history_target.size()));
   }
   door_.read_live(live_);
+  if (parameters) {
+    return {.type = "application/toml", .body = parameter_text(program_, door_.points(), live_.values)};
+  }
   if (metrics) {
     return {.type = metrics_type, .body = metrics_.text(live_.values)};
   }
@@ -167,8 +173,14 @@ Answer answer_of(const HistoryQuestion& question) {
 }
 
 Answer Responder::write(const Request& request) {
-  constexpr std::array<std::string_view, 3> targets{"/api/stage", "/api/commit", "/api/discard"};
-  if (std::ranges::find(targets, request.target) == targets.end()) {
+  // By target: the command of the task. A set is staged from a body.
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> targets{{{"/api/stage", ""},
+                                                                                  {"/api/commit", "task.commit"},
+                                                                                  {"/api/discard", "task.discard"},
+                                                                                  {"/api/reset", "task.reset"}}};
+  const auto* const target =
+      std::ranges::find(targets, request.target, &std::pair<std::string_view, std::string_view>::first);
+  if (target == targets.end()) {
     return refusal(404, "There is nothing of this name.");
   }
   if (!access_.can_write()) {
@@ -179,8 +191,7 @@ Answer Responder::write(const Request& request) {
                ? refusal(403, "This token is for reading; to change parameters takes the other one.")
                : refusal(401, "The token is missing or wrong.");
   }
-  return request.target == targets[0] ? stage(request.body)
-                                      : give(request.target == targets[1] ? "task.commit" : "task.discard");
+  return target->second.empty() ? stage(request.body) : give(target->second);
 }
 
 Answer Responder::stage(std::string_view body) {

@@ -1,15 +1,17 @@
 // The answer to an HTTP request, as a function of the request, the access and the values behind the door. No sockets,
 // no time.
 //
-//   GET  /, /page.js, /history.js, /page.css, /dygraph.js, /dygraph.css    the page
+//   GET  /, /page.js, /history.js, /xy.js, /page.css, /dygraph.js, /dygraph.css    the page
 //   GET  /api/description    what there is to be seen
 //   GET  /api/values         the values of the newest cycle
+//   GET  /api/parameters.toml    the parameters that count, as a parameter file
 //   GET  /metrics            the same for a Prometheus server
 //   GET  /api/history?point=Y&hours=8    the last hours of a point, thinned for a picture
 //   GET  /api/stream         the values again and again, over a WebSocket
 //   POST /api/stage          {"HYST.C1": 1.5, …}: these wait for a commit
 //   POST /api/commit         all that wait count from the next step on, or none
 //   POST /api/discard        none of them waits any longer
+//   POST /api/reset          every state as after a start, and a fault is forgotten
 //
 // Whoever posts, and beyond the loopback whoever reads values, sends Authorization: Bearer TOKEN. There may be a token
 // of its own for who only reads.
@@ -85,6 +87,7 @@ class Responder {
   [[nodiscard]] std::string collect(const std::string& name, double value, std::vector<PointWrite>& writes) const;
 
   PointDoor& door_;
+  std::string program_;
   Access access_;
   std::filesystem::path history_;
   std::vector<std::string> history_points_;

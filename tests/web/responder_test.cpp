@@ -9,6 +9,7 @@
 
 #include "runtime/task/task_door.hpp"
 #include "runtime/web/assets.hpp"
+#include "runtime/web/parameter_text.hpp"
 #include "tests/runtime/history/history_bench.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -101,6 +102,57 @@ TEST(WebResponder, GivesMetricsWithWhatCountsNotWhatIsStaged) {
   EXPECT_EQ(answer.type, metrics_type);
   EXPECT_NE(answer.body.find("\nhysteron_parameter_g_a{point=\"G.A\",unit=\"mm\"} 1\n"), std::string::npos);
   EXPECT_EQ(bench.post("/metrics").status, 404U);
+}
+
+TEST(WebResponder, AResetIsOrderedByWhoMayWrite) {
+  PageBench bench({.token = test::token, .read_token = "a-token-for-reading-0123456789"});
+  EXPECT_EQ(bench.post("/api/reset", {}, "").status, 401U);
+  EXPECT_EQ(bench.post("/api/reset", {}, "Bearer a-token-for-reading-0123456789").status, 403U);
+  EXPECT_EQ(bench.get("/api/reset").status, 404U);
+  EXPECT_EQ(PageBench({}).post("/api/reset").status, 403U) << "read-only without a token file";
+  EXPECT_EQ(bench.door.take_orders(), nullptr);
+  EXPECT_EQ(bench.post("/api/reset").status, 200U);
+  const TaskOrders* const orders = bench.door.take_orders();
+  ASSERT_NE(orders, nullptr);
+  EXPECT_EQ(orders->resets, 1U);
+  EXPECT_EQ(orders->commits, 0U);
+}
+
+TEST(WebResponder, SavesTheParametersThatCountAndNotThoseThatWait) {
+  PageBench bench({.token = test::token});
+  EXPECT_EQ(bench.post("/api/stage", R"({"G.A": 2.5, "G.B": -2.5})").status, 200U);
+  const Answer answer = bench.get("/api/parameters.toml");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.type, "application/toml");
+  EXPECT_EQ(answer.body,
+            "# Parameters that counted in ACCUMULATOR when this was saved.\n\n[parameters.G]\nA = 1.0\nB = -1.0\n");
+  EXPECT_EQ(bench.post("/api/parameters.toml").status, 404U);
+  PageBench beyond({.is_loopback = false, .token = test::token});
+  EXPECT_EQ(beyond.responder.answer({.method = "GET", .target = "/api/parameters.toml", .host = "machine:80"}).status,
+            401U);
+}
+
+TEST(WebParameterText, EveryKindOfParameterIsWrittenAsAParameterFileHasIt) {
+  const auto parameter = [](const char* name, PointType type) {
+    return Point{.name = name, .kind = PointKind::parameter, .type = type};
+  };
+  const std::vector<Point> points{
+      {.name = "U", .kind = PointKind::input},    parameter("CTRL.INNER.KP", PointType::real64),
+      parameter("K[0]", PointType::real64),       parameter("K[1]", PointType::real64),
+      parameter("LAG.T1", PointType::real64),     parameter("LAG.MAX", PointType::real64),
+      parameter("ON", PointType::boolean),        parameter("N", PointType::int32),
+      parameter("TABLE.X[0]", PointType::real64), parameter("TABLE.X[1]", PointType::real64)};
+  const std::vector<double> values{9.0,  0.1,
+                                   1.0,  -2.5,
+                                   0.05, std::numeric_limits<double>::infinity(),
+                                   1.0,  7.0,
+                                   1.0,  std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(parameter_text("P", points, values),
+            "# Parameters that counted in P when this was saved.\n\n"
+            "[parameters]\nK = [1.0, -2.5]\nON = true\nN = 7\n\n"
+            "[parameters.CTRL.INNER]\nKP = 0.1\n\n"
+            "[parameters.LAG]\nT1 = 0.05\n# MAX is not finite, and stays as the diagram has it\n\n"
+            "[parameters.TABLE]\n# X is not finite, and stays as the diagram has it\n");
 }
 
 TEST(WebResponder, ASetIsStagedThenCommittedWhole) {

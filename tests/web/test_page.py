@@ -1,6 +1,8 @@
 """The live page in a browser, against a running `hysteron serve`: what a user sees, types and is told."""
 import json
 import os
+import subprocess
+import tomllib
 import unittest
 import urllib.request
 
@@ -118,7 +120,7 @@ class LivePage(unittest.TestCase):
         browser = self.open(port)
         browser.wait_for(LIVE)
         self.assertIn("Read-only", browser.text("#access"))
-        self.assertTrue(browser.evaluate("[...document.querySelectorAll('#parameters input, .tools button')].every(e => e.disabled)"))
+        self.assertTrue(browser.evaluate("[...document.querySelectorAll('#parameters input, .tools button:not(#save)')].every(e => e.disabled)"))
         self.expect_no_fault(browser, port)
 
     def test_parameters_are_staged_refused_and_committed(self):
@@ -165,6 +167,71 @@ class LivePage(unittest.TestCase):
         self.assertTrue(all(fault.get("source") == "network" for fault in browser.faults), browser.faults[:5])
         printed, _ = task.stop()
         self.assertNotIn(TOKEN, printed)
+
+    def test_what_counts_is_saved_as_a_parameter_file(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token")
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        # what the browser is given to save, since a headless one has no folder for it
+        browser.evaluate("void (URL.createObjectURL = blob => { blob.text().then(text => window.saved = text); return 'blob:x'; },"
+                         " HTMLAnchorElement.prototype.click = function () { window.savedAs = this.download; })")
+        browser.click("#save")
+        browser.wait_for("window.saved !== undefined")
+        self.assertEqual(browser.evaluate("window.savedAs"), "stage.toml")
+        saved = tomllib.loads(browser.evaluate("window.saved"))["parameters"]
+        self.assertEqual(saved["LAG"]["T1"], 0.05)
+        self.assertEqual(saved["WAVE"]["AMPLITUDE"], 30.0)
+        # and the tool takes it
+        file = task.write("saved.toml", browser.evaluate("window.saved"))
+        task.write("in.csv", "t,SCALE,RESET\n0.00,1,0\n0.01,1,0\n0.02,1,0\n")
+        checked = subprocess.run([os.environ["HYSTERON_TOOL"], "run", "diagram.st", "--in", "in.csv", "--out", "out.csv",
+                                  "--params", file], cwd=task.path, capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_a_reset_is_asked_twice_and_begins_every_state_anew(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token")
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        browser.type("#token", TOKEN)
+        browser.wait_for("Math.abs(parseFloat(document.querySelector('#diagram [data-point=U]').textContent)) > 5")
+        browser.click("#reset")
+        self.assertIn("begins anew?", browser.text("#reset"))
+        browser.click("#reset")
+        browser.wait_for("document.getElementById('notice').textContent.startsWith('Reset: every state')")
+        self.assertEqual(browser.text("#reset"), "Reset the task")
+
+    def test_one_signal_is_drawn_over_another(self):
+        port = self.start("--web", "127.0.0.1:0").web_port
+        browser = self.open(port)
+        browser.wait_for(LIVE)
+        self.assertFalse(browser.evaluate("document.getElementById('xy-section').hidden"))
+        chosen = "document.getElementById('{}').selectedOptions[0].textContent"
+        self.assertEqual(browser.evaluate(chosen.format("xy-across")), "U [V]")
+        self.assertEqual(browser.evaluate(chosen.format("xy-up")), "Y [um]")
+        browser.wait_for("Number(document.getElementById('xy').dataset.points) > 20")
+        ink = ("(() => { const c = document.getElementById('xy'); const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+               " let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] === 0 && d[i + 1] === 114 && d[i + 2] === 178; return n; })()")
+        self.assertGreater(browser.evaluate(ink), 100, "a curve of the first colour")
+        self.expect_no_fault(browser, port)
+
+    def test_the_keyboard_reaches_what_the_mouse_does(self):
+        port = self.start("--web", "127.0.0.1:0").web_port
+        browser = self.open(port)
+        browser.wait_for(LIVE)
+        value = "document.querySelector('#diagram [data-inner]')"
+        keys = "document.querySelectorAll('#trends .keys span').length"
+        before = browser.evaluate(keys)
+        browser.evaluate(f"void {value}.focus()")
+        self.assertTrue(browser.evaluate(f"document.activeElement === {value}"))
+        browser.evaluate(f"void {value}.dispatchEvent(new KeyboardEvent('keydown', {{ key: 'Enter', cancelable: true }}))")
+        self.assertEqual(browser.evaluate(keys), before + 1)
+        self.assertEqual(browser.evaluate(f"{value}.getAttribute('aria-pressed')"), "true")
+
+    def test_a_narrow_screen_shows_all_without_sliding_sideways(self):
+        port = self.start("--web", "127.0.0.1:0").web_port
+        browser = self.enterContext(Browser(f"http://127.0.0.1:{port}/", width=420, height=900))
+        browser.wait_for(LIVE)
+        self.assertLessEqual(browser.evaluate("document.documentElement.scrollWidth"), 420)
 
     def test_the_last_hours_of_a_point_are_drawn(self):
         history = RUN_FILE + '[history]\nfile = "history.sqlite"\nevery = "10ms"\npoints = ["Y", "LAG.T1"]\n'

@@ -9,6 +9,7 @@ let description = null;  // what there is to be seen
 let index = new Map();   // of points, by name
 let trends = null;
 let historyView = null;
+let xyView = null;
 let parameters = [];  // {point, now, staged, input}
 let live = [];        // {element, of: "values" or "inner", at, type, unit}
 let statusRows = [];  // {cell, at}
@@ -76,15 +77,27 @@ function buildDiagram() {
     const signal = of === "values" ? description.points[at] : description.inner[at];
     if (signal === undefined) continue;
     live.push({ element, of, at, type: signal.type, unit: signal.unit === "1" ? "" : " " + signal.unit });
-    element.addEventListener("click", () => {
+    const toggle = () => {
       trends.toggle(of + at);
       markPlotted();
+    };
+    element.setAttribute("tabindex", "0");
+    element.setAttribute("role", "button");
+    element.setAttribute("aria-label", `${signal.name}: in the trends or not`);
+    element.addEventListener("click", toggle);
+    element.addEventListener("keydown", event => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      toggle();
     });
   }
 }
 
 function markPlotted() {
-  for (const { element, of, at } of live) element.classList.toggle("plotted", trends.chosen.has(of + at));
+  for (const { element, of, at } of live) {
+    element.classList.toggle("plotted", trends.chosen.has(of + at));
+    element.setAttribute("aria-pressed", trends.chosen.has(of + at));
+  }
 }
 
 function buildTrends() {
@@ -95,6 +108,8 @@ function buildTrends() {
   trends = new Trends(place("trends"), [...own, ...inner]);
   trends.choose(own.slice(0, 8).map(signal => signal.key));
   markPlotted();
+  if (xyView === null) xyView = new XyView();
+  xyView.build(trends);
 }
 
 function buildParameters() {
@@ -119,6 +134,7 @@ function buildParameters() {
     parameters.push({ point, at, now, staged, input });
   });
   place("parameters-section").hidden = parameters.length === 0;
+  place("reset").disabled = !description.writable;
   place("token-label").hidden = !description.writable || description.token_to_read;
   place("stage").disabled = !description.writable;
   place("access").textContent = description.writable ? "Parameters can be changed by whoever has the token."
@@ -256,6 +272,37 @@ place("commit").addEventListener("click", () =>
   give("/api/commit", "Committed: the set counts from the next step on.", "Nothing was changed; what is staged stays staged."));
 place("discard").addEventListener("click", () =>
   give("/api/discard", "Discarded: nothing is staged any longer.", "What is staged stays staged."));
+
+// Asks twice: the states of a running control are lost.
+place("reset").addEventListener("click", () => {
+  const button = place("reset");
+  if (button.dataset.sure !== "yes") {
+    button.dataset.sure = "yes";
+    button.textContent = "Reset: every state begins anew?";
+    setTimeout(() => { button.dataset.sure = ""; button.textContent = "Reset the task"; }, 5000);
+    return;
+  }
+  button.dataset.sure = "";
+  button.textContent = "Reset the task";
+  give("/api/reset", "Reset: every state begins anew.", "The task goes on as before.");
+});
+
+async function save() {
+  try {
+    const answer = await get("/api/parameters.toml", readToken);
+    const text = await answer.text();
+    if (!answer.ok) return say(JSON.parse(text).refusal, "bad");
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
+    link.download = description.name.toLowerCase() + ".toml";
+    link.click();
+    URL.revokeObjectURL(link.href);
+    say(`Saved: ${link.download} has the parameters that count now; what is staged is not in it.`, "good");
+  } catch {
+    say("The server does not answer.", "bad");
+  }
+}
+place("save").addEventListener("click", save);
 
 // --- the connection ---
 

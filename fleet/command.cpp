@@ -14,7 +14,7 @@ struct Described {
 };
 constexpr std::array<Described, 3> described{
     {{"diagnose", "verdict.json", "the record cannot be diagnosed, verdict.json says why."},
-     {"tune", "report.json", "the fit did not converge, report.json says why."},
+     {"tune", "report.json", "the fit did not converge, or limits of a goal are broken; report.json says why."},
      {"check", "diagnostics.json", "the diagram has errors, diagnostics.json says which."}}};
 
 const Described& description(Command command) {
@@ -51,7 +51,10 @@ std::vector<std::string> arguments_of(const Unit& unit, const std::filesystem::p
     words.emplace_back("--json");
     return words;
   }
-  words.insert(words.end(), {"--log", unit.log, "--params", unit.parameters, "--out"});
+  if (!unit.log.empty()) {
+    words.insert(words.end(), {"--log", unit.log});
+  }
+  words.insert(words.end(), {"--params", unit.parameters, "--out"});
   if (unit.command == Command::Tune) {
     words.insert(words.end(), {(folder / "tuned.toml").string(), "--report", folder.string()});
   } else {

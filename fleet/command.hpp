@@ -20,9 +20,14 @@ enum class Command : std::uint8_t {
 /// Nothing where the text names none.
 [[nodiscard]] std::optional<Command> command_named(std::string_view text);
 
-/// Whether it reads a record and parameters beside the diagram.
-[[nodiscard]] constexpr bool needs_record(Command command) {
+/// Whether it reads parameters beside the diagram, and a record where there is one.
+[[nodiscard]] constexpr bool needs_parameters(Command command) {
   return command != Command::Check;
+}
+
+/// Whether it always reads a record: `tune` does not where the parameters have a [goal] with a signal of its own.
+[[nodiscard]] constexpr bool always_needs_log(Command command) {
+  return command == Command::Diagnose;
 }
 
 /// The file in the folder of a unit that holds what was found, as JSON.

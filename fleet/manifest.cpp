@@ -28,7 +28,7 @@ struct ManifestLine {
   std::string command{};
 };
 
-enum class Needed : std::uint8_t { Always, ByRecords, Never };
+enum class Needed : std::uint8_t { Always, ByParameters, ByLogs, Never };
 
 struct Column {
   std::string_view name;
@@ -38,11 +38,16 @@ struct Column {
 constexpr std::array<Column, 7> columns{
     {{"machine", [](ManifestLine& line) -> std::string& { return line.unit.machine; }, Needed::Always},
      {"diagram", [](ManifestLine& line) -> std::string& { return line.unit.diagram; }, Needed::Always},
-     {"params", [](ManifestLine& line) -> std::string& { return line.unit.parameters; }, Needed::ByRecords},
-     {"log", [](ManifestLine& line) -> std::string& { return line.unit.log; }, Needed::ByRecords},
+     {"params", [](ManifestLine& line) -> std::string& { return line.unit.parameters; }, Needed::ByParameters},
+     {"log", [](ManifestLine& line) -> std::string& { return line.unit.log; }, Needed::ByLogs},
      {"when", [](ManifestLine& line) -> std::string& { return line.unit.when; }, Needed::Never},
      {"group", [](ManifestLine& line) -> std::string& { return line.unit.group; }, Needed::Never},
      {"command", [](ManifestLine& line) -> std::string& { return line.command; }, Needed::Never}}};
+
+bool is_needed(const Column& column, Command command) {
+  return column.needed == Needed::Always || (column.needed == Needed::ByParameters && needs_parameters(command)) ||
+         (column.needed == Needed::ByLogs && always_needs_log(command));
+}
 
 /// The cells of a line; nothing where a quotation mark is not closed, or text follows one that is.
 std::optional<std::vector<std::string>> cells_of(std::string_view line) {
@@ -108,8 +113,7 @@ std::vector<const Column*> header_of(const std::vector<std::string>& cells, Comm
   const bool has_commands =
       std::ranges::any_of(header, [](const Column* one) { return one != nullptr && one->name == "command"; });
   for (const Column& one : columns) {
-    const bool needed =
-        one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(otherwise) && !has_commands);
+    const bool needed = one.needed == Needed::Always || (!has_commands && is_needed(one, otherwise));
     if (needed && std::ranges::find(header, &one) == header.end()) {
       found.error(error::missing_column, place, fmt::format("the manifest has no column {}.", one.name),
                   "add it; the first line names the columns, as machine,diagram,params,log,when.");
@@ -147,9 +151,7 @@ Unit unit_of(const std::vector<std::string>& cells, const std::vector<const Colu
   }
   read_command(line, otherwise, place, found);
   for (const Column& one : columns) {
-    const bool needed =
-        one.needed == Needed::Always || (one.needed == Needed::ByRecords && needs_record(line.unit.command));
-    if (needed && one.cell(line).empty()) {
+    if (is_needed(one, line.unit.command) && one.cell(line).empty()) {
       found.error(error::bad_usage, place,
                   fmt::format("{} needs a cell {}, and it is empty.", name_of(line.unit.command), one.name),
                   "write it, or remove the line.");

@@ -92,6 +92,27 @@ Outcome fit_of(const nlohmann::json& json) {
   return outcome;
 }
 
+/// A loop that was tuned for a goal: the error is that of the plant that it is largest with, a share of the step.
+Outcome loop_of(const nlohmann::json& json) {
+  Outcome outcome{.verdict = json.at("status")};
+  for (const nlohmann::json& one : json.at("parameters")) {
+    outcome.parameters.push_back({.source = "goal",
+                                  .name = one.at("name"),
+                                  .value = number_of(one.at("value")),
+                                  .unit = one.at("unit"),
+                                  .at_bound = one.at("at_bound")});
+  }
+  for (const nlohmann::json& plant : json.at("plants")) {
+    const double error = number_of(plant.at("after").at("error"));
+    if (!(error <= outcome.improved_rms)) {
+      outcome.improved_rms = error;
+      outcome.nominal_rms = plant.at("before").is_null() ? not_a_number : number_of(plant["before"].at("error"));
+    }
+  }
+  outcome.unit_of_gap = "1";
+  return outcome;
+}
+
 }  // namespace
 
 std::string effects_text(const Outcome& outcome) {
@@ -108,7 +129,7 @@ Outcome read_outcome(Command command, const std::filesystem::path& folder) {
     case Command::Diagnose:
       return diagnosis_of(json);
     case Command::Tune:
-      return fit_of(json);
+      return json.contains("plants") ? loop_of(json) : fit_of(json);
     case Command::Check:
       break;
   }

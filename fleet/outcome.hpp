@@ -21,7 +21,7 @@ struct FoundEffect {
 };
 
 struct FoundParameter {
-  std::string source{};  ///< calibration, effect, fit, initial state
+  std::string source{};  ///< calibration, effect, fit, initial state, goal
   std::string name{};    ///< AMP.K; `lag at U: T1` where it is that of an effect
   double value = not_a_number;
   double standard_error = not_a_number;
@@ -32,7 +32,7 @@ struct FoundParameter {
 };
 
 struct Outcome {
-  std::string verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; no errors of a check
+  std::string verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; tuned of a goal; no errors of a check
   std::vector<FoundEffect> effects{};
   std::vector<FoundParameter> parameters{};
   /// The probability of each by the record alone, without a prior; where none was weighed, the confidence of the verdict.

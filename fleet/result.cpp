@@ -45,12 +45,12 @@ const std::string& Keys::digest(const std::string& file) {
   return place->second;
 }
 
-const std::string& Keys::digest_of_diagram(const std::string& file) {
-  const auto [place, is_new] = diagrams_.emplace(file, "");
+const std::string& Keys::digest_of_all(const std::string& file, const NamedFiles& named) {
+  const auto [place, is_new] = with_named_.emplace(file, "");
   if (is_new) {
     Parts parts;
     parts.add(digest(file));
-    for (const std::string& other : named_ ? named_(file) : std::vector<std::string>()) {
+    for (const std::string& other : named ? named(file) : std::vector<std::string>()) {
       parts.add(digest(other));
     }
     place->second = parts.digest();
@@ -62,11 +62,11 @@ std::string Keys::of(const Unit& unit) {
   Parts parts;
   for (const std::string_view part :
        {schema, std::string_view(version_), name_of(unit.command), std::string_view(unit.machine),
-        std::string_view(unit.when), std::string_view(digest_of_diagram(unit.diagram))}) {
+        std::string_view(unit.when), std::string_view(digest_of_all(unit.diagram, named_.by_diagram))}) {
     parts.add(part);
   }
-  if (needs_record(unit.command)) {
-    parts.add(digest(unit.parameters));
+  if (needs_parameters(unit.command)) {
+    parts.add(digest_of_all(unit.parameters, named_.by_parameters));
     parts.add(digest(unit.log));
   }
   if (unit.command == Command::Diagnose) {

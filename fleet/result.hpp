@@ -29,30 +29,37 @@ struct Result {
   double seconds = 0.0;  ///< that the process took
 };
 
-/// The names of the files that a diagram names and its result depends on, such as FMUs.
-using NamedFiles = std::function<std::vector<std::string>(const std::string& diagram)>;
+/// The names of the files that a diagram or a parameter file names and the result depends on: FMUs, the plants of a
+/// goal.
+using NamedFiles = std::function<std::vector<std::string>(const std::string& file)>;
+
+struct NamingFiles {
+  NamedFiles by_diagram{};
+  NamedFiles by_parameters{};
+};
 
 /// Keys of units. A file that several units name is read once.
 class Keys {
  public:
-  /// `options` are those of `diagnose`. Without `named`, diagrams name no files.
-  Keys(std::string version, std::vector<std::string> options, NamedFiles named = {})
+  /// `options` are those of `diagnose`. Without `named`, no file names others.
+  Keys(std::string version, std::vector<std::string> options, NamingFiles named = {})
       : version_(std::move(version)), options_(std::move(options)), named_(std::move(named)) {}
 
   /// 64 hexadecimal digits: of the version, the command and its options, the machine and its time, and the bytes of
-  /// diagram, of the files that it names, of parameters and record. A record or a named file that cannot be read counts
+  /// diagram and parameters, of the files that they name, and of the record. A record or a named file that cannot be read counts
   /// by its name, until it can be.
   [[nodiscard]] std::string of(const Unit& unit);
 
  private:
   const std::string& digest(const std::string& file);
-  const std::string& digest_of_diagram(const std::string& file);
+  /// With the files that it names.
+  const std::string& digest_of_all(const std::string& file, const NamedFiles& named);
 
   std::string version_;
   std::vector<std::string> options_;
-  NamedFiles named_;
+  NamingFiles named_;
   std::map<std::string, std::string> digests_;
-  std::map<std::string, std::string> diagrams_;
+  std::map<std::string, std::string> with_named_;
 };
 
 /// Where the result of a key lies.

@@ -20,7 +20,7 @@ struct RunOptions {
   std::string program{};               ///< called as arguments_of a unit say
   std::string version{};               ///< of the program
   std::vector<std::string> options{};  ///< of `diagnose`; a part of each key
-  NamedFiles named_files{};            ///< a part of each key, too
+  NamingFiles named_files{};           ///< a part of each key, too
   std::filesystem::path output{};
   std::size_t workers = 1;         ///< processes at once
   double time_limit = 600.0;       ///< s, of each

@@ -8,6 +8,7 @@
 
 #include "codegen/graph/names.hpp"
 #include "codegen/trace/sized_block.hpp"
+#include "lsp/annotations.hpp"
 #include "lsp/words.hpp"
 #include "support/element_name.hpp"
 
@@ -21,6 +22,11 @@ using nlohmann::json;
 // CompletionItemKind of LSP 3.17.
 constexpr int kind_field = 5;
 constexpr int kind_variable = 6;
+constexpr int kind_keyword = 14;
+
+/// What a statement or a section may begin with.
+constexpr std::array<std::string_view, 9> statement_words{"FUNCTION_BLOCK", "END_FUNCTION_BLOCK", "VAR_INPUT", "VAR_OUTPUT",
+                                                          "VAR", "VAR CONSTANT", "END_VAR", "IF", "END_IF"};
 constexpr int kind_class = 7;
 
 /// The variable of a name that is nearest to an offset: of the block around it, else of any block of the file.
@@ -181,7 +187,8 @@ json completion(const Insight& insight, std::size_t offset) {
   const auto tokens = tokens_of(insight.text);
   for (const auto& comment : tokens.comments) {
     if (offset > comment.span.offset && offset < comment.span.offset + comment.span.length) {
-      return items;
+      return annotation_completion(insight.text, insight.known == nullptr ? insight.tree : *insight.known, comment.span,
+                                   offset);
     }
   }
   // The word that is being typed is no context: what stands before it is.
@@ -226,6 +233,11 @@ json completion(const Insight& insight, std::size_t offset) {
     if (const auto* const own = name.empty() ? nullptr : own_type(insight, name, offset)) {
       add_own(own, language::Section::Input);
       return items;
+    }
+  }
+  if (symbol == Symbol::Semicolon || symbol == Symbol::Keyword) {
+    for (const std::string_view keyword : statement_words) {
+      add(keyword, kind_keyword, "a keyword");
     }
   }
   const auto& tree = insight.tree.valid || insight.known == nullptr ? insight.tree : *insight.known;

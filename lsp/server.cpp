@@ -7,6 +7,7 @@
 
 #include "codegen/compile.hpp"
 #include "codegen/graph/names.hpp"
+#include "lsp/actions.hpp"
 #include "lsp/symbols.hpp"
 #include "lsp/words.hpp"
 
@@ -72,7 +73,8 @@ json Server::initialize(const json& params) {
             {"referencesProvider", true},
             {"renameProvider", {{"prepareProvider", true}}},
             {"documentSymbolProvider", true},
-            {"completionProvider", {{"triggerCharacters", {".", "(", ":"}}}},
+            {"completionProvider", {{"triggerCharacters", {".", "(", ":", "@", " "}}}},
+            {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
             {"documentFormattingProvider", true}}}};
 }
 
@@ -133,6 +135,30 @@ json Server::named(const std::string& method, const json& params) const {
   return {{"changes", {{uri, edits}}}};
 }
 
+json Server::actions(const json& params) const {
+  const auto& open = document(params);
+  const auto uri = params.at("textDocument").at("uri").get<std::string>();
+  const auto offsets = [&](const json& range) {
+    return std::pair(offset_of(open.text, position_in(range.at("start")), encoding_),
+                     offset_of(open.text, position_in(range.at("end")), encoding_));
+  };
+  const auto [begin, end] = offsets(params.at("range"));
+  auto list = json::array();
+  for (const json& one : open.diagnostics) {
+    const auto [first, last] = offsets(one.at("range"));
+    if (one.contains("data") && first <= end && begin <= last) {
+      const auto word = one["data"].get<std::string>();
+      const json edit{{"range", one["range"]}, {"newText", word}};
+      list.push_back({{"title", "Write " + word},
+                      {"kind", "quickfix"},
+                      {"isPreferred", true},
+                      {"diagnostics", json::array({one})},
+                      {"edit", {{"changes", {{uri, json::array({edit})}}}}}});
+    }
+  }
+  return list;
+}
+
 json Server::outline(const Document& open) const {
   // SymbolKind of LSP 3.17.
   constexpr int kind_class = 5;
@@ -183,6 +209,9 @@ json Server::request(const std::string& method, const json& params) {
   }
   if (method == "textDocument/formatting") {
     return format(params);
+  }
+  if (method == "textDocument/codeAction") {
+    return actions(params);
   }
   if (method == "textDocument/documentSymbol") {
     return outline(document(params));
@@ -240,7 +269,12 @@ json Server::published(const std::string& uri, Document& open) const {
                     {"code", fmt::format("HY{:03}", one.number)},
                     {"source", "hysteron"},
                     {"message", (here ? "" : one.place.file + ": ") + one.cause + "\n" + one.mend}});
+    const std::string written = open.text.substr(begin, end - begin);
+    if (const auto word = here ? proposed_word(written, one.mend) : std::nullopt) {
+      list.back()["data"] = *word;
+    }
   }
+  open.diagnostics = list;
   return {{"jsonrpc", "2.0"},
           {"method", "textDocument/publishDiagnostics"},
           {"params", {{"uri", uri}, {"diagnostics", list}}}};

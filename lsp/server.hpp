@@ -29,6 +29,7 @@ class Server {
     std::string text;
     std::shared_ptr<const language::SourceFile> tree;
     std::shared_ptr<const language::SourceFile> known;  ///< the tree of the last text without a syntax error
+    nlohmann::json diagnostics;                         ///< as published, each with the word that mends it as `data`
   };
 
   nlohmann::json request(const std::string& method, const nlohmann::json& params);
@@ -37,6 +38,8 @@ class Server {
   nlohmann::json format(const nlohmann::json& params);
   /// Definition, references, rename: what the word at a position names, and its places.
   [[nodiscard]] nlohmann::json named(const std::string& method, const nlohmann::json& params) const;
+  /// The words that mend what stands in a range, each as an edit.
+  [[nodiscard]] nlohmann::json actions(const nlohmann::json& params) const;
   [[nodiscard]] nlohmann::json outline(const Document& open) const;
   void change(Document& document, const nlohmann::json& change) const;
   nlohmann::json published(const std::string& uri, Document& document) const;

@@ -1,7 +1,6 @@
 #include "support/progress.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cmath>
 
 #include "support/utf8.hpp"
+#include "support/wrapped.hpp"
 
 namespace hysteron {
 namespace {
@@ -24,11 +24,12 @@ std::string duration_text(double seconds) {
   return whole < 6000 ? fmt::format("{} min", (whole + 59) / 60) : fmt::format("{} h", (whole + 3599) / 3600);
 }
 
-std::size_t terminal_width(std::FILE* stream) {
-  winsize size{};
-  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
+std::size_t width_of(std::FILE* stream) {
+  const std::size_t width = terminal_width(stream);
+  return width > 0 ? width : 80;
 }
+
+bool silenced = false;
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -62,10 +63,14 @@ std::string progress_line(std::string_view title, double fraction, std::optional
 
 Progress::Progress(std::string title, std::FILE* stream, std::function<double()> clock)
     : title_(std::move(title)),
-      stream_(stream != nullptr && isatty(fileno(stream)) == 1 ? stream : nullptr),
+      stream_(!silenced && stream != nullptr && isatty(fileno(stream)) == 1 ? stream : nullptr),
       clock_(clock ? std::move(clock) : steady_seconds),
       begun_(clock_()),
       next_drawing_(begun_ + drawing_interval) {}
+
+void Progress::silence() {
+  silenced = true;
+}
 
 void Progress::update(double fraction, std::string_view text) {
   if (stream_ == nullptr) {
@@ -80,7 +85,7 @@ void Progress::update(double fraction, std::string_view text) {
   if (const double elapsed = now - begun_; fraction > 0.01 && elapsed > 1.0) {
     left = elapsed * (1.0 - fraction) / fraction;
   }
-  const auto line = progress_line(title_, fraction, left, text, terminal_width(stream_) - 1);
+  const auto line = progress_line(title_, fraction, left, text, width_of(stream_) - 1);
   std::fputs(("\r\033[K" + line).c_str(), stream_);
   std::fflush(stream_);
   drawn_ = true;

@@ -21,6 +21,9 @@ class Progress {
   /// A stream that is no terminal gets nothing. `clock` gives seconds; the default is the steady clock.
   explicit Progress(std::string title, std::FILE* stream = stderr, std::function<double()> clock = {});
   ~Progress() { finish(); }
+
+  /// No line of the program is drawn from now on: for who asked for silence.
+  static void silence();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   Progress(Progress&&) = delete;

@@ -105,7 +105,7 @@ std::string_view toml_kind(const toml::node& node) {
     case toml::node_type::table:
       return "a table";
     case toml::node_type::array:
-      return "a list";
+      return node.as_array()->empty() ? "an empty list" : "a list";
     case toml::node_type::string:
       return "a text";
     case toml::node_type::integer:

@@ -12,6 +12,7 @@
 
 #include "support/errors.hpp"
 #include "support/names.hpp"
+#include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 #include "tool/version.hpp"
 
@@ -120,6 +121,17 @@ InputError translated(const CLI::App& app, const CLI::ParseError& said) {
   return bad_usage(fmt::format("{}: {}.", full_name, text), see);
 }
 
+bool given(const CLI::App& command, const char* name) {
+  const CLI::Option* const option = command.get_option_no_throw(name);
+  return option != nullptr && option->count() > 0;
+}
+
+/// `--out -`: the result itself goes to the standard output.
+bool out_is_standard(const CLI::App& command) {
+  const CLI::Option* const option = command.get_option_no_throw("--out");
+  return option != nullptr && option->count() > 0 && option->results().back() == "-";
+}
+
 class CommandLine {
  public:
   CommandLine() {
@@ -133,7 +145,8 @@ class CommandLine {
       options->set_help_flag("-h,--help", "Shows this help.");
       options->group("Commands");
       options->get_formatter()->label("Positionals", "Arguments");
-      actions_[options] = command.add(*options);
+      actions_[options] = {command.add(*options), command.writes_files};
+      options->add_flag("--quiet", "Says errors and warnings alone: no report, no notes, no progress.");
     }
   }
 
@@ -160,7 +173,7 @@ class CommandLine {
       std::reverse(arguments.begin(), arguments.end());  // so the library wants them
       app_.parse(arguments);
     } catch (const CLI::CallForHelp&) {
-      console.print(app_.help());
+      console.print(wrapped(app_.help(), terminal_width(stdout)));
       return exit_ok;
     } catch (const CLI::CallForVersion& version_text) {
       console.print(version_text.what());
@@ -172,12 +185,19 @@ class CommandLine {
     if (chosen.empty()) {
       throw bad_usage("No command is given.", "`hysteron help` lists the commands.");
     }
-    return actions_.at(chosen.front())(console);
+    const auto& [action, writes_files] = actions_.at(chosen.front());
+    const bool is_product = given(*chosen.front(), "--json") || out_is_standard(*chosen.front());
+    console.speak({.quiet = given(*chosen.front(), "--quiet"), .is_report = writes_files && !is_product});
+    return action(console);
   }
 
  private:
   CLI::App app_{"Block diagrams for hysteresis and its compensation: check, run, tune, generate."};
-  std::map<const CLI::App*, Action> actions_;
+  struct Chosen {
+    Action action{};
+    bool writes_files = false;
+  };
+  std::map<const CLI::App*, Chosen> actions_;
 };
 
 }  // namespace

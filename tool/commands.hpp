@@ -26,6 +26,7 @@ struct Command {
   std::string_view name;
   std::string_view summary;
   Action (*add)(CLI::App& app);  ///< adds the options of the command
+  bool writes_files = false;     ///< what it prints speaks of these, and --quiet leaves it out
 };
 
 /// All commands, in the order in which the help lists them.
@@ -40,6 +41,7 @@ Action add_plot(CLI::App& app);
 Action add_compare(CLI::App& app);
 Action add_run(CLI::App& app);
 Action add_generate(CLI::App& app);
+Action add_export(CLI::App& app);
 Action add_library(CLI::App& app);
 Action add_import(CLI::App& app);
 Action add_tune(CLI::App& app);

@@ -6,27 +6,46 @@
 #include <cstring>
 
 #include "support/errors.hpp"
+#include "support/progress.hpp"
 #include "support/utf8.hpp"
+#include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 
 namespace hysteron::tool {
 
-void Console::print(std::string_view text) {
+void Console::speak(const Speech& speech) {
+  quiet_ = speech.quiet;
+  is_report_ = speech.is_report;
+  if (quiet_) {
+    Progress::silence();
+  }
+}
+
+void Console::print(std::string_view all) {
+  if (is_report_ && quiet_) {
+    return;
+  }
+  const std::string text = is_report_ ? wrapped(all, terminal_width(stdout)) : std::string(all);
   if (write_error_ == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
     write_error_ = errno;
   }
 }
 
 void Console::note(std::string_view file, std::string_view text) {
+  if (quiet_) {
+    return;
+  }
   (void)std::fflush(stdout);
-  const auto line = fmt::format("note: {}: {}\n", printable(file), printable(text));
+  const auto line =
+      wrapped(fmt::format("note: {}: {}\n", printable(file), printable(text)), terminal_width(stderr));
   (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 void Console::report(const Diagnostics& diagnostics) {
   if (!diagnostics.all().empty()) {
     (void)std::fflush(stdout);
-    const auto text = as_text(diagnostics, sources_, {.colour = wants_colour(stderr)});
+    const auto text =
+        wrapped(as_text(diagnostics, sources_, {.colour = wants_colour(stderr)}), terminal_width(stderr));
     (void)std::fwrite(text.data(), 1, text.size(), stderr);
   }
 }

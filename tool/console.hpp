@@ -10,9 +10,18 @@
 
 namespace hysteron::tool {
 
+/// How a command is to speak.
+struct Speech {
+  bool quiet = false;        ///< errors and warnings alone: neither notes, nor progress, nor reports
+  bool is_report = false;    ///< what is printed speaks of files that were written; else it is the product itself
+};
+
 class Console {
  public:
-  /// Results. Where the reader of a pipe has gone, what is left is dropped without a word.
+  /// From now on.
+  void speak(const Speech& speech);
+
+  /// Results. A report is left out where the command is quiet, and broken to the width of a terminal. Where the reader of a pipe has gone, what is left is dropped without a word.
   void print(std::string_view text);
 
   /// What was understood of an input, `note: log.csv: ...`, to the standard error.
@@ -34,6 +43,8 @@ class Console {
   [[nodiscard]] int finish(int exit_code);
 
  private:
+  static inline bool quiet_ = false;  ///< of the program as a whole: notes are told where no console is at hand
+  bool is_report_ = false;
   Sources sources_;
   int write_error_ = 0;
 };

@@ -13,6 +13,7 @@
 
 #include "codegen/graph/fmu_block.hpp"
 #include "codegen/language/syntax.hpp"
+#include "codegen/parameters/parameter_file.hpp"
 #include "diagnosis/prior.hpp"
 #include "fleet/manifest.hpp"
 #include "fleet/run.hpp"
@@ -37,7 +38,7 @@ constexpr std::string_view fleet_examples = R"(Examples:
   hysteron fleet fleet.csv --out fleet --share 1/2
 
 MANIFEST is CSV with a line for each record. Its columns are machine,diagram,params,log and, if wanted, when,group,command;
-names of files are relative to it. Each record is diagnosed, tuned or checked by a process of its own, with limits of time and
+names of files are relative to it. `tune` of parameters with [goal] needs no log. Each record is diagnosed, tuned or checked by a process of its own, with limits of time and
 memory. DIR gets results.csv, fleet.sqlite, and a folder for each record with what its command writes, result.json and
 messages.txt. `hysteron fleet-report DIR` says which machines drift or stand out.
 A second run does what has changed: machine, time, diagram and FMUs, parameters, record, command, options or version. It may be
@@ -75,6 +76,18 @@ std::vector<std::string> files_named_in(const std::string& diagram) {
   return files;
 }
 
+/// The plants of a goal, which a tuning depends on.
+std::vector<std::string> plants_named_in(const std::string& parameter_file) {
+  std::vector<std::string> files;
+  try {
+    for (const auto& plant : parameters::read_parameter_file(parameter_file).goal.plants) {
+      files.push_back((std::filesystem::path(parameter_file).parent_path() / plant.text).string());
+    }
+  } catch (const InputError&) {  // the command of the unit says what is wrong with it
+  }
+  return files;
+}
+
 /// The share that is asked for, or that MPI or Slurm gives.
 void choose_share(FleetOptions& options) {
   const auto share = options.share.empty() ? fleet::share_from([](const char* name) { return std::getenv(name); })
@@ -107,13 +120,15 @@ int run_fleet(FleetOptions options, Console& console) {
     (void)diagnosis::read_prior(options.prior, {});  // told once, not by each record
     options.run.options.insert(options.run.options.end(), {"--prior", options.prior});
   }
-  options.run.named_files = [&](const std::string& diagram) {
-    std::vector<std::string> files = files_named_in(diagram);
-    if (!options.prior.empty()) {
-      files.push_back(options.prior);
-    }
-    return files;
-  };
+  options.run.named_files = {.by_diagram =
+                                 [&](const std::string& diagram) {
+                                   std::vector<std::string> files = files_named_in(diagram);
+                                   if (!options.prior.empty()) {
+                                     files.push_back(options.prior);
+                                   }
+                                   return files;
+                                 },
+                             .by_parameters = plants_named_in};
   Progress line("Working");
   options.run.progress = [&](std::size_t done, std::size_t all, const fleet::Unit& last) {
     line.update(static_cast<double>(done) / static_cast<double>(all),

@@ -26,19 +26,21 @@ std::string limit_unit(const GoalProblem& problem, LimitKind kind) {
   return unit;
 }
 
+/// `without`: what is said of a loop without figures.
 std::vector<std::string> figure_row(const GoalProblem& problem, const std::string& name,
-                                    const std::optional<LoopFigures>& figures, bool has_margins) {
+                                    const std::optional<LoopFigures>& figures, std::string_view without,
+                                    bool has_margins) {
   const bool is_step = problem.settings.signal == parameters::GoalSettings::Signal::Step;
   std::vector<std::string> row{name};
-  row.push_back(figures ? fmt::format("{:.3g} %", 100.0 * figures->error) : "does not settle");
+  row.push_back(figures ? fmt::format("{:.3g} %", 100.0 * figures->error) : std::string(without));
   const auto add = [&](double value, const std::string& unit, std::string_view otherwise) {
     row.push_back(figures ? value_text(value, unit, otherwise) : "");
   };
   const LoopFigures known = figures.value_or(LoopFigures{});
   if (is_step) {
     add(known.overshoot, "%", "");
-    add(known.rise_time, "s", "not reached");
-    add(known.settling_time, "s", "not reached");
+    add(known.rise_time, "s", "beyond the test");
+    add(known.settling_time, "s", "beyond the test");
   }
   if (!problem.effort.empty()) {
     add(known.effort, limit_unit(problem, LimitKind::Effort), "");
@@ -99,9 +101,12 @@ TextTable figure_table(const GoalProblem& problem, const GoalResult& result) {
   if (has_margins) {
     table.heads.insert(table.heads.end(), {"gain margin", "phase margin", "Ms"});
   }
-  for (const PlantResult& plant : result.plants) {
-    table.rows.push_back(figure_row(problem, plant.name, plant.after, has_margins));
-    table.rows.push_back(figure_row(problem, "  at the start", plant.before, has_margins));
+  for (std::size_t plant = 0; plant < result.plants.size(); ++plant) {
+    const PlantResult& one = result.plants[plant];
+    table.rows.push_back(figure_row(problem, one.name, one.after, "", has_margins));
+    table.rows.push_back(figure_row(problem, "  at the start", one.before,
+                                    plant == result.start_plant ? what_it_does(result.start_state) : "not tried",
+                                    has_margins));
   }
   return table;
 }
@@ -137,8 +142,9 @@ std::vector<std::string> goal_remarks(const GoalProblem& problem, const GoalResu
                     result.best_start + 1);
     for (std::size_t start = 0; start < result.start_errors.size(); ++start) {
       const double error = result.start_errors[start];
-      text += std::isnan(error) ? fmt::format(" {} limits broken;", start + 1)
-                                : fmt::format(" {} {:.3g};", start + 1, 100.0 * error);
+      text += std::isnan(error)   ? fmt::format(" {} limits broken;", start + 1)
+              : std::isinf(error) ? fmt::format(" {} no loop that settles;", start + 1)
+                                  : fmt::format(" {} {:.3g};", start + 1, 100.0 * error);
     }
     text.back() = '.';
     remarks.push_back(text + " Number 1 is the file's own.");

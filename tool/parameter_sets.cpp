@@ -12,6 +12,7 @@
 #include "codegen/parameters/apply.hpp"
 #include "codegen/parameters/parameter_file.hpp"
 #include "support/byte_order_mark.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -292,6 +293,53 @@ parameters::Value value_for(const Graph& graph, const std::string& path, double 
                    : parameters::value_for(graph.parameters[static_cast<std::size_t>(found)].field, number);
 }
 
+/// A set gives one number to each path. What takes another value is said before any set is run, with what to write.
+void check_types(const Table& table, const SetOptions& options, const Graph& graph) {
+  const std::string source = !options.file.empty()     ? "a column"
+                             : !options.sweeps.empty() ? "--sweep"
+                                                       : "--draw";
+  for (std::size_t k = 0; k < table.paths.size(); ++k) {
+    const std::string& path = table.paths[k];
+    const auto wrong = [&](const Place& place, std::string cause, std::string mend) {
+      throw InputError(error::wrong_value_type, place, std::move(cause), std::move(mend));
+    };
+    const Place& first = table.places.front();
+    const bool is_vector = std::ranges::any_of(graph.parameters, [&](const Parameter& one) {
+      const auto element = element_of(one.path);
+      return element && equal_ignoring_case(element->vector, path);
+    });
+    if (is_vector) {
+      wrong(first, fmt::format("{} is a vector, and {} gives one number.", path, source),
+            fmt::format("vary its elements one by one: {}.", !options.file.empty() ? fmt::format("a column {}[0]", path)
+                                                             : !options.sweeps.empty()
+                                                                 ? fmt::format("--sweep '{}[0]=0.1..0.3/21'", path)
+                                                                 : fmt::format("--draw '{}[0]=normal(0.2,0.01)'", path)));
+    }
+    const std::int64_t found = find_parameter(graph, path);
+    if (found < 0) {
+      continue;  // said where the values are applied
+    }
+    const Field& field = graph.parameters[static_cast<std::size_t>(found)].field;
+    if (field.length > 1) {
+      wrong(first, fmt::format("{} is a list of numbers, and {} gives one number.", path, source),
+            "write the lists into parameter files, and run the diagram once with each: --params P.toml.");
+    }
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      const double number = table.rows[i][k];
+      if (std::holds_alternative<double>(value_for(graph, path, number)) && field.type != Type::Real) {
+        wrong(table.places.size() == 1 ? first : table.places[i],
+              fmt::format("{} takes {}, and {} gives it {}.", path,
+                          field.type == Type::Bool ? "TRUE or FALSE, as 1 or 0" : "whole numbers", source,
+                          number_text(number)),
+              options.file.empty() && !options.sweeps.empty()
+                  ? fmt::format("choose range and count so that all values are such: --sweep {}={}.", path,
+                                field.type == Type::Bool ? "0..1/2" : "1..5/5")
+                  : "write such a value, or vary it in a table: --batch SETS.csv.");
+      }
+    }
+  }
+}
+
 std::vector<double> all_values(const Graph& graph) {
   std::vector<double> values;
   for (const Parameter& one : graph.parameters) {
@@ -304,6 +352,7 @@ std::vector<double> all_values(const Graph& graph) {
 
 ParameterSets parameter_sets(const SetOptions& options, const Graph& graph) {
   Table table = table_of(options);
+  check_types(table, options, graph);
   ParameterSets sets{.paths = std::move(table.paths), .rows = std::move(table.rows)};
   Graph set = graph;
   for (std::size_t i = 0; i < sets.rows.size(); ++i) {

@@ -6,8 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "codegen/parameters/parameter_file.hpp"
-#include "codegen/parameters/parameter_names.hpp"
 #include "records/read.hpp"
 #include "support/atomic_file.hpp"
 #include "support/errors.hpp"
@@ -17,6 +15,7 @@
 #include "tool/tune_words.hpp"
 #include "tool/writable.hpp"
 #include "tuning/relay_experiment.hpp"
+#include "tuning/relay_json.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -64,76 +63,18 @@ std::string relay_text(const RelayExperiment& relay, const std::string& u_unit, 
          controller_text("PID", relay.pid());
 }
 
-nlohmann::json controller_json(const ControllerStart& start) {
-  return {{"KP", start.gain}, {"TR", start.reset_time}, {"TD", start.rate_time}};
-}
-
-nlohmann::json relay_json(const RelayExperiment& relay) {
-  nlohmann::json json = {{"low", relay.low},
-                         {"high", relay.high},
-                         {"cycles", relay.cycles},
-                         {"period", relay.period},
-                         {"spread", relay.spread},
-                         {"amplitude", relay.amplitude},
-                         {"hysteresis", relay.hysteresis},
-                         {"duty", relay.duty},
-                         {"gain", relay.gain},
-                         {"phase_deg", relay.phase},
-                         {"direction", relay.direction},
-                         {"ultimate_gain", relay.ultimate_gain},
-                         {"ultimate_period", relay.ultimate_period},
-                         {"model", nullptr},
-                         {"why_no_model", relay.why_no_model},
-                         {"pi", controller_json(relay.pi())},
-                         {"pid", controller_json(relay.pid())}};
-  if (relay.model) {
-    json["model"] = {{"K", relay.model->gain}, {"T", relay.model->time}, {"dead_time", relay.model->dead_time}};
-  }
-  return json;
-}
-
-/// The start of a PID, free within a decade or so, for `hysteron tune`.
-std::string start_file(const RelayOptions& options, const RelayExperiment& relay) {
-  parameters::ParameterFile file;
-  const ControllerStart start = relay.pid();
-  const auto add = [&](const char* name, double value) {
-    file.values.push_back({.path = options.controller + "." + name, .value = value});
-    const double low = value < 0.0 ? 10.0 * value : 0.02 * value;
-    const double high = value < 0.0 ? 0.02 * value : 10.0 * value;
-    file.fits.push_back({.path = options.controller + "." + name,
-                         .minimum = parameters::PlacedNumber{.value = low},
-                         .maximum = parameters::PlacedNumber{.value = high}});
-  };
-  add("KP", start.gain);
-  add("TR", start.reset_time);
-  add("TD", start.rate_time);
-  return parameters::parameter_text(file, {},
-                                    fmt::format("From the relay experiment {}: Ku = {:.4g}, Tu = {:.4g} s.",
-                                                options.file, relay.ultimate_gain, relay.ultimate_period));
-}
-
 int relay(const RelayOptions& options, Console& console) {
   if (!options.output.empty()) {
     refuse_to_overwrite({.file = options.output}, {{.file = options.file, .named_by = "the record"}});
     refuse_unwritable(options.output);
   }
-  if (!parameters::is_path(options.controller)) {
-    throw InputError(error::bad_usage, {},
-                     fmt::format("--controller {} is no name of an instance.", options.controller),
-                     "write the name that the controller has in the diagram, as PID.");
-  }
   const records::Record record = records::read_record(options.file, read_options(options.record));
-  const records::Column& u = record.column(options.u);
-  const records::Column& y = record.column(options.y);
-  if (&u == &y) {
-    throw InputError(error::bad_usage, {}, fmt::format("--u and --y are the same column, {}.", options.y),
-                     "name the column that the relay wrote, and that of the process value.");
-  }
-  const RelayExperiment found = relay_experiment(u.values, y.values, record.sample_time(), options.file);
+  const RelayExperiment found = relay_experiment(record, options.u, options.y);
+  const std::string parameters = relay_parameters(found, options.controller, options.file);
   if (!options.output.empty()) {
-    write_files_atomically({{.path = options.output, .contents = start_file(options, found)}});
+    write_files_atomically({{.path = options.output, .contents = parameters}});
   }
-  console.print(options.json ? relay_json(found).dump(2) + "\n" : relay_text(found, u.unit, y.unit));
+  console.print(options.json ? relay_json(found).dump(2) + "\n" : relay_text(found, record.column(options.u).unit, record.column(options.y).unit));
   return exit_ok;
 }
 

@@ -50,8 +50,8 @@ The diagram is run from its reset over each whole record: columns are its inputs
 what it is to meet. TUNED.toml is P.toml with the fitted values, and with your comments; run, generate and tune take it.
 The initial states of a single record stand there under [initial], those of several in the heading alone. Ctrl-C ends
 the fit and writes the best so far.
-Exit codes: 0 fitted; 1 the fit did not converge, or limits of a goal are broken, the best is written; 2 an error in diagram, parameters or records, and
-nothing is written; 130 ended by Ctrl-C, the best is written.
+Exit codes: 0 fitted; 1 the fit did not converge, or limits of a goal are broken, the best is written; 2 an error in
+diagram, parameters or records, and nothing is written; 130 ended by Ctrl-C, the best is written.
 )";
 
 /// Which output the progress line speaks of: the only one, with its unit; else the share of the ranges.

@@ -1,7 +1,6 @@
 #include "tool/tune_goal.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -9,11 +8,10 @@
 
 #include "codegen/compile.hpp"
 #include "support/atomic_file.hpp"
-#include "support/errors.hpp"
-#include "support/numbers.hpp"
 #include "support/progress.hpp"
 #include "tool/commands.hpp"
 #include "tool/goal_report.hpp"
+#include "tuning/goal/contradiction.hpp"
 #include "tuning/goal/goal_json.hpp"
 #include "tuning/recorded_run.hpp"
 
@@ -25,47 +23,6 @@ std::string progress_text(const GoalProgress& progress) {
              ? fmt::format("iteration {}, a limit is broken by {:.3g} % of itself", progress.iteration,
                            100.0 * progress.excess)
              : fmt::format("iteration {}, error {:.3g} %", progress.iteration, 100.0 * progress.error);
-}
-
-/// HY533: which limits stand against which, with what was reached of each, and the bounds that hold the controller
-/// back.
-void report_contradiction(const GoalProblem& problem, const GoalResult& result, Diagnostics& diagnostics) {
-  std::vector<std::string> parts;
-  std::vector<Note> notes;
-  Place place = problem.settings.place;
-  const auto take = [&](const LimitResult& limit) {
-    const GoalLimit& one = problem.limits[limit.limit];
-    const std::string plant = problem.plants.size() > 1 ? " with " + problem.plants[limit.plant].name : std::string();
-    place = parts.empty() ? one.place : place;
-    parts.push_back(fmt::format("{} = {}", text_of(one.kind).key.name, number_text(one.limit)));
-    notes.push_back({.place = one.place,
-                     .text = fmt::format("{} is {:.4g}{}{}", text_of(one.kind).name, limit.value, plant,
-                                         limit.is_kept ? "" : ", which breaks it")});
-  };
-  for (const LimitResult& limit : result.limits) {
-    if (limit.against > 0.0) {
-      take(limit);
-    }
-  }
-  for (const LimitResult& limit : result.limits) {
-    if (parts.empty() && !limit.is_kept) {
-      take(limit);
-    }
-  }
-  std::string mend = parts.size() > 1 ? "loosen one of them" : "loosen it";
-  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    if (result.at_bound[j] != AtBound::Free) {
-      const FreeParameter& free = problem.parameters[j];
-      notes.push_back({.place = free.place,
-                       .text = fmt::format("{} is on its {} bound", free.name, bound_name(result.at_bound[j]))});
-      mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
-    }
-  }
-  diagnostics.error(
-      error::limits_contradict, place,
-      parts.size() > 1 ? fmt::format("No controller was found that keeps {} together.", fmt::join(parts, " and "))
-                       : fmt::format("No controller was found that keeps {}.", parts.empty() ? "the limits" : parts[0]),
-      mend + ", free a further parameter of the controller, or search from more points: --start 20.", std::move(notes));
 }
 
 }  // namespace

@@ -175,4 +175,15 @@ RelayExperiment relay_experiment(std::span<const double> u, std::span<const doub
   return result;
 }
 
+RelayExperiment relay_experiment(const records::Record& record, const std::string& u, const std::string& y) {
+  const records::Column& of_relay = record.column(u);
+  const records::Column& of_process = record.column(y);
+  if (&of_relay == &of_process) {
+    throw InputError(error::bad_usage, {.file = record.file()},
+                     fmt::format("The relay and the process value are one column, {}.", of_process.name),
+                     "name the column that the relay wrote, and that of the process value.");
+  }
+  return relay_experiment(of_relay.values, of_process.values, record.sample_time(), record.file());
+}
+
 }  // namespace hysteron

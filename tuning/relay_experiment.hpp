@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 
+#include "records/record.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron {
@@ -61,5 +62,10 @@ struct RelayExperiment {
 /// where they differ by more than a tenth.
 [[nodiscard]] RelayExperiment relay_experiment(std::span<const double> u, std::span<const double> y, double sample_time,
                                                const std::string& file);
+
+/// The same of two columns of a record, by their names. Throws besides HY502 where it has none of that name, and HY730
+/// where both are one.
+[[nodiscard]] RelayExperiment relay_experiment(const records::Record& record, const std::string& u,
+                                               const std::string& y);
 
 }  // namespace hysteron

@@ -145,15 +145,29 @@ typedef int (*hysteron_progress)(void* user, double done, int iteration);
 
 typedef struct hysteron_fit hysteron_fit;
 
-/* Fits what [fit] of the diagram's parameter file names. Options: "starts". `progress` may be NULL. */
+/* Fits what [fit] of the diagram's parameter file names to records; with [goal] it tunes a control loop, by one record or
+ * none, as the goal says. Limits that cannot be kept together are an error among the messages, and the point that breaks
+ * them least is given all the same. Options: "starts". `progress` may be NULL. */
 HYSTERON_API hysteron_fit* hysteron_tune(const hysteron_diagram* diagram, const hysteron_record* const* records,
                                          size_t record_count, const char* options, hysteron_progress progress,
                                          void* user, hysteron_messages** messages);
-/* What `tune --json` prints: docs/reference/schemas/fit.json. */
+/* What `tune --json` prints: docs/reference/schemas/fit.json, or goal.json with a goal. */
 HYSTERON_API const char* hysteron_fit_json(const hysteron_fit* fit);
 /* The parameter file with the fitted values, as `tune --out` writes it. */
 HYSTERON_API const char* hysteron_fit_parameters(const hysteron_fit* fit);
 HYSTERON_API void hysteron_fit_free(hysteron_fit* fit);
+
+typedef struct hysteron_relay hysteron_relay;
+
+/* What a relay experiment tells: `u` is the column that the relay wrote, `y` the process value. Options: "controller",
+ * its instance in the diagram, PID without it. */
+HYSTERON_API hysteron_relay* hysteron_relay_experiment(const hysteron_record* record, const char* u, const char* y,
+                                                       const char* options, hysteron_messages** messages);
+/* What `relay --json` prints: docs/reference/schemas/relay.json. */
+HYSTERON_API const char* hysteron_relay_json(const hysteron_relay* relay);
+/* The parameter file of a PID to begin with, as `relay --out` writes it. */
+HYSTERON_API const char* hysteron_relay_parameters(const hysteron_relay* relay);
+HYSTERON_API void hysteron_relay_free(hysteron_relay* relay);
 
 typedef struct hysteron_diagnosis hysteron_diagnosis;
 

@@ -113,6 +113,35 @@ NamedPin find_pin(const Graph& graph, std::string_view path) {
   return {};
 }
 
+const Node* find_instance(const Graph& graph, std::string_view path) {
+  const auto found = std::ranges::find_if(graph.nodes, [&](const Node& node) {
+    return node.block != nullptr && equal_ignoring_case(node.path, path);
+  });
+  return found == graph.nodes.end() ? nullptr : &*found;
+}
+
+/// The first parameter of an instance that a file can set; empty where there is none.
+std::string first_parameter(const Graph& graph, std::string_view instance) {
+  const std::string front = in_capitals(instance) + ".";
+  const auto found = std::ranges::find_if(
+      graph.parameters, [&](const Parameter& one) { return in_capitals(one.path).starts_with(front); });
+  return found == graph.parameters.end() ? std::string() : found->path;
+}
+
+/// A table [fit.PID] without a line below it names nothing that could be fitted.
+void report_unknown_fit(const Graph& graph, const FitSetting& fit, Diagnostics& diagnostics) {
+  const bool is_empty = !fit.minimum && !fit.maximum && !fit.start && !fit.scale;
+  const std::string parameter = first_parameter(graph, fit.path);
+  if (!is_empty || parameter.empty()) {
+    report_unknown_parameter(graph, fit.path, fit.place, diagnostics);
+    return;
+  }
+  diagnostics.error(error::nothing_to_fit, fit.place,
+                    fmt::format("[fit.{0}] is empty: it names no parameter of {0}.", fit.path),
+                    fmt::format("write below it {} = {{}}, or with bounds, as {{min = 0.0, max = 10.0}}.",
+                                parameter.substr(fit.path.size() + 1)));
+}
+
 bool is_input(const Graph& graph, std::string_view path) {
   return std::any_of(graph.inputs.begin(), graph.inputs.end(),
                      [&](const Port& input) { return equal_ignoring_case(input.name, path); });
@@ -193,6 +222,14 @@ void report_unknown_parameter(const Graph& graph, std::string_view path, const P
                       fmt::format("{} is not free to be set: the diagram connects or fixes it.", path),
                       "remove it here, or remove what the diagram gives to that pin.",
                       {{.place = graph.place(node->span), .text = fmt::format("{} in the diagram", node->path)}});
+    return;
+  }
+  if (const Node* const instance = find_instance(graph, path)) {
+    diagnostics.error(error::unknown_key, place,
+                      fmt::format("{} is a {}, not a parameter.", path, instance->block->about.name),
+                      first_parameter(graph, path).empty()
+                          ? "remove it; the diagram gives all of its parameters."
+                          : fmt::format("name a parameter of it, such as {}.", first_parameter(graph, path)));
     return;
   }
   if (is_input(graph, path)) {
@@ -353,7 +390,7 @@ void apply(const ParameterFile& as_written, Graph& graph, Diagnostics& diagnosti
   for (const FitSetting& fit : file.fits) {
     const auto found = by_path.find(in_capitals(fit.path));
     if (found == by_path.end()) {
-      report_unknown_parameter(graph, fit.path, fit.place, diagnostics);
+      report_unknown_fit(graph, fit, diagnostics);
     } else {
       check_bounds(fit, graph.parameters[found->second], diagnostics);
     }

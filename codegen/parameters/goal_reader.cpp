@@ -21,22 +21,33 @@ using Number = std::optional<PlacedNumber> GoalSettings::*;
 using Text = std::optional<PlacedText> GoalSettings::*;
 
 /// Which values make sense of a number.
-enum class Range { Any, NotNegative, Positive };
+struct Range {
+  double least = -infinity;
+  bool is_above = false;  ///< the least itself does not
+  double below = infinity;
+
+  [[nodiscard]] bool holds(double value) const {
+    return (is_above ? value > least : value >= least) && value < below;
+  }
+};
+constexpr Range any{};
+constexpr Range from_zero{.least = 0.0};
+constexpr Range above_zero{.least = 0.0, .is_above = true};
 
 struct NumberKey {
   std::string_view name;
   Number place;
   Range range;
 };
-constexpr std::array<NumberKey, 9> number_keys{{{"from", &GoalSettings::from, Range::Any},
-                                                {"size", &GoalSettings::size, Range::Any},
-                                                {"duration", &GoalSettings::duration, Range::Positive},
-                                                {"rise_time", &GoalSettings::rise_time, Range::Positive},
-                                                {"settling_time", &GoalSettings::settling_time, Range::Positive},
-                                                {"order", &GoalSettings::order, Range::Positive},
-                                                {"damping", &GoalSettings::damping, Range::Positive},
-                                                {"dead_time", &GoalSettings::dead_time, Range::NotNegative},
-                                                {"effort_weight", &GoalSettings::effort_weight, Range::NotNegative}}};
+constexpr std::array<NumberKey, 9> number_keys{{{"from", &GoalSettings::from, any},
+                                                {"size", &GoalSettings::size, any},
+                                                {"duration", &GoalSettings::duration, above_zero},
+                                                {"rise_time", &GoalSettings::rise_time, above_zero},
+                                                {"settling_time", &GoalSettings::settling_time, above_zero},
+                                                {"order", &GoalSettings::order, any},
+                                                {"damping", &GoalSettings::damping, above_zero},
+                                                {"dead_time", &GoalSettings::dead_time, from_zero},
+                                                {"effort_weight", &GoalSettings::effort_weight, from_zero}}};
 
 struct TextKey {
   std::string_view name;
@@ -100,7 +111,11 @@ class GoalReader : private SettingsReader {
     for (const auto& [name, value] : *table) {
       if (known_key(name, value, known, "[goal.limits]")) {
         const GoalLimitKey& limit = *std::ranges::find(goal_limit_keys, name.str(), &GoalLimitKey::name);
-        read_number(name, value, {limit.name, limit.setting, limit.may_be_zero ? Range::NotNegative : Range::Positive});
+        read_number(
+            name, value,
+            {limit.name,
+             limit.setting,
+             {.least = limit.above.value_or(0.0), .is_above = limit.above.has_value(), .below = limit.below}});
       }
     }
   }
@@ -110,10 +125,10 @@ class GoalReader : private SettingsReader {
     if (!number) {
       return;
     }
-    if ((known.range == Range::Positive && !(number->value > 0.0)) ||
-        (known.range == Range::NotNegative && !(number->value >= 0.0))) {
+    if (const auto& [least, is_above, below] = known.range; !known.range.holds(number->value)) {
       contradiction(number->place, fmt::format("{} is {}.", key.str(), number_text(number->value)),
-                    known.range == Range::Positive ? "write a number above 0." : "write 0, or a number above 0.");
+                    fmt::format("write {}a number above {}{}.", is_above ? "" : number_text(least) + ", or ",
+                                number_text(least), below < infinity ? " and below " + number_text(below) : ""));
       return;
     }
     goal_.*known.place = number;
@@ -161,13 +176,6 @@ class GoalReader : private SettingsReader {
       const auto& first = goal_.from ? goal_.from : goal_.size ? goal_.size : goal_.duration;
       contradiction(first->place, "A record says itself where it begins, how far it goes and how long.",
                     "remove from, size and duration.");
-    }
-    if (goal_.phase_margin && !(goal_.phase_margin->value < 180.0)) {
-      contradiction(goal_.phase_margin->place, "A phase margin lies below 180 degrees.", "write 45 to 70.");
-    }
-    if (goal_.sensitivity && !(goal_.sensitivity->value > 1.0)) {
-      contradiction(goal_.sensitivity->place,
-                    "The largest sensitivity of a loop lies above 1, whatever the controller.", "write 1.4 to 2.");
     }
     if (goal_.limits_margins() && !goal_.loop) {
       const auto& first = goal_.phase_margin  ? goal_.phase_margin

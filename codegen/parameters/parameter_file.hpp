@@ -44,6 +44,7 @@
 #include <vector>
 
 #include "support/diagnostic.hpp"
+#include "support/numbers.hpp"
 
 namespace hysteron::parameters {
 
@@ -136,16 +137,17 @@ struct GoalSettings {
 struct GoalLimitKey {
   std::string_view name;
   std::optional<PlacedNumber> GoalSettings::*setting;
-  bool may_be_zero = false;  ///< else above 0
+  std::optional<double> above{};  ///< a value has to lie above it; none: at 0 or above
+  double below = infinity;
 };
 /// In the order in which they are written.
 inline constexpr std::array<GoalLimitKey, 6> goal_limit_keys{
-    {{"effort", &GoalSettings::largest_effort},
-     {"effort_rate", &GoalSettings::largest_rate},
-     {"overshoot_percent", &GoalSettings::largest_overshoot, true},
-     {"gain_margin_db", &GoalSettings::gain_margin},
-     {"phase_margin_deg", &GoalSettings::phase_margin},
-     {"sensitivity", &GoalSettings::sensitivity}}};
+    {{"effort", &GoalSettings::largest_effort, 0.0},
+     {"effort_rate", &GoalSettings::largest_rate, 0.0},
+     {"overshoot_percent", &GoalSettings::largest_overshoot},
+     {"gain_margin_db", &GoalSettings::gain_margin, 0.0},
+     {"phase_margin_deg", &GoalSettings::phase_margin, 0.0, 180.0},
+     {"sensitivity", &GoalSettings::sensitivity, 1.0}}};
 
 struct DiagnoseSettings {
   std::vector<PlacedText> ignore{};  ///< columns of the records that the diagnosis does not look at
@@ -167,11 +169,14 @@ struct Comment {
     Head,    ///< above all keys, and a blank line away from them
     Above,   ///< above a key or the head of a table
     Beside,  ///< behind it, on the same line
-    End      ///< below all keys
+    InList,  ///< on a line of its own in a list over several lines, behind `element` of its elements
+    BesideElement,  ///< behind that element, on the same line; of 0, behind the bracket that opens the list
+    End             ///< below all keys
   };
   Where where = Where::Above;
-  std::string key{};   ///< in capitals, with its table: PARAMETERS.INV.C1
-  std::string text{};  ///< of one or several lines, each with its #
+  std::uint32_t element = 0;  ///< counted from 1
+  std::string key{};          ///< in capitals, with its table: PARAMETERS.INV.C1
+  std::string text{};         ///< of one or several lines, each with its #
 };
 
 struct ParameterFile {

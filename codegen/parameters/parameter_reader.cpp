@@ -172,7 +172,7 @@ class Reader : private Reading, private SettingsReader {
     std::vector<double> numbers;
     for (const toml::node& element : *list) {
       if (!element.is_number()) {
-        wrong_type(key, element, "a list of numbers", fmt::format("{} = [0.0, 0.5, 1.0]", key.str()));
+        wrong_element(key, element, "a number", fmt::format("{} = [0.0, 0.5, 1.0]", key.str()));
         return std::nullopt;
       }
       const auto number = finite(key, element);
@@ -368,8 +368,15 @@ class Reader : private Reading, private SettingsReader {
   void add_interval(std::vector<Interval>& intervals, const toml::key& key, const toml::node& node) {
     const auto* const pair = node.as_array();
     if (pair == nullptr || pair->size() != 2 || !pair->front().is_number() || !pair->back().is_number()) {
-      wrong_type(key, node, "an interval of two numbers, or a list of such",
-                 fmt::format("{0} = [1.0, 21.0], or {0} = [[1.0, 9.0], [12.0, 21.0]]", key.str()));
+      const auto example = fmt::format("{0} = [1.0, 21.0], or {0} = [[1.0, 9.0], [12.0, 21.0]]", key.str());
+      if (pair == nullptr || pair->empty()) {
+        wrong_type(key, node, "an interval of two numbers, or a list of such", example);
+      } else {
+        diagnostics_.error(error::wrong_value_type, at(node),
+                           fmt::format("An interval of {} has two numbers, but here is a list of {}.", key.str(),
+                                       pair->size() == 1 ? "one value" : fmt::format("{} values", pair->size())),
+                           fmt::format("write it as in {}.", example));
+      }
       return;
     }
     const auto begin = finite(key, pair->front());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -319,10 +320,68 @@ bool is_older_remark(std::string_view comment, std::string_view remark) {
   return comment.starts_with("# ") && without_error(comment.substr(2)) == without_error(remark);
 }
 
+/// `KEY = [1.0, [2.0, 3.0]]` as "KEY = [" and its elements; no elements where the value is no list.
+std::pair<std::string, std::vector<std::string>> list_parts(const std::string& text) {
+  const auto value = text.find(" = [");
+  if (value == std::string::npos) {
+    return {text, {}};
+  }
+  std::vector<std::string> elements(1);
+  int depth = 0;
+  bool quoted = false;
+  const std::size_t first = value + 4;
+  for (std::size_t i = first; i + 1 < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') {
+      elements.back() += c;
+      elements.back() += text[++i];
+      continue;
+    }
+    quoted = quoted != (c == '"');
+    depth += quoted ? 0 : c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    if (c == ',' && depth == 0 && !quoted) {
+      elements.emplace_back();
+      ++i;  // the blank behind it
+    } else {
+      elements.back() += c;
+    }
+  }
+  return {text.substr(0, first), std::move(elements)};
+}
+
+/// What stands inside of a list, by the number of elements before it.
+struct InsideList {
+  std::map<std::size_t, std::string> beside{};
+  std::map<std::size_t, std::string> below{};
+
+  [[nodiscard]] bool is_empty() const { return beside.empty() && below.empty(); }
+  void take(const Comment& comment, std::size_t elements) {
+    auto& place = comment.where == Comment::Where::InList ? below : beside;
+    std::string& text = place[std::min<std::size_t>(comment.element, elements)];
+    text += (text.empty() ? "" : comment.where == Comment::Where::InList ? "\n  " : " ") + comment.text;
+  }
+};
+
+/// A list with an element to a line, and the comments that stand there.
+std::string list_over_lines(const std::string& entry, const InsideList& inside) {
+  const auto [head, elements] = list_parts(entry);
+  std::string text;
+  for (std::size_t i = 0; i <= elements.size(); ++i) {
+    text += i == 0 ? head : "  " + elements[i - 1] + ",";
+    const auto beside = inside.beside.find(i);
+    text += (beside == inside.beside.end() ? "" : "  " + beside->second) + "\n";
+    if (const auto below = inside.below.find(i); below != inside.below.end()) {
+      text += "  " + below->second + "\n";
+    }
+  }
+  return text + "]";
+}
+
 /// Entries with their comments and remarks; the remarks of one table below each other.
 std::string entries_text(const std::vector<Entry>& entries, const std::vector<Comment>& comments) {
   std::vector<std::string> above(entries.size());
   std::vector<std::string> beside(entries.size());
+  std::vector<InsideList> inside(entries.size());
   std::string end;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     beside[i] = entries[i].remark.empty() ? "" : "# " + entries[i].remark;
@@ -335,6 +394,14 @@ std::string entries_text(const std::vector<Entry>& entries, const std::vector<Co
     if (i == entries.size()) {
       end += "\n" + comment.text + "\n";
       continue;
+    }
+    const bool was_inside =
+        comment.where == Comment::Where::InList || comment.where == Comment::Where::BesideElement;
+    if (was_inside && comment.key == entries[i].key) {
+      if (const std::size_t elements = list_parts(entries[i].text).second.size(); elements > 0) {
+        inside[i].take(comment, elements);
+        continue;
+      }
     }
     const bool was_beside = comment.where == Comment::Where::Beside && comment.key == entries[i].key;
     if (was_beside && beside[i].empty()) {
@@ -350,10 +417,14 @@ std::string entries_text(const std::vector<Entry>& entries, const std::vector<Co
     if (head) {
       widest = 0;
       for (std::size_t k = i + 1; k < entries.size() && !entries[k].head; ++k) {
-        widest = std::max(widest, beside[k].empty() ? 0 : entries[k].text.size());
+        widest = std::max(widest, beside[k].empty() || !inside[k].is_empty() ? 0 : entries[k].text.size());
       }
     }
     text += (head ? "\n" : "") + above[i];
+    if (!inside[i].is_empty()) {
+      text += list_over_lines(entries[i].text, inside[i]) + (beside[i].empty() ? "" : "  " + beside[i]) + "\n";
+      continue;
+    }
     text += beside[i].empty() ? entries[i].text + "\n"
                               : fmt::format("{:<{}}  {}\n", entries[i].text, head ? 0 : widest, beside[i]);
   }

@@ -11,6 +11,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/toml_text.hpp"
+#include "support/utf8.hpp"
 
 namespace hysteron::parameters {
 
@@ -25,6 +26,22 @@ void SettingsReader::wrong_type(const toml::key& key, const toml::node& node, st
                                 std::string_view example) {
   diagnostics_.error(error::wrong_value_type, at(node),
                      fmt::format("{} must be {}, but is {}.", key.str(), wanted, toml_kind(node)),
+                     fmt::format("write it as in {}.", example));
+}
+
+void SettingsReader::wrong_element(const toml::key& key, const toml::node& element, std::string_view wanted,
+                                   std::string_view example) {
+  diagnostics_.error(error::wrong_value_type, at(element),
+                     fmt::format("Each element of {} must be {}, but here is {}.", key.str(), wanted,
+                                 toml_kind(element)),
+                     fmt::format("write it as in {}.", example));
+}
+
+void SettingsReader::no_name(const toml::key& key, const toml::node& node, std::string_view text,
+                             std::string_view example) {
+  diagnostics_.error(error::wrong_value_type, at(node),
+                     fmt::format("{} names {}, which is no name.", key.str(),
+                                 text.empty() ? "an empty text" : fmt::format("\"{}\"", printable(text))),
                      fmt::format("write it as in {}.", example));
 }
 
@@ -86,8 +103,12 @@ std::optional<PlacedNumber> SettingsReader::finite(const toml::key& key, const t
 std::optional<PlacedText> SettingsReader::name_of(const toml::key& key, const toml::node& node,
                                                   std::string_view example, bool (*is_name)(std::string_view)) {
   const auto text = node.value<std::string_view>();
-  if (!node.is_string() || !is_name(*text)) {
+  if (!node.is_string()) {
     wrong_type(key, node, "a name", example);
+    return std::nullopt;
+  }
+  if (!is_name(*text)) {
+    no_name(key, node, *text, example);
     return std::nullopt;
   }
   return PlacedText{.text = std::string(*text), .place = at(node)};
@@ -103,8 +124,12 @@ std::vector<PlacedText> SettingsReader::names_of(const toml::key& key, const tom
   }
   for (const toml::node& element : *list) {
     const auto text = element.value<std::string_view>();
-    if (!text || !is_name(*text)) {
-      wrong_type(key, element, "a list of names", example);
+    if (!text) {
+      wrong_element(key, element, "a name", example);
+      continue;
+    }
+    if (!is_name(*text)) {
+      no_name(key, element, *text, example);
       continue;
     }
     const auto first = std::find_if(names.begin(), names.end(),

@@ -23,6 +23,9 @@ class SettingsReader {
   [[nodiscard]] Place at(const toml::node& node) const;
   [[nodiscard]] Place at(const toml::key& key) const;
   void wrong_type(const toml::key& key, const toml::node& node, std::string_view wanted, std::string_view example);
+  void wrong_element(const toml::key& key, const toml::node& element, std::string_view wanted,
+                     std::string_view example);
+  void no_name(const toml::key& key, const toml::node& node, std::string_view text, std::string_view example);
   void contradiction(const Place& place, std::string cause, std::string mend);
 
   /// Whether a key is among those known of a table; HY603 where not. An empty name: the whole file.

@@ -1,5 +1,7 @@
 #include "codegen/parameters/toml_comments.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -15,7 +17,6 @@ constexpr std::string_view blanks = " \t\r";
 struct Line {
   std::string_view code{};
   std::string_view comment{};  ///< from its # on; empty where there is none
-  int opened = 0;              ///< brackets that the code opens and does not close
 };
 
 Line cut(std::string_view text) {
@@ -32,12 +33,47 @@ Line cut(std::string_view text) {
       line.code = trimmed(text.substr(0, i), blanks);
       line.comment = trimmed(text.substr(i), blanks);
       break;
-    } else {
-      line.opened += c == '[' || c == '{' ? 1 : (c == ']' || c == '}' ? -1 : 0);
     }
   }
   return line;
 }
+
+/// Where in a value the reading stands: how deep in brackets, and behind how many elements of the outermost list.
+class ValueDepth {
+ public:
+  void follow(std::string_view code) {
+    char quote = '\0';
+    for (std::size_t i = 0; i < code.size(); ++i) {
+      const char c = code[i];
+      if (quote != '\0') {
+        i += c == '\\' && quote == '"' ? 1 : 0;
+        quote = c == quote ? '\0' : quote;
+      } else if (c == ']' || c == '}') {
+        --depth_;
+      } else if (c == ',') {
+        is_in_element_ = is_in_element_ && depth_ > 1;
+      } else if (blanks.find(c) == std::string_view::npos) {
+        begin_element();
+        depth_ += c == '[' || c == '{' ? 1 : 0;
+        quote = c == '"' || c == '\'' ? c : quote;
+      }
+    }
+  }
+  [[nodiscard]] bool is_open() const { return depth_ > 0; }
+  [[nodiscard]] std::uint32_t elements() const { return elements_; }
+
+ private:
+  void begin_element() {
+    if (depth_ == 1 && !is_in_element_) {
+      is_in_element_ = true;
+      ++elements_;
+    }
+  }
+
+  int depth_ = 0;
+  std::uint32_t elements_ = 0;
+  bool is_in_element_ = false;
+};
 
 /// `fit . "inv".c1` as FIT.INV.C1.
 std::string plain_key(std::string_view written) {
@@ -64,10 +100,13 @@ class Scanner {
 
  private:
   void take(const Line& line) {
-    if (depth_ > 0) {  // inside a list over several lines
+    if (value_.is_open()) {  // a list over several lines
+      value_.follow(line.code);
       add_pending(line.comment);
-      flush(Comment::Where::Above, key_);
-      depth_ += line.opened;
+      flush(line.code.empty()   ? Comment::Where::InList
+            : value_.is_open() ? Comment::Where::BesideElement
+                               : Comment::Where::Beside,
+            key_);
       return;
     }
     if (line.code.empty()) {
@@ -82,11 +121,12 @@ class Scanner {
       key_ = table_;
     } else {
       key_ = (table_.empty() ? table_ : table_ + ".") + plain_key(line.code.substr(0, line.code.find('=')));
-      depth_ = line.opened;
+      value_ = {};
+      value_.follow(line.code.substr(std::min(line.code.find('='), line.code.size() - 1) + 1));
     }
     flush(Comment::Where::Above, key_);
     add_pending(line.comment);
-    flush(Comment::Where::Beside, key_);
+    flush(value_.is_open() ? Comment::Where::BesideElement : Comment::Where::Beside, key_);
   }
 
   void add_pending(std::string_view comment) {
@@ -97,7 +137,8 @@ class Scanner {
 
   void flush(Comment::Where where, const std::string& key) {
     if (!pending_.empty()) {
-      comments_.push_back({.where = where, .key = key, .text = std::exchange(pending_, {})});
+      comments_.push_back(
+          {.where = where, .element = value_.elements(), .key = key, .text = std::exchange(pending_, {})});
     }
   }
 
@@ -105,7 +146,7 @@ class Scanner {
   std::string pending_;
   std::string table_;
   std::string key_;  ///< of the line before; empty above the first
-  int depth_ = 0;
+  ValueDepth value_{};  ///< of that key
 };
 
 }  // namespace

@@ -327,6 +327,17 @@ class Reader {
   }
 
   /// Numbers words in the order in which they come.
+  static std::string mend_of_word(std::string_view word) {
+    if (word.size() > 2 && word.front() == '0' && (word[1] == 'x' || word[1] == 'X')) {
+      std::uint64_t value = 0;
+      const auto [end, problem] = std::from_chars(word.data() + 2, word.data() + word.size(), value, 16);
+      if (problem == std::errc{} && end == word.data() + word.size()) {
+        return fmt::format("it is hexadecimal: write {}, as all of the column in decimal digits.", value);
+      }
+    }
+    return "write a number, such as 1.25e-3, or record the signal again.";
+  }
+
   static void take_word(TableColumn& column, std::string_view word) {
     const auto known = std::ranges::find(column.dictionary, word);
     column.words.push_back(static_cast<std::uint32_t>(known - column.dictionary.begin()));
@@ -382,7 +393,7 @@ class Reader {
       default:
         found.number = error::text_for_number;
         found.cause = fmt::format("\"{}\" in column {} is no number.", cell.text, column.name);
-        found.mend = "write a number, such as 1.25e-3, or record the signal again.";
+        found.mend = mend_of_word(cell.text);
     }
     column.fault = std::move(found);
   }

@@ -258,6 +258,116 @@ class Fits(Folder):
             self.assertEqual(caught.exception.code, "HY730")
 
 
+LOOP = """FUNCTION_BLOCK LOOP  (* @ts 10ms *)
+  VAR_INPUT
+    SP : LREAL;  (* @unit mm *)
+  END_VAR
+  VAR_OUTPUT
+    Y : LREAL;  (* @unit mm *)
+  END_VAR
+  VAR
+    P : HY_GAIN := (K := 1.0);
+    BODY : HY_GAIN := (K := 1.0);
+    PLANT : HY_INTEGRAL_FORWARD;
+  END_VAR
+
+  P(XIN := SP - PLANT.XOUT);
+  BODY(XIN := P.XOUT);
+  Y := PLANT.XOUT;
+  PLANT(XIN := BODY.XOUT);
+END_FUNCTION_BLOCK
+"""
+
+GOAL = """[fit.P]
+K = {min = 0.0, max = 4.0}
+
+[goal]
+settling_time = 0.5
+order = 1
+loop = "P.XOUT"
+plants = ["light.toml", "heavy.toml"]
+
+[goal.limits]
+phase_margin_deg = 60.0
+"""
+
+
+class Goals(Folder):
+    def setUp(self):
+        super().setUp()
+        self.write("loop.st", LOOP)
+        self.write("p.toml", GOAL)
+        self.write("light.toml", "[parameters.BODY]\nK = 2.0\n")
+        self.write("heavy.toml", "[parameters.BODY]\nK = 0.5\n")
+
+    def test_are_those_of_the_tool(self):
+        done = tool("tune", "loop.st", "--params", "p.toml", "--out", "tuned.toml", "--json", cwd=self.folder)
+        told = []
+        loop = hysteron.compile(self.folder / "loop.st", self.folder / "p.toml")
+        tuned = loop.tune(progress=lambda done, iteration: told.append(done))
+        self.assertEqual(without_times(tuned.data), without_times(json.loads(done.stdout)))
+        self.assertEqual(tuned.text, (self.folder / "tuned.toml").read_text())
+        self.assertIsInstance(tuned, hysteron.TunedLoop)
+        self.assertTrue(tuned.keeps_limits)
+        self.assertGreater(len(told), 2)
+        self.assertEqual((tuned.parameters["P.K"].value, tuned.parameters["P.K"].at_bound), (4.0, "upper"))
+        self.assertEqual(list(tuned.plants), ["light.toml", "heavy.toml"])
+        light = tuned.plants["light.toml"]
+        self.assertLess(light.after.error, light.before.error)
+        # Of an integrator behind a gain of 8 1/s, sampled each 10 ms: 2 sin(w/2) = 0.08, and 90 degrees less half a sample.
+        w = 2.0 * numpy.arcsin(0.04)
+        self.assertAlmostEqual(light.after.phase_margin_deg.value, 90.0 - numpy.degrees(w) / 2.0, places=2)
+        self.assertEqual(loop.with_parameters(tuned.text).parameters["P.K"].value, 4.0)
+
+    def test_a_contradiction_is_warned_of_and_given(self):
+        text = GOAL.replace('plants = ["light.toml", "heavy.toml"]\n', "").replace("{min = 0.0", "{min = 3.0, start = 3.5")
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            tuned = hysteron.compile(LOOP).tune(params=text + "effort = 2.0\n")
+        self.assertTrue(any("HY533" in str(one.message) for one in told), told)
+        self.assertEqual((tuned.status, tuned.keeps_limits), ("contradiction", False))
+        self.assertEqual(tuned.parameters["P.K"].at_bound, "lower")
+
+    def test_a_record_drives_where_the_goal_says_so(self):
+        text = "[fit.P]\nK = {min = 0.0}\n[goal]\nsignal = 'record'\nwished = 'WISH'\n"
+        t = numpy.arange(300) / 100.0
+        loop = hysteron.compile(LOOP, P={"K": 7.0})
+        wish = loop.run({"t": t, "SP": numpy.sin(5.0 * t)})["Y"]
+        tuned = loop.with_parameters(text, P={"K": 2.0}).tune({"t": t, "SP": numpy.sin(5.0 * t), "WISH": wish})
+        self.assertAlmostEqual(tuned.parameters["P.K"].value, 7.0, places=3)
+        for code, call in (("HY530", lambda: hysteron.compile(LOOP, text).tune()),
+                           ("HY730", lambda: hysteron.compile(LOOP).tune())):
+            with self.assertRaises(hysteron.Error) as caught:
+                call()
+            self.assertEqual(caught.exception.code, code)
+
+
+class Relays(Folder):
+    def test_are_those_of_the_tool(self):
+        u, y, columns = 1.2, 0.0, {"t": [], "U": [], "Y": []}
+        for k in range(1500):
+            u = 1.2 if y < -0.05 else -0.3 if y > 0.05 else u
+            columns["t"].append(k / 100.0)
+            columns["U"].append(0.0 if k < 50 else u)
+            columns["Y"].append(y)
+            y += (1.0 - numpy.exp(-0.01 / 0.6)) * (2.0 * (columns["U"][k - 8] if k > 7 else 0.0) - y)
+        write_csv(self.folder / "relay.csv", columns)
+        done = tool("relay", "relay.csv", "--u", "U", "--y", "Y", "--controller", "AXIS.PID", "--out", "start.toml", "--json",
+                    cwd=self.folder)
+        found = hysteron.relay(columns, "U", "Y", controller="AXIS.PID")
+        self.assertEqual(found.data, json.loads(done.stdout))
+        self.assertEqual(found.text.split("\n", 1)[1], (self.folder / "start.toml").read_text().split("\n", 1)[1])
+        self.assertAlmostEqual(found.model.K, 2.0, delta=0.06)
+        self.assertAlmostEqual(found.model.T, 0.6, delta=0.03)
+        self.assertGreater(found.pid.TD, 0.0)
+        self.assertEqual(hysteron.relay(self.folder / "relay.csv", "U", "Y").ultimate_gain, found.ultimate_gain)
+        for code, names, more in (("HY535", ("Y", "U"), {}), ("HY502", ("U", "Z"), {}), ("HY730", ("U", "U"), {}),
+                                  ("HY730", ("U", "Y"), {"controller": "a b"})):
+            with self.assertRaises(hysteron.Error) as caught:
+                hysteron.relay(columns, *names, **more)
+            self.assertEqual(caught.exception.code, code)
+
+
 class Errors(Folder):
     def refused(self, code, call, *arguments, **options):
         with self.assertRaises(hysteron.Error) as caught:

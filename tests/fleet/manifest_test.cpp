@@ -112,6 +112,10 @@ TEST_F(Manifest, ALineMayNameItsCommand) {
   const std::string bare = folder_.write("bare.csv", "machine,diagram\nA,a.st\n");
   EXPECT_EQ(read_manifest(bare, Command::Check).at(0).command, Command::Check);
   EXPECT_THROW((void)read_manifest(bare, Command::Tune), InputError);
+  // A goal has a signal of its own.
+  const std::string goals = folder_.write("goals.csv", "machine,diagram,params\nA,a.st,p.toml\n");
+  EXPECT_EQ(read_manifest(goals, Command::Tune).at(0).log, "");
+  EXPECT_THROW((void)read_manifest(goals, Command::Diagnose), InputError);
 }
 
 TEST_F(Manifest, ARecordThatIsNotThereIsNoErrorOfTheManifest) {

@@ -26,11 +26,16 @@ namespace fs = std::filesystem;
 
 /// Called as the tool is: diagnose DIAGRAM --log LOG --params P --out DIR, tune DIAGRAM --log LOG --params P --out
 /// TUNED
-/// --report DIR, check DIAGRAM --json. The record is a line of the shell. Each run
-/// that gets to its end leaves a letter in the file `ran`.
+/// --report DIR, without --log for a goal, check DIAGRAM --json. The record, or a goal's parameters, is a line of the
+/// shell. Each run that gets to its end leaves a letter in the file `ran`.
 constexpr std::string_view program = R"(#!/bin/sh
 out=$8
-[ "$1" = tune ] && out=${10}
+[ "$1$3" = tune--log ] && out=${10}
+loop() {
+  printf '{"status": "%s", "parameters": [{"name": "PID.KP", "value": 3, "unit": "V/mm", "at_bound": "upper"}],
+    "plants": [{"before": {"error": 0.5}, "after": {"error": 0.1}}, {"before": null, "after": {"error": 0.2}}]}' "$1" \
+    > "$out/report.json"
+}
 fit() {
   printf '{"status": "%s", "parameters": [{"name": "AMP.K", "value": 2, "standard_error": 0.5, "unit": "um/V",
     "at_bound": ""}], "initial_states": [], "outputs": [{"rmse_before": 3, "rmse_train": 1, "unit": "um"}]}' "$1" \
@@ -112,7 +117,7 @@ TEST_F(Fleet, WorksEachUnitOnceAndASecondRunDoesWhatChanged) {
   folder_.write("p.toml", "[fit]");
   EXPECT_EQ(work().ran, 7U);
   const std::string fmu = folder_.write("motor.fmu", "an FMU");
-  options_.named_files = [&](const std::string&) { return std::vector{fmu}; };
+  options_.named_files.by_diagram = [&](const std::string&) { return std::vector{fmu}; };
   EXPECT_EQ(work().ran, 7U);
   EXPECT_EQ(work().ran, 0U);
   folder_.write("motor.fmu", "another");
@@ -205,11 +210,29 @@ TEST_F(Fleet, OneManifestMayDiagnoseTuneAndCheck) {
   EXPECT_EQ(all[1].outcome.verdict, "converged");
   EXPECT_EQ(all[1].outcome.parameters.at(0).name, "AMP.K");
   EXPECT_NEAR(all[1].outcome.parameters.at(0).high, 2.98, 0.001);
-  EXPECT_EQ(all[2].result.reason, "the fit did not converge, report.json says why.");
+  EXPECT_EQ(all[2].result.reason, "the fit did not converge, or limits of a goal are broken; report.json says why.");
   EXPECT_EQ(all[5].result.reason, "the diagram has errors, diagnostics.json says which.");
   EXPECT_EQ(work().ran, 0U);
   units_[0].command = Command::Tune;
   EXPECT_EQ(work().ran, 1U) << "another command is another unit";
+}
+
+TEST_F(Fleet, AGoalNeedsNoRecordAndItsPlantsCount) {
+  const std::string plant = folder_.write("heavy.toml", "1");
+  options_.named_files.by_parameters = [&](const std::string&) { return std::vector{plant}; };
+  units_.push_back({.machine = "axis",
+                    .command = Command::Tune,
+                    .diagram = folder_ / "a.st",
+                    .parameters = folder_.write("goal.toml", "loop tuned\n")});
+  const auto all = rows();
+  EXPECT_EQ(all[0].result.status, Status::Done);
+  EXPECT_EQ(all[0].outcome.verdict, "tuned");
+  EXPECT_EQ(all[0].outcome.parameters.at(0).source, "goal");
+  EXPECT_EQ(all[0].outcome.parameters.at(0).value, 3.0);
+  EXPECT_EQ(all[0].outcome.improved_rms, 0.2) << "the worst plant counts";
+  EXPECT_EQ(work().ran, 0U);
+  folder_.write("heavy.toml", "2");
+  EXPECT_EQ(work().ran, 1U) << "another plant is another unit";
 }
 
 TEST_F(Fleet, SharesAreDisjointAndComplete) {

@@ -30,18 +30,19 @@ const Arrows& allowed() {
       {"lsp", {"codegen", "blocks", "support"}},
       {"runtime", {"blocks", "support", "database"}},
       {"tuning", {"blocks", "codegen", "support", "records"}},
+      {"robots", {"tuning", "codegen", "blocks", "support", "records"}},
       {"diagnosis", {"tuning", "codegen", "blocks", "support", "records", "plots"}},
       {"bindings", {"blocks", "codegen", "tuning", "diagnosis", "support", "records", "plots"}},
       {"fleet", {"support", "database", "records", "plots"}},
       {"tool",
-       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "support", "records", "plots",
-        "database"}},
+       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "robots", "support", "records",
+        "plots", "database"}},
       {"examples", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"bench", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "support", "records", "plots"}},
       {"docs", {"blocks", "codegen", "runtime", "tuning", "diagnosis", "tool", "support", "records", "plots"}},
       {"tests",
-       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "tool", "support", "records", "plots",
-        "database", "examples", "bench", "bindings"}},
+       {"blocks", "codegen", "runtime", "tuning", "diagnosis", "fleet", "lsp", "robots", "tool", "support", "records",
+        "plots", "database", "examples", "bench", "bindings"}},
   };
   return arrows;
 }

@@ -47,7 +47,7 @@ constexpr std::array<Allowed, 9> allowed_words{{
 
 std::vector<SourceText> all_sources() {
   return source_files({"bench", "bindings", "blocks", "codegen", "diagnosis", "docs", "examples", "fleet", "gateways",
-                       "plots", "records", "runtime", "support", "tests", "tool", "trials", "tuning"},
+                       "plots", "records", "robots", "runtime", "support", "tests", "tool", "trials", "tuning"},
                       {".hpp", ".cpp", ".py", ".js"});
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "codegen/compile.hpp"
+#include "codegen/graph/units.hpp"
 #include "codegen/language/token.hpp"
 #include "lsp/symbols.hpp"
 #include "support/text_file.hpp"
@@ -120,7 +121,50 @@ TEST_F(LspServer, CompletesInABrokenText) {
   EXPECT_THAT(pins, Not(Contains("XOUT")));
   EXPECT_THAT(labels(ask_at("completion", with("HY_LAG := (T1 := 0.1);", "~"))), Contains("HY_LAG"));
   EXPECT_THAT(labels(ask_at("completion", with("XIN := X", "XIN := ~"))), Contains("X"));
-  EXPECT_EQ(ask_at("completion", with("@unit V", "@un~it V")), json::array());
+  EXPECT_THAT(labels(ask_at("completion", with("FILTER(XIN := X);", "~"))), Contains("END_VAR"));
+}
+
+TEST_F(LspServer, CompletesAnnotationsAndUnits) {
+  EXPECT_THAT(labels(ask_at("completion", with("@unit V", "@~"))), Contains("unit"));
+  EXPECT_THAT(labels(ask_at("completion", with("@unit V", "@un~"))), Contains("ts"));
+  const auto units = labels(ask_at("completion", with("@unit V", "@unit ~")));
+  EXPECT_EQ(units.front(), "V") << "that of the other port";
+  EXPECT_THAT(units, Contains("N*m"));
+  std::string reason;
+  for (const std::string& unit : units) {
+    EXPECT_TRUE(units::is_unit(unit, reason)) << unit << ": " << reason;
+  }
+  EXPECT_EQ(ask_at("completion", with("@unit V", "a wo~rd")), json::array());
+  EXPECT_EQ(ask_at("completion", with("@unit V", "@doc a ~")), json::array());
+}
+
+TEST_F(LspServer, MendsAMisspeltWord) {
+  for (const auto& [right, wrong] : {std::pair("XIN := X", "XNI := X"), {"FILTER.XOUT", "FILTER.XUOT"},
+                                     {"HY_LAG", "HY_LGA"}, {"T1 := 0.1", "T11 := 0.1"}}) {
+    const std::string text = with(right, wrong);
+    const auto found = open(text);
+    ASSERT_FALSE(found.empty()) << wrong;
+    const json whole{{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}};
+    const auto actions = ask("textDocument/codeAction", {{"textDocument", {{"uri", uri}}},
+                                                         {"range", whole},
+                                                         {"context", {{"diagnostics", found}}}})["result"];
+    ASSERT_FALSE(actions.empty()) << found.dump();
+    EXPECT_EQ(actions[0]["kind"], "quickfix");
+    const json edit = actions[0]["edit"]["changes"][uri][0];
+    const auto begin = lsp::offset_of(text, {edit["range"]["start"]["line"], edit["range"]["start"]["character"]},
+                                      lsp::Encoding::Utf16);
+    const auto end = lsp::offset_of(text, {edit["range"]["end"]["line"], edit["range"]["end"]["character"]},
+                                    lsp::Encoding::Utf16);
+    std::string mended = text;
+    mended.replace(begin, end - begin, edit["newText"].get<std::string>());
+    EXPECT_EQ(mended, diagram);
+  }
+  open(with("Y := FILTER.XOUT;", ""));  // an output that nothing drives: something to think about
+  EXPECT_EQ(ask("textDocument/codeAction", {{"textDocument", {{"uri", uri}}},
+                                            {"range", {{"start", {{"line", 0}, {"character", 0}}},
+                                                       {"end", {{"line", 99}, {"character", 0}}}}},
+                                            {"context", {{"diagnostics", json::array()}}}})["result"],
+            json::array());
 }
 
 /// Two blocks, the outer with an instance of the inner one; X and Y are names in both.

@@ -130,6 +130,41 @@ TEST(TuneGoal, RefusesWhatTheDiagramDoesNotHave) {
   EXPECT_THAT(said("[fit.P]\nK = {}\n"), AllOf(HasSubstr("HY730"), HasSubstr("no record is given")));
 }
 
+TEST(TuneGoal, SaysWhatToWriteInstead) {
+  const auto said = [](const std::string& settings) { return LoopBench(settings).shell(tune_loop).err; };
+  const std::string fit = "[fit.P]\nK = {}\n[goal]\nsettling_time = 0.5\n";
+  EXPECT_THAT(said(fit + "order = 0\n"), HasSubstr("write 1 or 2."));
+  EXPECT_THAT(said(fit + "loop = \"P.XOUT\"\n[goal.limits]\nsensitivity = 0.0\n"),
+              HasSubstr("write a number above 1."));
+  EXPECT_THAT(said(fit + "loop = \"P.XOUT\"\n[goal.limits]\nphase_margin_deg = 180.0\n"),
+              HasSubstr("write a number above 0 and below 180."));
+  EXPECT_THAT(said(fit + "plants = []\n"), HasSubstr("plants must be a list of names, but is an empty list."));
+  EXPECT_THAT(said(fit + "plants = [3]\n"), HasSubstr("Each element of plants must be a name, but here is a whole"));
+  EXPECT_THAT(said(fit + "plants = [\"\"]\n"), HasSubstr("plants names an empty text, which is no name."));
+  EXPECT_THAT(said(fit + "loop = \"a b\"\n"), HasSubstr("loop names \"a b\", which is no name."));
+  EXPECT_THAT(said("[parameters.P]\nK = []\n" + fit), HasSubstr("but is an empty list."));
+  EXPECT_THAT(said("[fit.P]\n[goal]\nsettling_time = 0.5\n"),
+              AllOf(HasSubstr("HY716 error: p.toml:1"), HasSubstr("[fit.P] is empty"), HasSubstr("K = {}")));
+  EXPECT_THAT(said("[parameters]\nP = 2.0\n" + fit),
+              AllOf(HasSubstr("HY603 error: p.toml:2"), HasSubstr("P is a HY_GAIN, not a parameter."),
+                    HasSubstr("such as P.K")));
+  EXPECT_THAT(said("[fit.P]\nK = {}\n[tune]\ntrain = [1.0]\n[goal]\nsettling_time = 0.5\n"),
+              HasSubstr("but here is a list of one value."));
+}
+
+TEST(TuneGoal, ARecordHasToGoOnBehindTheDeadTime) {
+  const LoopBench bench(
+      "[fit.P]\nK = {}\n[goal]\nsignal = \"record\"\nsettling_time = 0.5\ndead_time = 2.0\nloop = \"P.XOUT\"\n");
+  ASSERT_EQ(bench
+                .shell("awk 'BEGIN { print \"t,SP\"; for (k = 0; k < 150; ++k) printf \"%.2f,%d\\n\", 0.01 * k, "
+                       "(k >= 50) }' > log.csv")
+                .code,
+            0);
+  EXPECT_THAT(bench.shell(std::string(tune_loop) + " --log log.csv").err,
+              AllOf(HasSubstr("HY530 error: p.toml:6"), HasSubstr("ends 1 s after SP moves"),
+                    HasSubstr("within the dead time of the wished response, 2 s"), HasSubstr("for 7.5 s behind")));
+}
+
 TEST(Relay, WritesWhereAPidMayBegin) {
   const test::Workbench bench;
   std::string text = "t,U [V],Y [mm]\n";

@@ -32,6 +32,8 @@ std::string state_name(LoopState state) {
       return "not finite";
     case LoopState::Unstable:
       return "unstable";
+    case LoopState::TooSlow:
+      return "too slow";
   }
   return {};
 }

@@ -43,6 +43,7 @@ LoopState GoalModel::evaluate(const VectorXd& x, bool with_derivatives) {
     point.sensitivity.reset();
     const LoopState state = point.run.respond(x, with_derivatives, point.response);
     if (state != LoopState::Settles) {
+      failed_plant_ = plant;
       return state;
     }
     take_cost(point, with_derivatives);
@@ -61,14 +62,14 @@ const Sensitivity* GoalModel::sensitivity(std::size_t plant) {
   return point.sensitivity ? &*point.sensitivity : nullptr;
 }
 
-/// J = mean of ((y − y_wished)/size)² + (w·(u(k) − u(k−1))/TS)² from the step on.
+/// J = mean of ((y − y_wished)/size)² + (w·(u(k) − u(k−1))/TS)² from the step on, over the test's duration.
 void GoalModel::take_cost(PlantPoint& point, bool with_derivatives) const {
   const LoopResponse& response = point.response;
   const double weight = problem_.weight() / problem_.drive.sample_time;
-  const auto count = static_cast<double>(problem_.drive.steps - problem_.begin);
+  const auto count = static_cast<double>(problem_.end - problem_.begin);
   point.cost = 0.0;
   point.cost_by = VectorXd::Zero(with_derivatives ? response.output_by.cols() : 0);
-  for (std::size_t k = problem_.begin; k < problem_.drive.steps; ++k) {
+  for (std::size_t k = problem_.begin; k < problem_.end; ++k) {
     const auto row = static_cast<Index>(k);
     const double error = (response.output[k] - problem_.wished[k]) / problem_.size;
     const double move = k == 0 ? 0.0 : weight * (response.effort[k] - response.effort[k - 1]);

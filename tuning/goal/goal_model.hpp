@@ -16,7 +16,7 @@ struct LoopFigures {
   double error = 0.0;          ///< √J, a share of the size of the step
   double overshoot = 0.0;      ///< percent; not a number where the signal is no step, and so are the two times
   double rise_time = 0.0;      ///< s, 10 to 90 % of the step; not a number where the response does not get there
-  double settling_time = 0.0;  ///< s, to 2 %; not a number where the response does not settle during the test
+  double settling_time = 0.0;  ///< s, to 2 %; not a number where the response is not settled when the test ends
   double effort = 0.0;         ///< largest |u|; not a number where no effort is stated
   double rate = 0.0;           ///< largest |du/dt|
   std::optional<LoopMargins> margins{};
@@ -40,6 +40,8 @@ class GoalModel {
 
   /// Runs every loop. The state of the first that does not settle, else Settles.
   LoopState evaluate(const Eigen::VectorXd& x, bool with_derivatives);
+  /// The loop that the last point ended at, where it is one that does not settle.
+  [[nodiscard]] std::size_t failed_plant() const { return failed_plant_; }
 
   // Of the last point:
   [[nodiscard]] double cost(std::size_t plant) const { return plants_[plant]->cost; }
@@ -77,6 +79,7 @@ class GoalModel {
 
   const GoalProblem& problem_;
   std::vector<std::unique_ptr<PlantPoint>> plants_{};
+  std::size_t failed_plant_ = 0;
 };
 
 }  // namespace hysteron

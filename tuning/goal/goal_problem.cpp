@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <utility>
 
 #include "codegen/graph/defaults.hpp"
@@ -175,8 +176,7 @@ class GoalBuilder {
       const auto [low, high] = std::ranges::minmax(problem_.wished);
       problem_.size = high - low;
       if (!(problem_.size > 0.0)) {
-        lacks(goal_.place, "The wished response of the record never moves.",
-              "take a record in which the set point moves.");
+        report_no_move();
       }
     }
   }
@@ -192,11 +192,14 @@ class GoalBuilder {
       }
     }
     const double ts = Machine<double>(program_).sample_time();
-    const double duration = value_or(goal_.duration, settling_times * problem_.model->settling);
-    if (duration / ts > most_steps || duration / ts < 10.0) {
+    // A limit that is broken behind a short test is broken all the same.
+    const double watched = settling_times * problem_.model->settling;
+    const double duration = value_or(goal_.duration, watched);
+    const double whole = std::max(duration, watched);
+    if (whole / ts > most_steps || duration / ts < 10.0) {
       const Place place = goal_.duration ? goal_.duration->place : goal_.place;
       diagnostics_.error(error::contradicting_range, place,
-                         fmt::format("The test lasts {:.4g} s, {:.3g} steps of the diagram.", duration, duration / ts),
+                         fmt::format("The test lasts {:.4g} s, {:.3g} steps of the diagram.", whole, whole / ts),
                          "choose a duration of 10 to 1000000 steps, or another wished response.");
       return;
     }
@@ -205,15 +208,15 @@ class GoalBuilder {
           error::contradicting_range, goal_.duration->place,
           fmt::format("The test ends at {:.4g} s, before the wished response has settled, at {:.4g} s.", duration,
                       problem_.model->settling),
-          fmt::format("leave duration out, or let it be at least {:.4g}: what comes later would not be seen.",
-                      settling_times * problem_.model->settling));
+          fmt::format("leave duration out, or let it be at least {:.4g}: what comes later would not be seen.", watched));
       return;
     }
     const double from = value_or(goal_.from, 0.0);
     const double size = value_or(goal_.size, 1.0);
     problem_.begin = steps_at_rest;
     problem_.drive.sample_time = ts;
-    problem_.drive.steps = steps_at_rest + static_cast<std::size_t>(std::ceil(duration / ts));
+    problem_.drive.steps = steps_at_rest + static_cast<std::size_t>(std::ceil(whole / ts));
+    problem_.end = steps_at_rest + static_cast<std::size_t>(std::ceil(duration / ts));
     for (const Port& port : graph.inputs) {
       problem_.drive.inputs.push_back({port.preset});
     }
@@ -225,9 +228,31 @@ class GoalBuilder {
     problem_.drive.inputs[problem_.input] = std::move(test);
   }
 
+  /// A wish that stands still over the whole record has nothing that a loop could follow.
+  void report_no_move() {
+    const Signal& input = problem_.drive.inputs[problem_.input];
+    const std::string& name = program_.graph.inputs[problem_.input].name;
+    const auto moves = std::ranges::adjacent_find(input, std::not_equal_to<>());
+    if (goal_.wished) {
+      lacks(goal_.wished->place, fmt::format("The column {} of the record never moves.", goal_.wished->text),
+            "name a column in which the response moves, or take another record.");
+    } else if (moves == input.end()) {
+      lacks(goal_.place, fmt::format("The set point {} of the record never moves.", name),
+            "take a record in which it moves.");
+    } else {
+      const auto behind = static_cast<double>(input.end() - moves - 1) * problem_.drive.sample_time;
+      lacks(goal_.dead_time ? goal_.dead_time->place : goal_.place,
+            fmt::format("The record ends {:.4g} s after {} moves, within the dead time of the wished response, {:.4g} s.",
+                        behind, name, problem_.model->dead_time),
+            fmt::format("take a record that goes on for {:.4g} s behind the move, or state a smaller dead_time.",
+                        settling_times * problem_.model->settling));
+    }
+  }
+
   void take_record() {
     const records::Record& record = records_.front();
     problem_.drive = drive_from(record, program_, {}, diagnostics_);
+    problem_.end = problem_.drive.steps;
     const Port& input = program_.graph.inputs[problem_.input];
     if (!diagnostics_.has_errors() && problem_.drive.inputs[problem_.input].size() < 2) {
       diagnostics_.error(error::missing_column, {.file = record.file()},

@@ -58,6 +58,7 @@ struct GoalProblem {
   std::string effort{};                     ///< its name; empty: none is stated
   std::string effort_unit{};                ///< empty where the wires give none
   std::size_t begin = 0;                    ///< the step from which on the response counts
+  std::size_t end = 0;                      ///< the step behind the last whose error counts; limits count to the end
   double size = 1.0;                        ///< of the step, or the range of the wish
   std::optional<WishedResponse> model{};    ///< none: the wish is a column
   Signal wished{};                          ///< over all steps

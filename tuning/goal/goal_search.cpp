@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -29,6 +30,9 @@ constexpr double least_gain = 1e-3;
 constexpr int most_spread_points = 200;
 constexpr double least_share = 0.01;  // of a contradiction
 constexpr double is_active = 0.01;
+/// Of its typical size: how near to its bound an interior point leaves a parameter that belongs there.
+constexpr double near_bound = 1e-2;
+constexpr double at_bound = 1e-6;
 
 struct Candidate {
   VectorXd x{};
@@ -60,8 +64,11 @@ class GoalSearch {
   GoalResult run() {
     const auto begun = std::chrono::steady_clock::now();
     result_.start_state = model_.evaluate(start_, false);
+    result_.start_plant = model_.failed_plant();
     if (result_.start_state == LoopState::Settles) {
-      refuse_open_loop();
+      if (const auto open = open_plant()) {
+        refuse_open_loop(*open);
+      }
       for (std::size_t plant = 0; plant < problem_.plants.size(); ++plant) {
         before_.emplace_back(model_.figures(plant));
       }
@@ -72,15 +79,24 @@ class GoalSearch {
     GoalStatus status = GoalStatus::NotConverged;
     for (int start = 0; start < std::max(1, options_.starts) && !cancelled_; ++start) {
       start_number_ = start;
-      const GoalStatus ended = search_from(settling_start(start));
+      const auto from = settling_start(start);
+      if (!from) {
+        result_.start_errors.push_back(infinity);
+        continue;
+      }
+      const GoalStatus ended = search_from(*from);
       result_.start_errors.push_back(best_.excess <= 0.0 ? std::sqrt(best_.cost) : not_a_number);
-      if (start == 0 || best_.is_better_than(best)) {
+      if (best.x.size() == 0 || best_.is_better_than(best)) {
         best = best_;
         status = ended;
         shares_ = std::exchange(new_shares_, {});
         result_.best_start = start;
       }
     }
+    if (best.x.size() == 0) {
+      refuse_starts();
+    }
+    to_bounds(best);
     finish(best, cancelled_ ? GoalStatus::Cancelled : status);
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return std::move(result_);
@@ -91,56 +107,82 @@ class GoalSearch {
 
   [[nodiscard]] VectorXd spread(int point) const { return spread_start(point, start_, lower_, upper_, typical_); }
 
-  /// What is put in behind a place that no loop passes is all that is ever seen there.
-  void refuse_open_loop() const {
+  /// The first plant whose loop is open at the last point: what is put in there is all that is ever seen of it.
+  [[nodiscard]] std::optional<std::size_t> open_plant() const {
     for (std::size_t plant = 0; plant < problem_.plants.size(); ++plant) {
       const Signal& impulse = model_.response(plant).impulse;
       const bool comes_back =
           std::any_of(impulse.begin() + (impulse.empty() ? 0 : 1), impulse.end(), [](double h) { return h != 0.0; });
       if (!impulse.empty() && !comes_back) {
-        const auto& loop = *problem_.settings.loop;
-        throw InputError(error::no_loop_there, loop.place,
-                         fmt::format("What is put in at {} never comes back there: no loop passes it{}.", loop.text,
-                                     problem_.plants.size() > 1 ? " with " + problem_.plants[plant].name : ""),
-                         "name a signal inside the loop. Where the controller stands at its bound when the test ends, "
-                         "the loop is open: ask for a smaller step.");
+        return plant;
       }
     }
+    return std::nullopt;
   }
 
-  /// The start, or where its loop does not settle, the best of a few points that do.
-  VectorXd settling_start(int start) {
+  [[noreturn]] void refuse_open_loop(std::size_t plant) const {
+    const auto& loop = *problem_.settings.loop;
+    throw InputError(error::no_loop_there, loop.place,
+                     fmt::format("What is put in at {} never comes back there: no loop passes it{}.", loop.text,
+                                 problem_.plants.size() > 1 ? " with " + problem_.plants[plant].name : ""),
+                     "name a signal inside the loop. Where the controller stands at its bound when the test ends, "
+                     "the loop is open: ask for a smaller step.");
+  }
+
+  /// The start, or where its loop does not settle, the best of a few points that do; none where none was found.
+  std::optional<VectorXd> settling_start(int start) {
     const VectorXd own = spread(start);
-    if (model_.evaluate(own, false) == LoopState::Settles) {
-      return own;
+    if (const LoopState state = model_.evaluate(own, false); state == LoopState::Settles) {
+      if (!open_plant()) {
+        return own;
+      }
+    } else {
+      too_slow_ = too_slow_ || state == LoopState::TooSlow;
     }
     constexpr int enough = 8;
     Candidate best;
     int found = 0;
     for (int point = 1; point <= most_spread_points && found < enough; ++point) {
       const VectorXd x = spread(point + start * most_spread_points);
-      if (model_.evaluate(x, false) == LoopState::Settles) {
-        ++found;
-        const Candidate candidate{x, model_.cost(), model_.largest_excess()};
-        best = candidate.is_better_than(best) ? candidate : best;
+      const LoopState state = model_.evaluate(x, false);
+      ++points_tried_;
+      too_slow_ = too_slow_ || state == LoopState::TooSlow;
+      if (state != LoopState::Settles) {
+        continue;
       }
+      if (const auto open = open_plant()) {
+        open_seen_ = open_seen_ ? open_seen_ : open;
+        continue;
+      }
+      ++found;
+      const Candidate candidate{x, model_.cost(), model_.largest_excess()};
+      best = candidate.is_better_than(best) ? candidate : best;
     }
-    if (found == 0) {
-      const bool one = problem_.plants.size() == 1;
-      throw InputError(
-          error::no_stable_loop, problem_.settings.place,
-          fmt::format("The loop {} at the start, and at none of {} points spread over the bounds{}.",
-                      what_it_does(result_.start_state), most_spread_points,
-                      one ? "" : " does it settle with every plant"),
-          "start from a controller with which the loop is stable, most often with a smaller gain, or narrow the bounds "
-          "around one. A loop that the test's duration is too short for does not count as settled either.");
+    return found > 0 ? std::optional(best.x) : std::nullopt;
+  }
+
+  /// Says why nothing was found to begin with.
+  [[noreturn]] void refuse_starts() const {
+    if (open_seen_) {
+      refuse_open_loop(*open_seen_);
     }
-    refuse_open_loop();
-    return best.x;
+    const bool one = problem_.plants.size() == 1;
+    const std::string seconds = fmt::format(
+        "{:.4g} s", static_cast<double>(problem_.drive.steps - problem_.begin) * problem_.drive.sample_time);
+    throw InputError(
+        error::no_stable_loop, problem_.settings.place,
+        fmt::format("The loop {} at the start{}, and at none of {} points spread over the bounds does it settle{}.",
+                    what_it_does(result_.start_state),
+                    one ? "" : " with " + problem_.plants[result_.start_plant].name, points_tried_,
+                    one ? "" : " with every plant"),
+        too_slow_ ? fmt::format("let the test last longer than its {}: duration in [goal], or a longer record. Some of "
+                                "these loops settle, only more slowly.",
+                                seconds)
+                  : "start from a controller with which the loop is stable, most often with a smaller gain, or narrow "
+                    "the bounds around one.");
   }
 
   // ---- search -----------------------------------------------------------------------------------------------------
-
   GoalStatus search_from(const VectorXd& from) {
     best_ = {};
     places_.clear();
@@ -299,11 +341,32 @@ class GoalSearch {
 
   // ---- result -----------------------------------------------------------------------------------------------------
 
+  /// An interior point ends beside the bound that it runs into: where the bound itself is no worse, it is the result.
+  void to_bounds(Candidate& best) {
+    for (Index j = 0; j < best.x.size(); ++j) {
+      for (const double bound : {lower_[j], upper_[j]}) {
+        if (best.x[j] == bound || !(std::fabs(best.x[j] - bound) <= near_bound * typical_[j])) {
+          continue;
+        }
+        VectorXd x = best.x;
+        x[j] = bound;
+        ++result_.evaluations;
+        if (model_.evaluate(x, false) != LoopState::Settles) {
+          continue;
+        }
+        const Candidate there{x, model_.cost(), model_.largest_excess()};
+        if (!best.is_better_than(there)) {
+          best = there;
+        }
+      }
+    }
+  }
+
   void finish(const Candidate& best, GoalStatus status) {
     result_.x = best.x;
     result_.status = best.excess > 0.0 && status != GoalStatus::Cancelled ? GoalStatus::Contradiction : status;
     for (Index j = 0; j < best.x.size(); ++j) {
-      const double near = 1e-6 * typical_[j];
+      const double near = at_bound * typical_[j];
       result_.at_bound.push_back(best.x[j] - lower_[j] <= near   ? AtBound::Lower
                                  : upper_[j] - best.x[j] <= near ? AtBound::Upper
                                                                  : AtBound::Free);
@@ -331,7 +394,7 @@ class GoalSearch {
                                   .value = value,
                                   .is_kept = excess <= 0.0,
                                   .is_active = std::fabs(excess) <= is_active,
-                                  .against = share >= least_share ? share : 0.0});
+                                  .against = excess > 0.0 && share >= least_share ? share : 0.0});
       }
     }
     result_.message = message();
@@ -364,6 +427,9 @@ class GoalSearch {
   bool is_feasibility_ = false;
   bool cancelled_ = false;
   int start_number_ = 0;
+  int points_tried_ = 0;  ///< where a start does not settle
+  bool too_slow_ = false;  ///< some loop dies away, but not within the test
+  std::optional<std::size_t> open_seen_{};  ///< the plant of the first point whose loop settles and is open
   double cost_unit_ = 1.0;
   Candidate best_{};
   std::vector<double> shares_{};      ///< by limit and plant, of the best start

@@ -42,7 +42,7 @@ enum class GoalStatus : std::uint8_t {
 
 struct PlantResult {
   std::string name{};
-  std::optional<LoopFigures> before{};  ///< none where the loop does not settle at the start
+  std::optional<LoopFigures> before{};  ///< none where the loop has no value at the start, with this plant or another
   LoopFigures after{};
   LoopResponse response{};
   std::vector<FrequencyPoint> frequencies{};  ///< empty without a cut
@@ -54,7 +54,7 @@ struct LimitResult {
   double value = 0.0;
   bool is_kept = false;
   bool is_active = false;  ///< within a hundredth of the limit
-  double against = 0.0;    ///< its share in a contradiction, 0 to 1; 0 where it has none
+  double against = 0.0;    ///< of a broken one, its share in a contradiction, 0 to 1; 0 where it has none
 };
 
 struct GoalResult {
@@ -64,8 +64,10 @@ struct GoalResult {
   std::vector<AtBound> at_bound{};
   std::vector<PlantResult> plants{};
   std::vector<LimitResult> limits{};  ///< limit by limit, plant by plant
-  LoopState start_state = LoopState::Settles;
-  std::vector<double> start_errors{};  ///< √J reached from each start; not a number where limits stay broken
+  LoopState start_state = LoopState::Settles;  ///< of the first plant that does not settle
+  std::size_t start_plant = 0;                 ///< that plant
+  /// √J reached from each start; not a number where limits stay broken, infinite where no loop settles.
+  std::vector<double> start_errors{};
   int best_start = 0;
   int iterations = 0;
   int evaluations = 0;

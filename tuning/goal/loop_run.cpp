@@ -21,6 +21,18 @@ constexpr double share_put_in = 1e-6;
 constexpr double died_away = 1e-7;
 constexpr std::size_t longest_impulse = 20;  ///< test durations
 constexpr std::size_t shortest_limit = 2000;
+/// Of the peak in the third quarter: what has become less than this share of it in the last is dying away.
+constexpr double dying_away = 0.999;
+
+/// What is to be said of a response that has not died away over the time that it was given.
+LoopState without_end(const Signal& impulse) {
+  const auto quarter = std::ssize(impulse) / 4;
+  const auto peak = [](auto begin, auto end) {
+    return std::accumulate(begin, end, 0.0, [](double most, double h) { return std::max(most, std::fabs(h)); });
+  };
+  const double before = peak(impulse.end() - 2 * quarter, impulse.end() - quarter);
+  return peak(impulse.end() - quarter, impulse.end()) < dying_away * before ? LoopState::TooSlow : LoopState::Unstable;
+}
 
 template <class Row>
 void keep_derivatives(const double& /*value*/, std::span<const Index> /*columns*/, double /*scale*/, Row&& /*row*/) {}
@@ -70,7 +82,7 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
 }
 
 template <class S>
-bool LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, std::size_t steps,
+LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, std::size_t steps,
                            LoopResponse& response) {
   constexpr std::size_t block = 256;
   const double put_in = share_put_in * (largest_ > 0.0 ? largest_ : 1.0);
@@ -107,16 +119,16 @@ bool LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, 
       machine.save(states[run]);
     }
     if (!std::isfinite(peak) || peak > 1e9) {
-      return false;
+      return LoopState::Unstable;
     }
     const auto tail = static_cast<std::ptrdiff_t>(last / 4);
     const bool is_small = std::all_of(response.impulse.end() - tail, response.impulse.end(),
                                       [&](double h) { return std::fabs(h) < died_away * peak; });
     if (steps == 0 && is_small) {
-      return true;
+      return LoopState::Settles;
     }
   }
-  return steps > 0;
+  return steps > 0 ? LoopState::Settles : without_end(response.impulse);
 }
 
 LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopResponse& response) {
@@ -125,8 +137,10 @@ LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopRespons
     if (!take_test(machines_.plain, x, {}, response)) {
       return LoopState::NotFinite;
     }
-    if (plant_.cut && !take_impulse(machines_.plain, {}, 0, response)) {
-      return LoopState::Unstable;
+    if (plant_.cut) {
+      if (const LoopState ended = take_impulse(machines_.plain, {}, 0, response); ended != LoopState::Settles) {
+        return ended;
+      }
     }
     if (!with_derivatives) {
       return LoopState::Settles;
@@ -141,7 +155,8 @@ LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopRespons
       const auto part = left.first(width_of_pass(left.size()));
       const bool finite = machines_.with_derivatives(part.size(), [&](auto& machine) {
         return take_test(machine, x, part, response) &&
-               (!plant_.cut || take_impulse(machine, part, response.impulse.size(), response));
+               (!plant_.cut ||
+                take_impulse(machine, part, response.impulse.size(), response) == LoopState::Settles);
       });
       if (!finite) {
         return LoopState::NotFinite;

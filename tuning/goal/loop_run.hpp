@@ -39,12 +39,23 @@ struct LoopResponse {
 enum class LoopState : std::uint8_t {
   Settles,
   NotFinite,  ///< a value of the test run is no finite number
-  Unstable,   ///< what was put in has not died away in twenty times the test's duration
+  Unstable,   ///< what was put in grows, or stands
+  TooSlow,    ///< what was put in dies away, but not within twenty times the test's duration
 };
 
 /// What the response of a loop without a value is said to do.
 [[nodiscard]] constexpr std::string_view what_it_does(LoopState state) {
-  return state == LoopState::Unstable ? "does not settle" : "has no finite response";
+  switch (state) {
+    case LoopState::Settles:
+      return "settles";
+    case LoopState::NotFinite:
+      return "has no finite response";
+    case LoopState::Unstable:
+      return "does not settle";
+    case LoopState::TooSlow:
+      return "settles too slowly for the length of the test";
+  }
+  return {};
 }
 
 /// Runs one loop again and again. h is half the difference of two runs with ±ε, ε a millionth of the largest |v|: exact
@@ -61,9 +72,9 @@ class LoopRun {
   template <class S>
   bool take_test(Machine<S>& machine, const Eigen::VectorXd& x, std::span<const Eigen::Index> columns,
                  LoopResponse& response);
-  /// Behind the test: h over `steps`, or, of 0, until it has died away; false where it does not.
+  /// Behind the test: h over `steps`, or, of 0, until it has died away.
   template <class S>
-  bool take_impulse(Machine<S>& machine, std::span<const Eigen::Index> columns, std::size_t steps,
+  LoopState take_impulse(Machine<S>& machine, std::span<const Eigen::Index> columns, std::size_t steps,
                     LoopResponse& response);
 
   const LoopPlant& plant_;

@@ -11,7 +11,7 @@ import numpy
 from ._library import Handle, Progress, library
 from ._messages import called, encoded, error, options
 from ._record import Record, as_record
-from ._results import fit_of, verdict_of
+from ._results import relay_of, tuned_of, verdict_of
 
 
 @dataclass(frozen=True)
@@ -149,8 +149,11 @@ class Diagram:
                                    options(traces=list(traces), float32=float32), told=self.warnings)
         return Record(pointer, messages)
 
-    def tune(self, records, params=None, *, starts=1, progress=None, **reading):
-        """Fits what [fit] of the parameter file names, so that the outputs meet the columns of their names.
+    def tune(self, records=(), params=None, *, starts=1, progress=None, **reading):
+        """Fits what [fit] of the parameter file names, so that the outputs meet the columns of their names; gives a Fit.
+
+        With [goal] it tunes a control loop instead, and gives a TunedLoop; records are then needed for
+        signal = "record" alone. Limits that cannot be kept together are warned of (HY533).
 
         `records` is a record, arrays or a file, or a list of these; `params` a parameter file or its text, else that of
         the diagram. `progress(done, iteration)` is called once an iteration. An exception in it, Ctrl-C among them, ends
@@ -170,7 +173,7 @@ class Diagram:
 
         pointer, _ = called("tune", diagram._pointer, pointers, len(given), options(starts=starts), Progress(told), None,
                             told=self.warnings)
-        fit = fit_of(pointer)
+        fit = tuned_of(pointer)
         if raised:
             raise raised[0]
         return fit
@@ -218,3 +221,14 @@ def compile(source, params=None, *, top=None, any_order=None, **values):  # noqa
     if _is_text(source):
         return Diagram(*called("compile_text", encoded(source), given))
     return Diagram(*called("compile_file", os.fsencode(source), given))
+
+
+def relay(record, u, y, *, controller=None, **reading):
+    """What a relay experiment tells of a process: ultimate gain and period, a model, and a PID to begin with.
+
+    `record` is arrays by name or a file; `u` is the column that the relay wrote, `y` the process value. `controller` is
+    the PID's instance in the diagram, for the parameter file that the result has as `text`.
+    """
+    given = as_record(record, None, **reading)
+    pointer, _ = called("relay_experiment", given._handle.pointer, encoded(u), encoded(y), options(controller=controller))
+    return relay_of(pointer)

@@ -58,14 +58,159 @@ class Fit:
         return self.status in ("converged", "nearly converged")
 
 
-def fit_of(pointer):
+@dataclass(frozen=True)
+class Margin:
+    """A margin of a loop, and the frequency in rad/s that it is at. None where the loop has none: it is unlimited."""
+
+    value: Optional[float]
+    frequency: float
+
+
+@dataclass(frozen=True)
+class LoopFigures:
+    """What a loop does with one plant. None where there is no such figure, as the overshoot of a ramp.
+
+    `error` is the RMS distance to the wished response, as a share of the step; times are in seconds.
+    """
+
+    error: float
+    overshoot_percent: Optional[float]
+    rise_time: Optional[float]
+    settling_time: Optional[float]
+    effort: Optional[float]
+    effort_rate: Optional[float]
+    gain_margin_db: Optional[Margin]
+    phase_margin_deg: Optional[Margin]
+    sensitivity: Optional[Margin]
+
+
+@dataclass(frozen=True)
+class Plant:
+    """One plant of a goal. `before` is None where the loop has no response with the values of the start."""
+
+    name: str
+    before: Optional[LoopFigures]
+    after: LoopFigures
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit of [goal.limits] in one plant. `value` is None where it is unlimited."""
+
+    name: str
+    plant: str
+    limit: float
+    value: Optional[float]
+    kept: bool
+    active: bool
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A parameter of a tuned loop."""
+
+    name: str
+    value: float
+    start: float
+    unit: str
+    at_bound: str
+
+
+@dataclass(frozen=True)
+class TunedLoop:
+    """What `tune` found for a [goal]. `text` is the parameter file with the tuned values, as `tune --out` writes it."""
+
+    status: str
+    message: str
+    iterations: int
+    start: str
+    parameters: dict
+    plants: dict
+    limits: list
+    text: str
+    data: dict = field(repr=False)
+
+    @property
+    def keeps_limits(self):
+        return all(limit.kept for limit in self.limits)
+
+
+def _figures(data):
+    margins = {name: _made(Margin, one) for name, one in (data["margins"] or {}).items() if isinstance(one, dict)}
+    return _made(LoopFigures, data, **{name: margins.get(name) for name in
+                                       ("gain_margin_db", "phase_margin_deg", "sensitivity")})
+
+
+def _loop(data, text):
+    plants = {one["name"]: Plant(one["name"], one["before"] and _figures(one["before"]), _figures(one["after"]))
+              for one in data["plants"]}
+    return _made(TunedLoop, data, parameters={one["name"]: _made(Tuned, one) for one in data["parameters"]},
+                 plants=plants, limits=[_made(Limit, one) for one in data["limits"]], text=text, data=data)
+
+
+def tuned_of(pointer):
+    """A fit, or a loop that was tuned for a goal: each has keys that the other has not."""
     handle = Handle(pointer, "fit_free")
     data = json.loads(library.hysteron_fit_json(handle.pointer))
+    if "plants" in data:
+        return _loop(data, library.hysteron_fit_parameters(handle.pointer).decode())
     return _made(Fit, data,
                  parameters={one["name"]: _made(Fitted, one) for one in data["parameters"]},
                  initial_states={one["name"]: _made(Fitted, one) for one in data["initial_states"]},
                  outputs={one["name"]: _made(Score, one) for one in data["outputs"]},
                  text=library.hysteron_fit_parameters(handle.pointer).decode(), data=data)
+
+
+@dataclass(frozen=True)
+class Controller:
+    """KP·(e + ∫e dt/TR − TD·dy/dt), as HY_PID has it; TR and TD in seconds."""
+
+    KP: float
+    TR: float
+    TD: float
+
+
+@dataclass(frozen=True)
+class Model:
+    """A lag with a dead time, K·exp(−dead_time·s)/(1 + T·s); times in seconds."""
+
+    K: float
+    T: float
+    dead_time: float
+
+
+@dataclass(frozen=True)
+class Relay:
+    """What a relay experiment tells. `model` is None where the record does not tell the static gain: `why_no_model`.
+
+    `text` is the parameter file of a PID to begin with, as `relay --out` writes it.
+    """
+
+    low: float
+    high: float
+    cycles: int
+    period: float
+    spread: float
+    amplitude: float
+    hysteresis: float
+    gain: float
+    phase_deg: float
+    ultimate_gain: float
+    ultimate_period: float
+    model: Optional[Model]
+    why_no_model: str
+    pi: Controller
+    pid: Controller
+    text: str
+    data: dict = field(repr=False)
+
+
+def relay_of(pointer):
+    handle = Handle(pointer, "relay_free")
+    data = json.loads(library.hysteron_relay_json(handle.pointer))
+    return _made(Relay, data, model=data["model"] and _made(Model, data["model"]), pi=_made(Controller, data["pi"]),
+                 pid=_made(Controller, data["pid"]), text=library.hysteron_relay_parameters(handle.pointer).decode(),
+                 data=data)
 
 
 @dataclass(frozen=True)

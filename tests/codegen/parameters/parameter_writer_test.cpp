@@ -87,6 +87,12 @@ C1 = 0.05   # um/V, slope, standard error 0.5
 C2 = 1.25 # "growth" # twice
 TAB = [0.0,   # first
        1.0]
+LIST = [  # by the foot
+  # cold
+  1.0, 2.0,   # both
+  3.0  # warm
+  # no more
+]  # done
 
 # bounds
 [fit.INV.C1]
@@ -112,10 +118,20 @@ GAIN = 2  # do not touch
 [parameters.INV]  # the inverse
 # measured on Monday
 # at 20 degC
-C1 = 0.0625       # um/V, slope, standard error 0.25
+C1 = 0.0625  # um/V, slope, standard error 0.25
 # "growth" # twice
-C2 = 1.25         # um, growth, standard error 1
-TAB = [0.0, 1.0]  # first
+C2 = 1.25    # um, growth, standard error 1
+TAB = [
+  0.0,  # first
+  1.0,
+]
+LIST = [  # by the foot
+  # cold
+  1.0,
+  2.0,  # both
+  3.0,  # warm
+  # no more
+]  # done
 
 [fit.INV]
 # bounds

@@ -205,6 +205,94 @@ TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
   EXPECT_FALSE(result.plants[0].after.margins);
 }
 
+/// The pole 1 − TS·K: at K = 0.001 it dies away, at K = −1 it grows, at K = 210 it swings up.
+TEST(GoalSearch, TellsALoopThatIsSlowFromOneThatIsUnstable) {
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = -5.0, max = 300.0, scale = 10.0}"));
+  GoalModel model(problem);
+  for (const auto& [gain, state] : {std::pair(0.001, LoopState::TooSlow),
+                                    {-1.0, LoopState::Unstable},
+                                    {210.0, LoopState::Unstable},
+                                    {5.0, LoopState::Settles}}) {
+    EXPECT_EQ(model.evaluate(Eigen::VectorXd::Constant(1, gain), false), state) << gain;
+  }
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.start_state, LoopState::TooSlow);
+  EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
+}
+
+TEST(GoalSearch, SaysThatALongerTestIsWanted) {
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = 0.0005, max = 0.01}"));
+  try {
+    (void)tune_for_goal(problem);
+    FAIL() << "no loop settles";
+  } catch (const InputError& refused) {
+    const Diagnostic& said = refused.diagnostics().all().front();
+    EXPECT_EQ(said.number, error::no_stable_loop);
+    EXPECT_THAT(said.cause, testing::HasSubstr("settles too slowly"));
+    EXPECT_THAT(said.mend, testing::HasSubstr("last longer than its 1.5 s"));
+  }
+}
+
+/// Most of the range is unstable, so that further starts find nothing.
+TEST(GoalSearch, KeepsAResultWhereAFurtherStartFindsNoLoop) {
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(), settings_of_gain(5.0, "settling_time = 0.5\n", "{min = 4.999999, max = 1e300}"));
+  const GoalResult result = tune_for_goal(problem, {.starts = 3});
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  EXPECT_EQ(result.best_start, 0);
+  EXPECT_NEAR(result.x[0], gain_for(0.5), 1e-3 * gain_for(0.5));
+  ASSERT_EQ(result.start_errors.size(), 3U);
+  EXPECT_TRUE(std::isinf(result.start_errors[1])) << result.start_errors[1];
+}
+
+TEST(GoalSearch, SaysThatAParameterEndsOnItsBound) {
+  for (const auto& [start, bounds, bound] :
+       {std::tuple(1.0, "{min = 0.0, max = 5.0}", 5.0), {60.0, "{min = 20.0, max = 100.0}", 20.0}}) {
+    const GoalResult result = tune_for_goal(
+        loops::problem_of(loops::integrator(), settings_of_gain(start, "settling_time = 0.5\n", bounds)));
+    EXPECT_EQ(result.x[0], bound);
+    EXPECT_EQ(result.at_bound[0], bound == 5.0 ? AtBound::Upper : AtBound::Lower);
+  }
+}
+
+/// What a limit is held against does not depend on how long the error is watched.
+TEST(GoalSearch, AShortTestDoesNotHideALaterOvershoot) {
+  const auto problem_of = [](const std::string& duration) {
+    return loops::problem_of(loops::oven, "[fit.PID]\nKP = {min = 0.01, max = 20.0}\nTR = {min = 0.1}\n[goal]\n"
+                                          "settling_time = 2.0\nloop = \"PID.XOUT\"\n" +
+                                              duration + "[goal.limits]\novershoot_percent = 4.0\n");
+  };
+  const GoalProblem whole = problem_of("");
+  const GoalProblem brief = problem_of("duration = 2.0\n");
+  GoalModel of_whole(whole);
+  GoalModel of_brief(brief);
+  const Eigen::VectorXd x = Eigen::Vector2d(1.6, 1.3);  // swings about its set point
+  ASSERT_EQ(of_whole.evaluate(x, false), LoopState::Settles);
+  ASSERT_EQ(of_brief.evaluate(x, false), LoopState::Settles);
+  const Signal& y = of_whole.response(0).output;
+  const auto behind = y.begin() + static_cast<std::ptrdiff_t>(brief.end);
+  ASSERT_GT(*std::max_element(behind, y.end()), *std::max_element(y.begin(), behind)) << "the overshoot comes later";
+  EXPECT_EQ(of_brief.value_of(0, 0), of_whole.value_of(0, 0));
+  EXPECT_GT(of_brief.largest_excess(), 0.0);
+  EXPECT_NE(of_brief.cost(), of_whole.cost());
+}
+
+TEST(GoalSearch, NamesNoLimitThatIsKept) {
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(6), settings_of_gain(12.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"
+                                                   "effort_rate = 1e6\nphase_margin_deg = 20.0\n",
+                                             "{min = 8.0, max = 20.0}"));
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Contradiction);
+  for (const LimitResult& limit : result.limits) {
+    EXPECT_TRUE(!limit.is_kept || limit.against == 0.0) << text_of(problem.limits[limit.limit].kind).name;
+  }
+  EXPECT_FALSE(result.limits[0].is_kept);
+  EXPECT_EQ(result.at_bound[0], AtBound::Lower);
+}
+
 TEST(GoalSearch, KeepsEveryLimitOfALoopWithAll) {
   const GoalProblem problem = loops::problem_of(loops::oven, R"(
 [fit.PID]

@@ -1,0 +1,118 @@
+#include "support/wrapped.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+
+#include "support/utf8.hpp"
+
+namespace hysteron {
+namespace {
+
+/// Narrower than this nothing can be read, broken or not.
+constexpr std::size_t least_width = 20;
+
+/// Without the escape sequences of colours.
+std::size_t shown_count(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\033') {
+      i = std::min(text.find('m', i), text.size());
+    } else {
+      shown += text[i];
+    }
+  }
+  return character_count(shown);
+}
+
+/// `   9 |   AMP(XNI := U);`
+bool is_shown_source(std::string_view line) {
+  const auto first = std::min(line.find_first_not_of(" 0123456789"), line.size());
+  return line.substr(first).starts_with("|");
+}
+
+/// Where what follows of a line begins; nothing where the line is a row of a table.
+std::optional<std::size_t> hanging_indent(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  std::size_t indent = first;
+  std::size_t columns = 0;
+  for (auto gap = line.find("  ", first); gap != std::string_view::npos; gap = line.find("  ", indent)) {
+    const auto word = line.find_first_not_of(' ', gap);
+    if (word == std::string_view::npos) {
+      break;
+    }
+    indent = word;
+    ++columns;
+  }
+  if (columns > 1) {
+    return std::nullopt;
+  }
+  return shown_count(line.substr(0, indent));
+}
+
+/// The end of what fits into the width: a blank behind `first`, the first one at least; npos where there is none.
+std::size_t break_of(std::string_view line, std::size_t first, std::size_t width) {
+  std::size_t found = std::string_view::npos;
+  for (auto blank = line.find(' ', first); blank != std::string_view::npos; blank = line.find(' ', blank + 1)) {
+    const bool is_end = line.find_first_not_of(' ', blank) == std::string_view::npos;
+    if (is_end || (found != std::string_view::npos && shown_count(line.substr(0, blank)) > width)) {
+      break;
+    }
+    found = blank;
+  }
+  return found;
+}
+
+void append_broken(std::string& result, std::string_view line, std::size_t width) {
+  const bool stays = line.find_first_not_of(' ') == std::string_view::npos || is_shown_source(line);
+  const auto indent = stays ? std::nullopt : hanging_indent(line);
+  std::size_t room = width;
+  std::size_t first = indent.value_or(0);
+  while (indent && *indent + least_width <= width && shown_count(line) > room) {
+    const std::size_t end = break_of(line, first, room);
+    if (end == std::string_view::npos) {
+      break;
+    }
+    result += line.substr(0, end);
+    result += "\n" + std::string(*indent, ' ');
+    line.remove_prefix(line.find_first_not_of(' ', end));
+    room = width - *indent;
+    first = 0;
+  }
+  result += line;
+}
+
+}  // namespace
+
+std::size_t terminal_width(std::FILE* stream) {
+  if (const char* const columns = std::getenv("COLUMNS")) {
+    const std::string_view text(columns);
+    std::size_t width = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), width);
+    if (problem == std::errc{} && end == text.data() + text.size() && width > 0) {
+      return width;
+    }
+  }
+  winsize size{};
+  return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::string wrapped(std::string_view text, std::size_t width) {
+  if (width < least_width) {
+    return std::string(text);
+  }
+  std::string result;
+  while (!text.empty()) {
+    const auto end = std::min(text.find('\n'), text.size());
+    append_broken(result, text.substr(0, end), width);
+    result += end < text.size() ? "\n" : "";
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
+}  // namespace hysteron

@@ -1,0 +1,1 @@
+// hysteron export, as a user runs it.

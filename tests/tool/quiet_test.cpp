@@ -1,0 +1,1 @@
+// hysteron --quiet and wrapped output, as a user runs it.

@@ -28,6 +28,7 @@ constexpr std::string_view host_head = R"(#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 )";
@@ -39,8 +40,9 @@ int main(int count, char** arguments) {
 )";
 
 std::string as_member(Type type, std::string_view member, std::size_t column) {
-  return type == Type::Bool ? fmt::format("    in.{} = row[{}] != 0.0;\n", member, column)
-                            : fmt::format("    in.{0} = static_cast<decltype(in.{0})>(row[{1}]);\n", member, column);
+  return type == Type::Bool
+             ? fmt::format("    in.{} = row[{}] != 0.0;\n", member, column)
+             : fmt::format("    in.{0} = static_cast<std::decay_t<decltype(in.{0})>>(row[{1}]);\n", member, column);
 }
 
 /// The function that runs one program over all its rows.

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view page_style = R"(.hash { font-family: monospace; overflow-wrap: anywhere; }
+constexpr std::string_view proof_page_style = R"(.hash { font-family: monospace; overflow-wrap: anywhere; }
 table.facts th { text-align: left; font-weight: normal; padding-right: 1.2rem; vertical-align: top; }
 table.schedule td, table.schedule th { text-align: left; padding: .1rem .9rem .1rem 0; }
 .sign { display: grid; grid-template-columns: repeat(auto-fit, minmax(11rem, 1fr)); gap: 1.2rem; margin-top: 2.6rem; }
@@ -25,10 +25,10 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 @media print { section { break-inside: avoid-page; } section.long { break-inside: auto; } tr { break-inside: avoid; } }
 )";
 
-using Row = std::pair<std::string_view, std::string>;
+using Fact = std::pair<std::string_view, std::string>;
 
 /// A fact a line; the value is HTML.
-std::string facts(std::initializer_list<Row> rows) {
+std::string facts(std::initializer_list<Fact> rows) {
   std::string html = "<table class=\"facts\">\n";
   for (const auto& [name, value] : rows) {
     html += value.empty() ? "" : fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, value);
@@ -36,37 +36,37 @@ std::string facts(std::initializer_list<Row> rows) {
   return html + "</table>\n";
 }
 
-std::string text_of(const Json& value) {
+std::string value_html(const Json& value) {
   return escaped(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-std::string hash(const std::string& digits) {
+std::string hash_html(const std::string& digits) {
   return fmt::format("<span class=\"hash\">{}</span>", escaped(digits));
 }
 
 /// A file with its hash; empty where there is none.
-std::string file_of(const Json& file) {
-  return file.is_null() ? std::string() : fmt::format("{}<br/>{}", text_of(file["file"]), hash(file["sha256"]));
+std::string file_html(const Json& file) {
+  return file.is_null() ? std::string() : fmt::format("{}<br/>{}", value_html(file["file"]), hash_html(file["sha256"]));
 }
 
-std::string verdict_of(const Json& sheet) {
+std::string verdict_html(const Json& sheet) {
   const Json& equality = sheet["equality"];
   const std::string bits = equality["bits"];
-  const std::string where = fmt::format("{}, {}: its outputs against those of {}", text_of(sheet["language"]),
-                                        text_of(equality["run"]), text_of(equality["against"]));
+  const std::string where = fmt::format("{}, {}: its outputs against those of {}", value_html(sheet["language"]),
+                                        value_html(equality["run"]), value_html(equality["against"]));
   if (bits == "equal") {
     return fmt::format(
         "<section class=\"verdict\">\n<p class=\"summary\">Equal bits in all {} steps, at {} {}.</p>\n<p>{}.</p>\n"
         "</section>\n",
-        text_of(equality["steps"]), text_of(equality["outputs"]), equality["outputs"] == 1 ? "output" : "outputs",
+        value_html(equality["steps"]), value_html(equality["outputs"]), equality["outputs"] == 1 ? "output" : "outputs",
         where);
   }
   return fmt::format("<div class=\"box refusals\"><h2>{}</h2>\n<p>{}. {}.</p></div>\n",
-                     bits == "different" ? "Other bits" : "Not run: nothing is proved", text_of(equality["fault"]),
+                     bits == "different" ? "Other bits" : "Not run: nothing is proved", value_html(equality["fault"]),
                      where);
 }
 
-std::string schedule_of(const Json& schedule) {
+std::string schedule_html(const Json& schedule) {
   if (schedule.empty()) {
     return "<p>The diagram has no blocks: its step is one expression for each output.</p>\n";
   }
@@ -77,18 +77,18 @@ std::string schedule_of(const Json& schedule) {
   for (const Json& one : schedule) {
     const bool each = one["every"] == 1;
     html += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++place, text_of(one["block"]),
-        text_of(one["type"]), text_of(one["action"]),
-        each ? std::string("all") : fmt::format("k mod {} = {}", text_of(one["every"]), text_of(one["phase"])));
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++place, value_html(one["block"]),
+        value_html(one["type"]), value_html(one["action"]),
+        each ? std::string("all") : fmt::format("k mod {} = {}", value_html(one["every"]), value_html(one["phase"])));
   }
   return html + "</table>\n";
 }
 
-std::string files_of(const Json& files) {
+std::string files_html(const Json& files) {
   std::string html = "<table class=\"facts\">\n";
   for (const Json& one : files) {
-    html += fmt::format("<tr><th>{}</th><td>{} bytes<br/>{}</td></tr>\n", text_of(one["file"]), text_of(one["bytes"]),
-                        hash(one["sha256"]));
+    html += fmt::format("<tr><th>{}</th><td>{} bytes<br/>{}</td></tr>\n", value_html(one["file"]),
+                        value_html(one["bytes"]), hash_html(one["sha256"]));
   }
   return html + "</table>\n";
 }
@@ -100,41 +100,41 @@ std::string proof_page(const Json& sheet) {
     return fmt::format("<section{}><h2>{}</h2>\n{}</section>\n", kind, title, html);
   };
   const Json& stack = sheet["stack_bytes"];
-  std::string body = verdict_of(sheet);
+  std::string body = verdict_html(sheet);
   body += section("What it is",
-                  facts({{"diagram", text_of(sheet["diagram"])},
-                         {"source", file_of(sheet["source"])},
-                         {"parameters", file_of(sheet["parameters"])},
-                         {"hash of diagram and parameters", hash(sheet["hash_of_diagram_and_parameters"])},
-                         {"language", text_of(sheet["language"])},
-                         {"generator", text_of(sheet["generator"])},
+                  facts({{"diagram", value_html(sheet["diagram"])},
+                         {"source", file_html(sheet["source"])},
+                         {"parameters", file_html(sheet["parameters"])},
+                         {"hash of diagram and parameters", hash_html(sheet["hash_of_diagram_and_parameters"])},
+                         {"language", value_html(sheet["language"])},
+                         {"generator", value_html(sheet["generator"])},
                          {"sample time", fmt::format("{} ms", sheet["sample_time_ns"].get<double>() / 1e6)}}));
-  body +=
-      section("What a step costs",
-              facts({{"real numbers", text_of(sheet["real"])},
-                     {"state", fmt::format("{} bytes", text_of(sheet["state_bytes"]))},
-                     {"parameters", fmt::format("{} bytes", text_of(sheet["parameter_bytes"]))},
-                     {"stack", stack.is_null() ? std::string()
-                                               : fmt::format("{} bytes at most, without the C library; {}",
-                                                             text_of(stack["bytes"]), text_of(stack["measured"]))},
-                     {"operations",
-                      fmt::format("{} in the longest step, with all rates in it; {} of them call a function",
-                                  text_of(sheet["operations_per_step"]), text_of(sheet["function_calls_per_step"]))},
-                     {"paths", "one: both values of a choice may be computed, and loops have constant bounds"}}));
-  body += section("Files", files_of(sheet["files"]));
-  body += section("Schedule", schedule_of(sheet["schedule"]), " class=\"long\"");
+  body += section(
+      "What a step costs",
+      facts({{"real numbers", value_html(sheet["real"])},
+             {"state", fmt::format("{} bytes", value_html(sheet["state_bytes"]))},
+             {"parameters", fmt::format("{} bytes", value_html(sheet["parameter_bytes"]))},
+             {"stack", stack.is_null() ? std::string()
+                                       : fmt::format("{} bytes at most, without the C library; {}",
+                                                     value_html(stack["bytes"]), value_html(stack["measured"]))},
+             {"operations",
+              fmt::format("{} in the longest step, with all rates in it; {} of them call a function",
+                          value_html(sheet["operations_per_step"]), value_html(sheet["function_calls_per_step"]))},
+             {"paths", "one: both values of a choice may be computed, and loops have constant bounds"}}));
+  body += section("Files", files_html(sheet["files"]));
+  body += section("Schedule", schedule_html(sheet["schedule"]), " class=\"long\"");
   body += section("Repeat it",
                   fmt::format("<p>This command makes the files and this sheet again, from the same source:</p>\n"
                               "<pre>{}</pre>\n<p>What is not proved here: that the compiler of the target "
                               "rounds as this machine does, and that values stay within bounds.</p>\n",
-                              text_of(sheet["command"])));
+                              value_html(sheet["command"])));
   body +=
       "<section><h2>Signed</h2>\n<div "
       "class=\"sign\"><div>name</div><div>date</div><div>signature</div></div></section>\n";
   return plots::page_text(
       {.title = fmt::format("Hysteron: proof sheet of {} in {}", sheet["diagram"].get<std::string>(),
                             sheet["language"].get<std::string>()),
-       .style = std::string(page_style),
+       .style = std::string(proof_page_style),
        .body = body});
 }
 

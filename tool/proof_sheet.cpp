@@ -52,7 +52,7 @@ std::size_t parameter_bytes(const Graph& graph, bool float32) {
   return state_bytes(parameters, float32);
 }
 
-Json stack_of(const TargetProof& proof) {
+Json stack_json(const TargetProof& proof) {
   return proof.stack_bytes ? Json{{"bytes", *proof.stack_bytes}, {"measured", proof.way + " at -O1"}} : Json();
 }
 
@@ -110,7 +110,7 @@ ProofSheet proof_sheet(const Program& program, const Target& target, const std::
                   {"real", options.float32 ? "32 bits" : "64 bits"},
                   {"state_bytes", state_bytes(routine, options.float32)},
                   {"parameter_bytes", parameter_bytes(graph, options.float32)},
-                  {"stack_bytes", stack_of(sheet.proof)},
+                  {"stack_bytes", stack_json(sheet.proof)},
                   {"operations_per_step", routine.operations},
                   {"function_calls_per_step", routine.function_calls},
                   {"schedule", schedule_of(program)},

@@ -10,6 +10,7 @@
 #include "codegen/graph/sample_time.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "records/read.hpp"
+#include "support/element_name.hpp"
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
@@ -209,11 +210,11 @@ class CasePlan {
     for (std::size_t i = 0; i < given.size(); ++i) {
       const Port& input = graph().inputs[i];
       if (given[i].empty() && !has_default(graph(), input)) {
-        diagnostics_.error(
-            error::unusable_test, test().place,
-            fmt::format("The case \"{}\" says nothing of the input {}.", test().name, input.name),
-            fmt::format("add it: inputs = {{{} = {}}}.", input.name, input.type == Type::Bool ? "false" : "0.0"),
-            {{.place = graph().place(input.span), .text = "the input; it has no default"}});
+        diagnostics_.error(error::unusable_test, test().place,
+                           fmt::format("The case \"{}\" says nothing of the input {}.", test().name, input.name),
+                           fmt::format("add it: inputs = {{{} = {}}}.", toml_key(input.name),
+                                       input.type == Type::Bool ? "false" : "0.0"),
+                           {{.place = graph().place(input.span), .text = "the input; it has no default"}});
       }
       if (given[i].empty()) {
         given[i] = {input.preset};

@@ -262,6 +262,27 @@ class ProjectReader {
       }
       pou.elements.push_back(read_element(node));
     }
+    name_what_is_handed_over(pou);
+  }
+
+  /// A VAR_IN_OUT of a block has the variable that it is wired to as its expression.
+  static void name_what_is_handed_over(DrawnPou& pou) {
+    std::map<std::uint64_t, std::string> variables;
+    for (const DrawnElement& one : pou.elements) {
+      if ((one.kind == tc6::in_variable || one.kind == tc6::in_out_variable) && !one.negated) {
+        variables.emplace(one.id, one.text);
+      }
+    }
+    for (DrawnElement& element : pou.elements) {
+      for (DrawnPin& pin : element.both) {
+        const auto found =
+            pin.links.size() == 1 && !pin.negated ? variables.find(pin.links.front().element) : variables.end();
+        if (found != variables.end()) {
+          pin.expression = found->second;
+          pin.links.clear();
+        }
+      }
+    }
   }
 
   DrawnElement read_element(xml_node node) {

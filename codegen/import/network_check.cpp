@@ -1,16 +1,23 @@
 #include "codegen/import/network_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "codegen/import/expression.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/tc6.hpp"
+#include "support/errors.hpp"
 #include "support/names.hpp"
 
 namespace hysteron::import {
 namespace {
+
+/// Blocks that hand a variable on to each other.
+constexpr std::size_t deepest_handing = 33;
 
 bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
   if (element.kind != tc6::in_variable) {
@@ -25,7 +32,7 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
 
 }  // namespace
 
-std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own) {
+std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned) {
   static const std::set<std::string_view> known{
       tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
       tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
@@ -50,7 +57,7 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own) 
       } else if (name.empty()) {
         object("its VAR_IN_OUT " + pin.name + " is handed no variable of the POU",
                "Connect a local variable, an output or a VAR_IN_OUT.");
-      } else if (hands_back(element, pin.name, own) && ++targets[name] == 2) {
+      } else if (hands_back(element, pin.name, assigned) && ++targets[name] == 2) {
         object("it assigns " + name + ", which is assigned elsewhere too",
                "Hand the value in by an input and out by an output.");
       }
@@ -81,15 +88,8 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own) 
 }
 
 std::string handed_over(const DrawnPou& pou, const DrawnPin& pin) {
-  const std::string* text = &pin.expression;
-  if (pin.links.size() == 1 && !pin.negated) {
-    const auto source = std::ranges::find(pou.elements, pin.links.front().element, &DrawnElement::id);
-    const bool variable = source != pou.elements.end() && !source->negated &&
-                          (source->kind == tc6::in_variable || source->kind == tc6::in_out_variable);
-    text = variable ? &source->text : text;
-  }
   const auto declared = std::ranges::find_if(
-      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, *text); });
+      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, pin.expression); });
   using Section = DrawnVariable::Section;
   const bool may_change =
       declared != pou.variables.end() && (declared->section == Section::Output || declared->section == Section::Local ||
@@ -97,26 +97,19 @@ std::string handed_over(const DrawnPou& pou, const DrawnPin& pin) {
   return may_change ? in_capitals(declared->name) : std::string();
 }
 
-namespace {
-
-/// Blocks call blocks: no deeper than there are any.
-std::set<std::string> targets_within(const DrawnPou& pou, const OwnBlocks& own, std::size_t depth);
-
-bool hands_back_within(const DrawnElement& block, std::string_view pin, const OwnBlocks& own, std::size_t depth) {
-  const auto called = own.find(in_capitals(block.text));
-  return called != own.end() && depth <= own.size() &&
-         targets_within(*called->second, own, depth + 1).contains(in_capitals(pin));
+bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& targets) {
+  const auto called = targets.find(in_capitals(block.text));
+  return called != targets.end() && called->second.contains(in_capitals(pin));
 }
 
-std::set<std::string> targets_within(const DrawnPou& pou, const OwnBlocks& own, std::size_t depth) {
+std::set<std::string> targets_of(const DrawnPou& pou, const Targets& called) {
   std::set<std::string> targets;
   for (const DrawnElement& element : pou.elements) {
     if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
       targets.insert(in_capitals(element.text));
     }
     for (const DrawnPin& pin : element.both) {
-      if (const std::string name = handed_over(pou, pin);
-          !name.empty() && hands_back_within(element, pin.name, own, depth)) {
+      if (const std::string name = handed_over(pou, pin); !name.empty() && hands_back(element, pin.name, called)) {
         targets.insert(name);
       }
     }
@@ -124,14 +117,22 @@ std::set<std::string> targets_within(const DrawnPou& pou, const OwnBlocks& own, 
   return targets;
 }
 
-}  // namespace
-
-bool hands_back(const DrawnElement& block, std::string_view pin, const OwnBlocks& own) {
-  return hands_back_within(block, pin, own, 0);
-}
-
-std::set<std::string> targets_of(const DrawnPou& pou, const OwnBlocks& own) {
-  return targets_within(pou, own, 0);
+Targets targets_of_all(const std::string& file, const OwnBlocks& own) {
+  Targets targets;
+  for (std::size_t pass = 0; pass < deepest_handing; ++pass) {
+    bool changed = false;
+    for (const auto& [name, pou] : own) {
+      std::set<std::string> now = targets_of(*pou, targets);
+      changed = changed || now != targets[name];
+      targets[name] = std::move(now);
+    }
+    if (!changed) {
+      return targets;
+    }
+  }
+  throw InputError(error::untranslatable_element, {.file = file},
+                   fmt::format("a VAR_IN_OUT is handed on through more than {} blocks", deepest_handing - 1),
+                   "Hand the value in by an input and out by an output.");
 }
 
 bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view name) {

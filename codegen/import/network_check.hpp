@@ -20,17 +20,24 @@ struct Objection {
 /// What the network of one POU may call, by name in capitals: the POUs of the project that are no library blocks.
 using OwnBlocks = std::map<std::string, const DrawnPou*>;
 
+/// What the network of a POU assigns, by the name of the POU; all names in capitals.
+using Targets = std::map<std::string, std::set<std::string>>;
+
+/// Of all POUs that may be called, with what their own blocks hand back. Throws InputError HY744 where a variable is
+/// handed on through too many blocks.
+[[nodiscard]] Targets targets_of_all(const std::string& file, const OwnBlocks& own);
+
+/// Of one network.
+[[nodiscard]] std::set<std::string> targets_of(const DrawnPou& pou, const Targets& called);
+
 /// Elements that no diagram can express, and targets and instances that stand there twice.
-[[nodiscard]] std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own);
+[[nodiscard]] std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned);
 
-/// The variables that the network assigns, in capitals, with those that a block hands back.
-[[nodiscard]] std::set<std::string> targets_of(const DrawnPou& pou, const OwnBlocks& own);
-
-/// The variable of the POU that is handed over by a VAR_IN_OUT of a block, in capitals; empty where none is.
+/// The variable of the POU that a VAR_IN_OUT of a block may change, in capitals; empty where none is handed over.
 [[nodiscard]] std::string handed_over(const DrawnPou& pou, const DrawnPin& pin);
 
 /// Whether a block hands its VAR_IN_OUT back changed: a POU of the project whose network assigns it.
-[[nodiscard]] bool hands_back(const DrawnElement& block, std::string_view pin, const OwnBlocks& own);
+[[nodiscard]] bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& targets);
 
 /// Whether a pin of an instance, by its name in capitals, gets what may change from step to step.
 [[nodiscard]] bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view pin);

@@ -32,7 +32,8 @@ using plcopen::OperatorFunction;
 
 class Reader {
  public:
-  Reader(const std::string& file, const DrawnPou& pou, const OwnBlocks& own) : file_(file), pou_(pou), own_(own) {
+  Reader(const std::string& file, const DrawnPou& pou, const OwnBlocks& own, const Targets& targets)
+      : file_(file), pou_(pou), own_(own), targets_(targets) {
     for (std::size_t i = 0; i < pou.elements.size(); ++i) {
       const DrawnElement& element = pou.elements[i];
       by_id_.emplace(element.id, i);
@@ -96,10 +97,10 @@ class Reader {
   }
 
   void refuse_what_is_no_network() {
-    for (const Objection& one : objections_to(pou_, own_)) {
+    for (const Objection& one : objections_to(pou_, own_, targets_)) {
       refuse(*one.element, one.why, one.mend);
     }
-    assigned_somewhere_ = targets_of(pou_, own_);
+    assigned_somewhere_ = targets_of(pou_, targets_);
   }
 
   // --- elements ---
@@ -238,7 +239,7 @@ class Reader {
     made_.statements += fmt::format("  {}({});\n", declared->second->name, arguments);
     for (const DrawnPin& pin : element.both) {  // what it hands back
       if (const auto variable = variables_.find(handed_over(pou_, pin));
-          variable != variables_.end() && hands_back(element, pin.name, own_)) {
+          variable != variables_.end() && hands_back(element, pin.name, targets_)) {
         assign(*variable->second, pin_value(element, element.instance, pin.name).text);
       }
     }
@@ -466,6 +467,7 @@ class Reader {
   const std::string& file_;
   const DrawnPou& pou_;
   const OwnBlocks& own_;
+  const Targets& targets_;
   std::unordered_map<std::uint64_t, std::size_t> by_id_;
   std::map<std::string, std::size_t> connectors_;
   std::unordered_map<std::uint64_t, std::size_t> readers_;  ///< by localId: how many wires leave it
@@ -484,8 +486,9 @@ class Reader {
 
 }  // namespace
 
-NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own) {
-  return Reader(file, pou, own).run();
+NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own,
+                            const Targets& targets) {
+  return Reader(file, pou, own, targets).run();
 }
 
 }  // namespace hysteron::import

@@ -23,6 +23,6 @@ struct NetworkText {
 };
 
 /// Throws InputError HY744 with every element that no diagram can express.
-NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own);
+NetworkText text_of_network(const std::string& file, const DrawnPou& pou, const OwnBlocks& own, const Targets& targets);
 
 }  // namespace hysteron::import

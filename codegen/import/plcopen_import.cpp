@@ -53,6 +53,7 @@ class Importer {
         own_.emplace(in_capitals(pou.name), &pou);
       }
     }
+    targets_ = import::targets_of_all(file, own_);
   }
 
   std::string run() {
@@ -149,7 +150,7 @@ class Importer {
     }
     import::NetworkText network;
     try {
-      network = import::text_of_network(file_, pou, own_);
+      network = import::text_of_network(file_, pou, own_, targets_);
     } catch (const InputError& error) {
       for (const Diagnostic& one : error.diagnostics().all()) {
         refused_.add(one);
@@ -296,6 +297,7 @@ class Importer {
   Diagnostics& warnings_;
   Diagnostics refused_;
   import::OwnBlocks own_;
+  import::Targets targets_;
 };
 
 }  // namespace

@@ -255,11 +255,14 @@ ExpressionId Parser::bit_of(ExpressionId word, std::uint32_t begin) {
     return make({.node = IntLiteral{.value = value, .is_word = true}, .span = span}, 1);
   };
   const auto joined = [&](Operator op, ExpressionId left, ExpressionId right) {
-    return make({.node = Binary{op, left, right}, .span = since(begin)}, heights_[left] + 1);
+    return left == no_expression ? left
+                                 : make({.node = Binary{op, left, right}, .span = since(begin)}, heights_[left] + 1);
   };
   const ExpressionId masked = joined(Operator::And, word, literal(std::int64_t{1} << bit));
   const ExpressionId read = joined(Operator::NotEqual, masked, literal(0));
-  std::get<Binary>(file_.expressions[read].node).bit = static_cast<std::int8_t>(bit);
+  if (read != no_expression) {  // nested too deeply
+    std::get<Binary>(file_.expressions[read].node).bit = static_cast<std::int8_t>(bit);
+  }
   return read;
 }
 

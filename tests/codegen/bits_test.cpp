@@ -76,6 +76,19 @@ TEST(Bits, AValueWithoutANameIsMasked) {
   EXPECT_THAT(mend_of_value("SHR(W, 2).15"), HasSubstr("Write (SHR(W, 2) AND 16#8000) <> 16#0"));
 }
 
+TEST(Bits, AtTheDepthThatIsAllowedNothingBreaks) {
+  for (std::size_t depth = 250; depth < 258; ++depth) {
+    const std::string index = std::string(depth, '(') + "0" + std::string(depth, ')');
+    (void)refusals_of_body("Z := W; Y := V[" + index + "].3;");
+    std::string sum = "0";
+    for (std::size_t i = 0; i < depth; ++i) {
+      sum += " + 0";
+    }
+    const auto found = refusals_of_body("Z := W; Y := V[" + sum + "].3;");
+    EXPECT_TRUE(found.empty() || found[0].number == error::nested_too_deeply) << depth;
+  }
+}
+
 TEST(Bits, WhatAMendSaysIsTaken) {
   for (const std::string expression :
        {"(DINT_TO_WORD(N) AND 16#8) <> 16#0", "(DINT_TO_WORD(LREAL_TO_DINT(R)) AND 16#1) <> 16#0",

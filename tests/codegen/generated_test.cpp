@@ -232,6 +232,28 @@ TEST(Generated, AMainWithoutOutputsCompilesWithoutAWarning) {
   EXPECT_EQ(std::system(compile.c_str()), 0);
 }
 
+/// A column `R[1]` is an element, also with a unit behind it, of each type.
+TEST(Generated, TheMainReadsVectors) {
+  const Program program = compile_text(
+      "FUNCTION_BLOCK TYPES (* @ts 1ms *) VAR_INPUT R : ARRAY[0..2] OF LREAL; N : ARRAY[0..2] OF DINT;\n"
+      "  W : ARRAY[0..2] OF WORD; B : ARRAY[0..2] OF BOOL; END_VAR\n"
+      "VAR_OUTPUT YR : ARRAY[0..2] OF LREAL; YN : ARRAY[0..2] OF DINT; YW : ARRAY[0..2] OF WORD;\n"
+      "  YB : ARRAY[0..2] OF BOOL; END_VAR\n"
+      "YR := R * 2.0; YN := N + 1; YW := W AND 16#F0; YB := NOT B; END_FUNCTION_BLOCK");
+  const test::ScratchFolder folder;
+  for (const GeneratedFile& file : {generate_cpp_header(program), cpp_host_main(program)}) {
+    folder.write(file.name, file.text);
+  }
+  folder.write("in.csv",
+               "t [s],R[0] [um],R[1],R[2],N[0],N[1],N[2],W[0],W[1],W[2],B[0],B[1],B[2]\n0,1,2,3,4,5,6,7,255,9,0,1,0\n");
+  const std::string build = fmt::format(
+      "cd {} && c++ -std=c++20 -O0 -Wall -Wextra -Werror {} main.cpp -o run > log 2>&1 && ./run < in.csv > out.csv",
+      folder.path().string(), cpp_numeric_flags);
+  ASSERT_EQ(std::system(build.c_str()), 0) << test::contents_of(folder / "log");
+  EXPECT_EQ(test::contents_of(folder / "out.csv"),
+            "t,YR[0],YR[1],YR[2],YN[0],YN[1],YN[2],YW[0],YW[1],YW[2],YB[0],YB[1],YB[2]\n0,2,4,6,5,6,7,0,240,0,1,0,1\n");
+}
+
 /// Parameters of nested blocks are members of a structure; comments are the user's words.
 TEST(Generated, MembersAndCommentsAreSafe) {
   const Program program = compile_text(

@@ -260,13 +260,13 @@ std::string adding(const std::string& total) {
          total + "</expression></outVariable>";
 }
 
-constexpr const char* lreal = "<type><LREAL/></type></variable>";
-const std::string input_x = std::string(R"(<inputVars><variable name="X">)") + lreal + "</inputVars>";
+constexpr const char* lreal_variable = "<type><LREAL/></type></variable>";
+const std::string input_x = std::string(R"(<inputVars><variable name="X">)") + lreal_variable + "</inputVars>";
 
 TEST(Plcopen, AVariableOfTheProjectComesInAndGoesOut) {
   for (const std::string list : {"externalVars", "inOutVars"}) {
-    const std::string xml =
-        project(input_x + "<" + list + R"(><variable name="TOTAL">)" + lreal + "</" + list + ">", adding("TOTAL"));
+    const std::string xml = project(
+        input_x + "<" + list + R"(><variable name="TOTAL">)" + lreal_variable + "</" + list + ">", adding("TOTAL"));
     Diagnostics warnings;
     const Program program = compile_text(import_plcopen("drawing.xml", xml, {}, warnings));
     ASSERT_EQ(warnings.all().size(), 1U);
@@ -284,8 +284,8 @@ TEST(Plcopen, AVariableOfTheProjectComesInAndGoesOut) {
 
 TEST(Plcopen, WhatIsAssignedAloneIsAnOutputAndWhatIsReadAloneAnInput) {
   const std::string xml =
-      project(std::string(R"(<externalVars><variable name="IN1">)") + lreal + R"(<variable name="OUT1">)" + lreal +
-                  "</externalVars>",
+      project(std::string(R"(<externalVars><variable name="IN1">)") + lreal_variable + R"(<variable name="OUT1">)" +
+                  lreal_variable + "</externalVars>",
               R"(<inVariable localId="1"><connectionPointOut/><expression>IN1</expression></inVariable>
          <outVariable localId="4"><connectionPointIn><connection refLocalId="1"/></connectionPointIn><expression>OUT1</expression></outVariable>)");
   const Program program = compile_text(read_back(xml));
@@ -299,11 +299,11 @@ TEST(Plcopen, WhatIsAssignedAloneIsAnOutputAndWhatIsReadAloneAnInput) {
 std::string with_inner(const std::string& pin, const std::string& more = "") {
   return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>
 <pou name="INNER" pouType="functionBlock"><interface>)" +
-         input_x + R"(<inOutVars><variable name="TOTAL">)" + lreal + "</inOutVars></interface><body><FBD>" +
+         input_x + R"(<inOutVars><variable name="TOTAL">)" + lreal_variable + "</inOutVars></interface><body><FBD>" +
          adding("TOTAL") + R"(</FBD></body></pou>
 <pou name="OUTER" pouType="functionBlock"><interface>)" +
-         input_x + R"(<outputVars><variable name="Y">)" + lreal + R"(</outputVars><localVars><variable name="SUM_1">)" +
-         lreal +
+         input_x + R"(<outputVars><variable name="Y">)" + lreal_variable +
+         R"(</outputVars><localVars><variable name="SUM_1">)" + lreal_variable +
          R"(<variable name="I"><type><derived name="INNER"/></type></variable></localVars></interface><body><FBD>
          <inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
          <inOutVariable localId="2"><connectionPointOut/><expression>)" +

@@ -329,6 +329,32 @@ TEST_F(A2lFile, AFileThatIsNoLinkedProgramIsRefused) {
   EXPECT_EQ(bench.read("made/axis.a2l"), before);
 }
 
+TEST_F(A2lFile, AVectorIsOneEntryAndOneArray) {
+  bench.write("vectors.st", R"(FUNCTION_BLOCK VECTORS  (* @ts 1ms *)
+  VAR_INPUT
+    ON_1 : BOOL;
+    X : ARRAY[0..2] OF LREAL;  (* @unit um @doc three sensors *)
+  END_VAR
+  VAR_OUTPUT
+    Y : ARRAY[0..2] OF LREAL;
+  END_VAR
+
+  Y := SEL(ON_1, X, -X);
+END_FUNCTION_BLOCK
+)");
+  const auto outcome = bench.shell("hysteron generate vectors.st --target c --a2l --out arrays");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string header = bench.read("arrays/vectors.h");
+  EXPECT_THAT(header, AllOf(HasSubstr("  double x[3];  // [um] three sensors\n"), HasSubstr("  double y[3];\n")));
+  EXPECT_THAT(
+      bench.read("arrays/vectors.c"),
+      HasSubstr("  for (uint32_t i = 0U; i < 3U; ++i) {\n    out->y[i] = in->on_1 ? (-in->x[i]) : in->x[i];\n  }\n"));
+  const std::string a2l = bench.read("arrays/vectors.a2l");
+  const auto entry = a2l.find("/begin MEASUREMENT VECTORS.X ");
+  ASSERT_NE(entry, std::string::npos);
+  EXPECT_THAT(a2l.substr(entry, 400), AllOf(HasSubstr("MATRIX_DIM 3 1 1"), HasSubstr(" 8\n")));  // behind ON_1
+}
+
 TEST_F(A2lFile, OptionsThatSayNothingAreRefused) {
   for (const std::string options :
        {"--target c --elf app.elf", "--target c --symbol params=p", "--target cpp --a2l",

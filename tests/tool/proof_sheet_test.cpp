@@ -83,6 +83,34 @@ TEST(ProofSheet, APageOfHysteronMayBeWrittenAnew) {
   EXPECT_EQ(again.code, 0) << again.err;
 }
 
+TEST(ProofSheet, VectorsOfEveryTypeHaveEqualBitsInEveryTarget) {
+  const test::Workbench bench;
+  bench.write("types.st", R"(FUNCTION_BLOCK TYPES  (* @ts 1ms *)
+  VAR_INPUT
+    R : ARRAY[0..2] OF LREAL;
+    N : ARRAY[0..2] OF DINT;
+    W : ARRAY[0..2] OF WORD;
+    B : ARRAY[0..2] OF BOOL;
+  END_VAR
+  VAR_OUTPUT
+    YR : ARRAY[0..2] OF LREAL;
+    YN : ARRAY[0..2] OF DINT;
+    YW : ARRAY[0..2] OF WORD;
+    YB : ARRAY[0..2] OF BOOL;
+  END_VAR
+
+  YR := R * 2.0;
+  YN := N + 1;
+  YW := W AND 16#F0;
+  YB := NOT B;
+END_FUNCTION_BLOCK
+)");
+  for (const std::string option : {"", " --float32"}) {
+    const auto outcome = bench.shell("hysteron generate types.st --target all --out made" + option);
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  }
+}
+
 TEST(ProofSheet, OfADialectThatIsNotReadBackProvesThePortableText) {
   const test::Workbench bench;
   bench.write("f.st", filtered);

@@ -29,6 +29,7 @@ constexpr std::string_view main_text =
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "{name}.hpp"
@@ -63,9 +64,12 @@ std::vector<std::string_view> split(std::string_view line, char separator) {{
   }}
 }}
 
-// `U [V]` is the column u.
+// `U [V]` is the column u, and `U[2]` an element.
 std::string name_of(std::string_view cell) {{
-  std::string name(trimmed(cell.substr(0, cell.find('['))));
+  const auto bracket = cell.find('[');
+  const bool element = bracket != cell.npos && bracket > 0 && cell[bracket - 1] != ' ' &&
+                       cell.find_first_not_of("0123456789", bracket + 1) == cell.find(']');  // X[2], and a unit behind it
+  std::string name(trimmed(cell.substr(0, element ? cell.find(']') + 1 : bracket)));
   std::ranges::transform(name, name.begin(), [](unsigned char letter) {{ return std::tolower(letter); }});
   return name;
 }}
@@ -213,14 +217,15 @@ add_executable({name}_run main.cpp)
 std::string converted(Type type, const std::string& target, const std::string& column, const std::string& number) {
   switch (type) {
     case Type::Real:
-      return fmt::format("static_cast<{}>({})", fmt::format("decltype({})", target), number);
+      return fmt::format("static_cast<std::decay_t<decltype({})>>({})", target, number);
     case Type::Bool:
       return fmt::format("whole({}, 0, 1, row, \"{}\") != 0.0", number, column);
     case Type::Int:
-      return fmt::format("static_cast<decltype({})>(whole({}, -2147483648.0, 2147483647.0, row, \"{}\"))", target,
-                         number, column);
+      return fmt::format("static_cast<std::decay_t<decltype({})>>(whole({}, -2147483648.0, 2147483647.0, row, \"{}\"))",
+                         target, number, column);
     case Type::Word:
-      return fmt::format("static_cast<decltype({})>(whole({}, 0, 65535, row, \"{}\"))", target, number, column);
+      return fmt::format("static_cast<std::decay_t<decltype({})>>(whole({}, 0, 65535, row, \"{}\"))", target, number,
+                         column);
   }
   return {};
 }

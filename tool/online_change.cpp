@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -254,7 +253,7 @@ Action add_online_change(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--load", options->load,
                  "What part of the period a step of the new version may take at this change: 0.9.")
-      ->check(CLI::Range(std::numeric_limits<double>::min(), 1.0))
+      ->check(CLI::Range(1e-3, 1.0))
       ->option_text("NUMBER");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(online_change_examples));

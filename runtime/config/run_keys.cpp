@@ -258,8 +258,8 @@ constexpr std::array online_change_keys{
     RunKey{"socket", text, "(required)",
            "the file of the socket on which the task of `hysteron serve` takes an online change from its own user; "
            "`hysteron online-change` finds it here"},
-    RunKey{"load", number, "0.8", "of the period, what a step of a new version may take; longer, it is refused",
-           above_zero, 1.0},
+    RunKey{"load", number, "0.8", "of the period, what a step of a new version may take; longer, it is refused", 1e-3,
+           1.0},
 };
 constexpr std::array history_keys{
     RunKey{"file", text, "(required)", "the file of the history, of SQLite; `hysteron history` exports it"},

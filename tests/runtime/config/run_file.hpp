@@ -31,6 +31,9 @@ inline std::string errors_of(std::string_view text, const ProgramShape& shape = 
     (void)parse_run_config("RUN.toml", text, shape);
   } catch (const InputError& refused) {
     for (const Diagnostic& one : refused.diagnostics().all()) {
+      if (one.severity != Severity::Error) {
+        continue;
+      }
       list += std::to_string(one.number) + "@" + std::to_string(one.place.line) + ":" +
               std::to_string(one.place.column) + " ";
     }

@@ -133,9 +133,20 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
   return planned;
 }
 
-void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
+/// `at_start`: a full disk keeps no task from starting; without another edit, the next start has the same addresses.
+void write_lock_file(const ModbusConfig& config, const PlannedMap& planned, bool at_start) {
+  const auto write = [&] {
+    try {
+      write_file_atomically(config.lock_file, planned.lock_text);
+    } catch (const DiskFullError& full) {
+      if (!at_start) {
+        throw;
+      }
+      tell("Modbus", full.diagnostics().all().front().cause + " It is tried at the next start: edit nothing before.");
+    }
+  };
   if (!planned.lock_text.empty()) {
-    placed(config.place, [&] { write_file_atomically(config.lock_file, planned.lock_text); });
+    placed(config.place, write);
   }
 }
 
@@ -158,7 +169,7 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .tls = tls,
                             .tell = [](const std::string& line) { tell("Modbus", line); },
                             .place = config.place});
-  write_lock_file(config, planned);
+  write_lock_file(config, planned, true);
   return server;
 }
 
@@ -307,7 +318,7 @@ modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& 
   TaskDoor door(program, device_inputs(task), task.outputs, task.field_points);
   const ModbusConfig modbus = config.modbus.value_or(ModbusConfig{});
   PlannedMap planned = planned_map(modbus, program.shape().name, door);
-  write_lock_file(modbus, planned);
+  write_lock_file(modbus, planned, false);
   return std::move(planned.map);
 }
 
@@ -373,7 +384,6 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (std::signal(SIGHUP, ask_to_stop) == SIG_IGN) {
     (void)std::signal(SIGHUP, SIG_IGN);  // as nohup wants it
   }
-
   tell_of_unused_devices(config);
   if (config.trace) {
     refuse_foreign_trace(*config.trace, config.trace_place);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -228,6 +228,7 @@ class Script {
         break;
       case Happening::DiskFull:
         DiskWatch::set_full(true);
+        ledger_->was_full = true;
         full_until_ = until;
         asked_before_full_ = asked_;
         failures_before_full_ = door_ == nullptr ? 0 : count(Failures);

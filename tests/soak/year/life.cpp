@@ -63,6 +63,7 @@ class Script {
     }
     if (ledger_->first_due == 0) {
       ledger_->first_due = due - monotonic_begin;
+      lates_ += now - due > stage_->plan.settings.period / 10 ? 1 : 0;  // the start took its time
     }
     std::int64_t late = 0;
     if (now - monotonic_begin >= next_) {

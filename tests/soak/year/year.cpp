@@ -139,7 +139,8 @@ class Year {
         if (cause != Happening::Kill) {
           power_off(before);
         }
-      } else if (const bool may_tell = from + lived >= settings.span || ledger_->was_full;  // of what is wrong then
+      } else if (const bool may_tell =
+                     settings.span - from - lived < 30 * settings.period || ledger_->was_full;  // of what is wrong then
                  !(WIFEXITED(status) && ledger_->ends_orderly && (WEXITSTATUS(status) == 0 || may_tell))) {
         (ledger_->has_begun ? sum_.ended_otherwise : sum_.starts_refused) += 1;
         fmt::print(stderr, "at {:.1f} s: the task ended by itself, status {}\n",

@@ -29,8 +29,12 @@ namespace fs = std::filesystem;
   } else if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) {
     mend = "make room on the disk, or choose another one.";
   }
-  throw InputError(error::unwritable_file, Place{.file = path.string()},
-                   fmt::format("The file {} cannot be written: {}.", path.string(), std::strerror(reason)), mend);
+  const Place place{.file = path.string()};
+  const auto cause = fmt::format("The file {} cannot be written: {}.", path.string(), std::strerror(reason));
+  if (reason == ENOSPC || reason == EDQUOT) {
+    throw DiskFullError(error::unwritable_file, place, cause, mend);
+  }
+  throw InputError(error::unwritable_file, place, cause, mend);
 }
 
 /// A file descriptor that closes itself.

@@ -9,7 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include "support/diagnostic.hpp"
+
 namespace hysteron {
+
+/// HY700 of a disk that is full, or of a user whose part of it is: what passes by itself.
+class DiskFullError : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 struct OutputFile {
   std::filesystem::path path{};
@@ -17,7 +25,8 @@ struct OutputFile {
 };
 
 /// Writes one file. Missing folders are made; permissions of an existing file are kept; a symbolic link is followed;
-/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700.
+/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700, DiskFullError
+/// among them.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
 /// Writes a set of files, all or none. All are on the disk before the first is renamed, so that only a failing rename

@@ -312,7 +312,6 @@ bool run_host(StepProgram& program, RunConfig config, const HostOptions& options
   if (std::signal(SIGHUP, ask_to_stop) == SIG_IGN) {
     (void)std::signal(SIGHUP, SIG_IGN);  // as nohup wants it
   }
-
   tell_of_unused_devices(config);
   if (config.trace) {
     refuse_foreign_trace(*config.trace, config.trace_place);

@@ -68,9 +68,20 @@ PlannedMap planned_map(const RunConfig& config, const StepProgram& program) {
   return planned_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
 }
 
-void write_lock_file(const ModbusConfig& config, const PlannedMap& planned) {
+/// `at_start`: a full disk keeps no task from starting; without another edit, the next start has the same addresses.
+void write_lock_file(const ModbusConfig& config, const PlannedMap& planned, bool at_start) {
+  const auto write = [&] {
+    try {
+      write_file_atomically(config.lock_file, planned.lock_text);
+    } catch (const DiskFullError& full) {
+      if (!at_start) {
+        throw;
+      }
+      tell("Modbus", full.diagnostics().all().front().cause + " It is tried at the next start: edit nothing before.");
+    }
+  };
   if (!planned.lock_text.empty()) {
-    placed(config.place, [&] { write_file_atomically(config.lock_file, planned.lock_text); });
+    placed(config.place, write);
   }
 }
 
@@ -95,7 +106,7 @@ std::unique_ptr<modbus::Server> serve_modbus(const ModbusConfig& config, const s
                             .tls = tls,
                             .tell = [](const std::string& line) { tell("Modbus", line); },
                             .place = config.place});
-  write_lock_file(config, planned);
+  write_lock_file(config, planned, true);
   for (const Diagnostic& one : planned.map.warnings().all()) {
     tell("Modbus", fmt::format("HY{} {}:{}: {} {}", one.number, one.place.file, one.place.line, one.cause, one.mend));
   }
@@ -110,7 +121,7 @@ void check_register_map(const RunConfig& config, const StepProgram& program) {
 
 modbus::RegisterMap register_map_of(const RunConfig& config, const StepProgram& program) {
   PlannedMap planned = planned_map(config, program);
-  write_lock_file(config.modbus.value_or(ModbusConfig{}), planned);
+  write_lock_file(config.modbus.value_or(ModbusConfig{}), planned, false);
   return std::move(planned.map);
 }
 

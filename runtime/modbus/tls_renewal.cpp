@@ -88,22 +88,26 @@ std::string TlsRenewal::line_on_dates(std::time_t today, TlsFault fault) const {
 }
 
 void TlsRenewal::read_again(Found& found) {
-  read_ = seen_;
+  std::string why;
   try {
     serving_ = std::make_shared<const TlsContext>(options_);
+    read_ = seen_;
     found.renewed = serving_;
     told_.reset();
     found.lines.push_back(
         fmt::format("new certificate, until {}, for connections from now on", serving_->valid_until()));
   } catch (const InputError& refused) {
     const Diagnostic& first = refused.diagnostics().all().front();
-    found.lines.push_back(
-        fmt::format("the new files are not taken, the certificate until {} goes on: HY{}: {} Mend: {}",
-                    serving_->valid_until(), first.number, first.cause, first.mend));
+    why = fmt::format("HY{}: {} Mend: {}", first.number, first.cause, first.mend);
   } catch (const std::exception& failed) {
-    found.lines.push_back(fmt::format("the new files are not taken, the certificate until {} goes on: {}",
-                                      serving_->valid_until(), failed.what()));
+    why = failed.what();
   }
+  if (!why.empty() && (why != refused_ || tried_ != seen_)) {
+    found.lines.push_back(
+        fmt::format("the new files are not taken, the certificate until {} goes on: {}", serving_->valid_until(), why));
+  }
+  refused_ = std::move(why);
+  tried_ = seen_;
 }
 
 }  // namespace hysteron::runtime::modbus

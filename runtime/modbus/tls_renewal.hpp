@@ -14,7 +14,7 @@
 namespace hysteron::runtime::modbus {
 
 /// Looks at the files of a TLS context as time goes by. Never throws, and never takes away what serves: new files that
-/// cannot be used are told of, and the certificate of before goes on.
+/// cannot be used are told of once and tried again, for a wrong clock may be why; the certificate of before goes on.
 class TlsRenewal {
  public:
   using Clock = std::chrono::steady_clock;
@@ -51,10 +51,12 @@ class TlsRenewal {
   [[nodiscard]] std::string line_on_dates(std::time_t today, TlsFault fault) const;
 
   TlsOptions options_;
-  std::vector<Stamp> read_;  ///< of the files as they were read last
+  std::vector<Stamp> read_;  ///< of the files as they were taken last
   std::vector<Stamp> seen_;  ///< at the last look
   std::shared_ptr<const TlsContext> serving_;
   Clock::time_point next_;
+  std::vector<Stamp> tried_{};         ///< when they were not taken last
+  std::string refused_{};              ///< why the newest files were not taken; empty where they were
   std::optional<std::time_t> told_{};  ///< the day on which its end was told of
 };
 

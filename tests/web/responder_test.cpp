@@ -287,7 +287,7 @@ TEST(WebResponder, NoOtherHostIsNamed) {
   EXPECT_EQ(common_headers()[0].name, "Content-Security-Policy");
   EXPECT_TRUE(common_headers()[0].value.starts_with("default-src 'self';"));
   EXPECT_EQ(common_headers()[0].value.find("unsafe"), std::string_view::npos);
-  ASSERT_EQ(assets().size(), 8U);
+  ASSERT_EQ(assets().size(), 9U);
   for (const Asset& asset : assets()) {
     EXPECT_GT(asset.text.size(), 100U) << asset.target;
     if (asset.target.starts_with("/dygraph") || asset.target == "/icon.svg") {

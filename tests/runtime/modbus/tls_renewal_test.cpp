@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/runtime/modbus/tls_files.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime::modbus {
 namespace {
@@ -88,6 +89,26 @@ TEST_F(Renewal, ACertificateWithoutItsKeyIsToldOfAndLeavesTheOldOneUntilTheKeyCo
   write_key(fresh);
   EXPECT_FALSE(look().renewed);
   EXPECT_TRUE(look().renewed);
+}
+
+/// As where the clock of the machine is behind when the operator writes it, and is set right later.
+TEST_F(Renewal, ACertificateThatDoesNotCountYetIsTakenOnceItDoes) {
+  serve_for(400);
+  const Certificate fresh({.name = "server", .begins = 2, .ends = 500 * a_day, .for_clients = false},
+                          &files_.authority);
+  write_certificate(fresh);
+  write_key(fresh);
+  EXPECT_TRUE(look().lines.empty());
+  const auto early = look();
+  EXPECT_FALSE(early.renewed);
+  ASSERT_EQ(early.lines.size(), 1U);
+  EXPECT_NE(early.lines[0].find("HY834"), std::string::npos) << early.lines[0];
+  TlsRenewal::Found found;
+  ASSERT_TRUE(test::soon([&] {
+    found = found.lines.empty() ? look() : found;
+    return !found.lines.empty();
+  }));
+  EXPECT_TRUE(found.renewed) << found.lines.front();
 }
 
 TEST_F(Renewal, WhateverIsDoneToTheFilesNeverThrows) {

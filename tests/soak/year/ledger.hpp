@@ -18,6 +18,7 @@ struct Ledger {
   std::uint64_t history_rows = 0;  ///< said to be on the disk
   bool has_begun = false;
   bool ends_orderly = false;  ///< was asked to, with nothing wrong
+  bool was_full = false;      ///< the disk
   Happening end{};            ///< what is to end it
 
   // Of all lives.

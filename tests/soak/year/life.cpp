@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -63,6 +63,7 @@ class Script {
     }
     if (ledger_->first_due == 0) {
       ledger_->first_due = due - monotonic_begin;
+      lates_ += now - due > stage_->plan.settings.period / 10 ? 1 : 0;  // the start took its time
     }
     std::int64_t late = 0;
     if (now - monotonic_begin >= next_) {
@@ -228,6 +229,7 @@ class Script {
         break;
       case Happening::DiskFull:
         DiskWatch::set_full(true);
+        ledger_->was_full = true;
         full_until_ = until;
         asked_before_full_ = asked_;
         failures_before_full_ = door_ == nullptr ? 0 : count(Failures);

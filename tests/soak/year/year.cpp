@@ -139,8 +139,9 @@ class Year {
         if (cause != Happening::Kill) {
           power_off(before);
         }
-      } else if (const bool is_over = from + lived >= settings.span;  // whatever is wrong then
-                 !(WIFEXITED(status) && ledger_->ends_orderly && (WEXITSTATUS(status) == 0 || is_over))) {
+      } else if (const bool may_tell =
+                     settings.span - from - lived < 30 * settings.period || ledger_->was_full;  // of what is wrong then
+                 !(WIFEXITED(status) && ledger_->ends_orderly && (WEXITSTATUS(status) == 0 || may_tell))) {
         (ledger_->has_begun ? sum_.ended_otherwise : sum_.starts_refused) += 1;
         fmt::print(stderr, "at {:.1f} s: the task ended by itself, status {}\n",
                    static_cast<double>(from + lived) * 1e-9, status);
@@ -184,6 +185,7 @@ class Year {
     ledger_->skipped = 0;
     ledger_->history_rows = 0;
     ledger_->has_begun = false;
+    ledger_->was_full = false;
     (void)::ftruncate(journal_, 0);
     (void)::lseek(journal_, 0, SEEK_SET);
     const pid_t child = ::fork();

@@ -180,7 +180,7 @@ TEST_F(RunBatch, SaysWhichValuesAParameterTakes) {
   EXPECT_THAT(refusal("--sweep N=1..2/4"), AllOf(HasSubstr("HY604"), HasSubstr("N takes whole numbers, and --sweep"),
                                                  HasSubstr("--sweep N=1..5/5")));
   EXPECT_THAT(refusal("--sweep LIVE=0..2/3"), AllOf(HasSubstr("HY604"), HasSubstr("TRUE or FALSE"), HasSubstr("0..1/2")));
-  EXPECT_THAT(refusal("--sweep CURVE.X=0..1/3"), AllOf(HasSubstr("HY603"), HasSubstr("not free to be set")));
+  EXPECT_THAT(refusal("--sweep CURVE.X=0..1/3"), AllOf(HasSubstr("HY604"), HasSubstr("is a list of numbers")));
   bench.write("s.csv", "N\n1\n1.5\n");
   EXPECT_THAT(refusal("--batch s.csv"), AllOf(HasSubstr("HY604 error: s.csv:3"), HasSubstr("a column gives it 1.5")));
   bench.write("loop.st",

@@ -23,12 +23,14 @@ TEST(Wrapped, HangsBelowTheSecondOfTwoColumns) {
 }
 
 TEST(Wrapped, LeavesTablesSourcesAndLongWords) {
-  for (const char* const text : {"HYST.C1  8.0123  um/V  on its lower bound, as at the start",
-                                 "     9 |   AMP(XNI := U, and more that stands in the line of the text);",
-                                 "https://a.place/with/a/name/that/is/longer/than/all/that", "                      \n"}) {
+  for (const char* const text :
+       {"HYST.C1  8.0123  um/V  on its lower bound, as at the start",
+        "     9 |   AMP(XNI := U, and more that stands in the line of the text);",
+        "https://a.place/with/a/name/that/is/longer/than/all/that", "                      \n"}) {
     EXPECT_EQ(wrapped(text, 24), text);
   }
-  EXPECT_EQ(wrapped("see https://a.place/with/a/name/that/is/long", 20), "see\nhttps://a.place/with/a/name/that/is/long");
+  EXPECT_EQ(wrapped("see https://a.place/with/a/name/that/is/long", 20),
+            "see\nhttps://a.place/with/a/name/that/is/long");
 }
 
 TEST(Wrapped, CountsCharactersAndNoColours) {

@@ -39,7 +39,8 @@ struct ExportBench : test::Workbench {
   ExportBench() {
     write("axis.st", axis_to_export);
     write("tuned.toml", "[parameters.DRY]\nLEVEL = 0.004\n");
-    write("arm.xml", "<mujoco>\n  <worldbody><body><joint name=\"elbow\"/><geom size=\".1\"/></body></worldbody>\n</mujoco>\n");
+    write("arm.xml",
+          "<mujoco>\n  <worldbody><body><joint name=\"elbow\"/><geom size=\".1\"/></body></worldbody>\n</mujoco>\n");
   }
 };
 
@@ -64,7 +65,8 @@ TEST(Export, MergesIntoARobotAndNeverOverIt) {
   EXPECT_THAT(bench.read("new.xml"), AllOf(HasSubstr("armature=\"0.02\""), HasSubstr("gainprm=\"0.5\"")));
   EXPECT_THAT(done.out, HasSubstr("state --link-inertia"));
   const std::string before = bench.read("arm.xml");
-  EXPECT_THAT(bench.shell("hysteron export axis.st --into arm.xml --joint elbow --out arm.xml").err, HasSubstr("HY709"));
+  EXPECT_THAT(bench.shell("hysteron export axis.st --into arm.xml --joint elbow --out arm.xml").err,
+              HasSubstr("HY709"));
   EXPECT_EQ(bench.read("arm.xml"), before);
   for (const auto& [options, text] : {std::pair("--into arm.xml --joint elbo", "did you mean --joint elbow?"),
                                       {"--into arm.xml --joint elbow --format urdf", "has no element <robot>"},

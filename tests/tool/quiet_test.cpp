@@ -80,7 +80,8 @@ TEST(Width, HelpAndErrorsFitTheTerminal) {
 
 TEST(Width, WhatAProgramReadsIsNotBroken) {
   const QuietBench bench;
-  EXPECT_EQ(bench.shell("COLUMNS=30 hysteron blocks HY_LAG --json").out, bench.shell("hysteron blocks HY_LAG --json").out);
+  EXPECT_EQ(bench.shell("COLUMNS=30 hysteron blocks HY_LAG --json").out,
+            bench.shell("hysteron blocks HY_LAG --json").out);
 }
 
 }  // namespace

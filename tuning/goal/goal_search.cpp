@@ -272,7 +272,9 @@ class GoalSearch {
     problem.start = extended(x, bounded, is_feasibility_ ? model_.largest_excess() : 1.0);
     problem.lower = extended(lower_, bounded, -infinity);
     problem.upper = extended(upper_, bounded, infinity);
-    problem.typical = extended(typical_, bounded, is_feasibility_ ? std::max(model_.largest_excess(), 0.1) : 1.0);
+    // A point that was looked for far away from the start is of another size.
+    const VectorXd typical = typical_.cwiseMax(x.cwiseAbs());
+    problem.typical = extended(typical, bounded, is_feasibility_ ? std::max(model_.largest_excess(), 0.1) : 1.0);
     problem.evaluate = [&](const VectorXd& at, ConstrainedPoint& point) {
       if (!take(at.head(n), true)) {
         return false;

@@ -208,7 +208,7 @@ TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
 /// The pole 1 − TS·K: at K = 0.001 it dies away, at K = −1 it grows, at K = 210 it swings up.
 TEST(GoalSearch, TellsALoopThatIsSlowFromOneThatIsUnstable) {
   const GoalProblem problem = loops::problem_of(
-      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = -5.0, max = 300.0, scale = 10.0}"));
+      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = -5.0, max = 300.0}"));
   GoalModel model(problem);
   for (const auto& [gain, state] : {std::pair(0.001, LoopState::TooSlow),
                                     {-1.0, LoopState::Unstable},

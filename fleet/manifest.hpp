@@ -26,8 +26,8 @@ struct Unit {
 /// Reads a manifest: CSV with the columns machine, diagram, params and log, and if wanted when, group and command, in
 /// any order. A cell with a comma or a quotation mark stands in quotation marks (RFC 4180), within its line. Empty
 /// lines and lines that begin with # are skipped. Names of files are relative to the manifest. `otherwise` is the
-/// command of a line that names none. A check needs no params and no log, and `tune` no log: parameters with a [goal] may
-/// have a signal of their own.
+/// command of a line that names none. A check needs no params and no log, and `tune` no log: parameters with a [goal]
+/// may have a signal of their own.
 ///
 /// A diagram or parameter file that is not there is an error of the manifest. A record that is not there is none: it
 /// fails alone. Throws InputError with all errors: HY100, HY502 a column that is missing, HY503 one that is there

@@ -32,10 +32,12 @@ struct FoundParameter {
 };
 
 struct Outcome {
-  std::string verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; tuned of a goal; no errors of a check
+  std::string
+      verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; tuned of a goal; no errors of a check
   std::vector<FoundEffect> effects{};
   std::vector<FoundParameter> parameters{};
-  /// The probability of each by the record alone, without a prior; where none was weighed, the confidence of the verdict.
+  /// The probability of each by the record alone, without a prior; where none was weighed, the confidence of the
+  /// verdict.
   std::map<std::string, double> families{};
   double confidence = not_a_number;
   double nominal_rms = not_a_number;   ///< of the gap, or of a fit's residual at its start, in `unit_of_gap`

@@ -46,8 +46,8 @@ class Keys {
       : version_(std::move(version)), options_(std::move(options)), named_(std::move(named)) {}
 
   /// 64 hexadecimal digits: of the version, the command and its options, the machine and its time, and the bytes of
-  /// diagram and parameters, of the files that they name, and of the record. A record or a named file that cannot be read counts
-  /// by its name, until it can be.
+  /// diagram and parameters, of the files that they name, and of the record. A record or a named file that cannot be
+  /// read counts by its name, until it can be.
   [[nodiscard]] std::string of(const Unit& unit);
 
  private:

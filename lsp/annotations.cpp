@@ -36,8 +36,9 @@ constexpr std::array keys{Key{"unit", "the unit, as @unit um or @unit N*m"},
 
 /// Units that a diagram often has; any product of SI symbols is one.
 constexpr std::array<std::string_view, 34> usual{
-    "m",  "mm", "um",  "nm",    "m/s", "mm/s", "m/s^2", "rad", "deg", "rad/s", "rpm", "N",     "N*m", "N/m", "kg",  "kg*m^2", "V",
-    "mV", "A",  "Ohm", "N*m/A", "W",   "Pa",   "bar",   "K",   "degC", "s",    "ms",  "1/s",   "Hz",  "L/min", "%", "count",  "1"};
+    "m",   "mm",   "um", "nm",     "m/s", "mm/s", "m/s^2", "rad", "deg",   "rad/s", "rpm", "N",
+    "N*m", "N/m",  "kg", "kg*m^2", "V",   "mV",   "A",     "Ohm", "N*m/A", "W",     "Pa",  "bar",
+    "K",   "degC", "s",  "ms",     "1/s", "Hz",   "L/min", "%",   "count", "1"};
 
 }  // namespace
 
@@ -58,7 +59,8 @@ json annotation_completion(std::string_view text, const language::SourceFile& tr
     return items;
   }
   const auto value = typed.find_first_not_of(" \t", blank);
-  const bool is_second_word = value != std::string_view::npos && typed.find_first_of(" \t", value) != std::string_view::npos;
+  const bool is_second_word =
+      value != std::string_view::npos && typed.find_first_of(" \t", value) != std::string_view::npos;
   if (typed.substr(0, blank) != "unit" || is_second_word) {
     return items;
   }

@@ -25,8 +25,9 @@ constexpr int kind_variable = 6;
 constexpr int kind_keyword = 14;
 
 /// What a statement or a section may begin with.
-constexpr std::array<std::string_view, 9> statement_words{"FUNCTION_BLOCK", "END_FUNCTION_BLOCK", "VAR_INPUT", "VAR_OUTPUT",
-                                                          "VAR", "VAR CONSTANT", "END_VAR", "IF", "END_IF"};
+constexpr std::array<std::string_view, 9> statement_words{
+    "FUNCTION_BLOCK", "END_FUNCTION_BLOCK", "VAR_INPUT", "VAR_OUTPUT", "VAR", "VAR CONSTANT", "END_VAR", "IF",
+    "END_IF"};
 constexpr int kind_class = 7;
 
 /// The variable of a name that is nearest to an offset: of the block around it, else of any block of the file.

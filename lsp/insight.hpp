@@ -26,8 +26,8 @@ struct Insight {
 [[nodiscard]] std::string hover(const Insight& insight, std::size_t offset, const Card& card);
 
 /// The names that may stand at an offset, as a list of CompletionItem: the outputs behind `INSTANCE.`, inputs and
-/// parameters within the parentheses of a call, block types behind a colon; else keywords and the variables. In a comment
-/// the keys of annotations, and units.
+/// parameters within the parentheses of a call, block types behind a colon; else keywords and the variables. In a
+/// comment the keys of annotations, and units.
 [[nodiscard]] nlohmann::json completion(const Insight& insight, std::size_t offset);
 
 }  // namespace hysteron::lsp

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "codegen/graph/units.hpp"
-#include "support/errors.hpp"
+#include "robots/axis_graph.hpp"
+#include "robots/terms.hpp"
 #include "support/numbers.hpp"
 #include "tuning/signal_names.hpp"
 
@@ -28,50 +28,6 @@ Range Range::times(double factor) const {
 
 namespace {
 
-/// What an input contributes to a signal.
-struct DrivePart {
-  std::size_t input = 0;
-  double gain = 1.0;
-  double lag = 0.0;
-  Range control{};
-  Range force{};  ///< of the signal
-};
-
-/// A signal, as a sum: its own numbers, of which the velocity's is v and ∫v dt stands for the position.
-struct Terms {
-  double velocity = 0.0;
-  double position = 0.0;
-  double constant = 0.0;
-  double friction = 0.0;  ///< size of what turns with the sign of v
-  std::vector<DrivePart> drives{};
-
-  [[nodiscard]] bool is_one_drive() const {
-    return drives.size() == 1 && velocity == 0.0 && position == 0.0 && constant == 0.0 && friction == 0.0;
-  }
-  [[nodiscard]] bool is_velocity_alone() const {
-    return velocity != 0.0 && drives.empty() && position == 0.0 && constant == 0.0 && friction == 0.0;
-  }
-  [[nodiscard]] Terms times(double factor) const {
-    Terms result = *this;
-    result.velocity *= factor;
-    result.position *= factor;
-    result.constant *= factor;
-    result.friction *= std::fabs(factor);
-    for (DrivePart& drive : result.drives) {
-      drive.gain *= factor;
-      drive.force = drive.force.times(factor);
-    }
-    return result;
-  }
-  void add(const Terms& other) {
-    velocity += other.velocity;
-    position += other.position;
-    constant += other.constant;
-    friction += other.friction;
-    drives.insert(drives.end(), other.drives.begin(), other.drives.end());
-  }
-};
-
 /// Of what is left out, before J is known.
 struct Left {
   const Node* node = nullptr;
@@ -80,14 +36,9 @@ struct Left {
   std::string size{};                  ///< where it is no force, or what stands behind the force
 };
 
-[[noreturn]] void refuse(std::string cause, std::string mend, const Place& place = {}) {
-  throw InputError(error::bad_usage, place, std::move(cause), std::move(mend));
-}
-
-class JointReader {
+class JointReader : private AxisGraph {
  public:
-  JointReader(const Program& program, const JointOptions& options)
-      : graph_(program.graph), options_(options), units_(program.graph, program.schedule), outputs_(units_.outputs()) {}
+  JointReader(const Program& program, const JointOptions& options) : AxisGraph(program), options_(options) {}
 
   Joint read() {
     find_velocity();
@@ -105,92 +56,6 @@ class JointReader {
   }
 
  private:
-  // ---- the graph --------------------------------------------------------------------------------------------------
-
-  static std::string_view name_of(const Node& node) {
-    return node.block == nullptr ? std::string_view() : node.block->about.name;
-  }
-
-  [[nodiscard]] Wire input_wire(const Node& node, std::string_view pin) const {
-    for (std::size_t i = 0; i < node.block->inputs.size(); ++i) {
-      if (node.block->inputs[i].name == pin) {
-        return graph_.wire(node, i);
-      }
-    }
-    return {};
-  }
-
-  /// A number that stands in the run: literals, parameters, and what is made of these.
-  [[nodiscard]] std::optional<double> constant_of(const Wire& wire) const {
-    if (wire.from == Wire::From::Literal) {
-      return graph_.literals[wire.index];
-    }
-    if (wire.from == Wire::From::Parameter) {
-      return graph_.parameters[wire.index].value.front();
-    }
-    if (wire.from != Wire::From::Node || graph_.nodes[wire.index].block != nullptr) {
-      return std::nullopt;
-    }
-    const Node& node = graph_.nodes[wire.index];
-    const auto a = constant_of(graph_.wire(node, 0));
-    const auto b = node.wire_count > 1 ? constant_of(graph_.wire(node, 1)) : std::optional(0.0);
-    if (!a || !b) {
-      return std::nullopt;
-    }
-    switch (node.op) {
-      case Op::Add:
-        return *a + *b;
-      case Op::Subtract:
-        return *a - *b;
-      case Op::Multiply:
-        return *a * *b;
-      case Op::Divide:
-        return *a / *b;
-      case Op::Negate:
-        return -*a;
-      default:
-        return std::nullopt;
-    }
-  }
-
-  [[nodiscard]] double parameter(const Node& node, std::string_view name) const {
-    for (std::size_t i = 0; i < node.block->params.size(); ++i) {
-      if (node.block->params[i].name == name) {
-        const Wire& wire = graph_.wire(node, node.block->inputs.size() + i);
-        const auto value =
-            wire.from == Wire::From::Nothing ? std::optional(node.block->params[i].preset) : constant_of(wire);
-        if (value) {
-          return *value;
-        }
-        refuse(fmt::format("{}.{} is a signal, and a joint has constant numbers.", node.path, name),
-               "give it a number.", graph_.place(node.span));
-      }
-    }
-    return 0.0;
-  }
-
-  [[nodiscard]] std::string unit_of(const Wire& wire) const {
-    if (wire.from == Wire::From::Input) {
-      return graph_.inputs[wire.index].unit;
-    }
-    if (wire.from == Wire::From::Node && !outputs_[wire.index].empty() && !outputs_[wire.index][wire.port].empty()) {
-      return outputs_[wire.index][wire.port];
-    }
-    for (const auto* const ports : {&graph_.inner, &graph_.outputs}) {
-      const auto found =
-          std::ranges::find_if(*ports, [&](const Port& port) { return port.wire == wire && !port.unit.empty(); });
-      if (found != ports->end()) {
-        return found->unit;
-      }
-    }
-    return {};
-  }
-
-  [[nodiscard]] std::optional<double> factor(const std::string& unit, const char* to) const {
-    double found = 0.0;
-    return !unit.empty() && units::conversion(unit, to, found) ? std::optional(found) : std::nullopt;
-  }
-
   // ---- the velocity -----------------------------------------------------------------------------------------------
 
   bool take_velocity(std::uint32_t node) {
@@ -211,8 +76,8 @@ class JointReader {
   void find_velocity() {
     if (!options_.velocity.empty()) {
       const Wire wire = find_signal(graph_, options_.velocity, {});
-      const bool is_state = wire.from == Wire::From::Node && (is_integral(graph_.nodes[wire.index]) ||
-                                                              name_of(graph_.nodes[wire.index]) == "HY_LAG");
+      const bool is_state = wire.from == Wire::From::Node &&
+                            (is_integral(graph_.nodes[wire.index]) || name_of(graph_.nodes[wire.index]) == "HY_LAG");
       if (!is_state) {
         refuse(fmt::format("{} is no output of an integral or a lag, so that no acceleration belongs to it.",
                            options_.velocity),
@@ -247,12 +112,14 @@ class JointReader {
 
   // ---- terms ------------------------------------------------------------------------------------------------------
 
-  /// Takes a signal apart. `to_acceleration` is what one of it makes of the acceleration, in the velocity's unit over s.
+  /// Takes a signal apart. `to_acceleration` is what one of it makes of the acceleration, in the velocity's unit over
+  /// s.
   Terms terms_of(const Wire& wire, double to_acceleration, bool force_seen) {
     if (const auto constant = constant_of(wire)) {
       return {.constant = *constant};
     }
-    if (const auto force = factor(unit_of(wire), turns_ ? "N*m" : "N"); force && !force_seen && to_acceleration != 0.0) {
+    if (const auto force = factor(unit_of(wire), turns_ ? "N*m" : "N");
+        force && !force_seen && to_acceleration != 0.0) {
       take_inertia(*force / std::fabs(to_si_ * to_acceleration), wire);
       force_seen = true;
     }
@@ -384,8 +251,8 @@ class JointReader {
 
   void take_position(const Node& node, double rate) {
     if (name_of(node).ends_with("_BOUNDED")) {
-      position_ = position_.both(
-          Range{.low = parameter(node, "MN"), .high = parameter(node, "MX")}.times(to_si_ / rate));
+      position_ =
+          position_.both(Range{.low = parameter(node, "MN"), .high = parameter(node, "MX")}.times(to_si_ / rate));
     }
   }
 
@@ -434,7 +301,8 @@ class JointReader {
     }
     if (!terms.is_one_drive() || terms.drives.front().gain == 0.0) {
       leave(node, "it limits more than the one input", not_a_number,
-            fmt::format("{} to {}{}", short_text(range.low), short_text(range.high), unit_behind(unit_of(xin_wire(node)))));
+            fmt::format("{} to {}{}", short_text(range.low), short_text(range.high),
+                        unit_behind(unit_of(xin_wire(node)))));
       return terms;
     }
     DrivePart& drive = terms.drives.front();
@@ -468,19 +336,6 @@ class JointReader {
                      .size = std::move(size)});
   }
 
-  [[nodiscard]] std::string numbers_of(const Node& node) const {
-    std::vector<std::string> numbers;
-    for (const Field& field : node.block->params) {
-      if (field.length == 1) {
-        numbers.push_back(fmt::format("{} = {}", field.name, short_text(parameter(node, field.name))));
-      }
-    }
-    return numbers.empty() ? "none" : fmt::format("{}", fmt::join(numbers, ", "));
-  }
-
-  static std::string short_text(double number) { return fmt::format("{:.4g}", number); }
-  static std::string unit_behind(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
-
   // ---- the joint --------------------------------------------------------------------------------------------------
 
   Joint joint_of_terms(const Terms& terms) {
@@ -489,7 +344,8 @@ class JointReader {
     if (!inertia) {
       refuse(fmt::format("No signal on the way to {} has the unit {}: what is moved is not known.",
                          graph_.nodes[velocity_].path, force),
-             fmt::format("state it in the diagram, as TORQUE : LREAL; (* @unit {} *), or the inertia by --inertia.", force));
+             fmt::format("state it in the diagram, as TORQUE : LREAL; (* @unit {} *), or the inertia by --inertia.",
+                         force));
     }
     Joint joint{.turns = turns_,
                 .velocity = graph_.nodes[velocity_].path + ".XOUT",
@@ -528,8 +384,7 @@ class JointReader {
                          names.front()));
     }
     const Port* const wanted = options_.input.empty() ? nullptr : find_port(graph_.inputs, options_.input);
-    if (!options_.input.empty() &&
-        (wanted == nullptr || std::ranges::find(names, wanted->name) == names.end())) {
+    if (!options_.input.empty() && (wanted == nullptr || std::ranges::find(names, wanted->name) == names.end())) {
       refuse(fmt::format("{} is no input that drives the joint.", options_.input),
              fmt::format("inputs that do: {}.", names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
     }
@@ -596,10 +451,7 @@ class JointReader {
     }
   }
 
-  const Graph& graph_;
   const JointOptions& options_;
-  units::Solution units_;
-  std::vector<std::vector<std::string>> outputs_;
   std::uint32_t velocity_ = 0;
   bool turns_ = true;
   double to_si_ = 1.0;  ///< of the velocity

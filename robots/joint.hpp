@@ -47,7 +47,7 @@ struct Joint {
   bool turns = true;
   std::string velocity{};  ///< the signal that is q'
   double velocity_to_si = 1.0;
-  double inertia = 0.0;    ///< J, kg·m² or kg
+  double inertia = 0.0;  ///< J, kg·m² or kg
   double damping = 0.0;
   double friction = 0.0;
   double stiffness = 0.0;

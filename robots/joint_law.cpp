@@ -37,8 +37,8 @@ std::vector<double> velocities(const Joint& joint, std::span<const double> contr
     const double driving = actuator.lag > 0.0 ? activation : u;
     const double force = std::clamp(actuator.gain * driving + joint.offset, actuator.force.low, actuator.force.high);
     const double free = force - joint.damping * v - joint.stiffness * q;
-    const double held = std::clamp((-hold * v - free * admittance) / (admittance + softness), -joint.friction,
-                                   joint.friction);
+    const double held =
+        std::clamp((-hold * v - free * admittance) / (admittance + softness), -joint.friction, joint.friction);
     v += step * (free + held) / (joint.inertia + step * joint.damping);
     q = std::clamp(q + step * v, joint.position.low, joint.position.high);
     activation += actuator.lag > 0.0 ? step * (u - activation) / actuator.lag : 0.0;

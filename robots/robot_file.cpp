@@ -89,7 +89,8 @@ Attributes joint_attributes(const Joint& joint, const FileOptions& options, doub
                  fmt::format("{:.4g} {}/s", joint.speed, joint.position_unit()));
   }
   if (joint.friction > 0.0) {
-    unmapped.add("frictionloss", "MuJoCo holds dry friction by a soft constraint: at rest under a load the joint creeps",
+    unmapped.add("frictionloss",
+                 "MuJoCo holds dry friction by a soft constraint: at rest under a load the joint creeps",
                  fmt::format("up to {:.2g} {}/s", creep_at_rest(joint), joint.position_unit()));
   }
   return result;
@@ -222,11 +223,11 @@ void merge_actuator(const Joint& joint, const FileOptions& options, const pugi::
     }
   }
   if (drives.empty()) {
-    const Attributes attributes =
-        actuator_attributes(joint, 1.0, [](const char* /*name*/) { return false; }, unmapped);
-    const std::string element = fmt::format("<general name=\"{}\" joint=\"{}\"{}/>",
-                                            escaped(options.joint + "_" + joint.actuator->input),
-                                            escaped(options.joint), written(attributes));
+    const Attributes attributes = actuator_attributes(
+        joint, 1.0, [](const char* /*name*/) { return false; }, unmapped);
+    const std::string element =
+        fmt::format("<general name=\"{}\" joint=\"{}\"{}/>", escaped(options.joint + "_" + joint.actuator->input),
+                    escaped(options.joint), written(attributes));
     note(file, "actuator", attributes);
     if (const pugi::xml_node section = root.child("actuator")) {
       edit.add_children(place_of(section), {element});
@@ -349,7 +350,10 @@ RobotFile urdf_bench(const Joint& joint, const FileOptions& options) {
       "</inertial>\n  </link>\n  <joint name=\"{1}\" type=\"{3}\">\n    <parent link=\"base\"/>\n"
       "    <child link=\"{1}_link\"/>\n    <axis xyz=\"0 0 1\"/>\n    <dynamics{4}/>\n{5}  </joint>\n</robot>\n",
       escaped(options.model), escaped(options.joint), text_of(joint.inertia),
-      !joint.turns ? "prismatic" : bounded ? "revolute" : "continuous", written(parts.dynamics), limit);
+      !joint.turns ? "prismatic"
+      : bounded    ? "revolute"
+                   : "continuous",
+      written(parts.dynamics), limit);
   file.unmapped = unmapped.take();
   return file;
 }
@@ -395,16 +399,18 @@ RobotFile bench_of(const Joint& joint, const FileOptions& options) {
 RobotFile merged(const Joint& joint, const FileOptions& options, const std::string& file, const std::string& text) {
   const bool is_mujoco = options.format == Format::Mujoco;
   pugi::xml_document robot;
-  const pugi::xml_parse_result read = robot.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_parse_result read =
+      robot.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   const char* const root = is_mujoco ? "mujoco" : "robot";
   if (!read || !robot.child(root)) {
     throw InputError(error::bad_usage, {.file = file},
                      read ? fmt::format("{} has no element <{}>.", file, root)
                           : fmt::format("{} is no XML: {}.", file, read.description()),
-                     is_mujoco ? "give a robot as MJCF, or write --format urdf." : "give a robot as URDF, or write --format mujoco.");
+                     is_mujoco ? "give a robot as MJCF, or write --format urdf."
+                               : "give a robot as URDF, or write --format mujoco.");
   }
-  RobotFile result = is_mujoco ? merged_mujoco(joint, options, file, robot, text)
-                               : merged_urdf(joint, options, file, robot, text);
+  RobotFile result =
+      is_mujoco ? merged_mujoco(joint, options, file, robot, text) : merged_urdf(joint, options, file, robot, text);
   pugi::xml_document again;
   if (!again.load_buffer(result.text.data(), result.text.size())) {
     throw InputError(error::bad_usage, {.file = file}, "The robot could not be edited: its attributes are not read.",

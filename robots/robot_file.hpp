@@ -30,8 +30,8 @@ struct FileOptions {
 
 struct RobotFile {
   std::string text{};
-  std::vector<std::string> changes{};   ///< armature = "0.0002", of the joint or of its actuator
-  std::vector<Neglected> unmapped{};    ///< what this format has no word for
+  std::vector<std::string> changes{};  ///< armature = "0.0002", of the joint or of its actuator
+  std::vector<Neglected> unmapped{};   ///< what this format has no word for
 };
 
 /// A robot of this one joint, which the simulator loads: a bench to try it on.

@@ -25,8 +25,8 @@ class XmlEdit {
  private:
   struct Tag {
     std::size_t name_end = 0;
-    std::size_t end = 0;            ///< of what stands in the tag: before > or />
-    bool is_empty = false;          ///< ends with />
+    std::size_t end = 0;                                                  ///< of what stands in the tag: before > or />
+    bool is_empty = false;                                                ///< ends with />
     std::map<std::string, std::pair<std::size_t, std::size_t>> values{};  ///< place and length, without the quotes
   };
   [[nodiscard]] Tag tag_at(std::size_t name_at) const;

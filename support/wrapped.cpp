@@ -15,6 +15,7 @@ namespace {
 
 /// Narrower than this nothing can be read, broken or not.
 constexpr std::size_t least_width = 20;
+constexpr std::size_t least_room = 12;  ///< behind an indent
 
 /// Without the escape sequences of colours.
 std::size_t shown_count(std::string_view text) {
@@ -72,7 +73,7 @@ void append_broken(std::string& result, std::string_view line, std::size_t width
   const auto indent = stays ? std::nullopt : hanging_indent(line);
   std::size_t room = width;
   std::size_t first = indent.value_or(0);
-  while (indent && *indent + least_width <= width && shown_count(line) > room) {
+  while (indent && *indent + least_room <= width && shown_count(line) > room) {
     const std::size_t end = break_of(line, first, room);
     if (end == std::string_view::npos) {
       break;

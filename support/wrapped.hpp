@@ -13,7 +13,8 @@ namespace hysteron {
 
 /// The text with its long lines broken at blanks. What follows of a line stands below its first word; of a line of two
 /// columns, `  --out FILE   The result.`, below the second. A table, which has more columns, a line of a source that an
-/// error shows, and a word that is longer than the width stay as they are. Colours count no characters. 0 breaks nothing.
+/// error shows, and a word that is longer than the width stay as they are. Colours count no characters. 0 breaks
+/// nothing.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
 }  // namespace hysteron

@@ -146,7 +146,7 @@ class CommandLine {
       options->group("Commands");
       options->get_formatter()->label("Positionals", "Arguments");
       actions_[options] = {command.add(*options), command.writes_files};
-      options->add_flag("--quiet", "Says errors and warnings alone: no report, no notes, no progress.");
+      options->add_flag("--quiet", quiet_, "Says errors and warnings alone: no report, no notes, no progress.");
     }
   }
 
@@ -187,7 +187,7 @@ class CommandLine {
     }
     const auto& [action, writes_files] = actions_.at(chosen.front());
     const bool is_product = given(*chosen.front(), "--json") || out_is_standard(*chosen.front());
-    console.speak({.quiet = given(*chosen.front(), "--quiet"), .is_report = writes_files && !is_product});
+    console.speak({.quiet = quiet_, .is_report = writes_files && !is_product});
     return action(console);
   }
 
@@ -198,6 +198,7 @@ class CommandLine {
     bool writes_files = false;
   };
   std::map<const CLI::App*, Chosen> actions_;
+  bool quiet_ = false;
 };
 
 }  // namespace

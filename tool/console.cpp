@@ -36,16 +36,14 @@ void Console::note(std::string_view file, std::string_view text) {
     return;
   }
   (void)std::fflush(stdout);
-  const auto line =
-      wrapped(fmt::format("note: {}: {}\n", printable(file), printable(text)), terminal_width(stderr));
+  const auto line = wrapped(fmt::format("note: {}: {}\n", printable(file), printable(text)), terminal_width(stderr));
   (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 void Console::report(const Diagnostics& diagnostics) {
   if (!diagnostics.all().empty()) {
     (void)std::fflush(stdout);
-    const auto text =
-        wrapped(as_text(diagnostics, sources_, {.colour = wants_colour(stderr)}), terminal_width(stderr));
+    const auto text = wrapped(as_text(diagnostics, sources_, {.colour = wants_colour(stderr)}), terminal_width(stderr));
     (void)std::fwrite(text.data(), 1, text.size(), stderr);
   }
 }

@@ -12,8 +12,8 @@ namespace hysteron::tool {
 
 /// How a command is to speak.
 struct Speech {
-  bool quiet = false;        ///< errors and warnings alone: neither notes, nor progress, nor reports
-  bool is_report = false;    ///< what is printed speaks of files that were written; else it is the product itself
+  bool quiet = false;      ///< errors and warnings alone: neither notes, nor progress, nor reports
+  bool is_report = false;  ///< what is printed speaks of files that were written; else it is the product itself
 };
 
 class Console {
@@ -21,7 +21,8 @@ class Console {
   /// From now on.
   void speak(const Speech& speech);
 
-  /// Results. A report is left out where the command is quiet, and broken to the width of a terminal. Where the reader of a pipe has gone, what is left is dropped without a word.
+  /// Results. A report is left out where the command is quiet, and broken to the width of a terminal. Where the reader
+  /// of a pipe has gone, what is left is dropped without a word.
   void print(std::string_view text);
 
   /// What was understood of an input, `note: log.csv: ...`, to the standard error.

@@ -30,7 +30,7 @@ constexpr std::string_view export_examples = R"(Examples:
   hysteron export axis.st --params tuned.toml --out bench.xml
   hysteron export axis.st --params tuned.toml --into robot.xml --joint shoulder --out fitted.xml
   hysteron export axis.st --params tuned.toml --into arm.urdf --format urdf --joint shoulder --out fitted.urdf
-  hysteron export axis.st --params tuned.toml --gear 50 --link-inertia 0.02 --into robot.xml --joint elbow --out fitted.xml
+  hysteron export axis.st --gear 50 --link-inertia 0.02 --into robot.xml --joint elbow --out fitted.xml
   hysteron export axis.st --params tuned.toml --in log.csv --out bench.xml
 
 The diagram is an axis: an integral whose unit is a velocity (rad/s, m/s), and what acts on it: gains, friction, springs,
@@ -66,8 +66,7 @@ std::string comparison(const ExportOptions& options, const robots::Joint& joint,
   if (warnings.has_errors()) {
     throw InputError(warnings);
   }
-  const std::vector<Signal> run =
-      interpret(timed, drive, {find_signal(timed.graph, joint.velocity, {})}, false);
+  const std::vector<Signal> run = interpret(timed, drive, {find_signal(timed.graph, joint.velocity, {})}, false);
   std::vector<double> control(drive.steps, 0.0);
   if (joint.actuator) {
     const Port* const input = find_port(timed.graph.inputs, joint.actuator->input);
@@ -113,20 +112,19 @@ int export_joint(const ExportOptions& options, Console& console) {
   }
   const robots::Joint motor = robots::joint_of(program, how);
   const robots::Joint joint = robots::behind_gear(motor, options.gear);
-  const robots::FileOptions file{
-      .format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
-      .joint = options.name,
-      .model = program.graph.name,
-      .link_inertia = options.link_inertia,
-      .sample_time = program.graph.sample_time()};
+  const robots::FileOptions file{.format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
+                                 .joint = options.name,
+                                 .model = program.graph.name,
+                                 .link_inertia = options.link_inertia,
+                                 .sample_time = program.graph.sample_time()};
   const robots::RobotFile robot = options.into.empty()
                                       ? robots::bench_of(joint, file)
                                       : robots::merged(joint, file, options.into, read_text_file(options.into));
   const std::string compared =
       options.input_record.empty() ? std::string() : comparison(options, motor, program, warnings);
   write_file_atomically(options.output, robot.text);
-  std::string text = fmt::format("{}: joint {}, from {} of {}\n", options.output, options.name, joint.velocity,
-                                 program.graph.name);
+  std::string text =
+      fmt::format("{}: joint {}, from {} of {}\n", options.output, options.name, joint.velocity, program.graph.name);
   for (const std::string& change : robot.changes) {
     text += "  " + change + "\n";
   }
@@ -145,7 +143,12 @@ int export_joint(const ExportOptions& options, Console& console) {
 
 Action add_export(CLI::App& app) {
   const auto options = std::make_shared<ExportOptions>();
-  add_diagram_options(app, options->diagram);
+  app.add_option("FILE", options->diagram.file, "The diagram of the axis.")->required()->option_text("AXIS.st");
+  app.add_option("--params", options->diagram.parameters, "Parameters, such as `tune` has fitted.")
+      ->option_text("TUNED.toml");
+  app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
+      ->option_text("NAME");
+  app.add_flag("--any-order", options->diagram.any_order, "The order of the statements means nothing.");
   app.add_option("--out", options->output, "The file that is written.")->required()->option_text("ROBOT.xml");
   app.add_option("--format", options->format, "mujoco (the default) or urdf.")
       ->check(CLI::IsMember({"mujoco", "urdf"}))

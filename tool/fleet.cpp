@@ -38,8 +38,8 @@ constexpr std::string_view fleet_examples = R"(Examples:
   hysteron fleet fleet.csv --out fleet --share 1/2
 
 MANIFEST is CSV with a line for each record. Its columns are machine,diagram,params,log and, if wanted, when,group,command;
-names of files are relative to it. `tune` of parameters with [goal] needs no log. Each record is diagnosed, tuned or checked by a process of its own, with limits of time and
-memory. DIR gets results.csv, fleet.sqlite, and a folder for each record with what its command writes, result.json and
+names of files are relative to it. `tune` of parameters with [goal] needs no log. Each record is diagnosed, tuned or
+checked by a process of its own, with limits of time and memory. DIR gets results.csv, fleet.sqlite, and a folder for each record with what its command writes, result.json and
 messages.txt. `hysteron fleet-report DIR` says which machines drift or stand out.
 A second run does what has changed: machine, time, diagram and FMUs, parameters, record, command, options or version. It may be
 killed at any moment; the same command goes on. Several commands may work in one folder at once, each on its share or all on

@@ -295,9 +295,7 @@ parameters::Value value_for(const Graph& graph, const std::string& path, double 
 
 /// A set gives one number to each path. What takes another value is said before any set is run, with what to write.
 void check_types(const Table& table, const SetOptions& options, const Graph& graph) {
-  const std::string source = !options.file.empty()     ? "a column"
-                             : !options.sweeps.empty() ? "--sweep"
-                                                       : "--draw";
+  const std::string source = !options.file.empty() ? "a column" : !options.sweeps.empty() ? "--sweep" : "--draw";
   for (std::size_t k = 0; k < table.paths.size(); ++k) {
     const std::string& path = table.paths[k];
     const auto wrong = [&](const Place& place, std::string cause, std::string mend) {
@@ -310,10 +308,10 @@ void check_types(const Table& table, const SetOptions& options, const Graph& gra
     });
     if (is_vector) {
       wrong(first, fmt::format("{} is a vector, and {} gives one number.", path, source),
-            fmt::format("vary its elements one by one: {}.", !options.file.empty() ? fmt::format("a column {}[0]", path)
-                                                             : !options.sweeps.empty()
-                                                                 ? fmt::format("--sweep '{}[0]=0.1..0.3/21'", path)
-                                                                 : fmt::format("--draw '{}[0]=normal(0.2,0.01)'", path)));
+            fmt::format("vary its elements one by one: {}.",
+                        !options.file.empty()     ? fmt::format("a column {}[0]", path)
+                        : !options.sweeps.empty() ? fmt::format("--sweep '{}[0]=0.1..0.3/21'", path)
+                                                  : fmt::format("--draw '{}[0]=normal(0.2,0.01)'", path)));
     }
     const std::int64_t found = find_parameter(graph, path);
     if (found < 0) {

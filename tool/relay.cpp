@@ -74,7 +74,8 @@ int relay(const RelayOptions& options, Console& console) {
   if (!options.output.empty()) {
     write_files_atomically({{.path = options.output, .contents = parameters}});
   }
-  console.print(options.json ? relay_json(found).dump(2) + "\n" : relay_text(found, record.column(options.u).unit, record.column(options.y).unit));
+  console.print(options.json ? relay_json(found).dump(2) + "\n"
+                             : relay_text(found, record.column(options.u).unit, record.column(options.y).unit));
   return exit_ok;
 }
 

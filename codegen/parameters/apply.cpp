@@ -114,9 +114,8 @@ NamedPin find_pin(const Graph& graph, std::string_view path) {
 }
 
 const Node* find_instance(const Graph& graph, std::string_view path) {
-  const auto found = std::ranges::find_if(graph.nodes, [&](const Node& node) {
-    return node.block != nullptr && equal_ignoring_case(node.path, path);
-  });
+  const auto found = std::ranges::find_if(
+      graph.nodes, [&](const Node& node) { return node.block != nullptr && equal_ignoring_case(node.path, path); });
   return found == graph.nodes.end() ? nullptr : &*found;
 }
 

@@ -26,9 +26,7 @@ struct Range {
   bool is_above = false;  ///< the least itself does not
   double below = infinity;
 
-  [[nodiscard]] bool holds(double value) const {
-    return (is_above ? value > least : value >= least) && value < below;
-  }
+  [[nodiscard]] bool holds(double value) const { return (is_above ? value > least : value >= least) && value < below; }
 };
 constexpr Range any{};
 constexpr Range from_zero{.least = 0.0};
@@ -111,11 +109,10 @@ class GoalReader : private SettingsReader {
     for (const auto& [name, value] : *table) {
       if (known_key(name, value, known, "[goal.limits]")) {
         const GoalLimitKey& limit = *std::ranges::find(goal_limit_keys, name.str(), &GoalLimitKey::name);
-        read_number(
-            name, value,
-            {limit.name,
-             limit.setting,
-             {.least = limit.above.value_or(0.0), .is_above = limit.above.has_value(), .below = limit.below}});
+        read_number(name, value,
+                    {limit.name,
+                     limit.setting,
+                     {.least = limit.above.value_or(0.0), .is_above = limit.above.has_value(), .below = limit.below}});
       }
     }
   }

@@ -166,10 +166,10 @@ struct RecordSettings {
 /// A comment of the user, which is kept when the file is written anew.
 struct Comment {
   enum class Where : std::uint8_t {
-    Head,    ///< above all keys, and a blank line away from them
-    Above,   ///< above a key or the head of a table
-    Beside,  ///< behind it, on the same line
-    InList,  ///< on a line of its own in a list over several lines, behind `element` of its elements
+    Head,           ///< above all keys, and a blank line away from them
+    Above,          ///< above a key or the head of a table
+    Beside,         ///< behind it, on the same line
+    InList,         ///< on a line of its own in a list over several lines, behind `element` of its elements
     BesideElement,  ///< behind that element, on the same line; of 0, behind the bracket that opens the list
     End             ///< below all keys
   };

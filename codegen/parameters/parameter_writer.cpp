@@ -395,8 +395,7 @@ std::string entries_text(const std::vector<Entry>& entries, const std::vector<Co
       end += "\n" + comment.text + "\n";
       continue;
     }
-    const bool was_inside =
-        comment.where == Comment::Where::InList || comment.where == Comment::Where::BesideElement;
+    const bool was_inside = comment.where == Comment::Where::InList || comment.where == Comment::Where::BesideElement;
     if (was_inside && comment.key == entries[i].key) {
       if (const std::size_t elements = list_parts(entries[i].text).second.size(); elements > 0) {
         inside[i].take(comment, elements);

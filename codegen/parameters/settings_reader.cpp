@@ -31,10 +31,10 @@ void SettingsReader::wrong_type(const toml::key& key, const toml::node& node, st
 
 void SettingsReader::wrong_element(const toml::key& key, const toml::node& element, std::string_view wanted,
                                    std::string_view example) {
-  diagnostics_.error(error::wrong_value_type, at(element),
-                     fmt::format("Each element of {} must be {}, but here is {}.", key.str(), wanted,
-                                 toml_kind(element)),
-                     fmt::format("write it as in {}.", example));
+  diagnostics_.error(
+      error::wrong_value_type, at(element),
+      fmt::format("Each element of {} must be {}, but here is {}.", key.str(), wanted, toml_kind(element)),
+      fmt::format("write it as in {}.", example));
 }
 
 void SettingsReader::no_name(const toml::key& key, const toml::node& node, std::string_view text,

@@ -103,7 +103,7 @@ class Scanner {
     if (value_.is_open()) {  // a list over several lines
       value_.follow(line.code);
       add_pending(line.comment);
-      flush(line.code.empty()   ? Comment::Where::InList
+      flush(line.code.empty()  ? Comment::Where::InList
             : value_.is_open() ? Comment::Where::BesideElement
                                : Comment::Where::Beside,
             key_);
@@ -145,7 +145,7 @@ class Scanner {
   std::vector<Comment> comments_;
   std::string pending_;
   std::string table_;
-  std::string key_;  ///< of the line before; empty above the first
+  std::string key_;     ///< of the line before; empty above the first
   ValueDepth value_{};  ///< of that key
 };
 

@@ -139,31 +139,33 @@ TEST_F(LspServer, CompletesAnnotationsAndUnits) {
 }
 
 TEST_F(LspServer, MendsAMisspeltWord) {
-  for (const auto& [right, wrong] : {std::pair("XIN := X", "XNI := X"), {"FILTER.XOUT", "FILTER.XUOT"},
-                                     {"HY_LAG", "HY_LGA"}, {"T1 := 0.1", "T11 := 0.1"}}) {
+  for (const auto& [right, wrong] : {std::pair("XIN := X", "XNI := X"),
+                                     {"FILTER.XOUT", "FILTER.XUOT"},
+                                     {"HY_LAG", "HY_LGA"},
+                                     {"T1 := 0.1", "T11 := 0.1"}}) {
     const std::string text = with(right, wrong);
     const auto found = open(text);
     ASSERT_FALSE(found.empty()) << wrong;
     const json whole{{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}};
-    const auto actions = ask("textDocument/codeAction", {{"textDocument", {{"uri", uri}}},
-                                                         {"range", whole},
-                                                         {"context", {{"diagnostics", found}}}})["result"];
+    const auto actions =
+        ask("textDocument/codeAction",
+            {{"textDocument", {{"uri", uri}}}, {"range", whole}, {"context", {{"diagnostics", found}}}})["result"];
     ASSERT_FALSE(actions.empty()) << found.dump();
     EXPECT_EQ(actions[0]["kind"], "quickfix");
     const json edit = actions[0]["edit"]["changes"][uri][0];
     const auto begin = lsp::offset_of(text, {edit["range"]["start"]["line"], edit["range"]["start"]["character"]},
                                       lsp::Encoding::Utf16);
-    const auto end = lsp::offset_of(text, {edit["range"]["end"]["line"], edit["range"]["end"]["character"]},
-                                    lsp::Encoding::Utf16);
+    const auto end =
+        lsp::offset_of(text, {edit["range"]["end"]["line"], edit["range"]["end"]["character"]}, lsp::Encoding::Utf16);
     std::string mended = text;
     mended.replace(begin, end - begin, edit["newText"].get<std::string>());
     EXPECT_EQ(mended, diagram);
   }
   open(with("Y := FILTER.XOUT;", ""));  // an output that nothing drives: something to think about
-  EXPECT_EQ(ask("textDocument/codeAction", {{"textDocument", {{"uri", uri}}},
-                                            {"range", {{"start", {{"line", 0}, {"character", 0}}},
-                                                       {"end", {{"line", 99}, {"character", 0}}}}},
-                                            {"context", {{"diagnostics", json::array()}}}})["result"],
+  EXPECT_EQ(ask("textDocument/codeAction",
+                {{"textDocument", {{"uri", uri}}},
+                 {"range", {{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}}},
+                 {"context", {{"diagnostics", json::array()}}}})["result"],
             json::array());
 }
 

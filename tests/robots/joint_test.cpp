@@ -69,16 +69,15 @@ TEST(Joint, IsReadFromATableOnASpring) {
 
 TEST(Joint, TellsTheSizeOfWhatItLeavesOut) {
   const auto left = [](const std::string& other) {
-    return all_of(joint_of_text(with(servo, "HY_COULOMB_FRICTION := (LEVEL := 0.004, PRESLIDE := 0.00001)", other))
-                      .neglected);
+    return all_of(
+        joint_of_text(with(servo, "HY_COULOMB_FRICTION := (LEVEL := 0.004, PRESLIDE := 0.00001)", other)).neglected);
   };
   EXPECT_THAT(left("HY_STRIBECK_FRICTION := (LEVEL := 0.004, STICTION := 0.5, V_STRIBECK := 0.1)"),
               HasSubstr("DRY, a HY_STRIBECK_FRICTION; 0.002 N*m more at rest"));
   EXPECT_THAT(left("HY_VISCOUS_FRICTION := (COEFFICIENT := 0.001, QUADRATIC := 0.00002)"),
               HasSubstr("2e-05 N*m at 1 rad/s, and grows with the square"));
-  const Joint asymmetric =
-      joint_of_text(with(servo, "HY_COULOMB_FRICTION := (LEVEL := 0.004, PRESLIDE := 0.00001)",
-                         "HY_ASYMMETRIC_FRICTION := (UP := 0.005, DOWN := 0.003)"));
+  const Joint asymmetric = joint_of_text(with(servo, "HY_COULOMB_FRICTION := (LEVEL := 0.004, PRESLIDE := 0.00001)",
+                                              "HY_ASYMMETRIC_FRICTION := (UP := 0.005, DOWN := 0.003)"));
   EXPECT_NEAR(asymmetric.friction, 0.004, 1e-17);
   EXPECT_NEAR(asymmetric.offset, -0.001, 1e-17);
   EXPECT_THAT(all_of(joint_of_text(with(with(servo, "MOST    : HY_LIMIT            := (MN := -4.0, MX := 4.0);",
@@ -100,14 +99,16 @@ TEST(Joint, AsksForWhatTheDiagramDoesNotTell) {
   EXPECT_THAT(refusal(with(servo, "(* @unit N*m *)", "")),
               AllOf(HasSubstr("No signal on the way to SPEED has the unit N*m"), HasSubstr("--inertia")));
   EXPECT_NEAR(joint_of_text(with(servo, "(* @unit N*m *)", ""), {.inertia = 4e-4}).actuator->gain, 0.1, 1e-15);
-  EXPECT_THAT(refusal(with(servo, "(* @unit rad/s *)", "")), HasSubstr("has no integral or lag whose unit is a velocity"));
+  EXPECT_THAT(refusal(with(servo, "(* @unit rad/s *)", "")),
+              HasSubstr("has no integral or lag whose unit is a velocity"));
   EXPECT_THAT(refusal(servo, {.velocity = "KT.XOUT"}), HasSubstr("is no output of an integral or a lag"));
   EXPECT_THAT(refusal(servo, {.velocity = "SPEED.XOUR"}), HasSubstr("did you mean"));
   EXPECT_THAT(refusal(servo, {.input = "J"}), HasSubstr("inputs that do: I."));
   EXPECT_THAT(refusal(with(servo, "INERTIA(XIN := DRY.XOUT - B.XOUT);", "INERTIA(XIN := DRY.XOUT * B.XOUT);")),
               HasSubstr("is not linear"));
-  const std::string loaded = with(with(servo, "  END_VAR\n  VAR_OUTPUT", "    LOAD : LREAL;  (* @unit N*m *)\n  END_VAR\n  VAR_OUTPUT"),
-                                  "DRY.XOUT - B.XOUT", "DRY.XOUT - B.XOUT - LOAD");
+  const std::string loaded =
+      with(with(servo, "  END_VAR\n  VAR_OUTPUT", "    LOAD : LREAL;  (* @unit N*m *)\n  END_VAR\n  VAR_OUTPUT"),
+           "DRY.XOUT - B.XOUT", "DRY.XOUT - B.XOUT - LOAD");
   EXPECT_THAT(refusal(loaded), HasSubstr("Several inputs drive the joint: I, LOAD."));
   const Joint joint = joint_of_text(loaded, {.input = "I"});
   EXPECT_NEAR(joint.actuator->gain, 0.05, 1e-17);

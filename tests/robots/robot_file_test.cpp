@@ -46,9 +46,9 @@ std::string without(std::string text, const std::vector<std::string>& pieces) {
 
 TEST(RobotFile, SetsAJointAndLeavesEveryOtherByte) {
   const RobotFile file = merged(joint_of_text(servo), {.joint = "shoulder"}, "arm.xml", robot);
-  const std::string rest =
-      without(file.text, {" armature=\"0.0002\"", " frictionloss=\"0.004\"", "0.0006",
-                          "\n    <general name=\"shoulder_I\" joint=\"shoulder\" gainprm=\"0.05\" ctrlrange=\"-4 4\"/>"});
+  const std::string rest = without(
+      file.text, {" armature=\"0.0002\"", " frictionloss=\"0.004\"", "0.0006",
+                  "\n    <general name=\"shoulder_I\" joint=\"shoulder\" gainprm=\"0.05\" ctrlrange=\"-4 4\"/>"});
   EXPECT_EQ(rest, without(robot, {"9"}));
   pugi::xml_document read;
   ASSERT_TRUE(read.load_string(file.text.c_str()));
@@ -62,7 +62,8 @@ TEST(RobotFile, SetsAJointAndLeavesEveryOtherByte) {
 }
 
 TEST(RobotFile, CountsAnglesAsTheRobotDoes) {
-  const std::string turning = with(with(with(table, "@unit mm *", "@unit rad *"), "@unit mm/s", "@unit rad/s"), "@unit N *", "@unit N*m *");
+  const std::string turning =
+      with(with(with(table, "@unit mm *", "@unit rad *"), "@unit mm/s", "@unit rad/s"), "@unit N *", "@unit N*m *");
   Joint joint = joint_of_text(turning);
   joint.actuator.reset();
   const auto in_degrees = merged(joint, {.joint = "shoulder"}, "arm.xml", robot).text;
@@ -73,8 +74,8 @@ TEST(RobotFile, CountsAnglesAsTheRobotDoes) {
 }
 
 TEST(RobotFile, SetsTheActuatorThatIsThere) {
-  const std::string general =
-      with(robot, "<position joint=\"slider\" kp=\"3\"/>", "<general joint='slider' gear='2' gainprm='1' dyntype='none'/>");
+  const std::string general = with(robot, "<position joint=\"slider\" kp=\"3\"/>",
+                                   "<general joint='slider' gear='2' gainprm='1' dyntype='none'/>");
   EXPECT_THAT(merged(joint_of_text(table), {.joint = "slider"}, "arm.xml", general).text,
               AllOf(HasSubstr("<general joint='slider' gear='2' gainprm='4' dyntype='filter' biastype=\"affine\" "
                               "biasprm=\"0.5\" dynprm=\"0.01\" ctrlrange=\"-5 5\" forcerange=\"-10 10\"/>")));
@@ -92,7 +93,8 @@ TEST(RobotFile, SetsTheActuatorThatIsThere) {
 TEST(RobotFile, TakesOffWhatTheBodiesHave) {
   EXPECT_THAT(merged(joint_of_text(servo), {.joint = "shoulder", .link_inertia = 1.5e-4}, "arm.xml", robot).text,
               HasSubstr("armature=\"5e-05\""));
-  EXPECT_THROW((void)merged(joint_of_text(servo), {.joint = "shoulder", .link_inertia = 3e-4}, "arm.xml", robot), InputError);
+  EXPECT_THROW((void)merged(joint_of_text(servo), {.joint = "shoulder", .link_inertia = 3e-4}, "arm.xml", robot),
+               InputError);
 }
 
 TEST(RobotFile, MakesABenchThatIsWellFormed) {
@@ -105,23 +107,26 @@ TEST(RobotFile, MakesABenchThatIsWellFormed) {
 }
 
 TEST(RobotFile, SetsDynamicsAndLimitsOfUrdf) {
-  constexpr const char* arm = "<robot name=\"arm\">\n  <joint name=\"lift\" type=\"prismatic\">\n"
-                              "    <limit effort=\"1\" velocity=\"2\"/> <!-- > -->\n  </joint>\n"
-                              "  <joint name=\"turn\" type=\"continuous\"/>\n</robot>\n";
+  constexpr const char* arm =
+      "<robot name=\"arm\">\n  <joint name=\"lift\" type=\"prismatic\">\n"
+      "    <limit effort=\"1\" velocity=\"2\"/> <!-- > -->\n  </joint>\n"
+      "  <joint name=\"turn\" type=\"continuous\"/>\n</robot>\n";
   const RobotFile file = merged(joint_of_text(table), {.format = Format::Urdf, .joint = "lift"}, "arm.urdf", arm);
-  EXPECT_EQ(file.text, "<robot name=\"arm\">\n  <joint name=\"lift\" type=\"prismatic\">\n"
-                       "    <dynamics damping=\"40\" friction=\"0\"/>\n"
-                       "    <limit effort=\"20\" velocity=\"2\" lower=\"-0.03\" upper=\"0.05\"/> <!-- > -->\n  </joint>\n"
-                       "  <joint name=\"turn\" type=\"continuous\"/>\n</robot>\n");
+  EXPECT_EQ(file.text,
+            "<robot name=\"arm\">\n  <joint name=\"lift\" type=\"prismatic\">\n"
+            "    <dynamics damping=\"40\" friction=\"0\"/>\n"
+            "    <limit effort=\"20\" velocity=\"2\" lower=\"-0.03\" upper=\"0.05\"/> <!-- > -->\n  </joint>\n"
+            "  <joint name=\"turn\" type=\"continuous\"/>\n</robot>\n");
   std::string left;
   for (const Neglected& one : file.unmapped) {
     left += one.what + " " + one.size + "\n";
   }
   EXPECT_THAT(left, AllOf(HasSubstr("inertia of rotor and gear 3 kg"), HasSubstr("stiffness 200 N/m"),
                           HasSubstr("gain of U 8 N for each V"), HasSubstr("lag of the actuator 0.01 s")));
-  EXPECT_THAT(merged(joint_of_text(servo), {.format = Format::Urdf, .joint = "turn"}, "arm.urdf", arm).text,
-              HasSubstr("<joint name=\"turn\" type=\"continuous\">\n    <dynamics damping=\"0.0006\" friction=\"0.004\"/>\n"
-                        "    <limit effort=\"0.2\"/>\n  </joint>\n</robot>"));
+  EXPECT_THAT(
+      merged(joint_of_text(servo), {.format = Format::Urdf, .joint = "turn"}, "arm.urdf", arm).text,
+      HasSubstr("<joint name=\"turn\" type=\"continuous\">\n    <dynamics damping=\"0.0006\" friction=\"0.004\"/>\n"
+                "    <limit effort=\"0.2\"/>\n  </joint>\n</robot>"));
 }
 
 TEST(RobotFile, RefusesWhatIsNoSuchRobot) {

@@ -23,12 +23,14 @@ TEST(Wrapped, HangsBelowTheSecondOfTwoColumns) {
 }
 
 TEST(Wrapped, LeavesTablesSourcesAndLongWords) {
-  for (const char* const text : {"HYST.C1  8.0123  um/V  on its lower bound, as at the start",
-                                 "     9 |   AMP(XNI := U, and more that stands in the line of the text);",
-                                 "https://a.place/with/a/name/that/is/longer/than/all/that", "                      \n"}) {
+  for (const char* const text :
+       {"HYST.C1  8.0123  um/V  on its lower bound, as at the start",
+        "     9 |   AMP(XNI := U, and more that stands in the line of the text);",
+        "https://a.place/with/a/name/that/is/longer/than/all/that", "                      \n"}) {
     EXPECT_EQ(wrapped(text, 24), text);
   }
-  EXPECT_EQ(wrapped("see https://a.place/with/a/name/that/is/long", 20), "see\nhttps://a.place/with/a/name/that/is/long");
+  EXPECT_EQ(wrapped("see https://a.place/with/a/name/that/is/long", 20),
+            "see\nhttps://a.place/with/a/name/that/is/long");
 }
 
 TEST(Wrapped, CountsCharactersAndNoColours) {
@@ -39,10 +41,10 @@ TEST(Wrapped, CountsCharactersAndNoColours) {
 
 TEST(Wrapped, NeverLosesAWord) {
   std::string text;
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 120; ++k) {
     text += std::string(1 + static_cast<std::size_t>(k * k % 17), static_cast<char>('a' + k % 26)) + " ";
   }
-  for (std::size_t width = 20; width < 120; ++width) {
+  for (std::size_t width = 20; width < 120; width += 7) {
     std::istringstream before(text);
     std::istringstream after(wrapped(text, width));
     std::string a;

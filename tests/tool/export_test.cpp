@@ -1,1 +1,83 @@
 // hysteron export, as a user runs it.
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::string_view axis_to_export = R"(FUNCTION_BLOCK AXIS  (* @ts 1ms *)
+  VAR_INPUT
+    I : LREAL;  (* @unit A *)
+  END_VAR
+  VAR_OUTPUT
+    OMEGA : LREAL;  (* @unit rad/s *)
+  END_VAR
+  VAR
+    KT      : HY_GAIN             := (K := 0.05);
+    TORQUE  : LREAL;  (* @unit N*m *)
+    DRY     : HY_COULOMB_FRICTION := (LEVEL := 0.002, PRESLIDE := 0.00002);
+    INERTIA : HY_GAIN             := (K := 5000.0);
+    SPEED   : HY_INTEGRAL_FORWARD;
+  END_VAR
+
+  KT(XIN := I);
+  TORQUE := KT.XOUT;
+  DRY(XIN := TORQUE, V := SPEED.XOUT);
+  INERTIA(XIN := DRY.XOUT);
+  OMEGA := SPEED.XOUT;
+  SPEED(XIN := INERTIA.XOUT);
+END_FUNCTION_BLOCK
+)";
+
+struct ExportBench : test::Workbench {
+  ExportBench() {
+    write("axis.st", axis_to_export);
+    write("tuned.toml", "[parameters.DRY]\nLEVEL = 0.004\n");
+    write("arm.xml",
+          "<mujoco>\n  <worldbody><body><joint name=\"elbow\"/><geom size=\".1\"/></body></worldbody>\n</mujoco>\n");
+  }
+};
+
+TEST(Export, WritesABenchAndSaysHowFarItIsFromTheDiagram) {
+  const ExportBench bench;
+  ASSERT_EQ(bench
+                .shell("awk 'BEGIN { print \"t,I\"; for (k = 0; k < 1000; ++k) printf \"%.3f,%.5f\\n\", 0.001 * k, "
+                       "0.5 * sin(0.01 * k) }' > log.csv")
+                .code,
+            0);
+  const auto done = bench.shell("hysteron export axis.st --params tuned.toml --in log.csv --out bench.xml");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("joint frictionloss = \"0.004\""), HasSubstr("left out:\n  DRY"),
+                              HasSubstr("over log.csv: the joint differs")));
+  EXPECT_THAT(bench.read("bench.xml"), HasSubstr("armature=\"0.0002\""));
+}
+
+TEST(Export, MergesIntoARobotAndNeverOverIt) {
+  const ExportBench bench;
+  const auto done = bench.shell("hysteron export axis.st --into arm.xml --joint elbow --gear 10 --out new.xml");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(bench.read("new.xml"), AllOf(HasSubstr("armature=\"0.02\""), HasSubstr("gainprm=\"0.5\"")));
+  EXPECT_THAT(done.out, HasSubstr("state --link-inertia"));
+  const std::string before = bench.read("arm.xml");
+  EXPECT_THAT(bench.shell("hysteron export axis.st --into arm.xml --joint elbow --out arm.xml").err,
+              HasSubstr("HY709"));
+  EXPECT_EQ(bench.read("arm.xml"), before);
+  for (const auto& [options, text] : {std::pair("--into arm.xml --joint elbo", "did you mean --joint elbow?"),
+                                      {"--into arm.xml --joint elbow --format urdf", "has no element <robot>"},
+                                      {"--velocity KT.XOUT", "is no output of an integral"},
+                                      {"--link-inertia 1", "is larger than all that the diagram moves"}}) {
+    const auto refused = bench.shell(std::string("hysteron export axis.st --out none.xml ") + options);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("HY730"), HasSubstr(text)));
+    EXPECT_FALSE(bench.has("none.xml"));
+  }
+}
+
+}  // namespace
+}  // namespace hysteron

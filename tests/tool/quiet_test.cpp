@@ -1,1 +1,88 @@
-// hysteron --quiet and wrapped output, as a user runs it.
+// --quiet and output that fits a terminal, as a user runs them.
+#include <gmock/gmock.h>
+
+#include <sstream>
+#include <string>
+
+#include "support/utf8.hpp"
+#include "tests/tool/workbench.hpp"
+
+namespace hysteron {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+struct QuietBench : test::Workbench {
+  QuietBench() {
+    write("plant.st", test::plant);
+    write("log.csv", "t,X,unused\n0,1,3\n0.001,2,3\n0.002,3,4\n");
+  }
+};
+
+TEST(Quiet, SaysErrorsAndWarningsAlone) {
+  const QuietBench bench;
+  const std::string run = "hysteron run plant.st --in log.csv --out out.csv --summary";
+  const auto loud = bench.shell(run);
+  EXPECT_EQ(loud.code, 0) << loud.err;
+  EXPECT_NE(loud.out, "");
+  const std::string written = bench.read("out.csv");
+  const auto quiet = bench.shell(run + " --quiet");
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_EQ(bench.read("out.csv"), written);
+  const auto refused = bench.shell("hysteron run none.st --in log.csv --out out.csv --quiet");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("HY100"));
+}
+
+TEST(Quiet, LeavesWhatIsTheResultItself) {
+  const QuietBench bench;
+  EXPECT_EQ(bench.shell("hysteron run plant.st --in log.csv --out - --quiet").out,
+            bench.shell("hysteron run plant.st --in log.csv --out -").out);
+  for (const char* const command : {"explain HY402", "blocks HY_LAG", "blocks --json", "record log.csv"}) {
+    const auto loud = bench.shell(std::string("hysteron ") + command);
+    EXPECT_NE(loud.out, "") << command;
+    EXPECT_EQ(bench.shell(std::string("hysteron ") + command + " --quiet").out, loud.out) << command;
+  }
+}
+
+TEST(Width, HelpAndErrorsFitTheTerminal) {
+  const QuietBench bench;
+  for (const char* const command : {"help tune", "help run", "help", "run plan.st --in log.csv --out out.csv"}) {
+    const auto done = bench.shell(std::string("COLUMNS=72 hysteron ") + command);
+    std::istringstream lines(done.out + done.err);
+    std::string line;
+    std::size_t count = 0;
+    while (std::getline(lines, line)) {
+      // Examples are commands and tables: they stay as they are.
+      if (line.find("   ") == std::string::npos && !line.starts_with("  hysteron")) {
+        EXPECT_LE(character_count(line), 72U) << line;
+      }
+      ++count;
+    }
+    EXPECT_GT(count, 1U) << command;
+  }
+  const auto wide = bench.shell("hysteron help tune").out;
+  const auto narrow = bench.shell("COLUMNS=72 hysteron help tune").out;
+  EXPECT_NE(wide, narrow);
+  std::istringstream a(wide);
+  std::istringstream b(narrow);
+  std::string one;
+  std::string other;
+  while (a >> one) {
+    ASSERT_TRUE(b >> other);
+    ASSERT_EQ(one, other) << "every word is there";
+  }
+}
+
+TEST(Width, WhatAProgramReadsIsNotBroken) {
+  const QuietBench bench;
+  EXPECT_EQ(bench.shell("COLUMNS=30 hysteron blocks HY_LAG --json").out,
+            bench.shell("hysteron blocks HY_LAG --json").out);
+}
+
+}  // namespace
+}  // namespace hysteron

@@ -30,8 +30,8 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
     if (std::ranges::find(parts, part) == parts.end()) {  // with several plants it is broken more than once
       parts.push_back(part);
     }
-    notes.push_back({.place = one.place,
-                     .text = fmt::format("{} is {:.4g}{}", text_of(one.kind).name, limit.value, plant)});
+    notes.push_back(
+        {.place = one.place, .text = fmt::format("{} is {:.4g}{}", text_of(one.kind).name, limit.value, plant)});
   }
   std::string mend = parts.size() > 1 ? "loosen one of them" : "loosen it";
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {

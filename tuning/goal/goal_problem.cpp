@@ -208,7 +208,8 @@ class GoalBuilder {
           error::contradicting_range, goal_.duration->place,
           fmt::format("The test ends at {:.4g} s, before the wished response has settled, at {:.4g} s.", duration,
                       problem_.model->settling),
-          fmt::format("leave duration out, or let it be at least {:.4g}: what comes later would not be seen.", watched));
+          fmt::format("leave duration out, or let it be at least {:.4g}: what comes later would not be seen.",
+                      watched));
       return;
     }
     const double from = value_or(goal_.from, 0.0);
@@ -241,11 +242,12 @@ class GoalBuilder {
             "take a record in which it moves.");
     } else {
       const auto behind = static_cast<double>(input.end() - moves - 1) * problem_.drive.sample_time;
-      lacks(goal_.dead_time ? goal_.dead_time->place : goal_.place,
-            fmt::format("The record ends {:.4g} s after {} moves, within the dead time of the wished response, {:.4g} s.",
-                        behind, name, problem_.model->dead_time),
-            fmt::format("take a record that goes on for {:.4g} s behind the move, or state a smaller dead_time.",
-                        settling_times * problem_.model->settling));
+      lacks(
+          goal_.dead_time ? goal_.dead_time->place : goal_.place,
+          fmt::format("The record ends {:.4g} s after {} moves, within the dead time of the wished response, {:.4g} s.",
+                      behind, name, problem_.model->dead_time),
+          fmt::format("take a record that goes on for {:.4g} s behind the move, or state a smaller dead_time.",
+                      settling_times * problem_.model->settling));
     }
   }
 

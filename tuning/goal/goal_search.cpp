@@ -32,6 +32,8 @@ constexpr double least_share = 0.01;  // of a contradiction
 constexpr double is_active = 0.01;
 /// Of its typical size: how near to its bound an interior point leaves a parameter that belongs there.
 constexpr double near_bound = 1e-2;
+constexpr double beside_bound = 1e-4;
+constexpr double hardly_worse = 1e-3;  ///< as a share of the cost, or of the excess of a broken limit
 constexpr double at_bound = 1e-6;
 
 struct Candidate {
@@ -172,9 +174,8 @@ class GoalSearch {
     throw InputError(
         error::no_stable_loop, problem_.settings.place,
         fmt::format("The loop {} at the start{}, and at none of {} points spread over the bounds does it settle{}.",
-                    what_it_does(result_.start_state),
-                    one ? "" : " with " + problem_.plants[result_.start_plant].name, points_tried_,
-                    one ? "" : " with every plant"),
+                    what_it_does(result_.start_state), one ? "" : " with " + problem_.plants[result_.start_plant].name,
+                    points_tried_, one ? "" : " with every plant"),
         too_slow_ ? fmt::format("let the test last longer than its {}: duration in [goal], or a longer record. Some of "
                                 "these loops settle, only more slowly.",
                                 seconds)
@@ -271,7 +272,9 @@ class GoalSearch {
     problem.start = extended(x, bounded, is_feasibility_ ? model_.largest_excess() : 1.0);
     problem.lower = extended(lower_, bounded, -infinity);
     problem.upper = extended(upper_, bounded, infinity);
-    problem.typical = extended(typical_, bounded, is_feasibility_ ? std::max(model_.largest_excess(), 0.1) : 1.0);
+    // A point that was looked for far away from the start is of another size.
+    const VectorXd typical = typical_.cwiseMax(x.cwiseAbs());
+    problem.typical = extended(typical, bounded, is_feasibility_ ? std::max(model_.largest_excess(), 0.1) : 1.0);
     problem.evaluate = [&](const VectorXd& at, ConstrainedPoint& point) {
       if (!take(at.head(n), true)) {
         return false;
@@ -341,11 +344,13 @@ class GoalSearch {
 
   // ---- result -----------------------------------------------------------------------------------------------------
 
-  /// An interior point ends beside the bound that it runs into: where the bound itself is no worse, it is the result.
+  /// An interior point ends beside the bound that it runs into. The bound itself is the result where it is no worse,
+  /// and hardly worse where the point is all but on it.
   void to_bounds(Candidate& best) {
     for (Index j = 0; j < best.x.size(); ++j) {
       for (const double bound : {lower_[j], upper_[j]}) {
-        if (best.x[j] == bound || !(std::fabs(best.x[j] - bound) <= near_bound * typical_[j])) {
+        const double distance = std::fabs(best.x[j] - bound);
+        if (distance == 0.0 || !(distance <= near_bound * typical_[j])) {
           continue;
         }
         VectorXd x = best.x;
@@ -355,7 +360,12 @@ class GoalSearch {
           continue;
         }
         const Candidate there{x, model_.cost(), model_.largest_excess()};
-        if (!best.is_better_than(there)) {
+        Candidate wanted = best;
+        if (distance <= beside_bound * typical_[j]) {
+          wanted.cost *= 1.0 + hardly_worse;
+          wanted.excess *= wanted.excess > 0.0 ? 1.0 + hardly_worse : 1.0;
+        }
+        if (!wanted.is_better_than(there)) {
           best = there;
         }
       }
@@ -427,8 +437,8 @@ class GoalSearch {
   bool is_feasibility_ = false;
   bool cancelled_ = false;
   int start_number_ = 0;
-  int points_tried_ = 0;  ///< where a start does not settle
-  bool too_slow_ = false;  ///< some loop dies away, but not within the test
+  int points_tried_ = 0;                    ///< where a start does not settle
+  bool too_slow_ = false;                   ///< some loop dies away, but not within the test
   std::optional<std::size_t> open_seen_{};  ///< the plant of the first point whose loop settles and is open
   double cost_unit_ = 1.0;
   Candidate best_{};

@@ -63,7 +63,7 @@ struct GoalResult {
   Eigen::VectorXd x{};
   std::vector<AtBound> at_bound{};
   std::vector<PlantResult> plants{};
-  std::vector<LimitResult> limits{};  ///< limit by limit, plant by plant
+  std::vector<LimitResult> limits{};           ///< limit by limit, plant by plant
   LoopState start_state = LoopState::Settles;  ///< of the first plant that does not settle
   std::size_t start_plant = 0;                 ///< that plant
   /// √J reached from each start; not a number where limits stay broken, infinite where no loop settles.

@@ -83,7 +83,7 @@ bool LoopRun::take_test(Machine<S>& machine, const VectorXd& x, std::span<const 
 
 template <class S>
 LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> columns, std::size_t steps,
-                           LoopResponse& response) {
+                                LoopResponse& response) {
   constexpr std::size_t block = 256;
   const double put_in = share_put_in * (largest_ > 0.0 ? largest_ : 1.0);
   const std::size_t most = steps > 0 ? steps : std::max(longest_impulse * drive_.steps, shortest_limit);
@@ -155,8 +155,7 @@ LoopState LoopRun::respond(const VectorXd& x, bool with_derivatives, LoopRespons
       const auto part = left.first(width_of_pass(left.size()));
       const bool finite = machines_.with_derivatives(part.size(), [&](auto& machine) {
         return take_test(machine, x, part, response) &&
-               (!plant_.cut ||
-                take_impulse(machine, part, response.impulse.size(), response) == LoopState::Settles);
+               (!plant_.cut || take_impulse(machine, part, response.impulse.size(), response) == LoopState::Settles);
       });
       if (!finite) {
         return LoopState::NotFinite;

@@ -75,7 +75,7 @@ class LoopRun {
   /// Behind the test: h over `steps`, or, of 0, until it has died away.
   template <class S>
   LoopState take_impulse(Machine<S>& machine, std::span<const Eigen::Index> columns, std::size_t steps,
-                    LoopResponse& response);
+                         LoopResponse& response);
 
   const LoopPlant& plant_;
   const Drive& drive_;

@@ -182,7 +182,7 @@ TEST(ParameterReader, RefusesWhatIsNoParameterFile) {
        "C1 = 0.05"},
       {"[parameters.INV]\nC1 = []\n", "HY604 error: plant.toml:2:6: ", "[0.0, 0.5, 1.0]"},
       {"[parameters.INV]\nC1 = [1.0, true]\n",
-       "HY604 error: plant.toml:2:12: C1 must be a list of numbers, but is true or false", "[0.0"},
+       "HY604 error: plant.toml:2:12: Each element of C1 must be a number, but here is true or false", "[0.0"},
       {"[[parameters.INV]]\nC1 = 1\n", "HY604 error: plant.toml:1:", ""},
       {"[parameters.INV]\nC1 = 2024-01-01\n", "HY604 error: plant.toml:2:6: ", "C1 = 0.05"},
       {"[fit.INV]\nC1 = 0.05\n", "HY604 error: plant.toml:2:6: INV.C1 must be a table of settings, but is a number",

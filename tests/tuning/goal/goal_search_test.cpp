@@ -208,7 +208,7 @@ TEST(GoalSearch, WithoutLimitsAndWithoutALoopTunesAllTheSame) {
 /// The pole 1 − TS·K: at K = 0.001 it dies away, at K = −1 it grows, at K = 210 it swings up.
 TEST(GoalSearch, TellsALoopThatIsSlowFromOneThatIsUnstable) {
   const GoalProblem problem = loops::problem_of(
-      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = -5.0, max = 300.0, scale = 10.0}"));
+      loops::integrator(), settings_of_gain(0.001, "settling_time = 0.5\n", "{min = -5.0, max = 300.0}"));
   GoalModel model(problem);
   for (const auto& [gain, state] : {std::pair(0.001, LoopState::TooSlow),
                                     {-1.0, LoopState::Unstable},
@@ -250,8 +250,8 @@ TEST(GoalSearch, KeepsAResultWhereAFurtherStartFindsNoLoop) {
 TEST(GoalSearch, SaysThatAParameterEndsOnItsBound) {
   for (const auto& [start, bounds, bound] :
        {std::tuple(1.0, "{min = 0.0, max = 5.0}", 5.0), {60.0, "{min = 20.0, max = 100.0}", 20.0}}) {
-    const GoalResult result = tune_for_goal(
-        loops::problem_of(loops::integrator(), settings_of_gain(start, "settling_time = 0.5\n", bounds)));
+    const GoalResult result =
+        tune_for_goal(loops::problem_of(loops::integrator(), settings_of_gain(start, "settling_time = 0.5\n", bounds)));
     EXPECT_EQ(result.x[0], bound);
     EXPECT_EQ(result.at_bound[0], bound == 5.0 ? AtBound::Upper : AtBound::Lower);
   }
@@ -260,9 +260,10 @@ TEST(GoalSearch, SaysThatAParameterEndsOnItsBound) {
 /// What a limit is held against does not depend on how long the error is watched.
 TEST(GoalSearch, AShortTestDoesNotHideALaterOvershoot) {
   const auto problem_of = [](const std::string& duration) {
-    return loops::problem_of(loops::oven, "[fit.PID]\nKP = {min = 0.01, max = 20.0}\nTR = {min = 0.1}\n[goal]\n"
-                                          "settling_time = 2.0\nloop = \"PID.XOUT\"\n" +
-                                              duration + "[goal.limits]\novershoot_percent = 4.0\n");
+    return loops::problem_of(loops::oven,
+                             "[fit.PID]\nKP = {min = 0.01, max = 20.0}\nTR = {min = 0.1}\n[goal]\n"
+                             "settling_time = 2.0\nloop = \"PID.XOUT\"\n" +
+                                 duration + "[goal.limits]\novershoot_percent = 4.0\n");
   };
   const GoalProblem whole = problem_of("");
   const GoalProblem brief = problem_of("duration = 2.0\n");
@@ -280,10 +281,11 @@ TEST(GoalSearch, AShortTestDoesNotHideALaterOvershoot) {
 }
 
 TEST(GoalSearch, NamesNoLimitThatIsKept) {
-  const GoalProblem problem = loops::problem_of(
-      loops::integrator(6), settings_of_gain(12.0, "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"
-                                                   "effort_rate = 1e6\nphase_margin_deg = 20.0\n",
-                                             "{min = 8.0, max = 20.0}"));
+  const GoalProblem problem =
+      loops::problem_of(loops::integrator(6), settings_of_gain(12.0,
+                                                               "settling_time = 0.5\n[goal.limits]\neffort = 5.0\n"
+                                                               "effort_rate = 1e6\nphase_margin_deg = 20.0\n",
+                                                               "{min = 8.0, max = 20.0}"));
   const GoalResult result = tune_for_goal(problem);
   EXPECT_EQ(result.status, GoalStatus::Contradiction);
   for (const LimitResult& limit : result.limits) {

@@ -72,6 +72,34 @@ std::vector<const BlockType*> blocks_that_tell_of(const std::string& word) {
   return named;
 }
 
+std::size_t widest_name() {
+  std::size_t width = 0;
+  for (const BlockType* const block : documented_blocks()) {
+    width = std::max(width, block->about.name.size());
+  }
+  return width;
+}
+
+std::string line_of(const BlockType& block) {
+  return fmt::format("  {:<{}}  {}\n", block.about.name, widest_name(), block.about.title);
+}
+
+/// The blocks that are named in part after another: hysteresis is the standard's switch, and several models of it.
+std::string further_blocks(const BlockType& shown) {
+  constexpr std::string_view ours = "HY_";
+  if (!shown.about.name.starts_with(ours)) {
+    return "";
+  }
+  const std::string part = "_" + std::string(shown.about.name.substr(ours.size())) + "_";
+  std::string text;
+  for (const BlockType* const block : documented_blocks()) {
+    if (block != &shown && (std::string(block->about.name) + "_").find(part) != std::string::npos) {
+      text += line_of(*block);
+    }
+  }
+  return text.empty() ? text : "\nfurther blocks of the name\n" + text;
+}
+
 [[noreturn]] void refuse_unknown(const std::string& name) {
   std::vector<std::string_view> known;
   for (const BlockType* const block : documented_blocks()) {
@@ -89,18 +117,6 @@ std::vector<const BlockType*> blocks_of(Group group) {
   std::sort(list.begin(), list.end(),
             [](const BlockType* a, const BlockType* b) { return a->about.name < b->about.name; });
   return list;
-}
-
-std::size_t widest_name() {
-  std::size_t width = 0;
-  for (const BlockType* const block : documented_blocks()) {
-    width = std::max(width, block->about.name.size());
-  }
-  return width;
-}
-
-std::string line_of(const BlockType& block) {
-  return fmt::format("  {:<{}}  {}\n", block.about.name, widest_name(), block.about.title);
 }
 
 std::string listed() {
@@ -148,7 +164,7 @@ int show_blocks(const BlocksOptions& options, Console& console) {
     console.print(block == nullptr   ? found(options.name, options)
                   : options.json     ? card_json(*block).dump(2) + "\n"
                   : options.markdown ? block_page(*block)
-                                     : card_text(*block));
+                                     : card_text(*block) + further_blocks(*block));
   } else if (options.json) {
     auto list = nlohmann::json::array();
     for (const BlockType* const block : documented_blocks()) {

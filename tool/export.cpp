@@ -60,7 +60,8 @@ struct ExportOptions {
 std::string comparison(const ExportOptions& options, const robots::Joint& joint, const Program& program,
                        Diagnostics& warnings) {
   Program timed = program;
-  const auto records = read_and_told({options.input_record}, options.record, program, false, warnings);
+  const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
+  const auto records = read_and_told({options.input_record}, reading, program, false, warnings);
   settle_sample_time(records.front(), timed, warnings);
   const Drive drive = drive_from(records.front(), timed, {}, warnings);
   if (warnings.has_errors()) {

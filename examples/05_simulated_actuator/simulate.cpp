@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/language/syntax.hpp"
 #include "examples/05_simulated_actuator/simulator.hpp"
 #include "records/csv.hpp"
 #include "records/read.hpp"
@@ -19,9 +18,9 @@ using hysteron::records::Record;
 constexpr std::string_view usage =
     "A simulated piezo actuator. What it writes is simulated, not measured.\n"
     "\n"
-    "  simulate identify OUT.csv        its identification record: t, u, y; 40 periods of 1 Hz, 0 to 3.6 V\n"
-    "  simulate reference OUT.csv       the reference of a feedforward test: t, ref, u; u by a straight line\n"
-    "  simulate play IN.csv OUT.csv     plays the u of a record at 200 Hz from rest, and adds the y that answers\n"
+    "  hysteron-simulate identify OUT.csv     its identification record: t, u, y; 40 periods of 1 Hz, 0 to 3.6 V\n"
+    "  hysteron-simulate reference OUT.csv    the reference of a feedforward test: t, ref, u; u by a straight line\n"
+    "  hysteron-simulate play IN.csv OUT.csv  plays the u of a record at 200 Hz from rest, and adds the y that answers\n"
     "\n"
     "t in seconds, u in volts, ref and y in micrometres. Equal input gives equal output, to the bit.\n";
 
@@ -59,7 +58,7 @@ int play(const std::string& in, const std::string& out) {
   }
   Record record({played.time().begin(), played.time().end()}, played.sample_time(), {}, {});
   for (const auto& column : played.columns()) {
-    if (!hysteron::language::same_name(column.name, "y")) {
+    if (&column != played.find("y")) {
       record.add(column);
     }
   }

@@ -111,7 +111,7 @@ TEST(ExampleDiagrams, AreInTheLayoutOfTheHouse) {
 class Simulate : public testing::Test {
  protected:
   [[nodiscard]] int simulate(const std::string& words) const {
-    return run(programs + "/simulate " + words + " > " + folder / "printed" + " 2>&1");
+    return run(programs + "/hysteron-simulate " + words + " > " + folder / "printed" + " 2>&1");
   }
   const ScratchFolder folder;
 };

@@ -182,7 +182,8 @@ class Install(unittest.TestCase):
         run("cpack", "-G", "DEB", "-B", packages, cwd=BUILD)
         found = {path.name.split("_")[0]: path for path in packages.glob("*.deb")}
         self.assertEqual(set(found), {"hysteron", "hysteron-dev", "libhysteron1", "python3-hysteron"})
-        self.assertIn("./usr/bin/hysteron\n", run("dpkg-deb", "-c", found["hysteron"]).replace(" ", "\n"))
+        for program in ("hysteron", "hysteron-simulate"):
+            self.assertIn(f"./usr/bin/{program}\n", run("dpkg-deb", "-c", found["hysteron"]).replace(" ", "\n"))
         self.assertIn("libmodbus5", run("dpkg-deb", "-f", found["hysteron"], "Depends"))
         for name, file in (("hysteron-dev", "hysteronConfig.cmake"), ("hysteron-dev", "include/hysteron.h"),
                            ("libhysteron1", "libhysteron.so.1"), ("python3-hysteron", "hysteron/_location.py")):

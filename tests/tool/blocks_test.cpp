@@ -48,6 +48,15 @@ TEST(Blocks, CardOfOneBlock) {
   EXPECT_EQ(outcome.out, bench.shell("hysteron blocks lag").out);
 }
 
+/// Who looks for hysteresis finds the standard's switch first; the card leads on to the models.
+TEST(Blocks, ACardNamesTheBlocksThatAreNamedAfterIt) {
+  const test::Workbench bench;
+  EXPECT_THAT(bench.shell("hysteron blocks hysteresis").out,
+              AllOf(HasSubstr("HY_HYSTERESIS: "), HasSubstr("\nfurther blocks of the name\n"),
+                    HasSubstr("  HY_HYSTERESIS_RO ")));
+  EXPECT_THAT(bench.shell("hysteron blocks HY_CREEP").out, testing::Not(HasSubstr("further blocks")));
+}
+
 TEST(Blocks, FeedthroughIsByPairOfPins) {
   const test::Workbench bench;
   const auto integral = nlohmann::json::parse(bench.shell("hysteron blocks HY_INTEGRAL --json").out);

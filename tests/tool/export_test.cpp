@@ -58,6 +58,15 @@ TEST(Export, WritesABenchAndSaysHowFarItIsFromTheDiagram) {
   EXPECT_THAT(bench.read("bench.xml"), HasSubstr("armature=\"0.0002\""));
 }
 
+TEST(Export, ReadsARecordAsTheParameterFileSays) {
+  const ExportBench bench;
+  bench.write("log.csv", "t,current\n0.000,100\n0.001,200\n0.002,300\n");
+  bench.write("tuned.toml", "[parameters.DRY]\nLEVEL = 0.004\n\n[record.columns]\nI = \"current[mA]\"\n");
+  const auto done = bench.shell("hysteron export axis.st --params tuned.toml --in log.csv --out bench.xml");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("was converted to A"));
+}
+
 TEST(Export, MergesIntoARobotAndNeverOverIt) {
   const ExportBench bench;
   const auto done = bench.shell("hysteron export axis.st --into arm.xml --joint elbow --gear 10 --out new.xml");

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <vector>
 
 #include "support/byte_order_mark.hpp"
@@ -116,7 +118,10 @@ std::optional<std::string_view> Sources::line(const std::string& file, std::uint
   if (found == texts_.end()) {
     Lines lines;
     try {
-      lines = Lines(read_text_file(file));
+      // A pipe was read once, and whoever wrote it has gone: it is not waited for again.
+      if (std::error_code unknown; std::filesystem::is_regular_file(file, unknown)) {
+        lines = Lines(read_text_file(file));
+      }
     } catch (const InputError&) {
       // The diagnostic is shown without its line: it may have been about a text that has gone since.
     }

@@ -1,13 +1,17 @@
 #include "support/render.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "support/errors.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace hysteron {
 namespace {
@@ -98,6 +102,15 @@ TEST(Render, WithoutTextOrPlaceTheMessageStands) {
   EXPECT_EQ(as_text(nowhere, sources), "HY700 warning: So.\n");
   auto short_text = with("one line");
   EXPECT_THAT(as_text(at(9, 1, 1), short_text), Not(HasSubstr("|")));
+}
+
+/// Nobody writes into it any more: to open it again would wait for ever.
+TEST(Render, APipeIsNotWaitedFor) {
+  const test::ScratchFolder folder;
+  const std::string pipe = folder / "pipe.st";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  Sources sources;
+  EXPECT_EQ(sources.line(pipe, 1), std::nullopt);
 }
 
 TEST(Render, CountsAtTheEnd) {

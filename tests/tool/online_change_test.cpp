@@ -220,11 +220,11 @@ TEST(OnlineChangeCommand, ARunFileThatCouldNotStartTheNewVersionRefusesIt) {
   for (const char* const line : {"hysteron online-change run.toml --check", "hysteron online-change run.toml"}) {
     const auto misspelt = bench.shell(line);
     EXPECT_EQ(misspelt.code, 2);
-    EXPECT_THAT(misspelt.err, StartsWith("HY803 error: run.toml:18:"));
+    EXPECT_THAT(misspelt.err, StartsWith("HY803 error: run.toml:19:"));
   }
   // An address of a parameter that only the new version lacks.
   bench.write("run.toml", std::string(online_run_file) + "[modbus]\nport = 0\n[addresses]\nTOP.MX = \"holding 100\"\n");
-  EXPECT_THAT(bench.shell("hysteron online-change run.toml").err, StartsWith("HY826 error: run.toml:18:"));
+  EXPECT_THAT(bench.shell("hysteron online-change run.toml").err, StartsWith("HY826 error: run.toml:20:"));
   bench.write("stage.st", stage(true));
   const auto edited = bench.shell("hysteron online-change run.toml");
   EXPECT_EQ(edited.code, 0) << edited.err;

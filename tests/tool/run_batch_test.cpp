@@ -143,8 +143,8 @@ TEST_F(RunBatch, IsNearlyTheSameInVectors) {
 
 TEST_F(RunBatch, RefusesWhatIsNoSet) {
   bench.write("s.csv", "KP,N\n1,3\n2,2.5\n");
-  EXPECT_THAT(refusal("--batch s.csv"),
-              AllOf(HasSubstr("HY604"), HasSubstr("s.csv:3:1"), HasSubstr("N takes a whole number, not 2.5")));
+  EXPECT_THAT(refusal("--batch s.csv"), AllOf(HasSubstr("HY604"), HasSubstr("s.csv:3:1"),
+                                              HasSubstr("N takes whole numbers, and a column gives it 2.5")));
   bench.write("s.csv", "KP\n1\n-1\n");
   EXPECT_THAT(refusal("--batch s.csv"), AllOf(HasSubstr("HY214"), HasSubstr("s.csv:3:1")));
   bench.write("s.csv", "KP,Q\n1,1\n");

@@ -106,7 +106,7 @@ TEST(ChangeChecks, AParameterThatIsNoNumberIsTakenAsGivenAndBack) {
   (void)other.change().change_to(hidden(off), {.as_given = {"P"}});
   other.run(2);
   EXPECT_TRUE(std::isnan(value(other.door(), "P")));
-  EXPECT_THAT(other.change().change_back({}).left, ElementsAre("P (as given)"));
+  EXPECT_THAT(other.change().change_back({}).left, ElementsAre("P (nan is outside of its limits)"));
   other.run(2);
   EXPECT_EQ(value(other.door(), "P"), 0.5);
   (void)other.change().change_back({});

@@ -230,8 +230,8 @@ TEST(GoalSearch, SaysThatALongerTestIsWanted) {
   } catch (const InputError& refused) {
     const Diagnostic& said = refused.diagnostics().all().front();
     EXPECT_EQ(said.number, error::no_stable_loop);
-    EXPECT_THAT(said.cause, testing::HasSubstr("settles too slowly"));
-    EXPECT_THAT(said.mend, testing::HasSubstr("last longer than its 1.5 s"));
+    EXPECT_THAT(said.cause, ::testing::HasSubstr("settles too slowly"));
+    EXPECT_THAT(said.mend, ::testing::HasSubstr("last longer than its 1.5 s"));
   }
 }
 

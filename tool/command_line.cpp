@@ -25,7 +25,7 @@ constexpr std::string_view program_examples = R"(Examples:
   hysteron generate plant.st --target cpp --out generated
   hysteron help run
 
-Each error has a number and a page: docs/errors/HYnnn.md.
+Each error has a number, and a page: `hysteron explain HYnnn`.
 Exit codes: 0 done; 1 done, and something was found; 2 bad usage or input.
 )";
 

@@ -25,6 +25,19 @@ void add_all(const Diagnostics& found, Diagnostics& diagnostics) {
   }
 }
 
+/// Each once: what the diagram lacks, every one of its cases would tell again.
+void add_new(const Diagnostics& found, Diagnostics& diagnostics) {
+  for (const Diagnostic& one : found.all()) {
+    const auto is_one = [&](const Diagnostic& other) {
+      return other.number == one.number && other.cause == one.cause && other.place.file == one.place.file &&
+             other.place.line == one.place.line && other.place.column == one.place.column;
+    };
+    if (std::ranges::none_of(diagnostics.all(), is_one)) {
+      diagnostics.add(one);
+    }
+  }
+}
+
 /// The port of a name; its index, or -1 with an error.
 std::int64_t find_port(const std::vector<Port>& ports, const TestSignal& signal, std::string_view kind,
                        Diagnostics& diagnostics) {
@@ -299,7 +312,7 @@ const Program* TestPlanner::program_of(const TestCase& test, Diagnostics& diagno
       diagnostics.error(error::unusable_test, test.block.text.empty() ? test.place : test.block.place,
                         fmt::format("Which block \"{}\" tests cannot be told: {}.", test.name, first.cause),
                         "name one that the diagram has, as in block = \"PLANT\".");
-    } else if (!std::exchange(broken_, true)) {
+    } else {
       add_all(refused.diagnostics(), diagnostics);
     }
     return nullptr;
@@ -307,16 +320,17 @@ const Program* TestPlanner::program_of(const TestCase& test, Diagnostics& diagno
 }
 
 PlannedCase TestPlanner::plan(const TestCase& test, Diagnostics& diagnostics) {
-  const Program* const program = program_of(test, diagnostics);
-  if (program == nullptr) {
-    return {};
-  }
+  Diagnostics found;
+  PlannedCase planned;
   try {
-    return CasePlan(test, *program, folder_, diagnostics).run();
+    if (const Program* const program = program_of(test, found)) {
+      planned = CasePlan(test, *program, folder_, found).run();
+    }
   } catch (const InputError& refused) {
-    add_all(refused.diagnostics(), diagnostics);
-    return {};
+    add_all(refused.diagnostics(), found);
   }
+  add_new(found, diagnostics);
+  return planned;
 }
 
 }  // namespace hysteron::tool

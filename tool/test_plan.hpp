@@ -45,7 +45,6 @@ class TestPlanner {
   std::string diagram_;
   std::filesystem::path folder_;
   std::map<std::string, Program> programs_;  ///< by top block, in capitals
-  bool broken_ = false;                      ///< the diagram has errors, which were reported
 };
 
 }  // namespace hysteron::tool

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/support/scratch_folder.hpp"
@@ -21,6 +22,7 @@ struct Snippet {
   std::string kind{};
   std::map<std::string, std::string, std::less<>> attributes{};
   std::string text{};
+  std::string before{};  ///< the prose between the snippet before it and this one
   std::size_t line = 0;  ///< of the opening fence, from 1
 
   [[nodiscard]] bool has(std::string_view name) const { return attributes.contains(name); }
@@ -81,6 +83,7 @@ inline Page read_page(const std::filesystem::path& path) {
   Page page{.path = path};
   std::istringstream lines(contents_of(path));
   std::size_t number = 0;
+  std::string prose;
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -90,9 +93,11 @@ inline Page read_page(const std::filesystem::path& path) {
     }
     if (fence && !inside) {
       page.snippets.push_back(opened_snippet(line, number));
+      page.snippets.back().before = std::exchange(prose, {});
     } else if (inside && !fence) {
       page.snippets.back().text += line + "\n";
     } else if (!fence) {
+      prose += line + "\n";
       collect_links(line, number, page);
       if (line.starts_with("#")) {
         page.anchors.insert(anchor_of(line.substr(std::min(line.find_first_not_of('#') + 1, line.size()))));

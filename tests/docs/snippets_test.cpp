@@ -163,6 +163,25 @@ TEST_P(Snippets, DoWhatThePageSays) {
 
 INSTANTIATE_TEST_SUITE_P(Docs, Snippets, testing::ValuesIn(pages_with_snippets()), test_name);
 
+/// A viewer shows no word that stands behind a fence, so the prose has to say which file a snippet is.
+TEST(SnippetFiles, OfTutorialAndWalksAreNamedByTheProse) {
+  std::size_t files = 0;
+  for (const auto& path : all_pages()) {
+    if (!is_below(path, "docs/walks/") && !is_below(path, "docs/tutorial.md")) {
+      continue;
+    }
+    for (const Snippet& snippet : read_page(path).snippets) {
+      if (snippet.has("file")) {
+        const auto name = "`" + snippet.attributes.find("file")->second + "`";
+        EXPECT_NE(snippet.before.find(name), std::string::npos)
+            << path.string() << ":" << snippet.line << ": the text before it does not name " << name;
+        ++files;
+      }
+    }
+  }
+  EXPECT_GT(files, 10U);
+}
+
 TEST(ExpectedText, GapsStandForAnyTextAndAnyLines) {
   const auto matches = [](const std::string& text, const std::string& pattern) {
     return lines_match(lines_of(text), 0, lines_of(pattern), 0);

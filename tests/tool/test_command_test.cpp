@@ -59,6 +59,16 @@ steps = 3
 expect = {Y = {0 = 1.0, 1 = 2.0, 2 = 0.0}}
 )";
 
+TEST_F(UserTests, WhatTheDiagramLacksIsToldOnceForAllItsCases) {
+  bench.write("plant.st",
+              "FUNCTION_BLOCK F\nVAR_INPUT X : LREAL; END_VAR\nVAR_OUTPUT Y : LREAL; END_VAR\n"
+              "VAR D : HY_DELAY; END_VAR\nD(XIN := X);\nY := D.XOUT;\nEND_FUNCTION_BLOCK\n");
+  const auto named = [](const std::string& name) {
+    return "[[case]]\nname = \"" + name + "\"\nsteps = 1\ninputs = {X = 1.0}\nexpect = {Y = 0.0}\n";
+  };
+  EXPECT_THAT(refusal(named("a") + named("b")), AllOf(HasSubstr("HY404"), HasSubstr("\n1 error\n")));
+}
+
 TEST_F(UserTests, PassOnTheInterpreterAndOnGeneratedCode) {
   bench.write("logs/log.csv", test::plant_log);
   bench.write("p.toml", "[parameters.AMP]\nK = 1000\n");

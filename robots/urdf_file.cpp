@@ -94,7 +94,9 @@ UrdfParts urdf_parts(const Joint& joint, const FileOptions& options, const std::
 RobotFile urdf_bench(const Joint& joint, const FileOptions& options) {
   Unmapped unmapped;
   const std::string type = !joint.turns ? "prismatic" : has_both_ends(joint.position) ? "revolute" : "continuous";
-  const UrdfParts parts = urdf_parts(joint, options, type, {}, unmapped);
+  FileOptions whole = options;
+  whole.link_inertia = joint.inertia;  // the link of the bench has all of it
+  const UrdfParts parts = urdf_parts(joint, whole, type, {}, unmapped);
   // The mass of what turns, and the inertia of what slides, move nothing: 1 kg, and a ball of 10 cm radius.
   const double mass = joint.turns ? 1.0 : joint.inertia;
   const double inertia = joint.turns ? joint.inertia : 0.4 * 0.1 * 0.1 * joint.inertia;

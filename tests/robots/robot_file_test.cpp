@@ -225,6 +225,7 @@ TEST(RobotFile, GivesUrdfEachNumberThatItRequires) {
   joint.position = {};
   joint.actuator->force = {.low = -10.0, .high = 15.0};
   const RobotFile endless = bench_of(joint, {.format = Format::Urdf});
+  EXPECT_THAT(all_of(endless.unmapped), testing::Not(HasSubstr("inertia of rotor")));
   EXPECT_EQ(joint_in(endless), "-1e+16 1e+16 15 1e+16 3 0.012");
   EXPECT_THAT(all_of(endless.unmapped), AllOf(HasSubstr("limit velocity; 1e+16 m/s"), HasSubstr("limit lower"),
                                               HasSubstr("range of the force; -10 to 15 N")));

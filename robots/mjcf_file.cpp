@@ -151,7 +151,7 @@ void merge_actuator(const Joint& joint, const FileOptions& options, const pugi::
   std::vector<pugi::xml_node> drives;
   for (const pugi::xml_node section : root.children("actuator")) {
     for (const pugi::xml_node one : section.children()) {
-      if (options.joint == one.attribute("joint").value()) {
+      if (options.joint == one.attribute("joint").value() || options.joint == one.attribute("jointinparent").value()) {
         drives.push_back(one);
       }
     }
@@ -256,7 +256,8 @@ RobotFile merged_mujoco(const Joint& joint, const FileOptions& options, const st
     merge_actuator(joint, options, robot, edit, file, unmapped);
   }
   for (const pugi::xpath_node& one : robot.select_nodes("//include")) {
-    unmapped.add("a file that the robot includes", "it is not read: a default or an actuator of the joint in it counts",
+    unmapped.add("a file that the robot includes",
+                 "it is not read; a default or an actuator in it may change the joint",
                  one.node().attribute("file").value());
   }
   file.text = edit.text();

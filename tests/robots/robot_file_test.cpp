@@ -164,7 +164,7 @@ TEST(RobotFile, ListsAllThatAnActuatorThatStaysDoesNotHave) {
   const auto left = [&](const std::string& actuators) {
     return all_of(merged(joint, {.joint = "a"}, "arm.xml", robot_of("", "", actuators)).unmapped);
   };
-  for (const char* const actuators : {"<motor joint='a'/><motor joint='a'/>", "<motor joint='a'/>"}) {
+  for (const char* const actuators : {"<motor joint='a'/><motor jointinparent='a'/>", "<motor joint='a'/>"}) {
     EXPECT_THAT(left(actuators), AllOf(HasSubstr("a constant force; 0.01 N*m"), HasSubstr("-4 to 4 A")));
   }
   EXPECT_THAT(all_of(merged(joint, {.joint = "a"}, "arm.xml", robot_of("<include file='more.xml'/>", "", "")).unmapped),

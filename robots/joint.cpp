@@ -318,6 +318,7 @@ class JointReader : private AxisGraph {
 
   void take_inertia(double inertia, const Wire& wire) {
     if (options_.inertia) {
+      told_.push_back(inertia);
       return;
     }
     if (inertia_ && std::fabs(inertia - *inertia_) > 1e-6 * *inertia_) {
@@ -346,6 +347,13 @@ class JointReader : private AxisGraph {
                          graph_.nodes[velocity_].path, force),
              fmt::format("state it in the diagram, as TORQUE : LREAL; (* @unit {} *), or the inertia by --inertia.",
                          force));
+    }
+    // Stated to three digits is stated well; where the units tell two, --inertia says which one counts.
+    const auto stated = [&](double told) { return std::fabs(told - *inertia) <= 0.005 * told; };
+    if (!told_.empty() && std::ranges::none_of(told_, stated)) {
+      refuse(fmt::format("--inertia {} contradicts the units of the diagram, which tell {} {}.", short_text(*inertia),
+                         short_text(told_.front()), turns_ ? "kg*m^2" : "kg"),
+             fmt::format("leave --inertia out, or correct the unit {} or the gain behind it.", force));
     }
     Joint joint{.turns = turns_,
                 .velocity = graph_.nodes[velocity_].path + ".XOUT",
@@ -456,6 +464,7 @@ class JointReader : private AxisGraph {
   bool turns_ = true;
   double to_si_ = 1.0;  ///< of the velocity
   std::optional<double> inertia_{};
+  std::vector<double> told_{};  ///< by units, where the inertia is stated
   Range position_{};
   std::set<std::uint32_t> on_path_{};
   std::set<std::uint32_t> visited_{};

@@ -28,6 +28,8 @@ std::vector<double> velocities(const Joint& joint, std::span<const double> contr
   const double admittance = 1.0 / joint.inertia;
   const double softness = admittance * (1.0 - impedance) / impedance;
   const double hold = stiffness_of_hold(step);
+  // With a spring the constant force is in springref, and no range of the force limits it.
+  const double bias = joint.stiffness != 0.0 ? 0.0 : joint.offset;
   double q = 0.0;
   double v = 0.0;
   double activation = 0.0;
@@ -35,8 +37,8 @@ std::vector<double> velocities(const Joint& joint, std::span<const double> contr
     result.push_back(v);
     const double u = std::clamp(wanted, actuator.control.low, actuator.control.high);
     const double driving = actuator.lag > 0.0 ? activation : u;
-    const double force = std::clamp(actuator.gain * driving + joint.offset, actuator.force.low, actuator.force.high);
-    const double free = force - joint.damping * v - joint.stiffness * q;
+    const double force = std::clamp(actuator.gain * driving + bias, actuator.force.low, actuator.force.high);
+    const double free = force - joint.damping * v - joint.stiffness * q + (joint.offset - bias);
     const double held =
         std::clamp((-hold * v - free * admittance) / (admittance + softness), -joint.friction, joint.friction);
     v += step * (free + held) / (joint.inertia + step * joint.damping);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robots/joint.hpp"
@@ -56,22 +57,18 @@ struct ExportOptions {
   double gear = 1.0;
 };
 
-/// The joint and the diagram over a record, side by side.
-std::string comparison(const ExportOptions& options, const robots::Joint& joint, const Program& program,
-                       Diagnostics& warnings) {
-  Program timed = program;
-  const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
-  const auto records = read_and_told({options.input_record}, reading, program, false, warnings);
-  settle_sample_time(records.front(), timed, warnings);
-  const Drive drive = drive_from(records.front(), timed, {}, warnings);
-  if (warnings.has_errors()) {
-    throw InputError(warnings);
-  }
-  const std::vector<Signal> run = interpret(timed, drive, {find_signal(timed.graph, joint.velocity, {})}, false);
+/// Of q', SI.
+struct Difference {
+  double error = 0.0;  ///< RMS of joint less diagram
+  double percent = 0.0;
+};
+
+Difference difference(const robots::Joint& joint, const Program& program, const Drive& drive) {
+  const std::vector<Signal> run = interpret(program, drive, {find_signal(program.graph, joint.velocity, {})}, false);
   std::vector<double> control(drive.steps, 0.0);
   if (joint.actuator) {
-    const Port* const input = find_port(timed.graph.inputs, joint.actuator->input);
-    const Signal& values = drive.inputs[static_cast<std::size_t>(input - timed.graph.inputs.data())];
+    const Port* const input = find_port(program.graph.inputs, joint.actuator->input);
+    const Signal& values = drive.inputs[static_cast<std::size_t>(input - program.graph.inputs.data())];
     for (std::size_t k = 0; k < drive.steps; ++k) {
       control[k] = at_step(values, k);
     }
@@ -84,9 +81,54 @@ std::string comparison(const ExportOptions& options, const robots::Joint& joint,
     error.add(of_joint[k] - wanted);
     size.add(wanted);
   }
-  return fmt::format("over {}: the joint differs from the diagram by {:.3g} {}/s RMS, {:.2g} % of its velocity\n",
-                     options.input_record, error.value(), joint.position_unit(),
-                     size.value() > 0.0 ? 100.0 * error.value() / size.value() : 0.0);
+  return {.error = error.value(), .percent = size.value() > 0.0 ? 100.0 * error.value() / size.value() : 0.0};
+}
+
+/// The same inputs, each held over `parts` shorter steps.
+Difference difference_of_finer_steps(const robots::Joint& joint, Program program, Drive drive, std::size_t parts) {
+  for (Signal& input : drive.inputs) {
+    if (input.size() > 1) {
+      Signal held;
+      held.reserve(parts * input.size());
+      for (const double value : input) {
+        held.insert(held.end(), parts, value);
+      }
+      input = std::move(held);
+    }
+  }
+  drive.steps *= parts;
+  drive.sample_time /= static_cast<double>(parts);
+  program.graph.sample_time_ns = 0;  // that of the drive counts
+  return difference(joint, program, drive);
+}
+
+/// The joint and the diagram over a record, side by side, and whether the step makes what they differ by.
+std::string comparison(const ExportOptions& options, const robots::Joint& joint, const Program& program,
+                       Diagnostics& warnings) {
+  Program timed = program;
+  const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
+  const auto records = read_and_told({options.input_record}, reading, program, false, warnings);
+  settle_sample_time(records.front(), timed, warnings);
+  const Drive drive = drive_from(records.front(), timed, {}, warnings);
+  if (warnings.has_errors()) {
+    throw InputError(warnings);
+  }
+  const Difference found = difference(joint, timed, drive);
+  std::string text =
+      fmt::format("over {}: the joint differs from the diagram by {:.3g} {}/s RMS, {:.2g} % of its velocity\n",
+                  options.input_record, found.error, joint.position_unit(), found.percent);
+  constexpr double notable_percent = 2.0;
+  if (found.percent > notable_percent) {
+    const double finer = difference_of_finer_steps(joint, timed, drive, 10).percent;
+    const std::string step = fmt::format("{:.4g} ms", 1e3 * drive.sample_time);
+    text += finer < 0.5 * found.percent
+                ? fmt::format(
+                      "  the step of {} makes most of it, since the two integrate in ways of their own: with a "
+                      "tenth of it, {:.2g} %\n",
+                      step, finer)
+                : fmt::format("  the step of {} is not the cause: with a tenth of it, {:.2g} %\n", step, finer);
+  }
+  return text;
 }
 
 std::string listed(const std::vector<robots::Neglected>& list) {

@@ -76,5 +76,13 @@ TEST(JointLaw, SticksAndSlides) {
   EXPECT_NEAR(sliding.back(), 10.0, 0.01);
 }
 
+TEST(JointLaw, LimitsTheBiasOfAnActuatorAndNoConstantForceOfASpring) {
+  Joint joint{.inertia = 1.0, .offset = 3.0, .actuator = Actuator{.gain = 1.0, .force = {.low = -1.0, .high = 1.0}}};
+  const std::vector<double> control(2, 0.0);
+  EXPECT_NEAR(velocities(joint, control, 1e-3).back(), 1e-3, 1e-15);
+  joint.stiffness = 0.5;
+  EXPECT_NEAR(velocities(joint, control, 1e-3).back(), 3e-3, 1e-15);
+}
+
 }  // namespace
 }  // namespace hysteron::robots

@@ -99,6 +99,9 @@ TEST(Joint, AsksForWhatTheDiagramDoesNotTell) {
   EXPECT_THAT(refusal(with(servo, "(* @unit N*m *)", "")),
               AllOf(HasSubstr("No signal on the way to SPEED has the unit N*m"), HasSubstr("--inertia")));
   EXPECT_NEAR(joint_of_text(with(servo, "(* @unit N*m *)", ""), {.inertia = 4e-4}).actuator->gain, 0.1, 1e-15);
+  EXPECT_THAT(refusal(servo, {.inertia = 4e-4}),
+              HasSubstr("--inertia 0.0004 contradicts the units of the diagram, which tell 0.0002 kg*m^2."));
+  EXPECT_EQ(joint_of_text(servo, {.inertia = 2.001e-4}).inertia, 2.001e-4);
   EXPECT_THAT(refusal(with(servo, "(* @unit rad/s *)", "")),
               HasSubstr("has no integral or lag whose unit is a velocity"));
   EXPECT_THAT(refusal(servo, {.velocity = "KT.XOUT"}), HasSubstr("is no output of an integral or a lag"));

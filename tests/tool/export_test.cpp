@@ -58,6 +58,38 @@ TEST(Export, WritesABenchAndSaysHowFarItIsFromTheDiagram) {
   EXPECT_THAT(bench.read("bench.xml"), HasSubstr("armature=\"0.0002\""));
 }
 
+TEST(Export, SaysWhetherTheStepIsWhatTheyDifferBy) {
+  const ExportBench bench;
+  const auto line_of = [&](const std::string& added, const std::string& spring) {
+    bench.write("spring.st",
+                "FUNCTION_BLOCK AXIS  (* @ts 1ms *)\n  VAR_INPUT\n    I : LREAL;\n  END_VAR\n"
+                "  VAR_OUTPUT\n    PHI : LREAL;  (* @unit rad *)\n  END_VAR\n  VAR\n"
+                "    TORQUE : LREAL;  (* @unit N*m *)\n    OMEGA : LREAL;  (* @unit rad/s *)\n" +
+                    added +
+                    "    INERTIA : HY_GAIN := (K := 4000.0);\n    SPEED : HY_INTEGRAL_FORWARD;\n"
+                    "    POS : HY_INTEGRAL_FORWARD;\n  END_VAR\n\n" +
+                    spring +
+                    "  OMEGA := SPEED.XOUT;\n  PHI := POS.XOUT;\n  POS(XIN := OMEGA);\n"
+                    "  SPEED(XIN := INERTIA.XOUT);\nEND_FUNCTION_BLOCK\n");
+    const auto done = bench.shell(
+        "awk 'BEGIN { print \"t,I\"; for (k = 0; k < 1000; ++k) printf \"%.3f,%.5f\\n\", 0.001 * k, sin(0.03 * k) }' "
+        "> log.csv && hysteron export spring.st --in log.csv --out bench.xml");
+    EXPECT_EQ(done.code, 0) << done.err;
+    return done.out.substr(std::min(done.out.find("over log.csv"), done.out.size()));
+  };
+  // A forward integral of a spring gains energy at each step: that is the step's doing.
+  EXPECT_THAT(line_of("    C : HY_GAIN := (K := 0.3);\n    B : HY_GAIN := (K := 0.001);\n",
+                      "  TORQUE := 0.05 * I;\n  C(XIN := POS.XOUT);\n  B(XIN := SPEED.XOUT);\n"
+                      "  INERTIA(XIN := TORQUE - C.XOUT - B.XOUT);\n"),
+              HasSubstr("the step of 1 ms makes most of it"));
+  // Of a dead time of 20 ms the joint knows nothing, whatever the step is.
+  EXPECT_THAT(line_of("    LATE : HY_DEAD_TIME := (DEAD_TIME := 0.02);\n"
+                      "    B : HY_GAIN := (K := 0.01);\n",
+                      "  LATE(XIN := 0.05 * I);\n  TORQUE := LATE.XOUT;\n  B(XIN := SPEED.XOUT);\n"
+                      "  INERTIA(XIN := TORQUE - B.XOUT);\n"),
+              HasSubstr("the step of 1 ms is not the cause"));
+}
+
 TEST(Export, ReadsARecordAsTheParameterFileSays) {
   const ExportBench bench;
   bench.write("log.csv", "t,current\n0.000,100\n0.001,200\n0.002,300\n");

@@ -1,0 +1,15 @@
+// A joint in a file of URDF. Internal to robot_file.
+#pragma once
+
+#include <pugixml.hpp>
+#include <string>
+
+#include "robots/robot_file.hpp"
+
+namespace hysteron::robots {
+
+[[nodiscard]] RobotFile urdf_bench(const Joint& joint, const FileOptions& options);
+[[nodiscard]] RobotFile merged_urdf(const Joint& joint, const FileOptions& options, const std::string& name,
+                                    const pugi::xml_document& robot, const std::string& text);
+
+}  // namespace hysteron::robots

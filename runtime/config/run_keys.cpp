@@ -235,7 +235,8 @@ constexpr std::array trace_keys{
     RunKey{"files", whole, "8", "how many there are at most, of earlier runs too: run.trace, run.trace.1, …", 2.0,
            1000.0},
     RunKey{"trigger", text, "(none: every cycle is kept)",
-           "\"U > 5.0\", an input or output and a number; or \"fault\""},
+           "\"U > 5.0\", an input or output and a number: fires as it crosses, not where it holds from the start; or "
+           "\"fault\", which counts from the first cycle"},
     RunKey{"before",
            whole,
            "1000",

@@ -47,7 +47,10 @@ std::uint64_t memory_before(const TraceTrigger& trigger, std::size_t inputs, std
 }
 
 TraceSelector::TraceSelector(const TraceHead& head, std::optional<TraceTrigger> trigger)
-    : inputs_(head.inputs.size()), outputs_(head.outputs.size()), trigger_(trigger) {
+    : inputs_(head.inputs.size()),
+      outputs_(head.outputs.size()),
+      trigger_(trigger),
+      was_beyond_(!trigger || trigger->signal != TraceTrigger::Signal::fault) {
   const std::string text = text_of(head);
   append_record(program_record_, TraceKind::program, std::as_bytes(std::span(text)));
 }

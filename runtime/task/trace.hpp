@@ -28,7 +28,8 @@
 
 namespace hysteron::runtime {
 
-/// Fires at the first step where the signal crosses the level: is beyond it, and was not in the step before.
+/// Fires at the first step where the signal crosses the level: is beyond it, and was not in the step before. Before the
+/// first step there is no fault, and the signal is unknown: beyond the level from the start, it has to come back first.
 struct TraceTrigger {
   enum class Signal : std::uint8_t { input, output, fault };
   Signal signal = Signal::fault;
@@ -78,7 +79,7 @@ class TraceSelector {
   std::optional<TraceTrigger> trigger_;
   std::deque<Segment> kept_{};
   bool fired_ = false;
-  bool was_beyond_ = true;  ///< a signal that begins beyond the level has not crossed it
+  bool was_beyond_;  ///< a signal that begins beyond the level has not crossed it; a fault at the start has begun
   bool finished_ = false;
   std::uint64_t left_ = 0;
   std::uint64_t captures_ = 0;    ///< that were begun

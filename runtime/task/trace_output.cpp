@@ -6,11 +6,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "runtime/task/trace_file.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -46,6 +51,27 @@ int open_locked(const std::filesystem::path& file, struct stat& about) {
 bool is_file(const std::filesystem::path& path) {
   struct stat about {};
   return ::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode);
+}
+
+/// Whether a trace has no step, as where its trigger did not fire: it is worth no place among those that are kept.
+bool holds_no_step(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  for (bool is_first = true; line != "data"; is_first = false) {
+    if (!std::getline(in, line) || in.eof() || (is_first && line != "hysteron trace 1")) {
+      return false;  // zeros that a power cut left, or a head that is torn: not known to be empty
+    }
+  }
+  std::array<char, 5> head{};  // of a record: the length of its contents, and its kind
+  while (in.read(head.data(), head.size())) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, head.data(), sizeof(length));
+    if (static_cast<TraceKind>(head[4]) == TraceKind::step) {
+      return false;
+    }
+    in.seekg(length, std::ios::cur);
+  }
+  return in.eof();
 }
 
 /// Renames FILE to FILE.1, FILE.1 to FILE.2, up to FILE.kept; what had that name is gone. False where FILE cannot be.
@@ -88,7 +114,11 @@ void TraceOutput::open_next() {
   };
   struct stat about {};
   descriptor_ = open_locked(file_, about);
-  if (descriptor_ >= 0 && about.st_size > 0) {
+  if (descriptor_ >= 0 && about.st_size > 0 && holds_no_step(file_)) {
+    if (::ftruncate(descriptor_, 0) != 0) {
+      refuse(file_);
+    }
+  } else if (descriptor_ >= 0 && about.st_size > 0) {
     const int before = descriptor_;  // locked until the new file is
     const bool moved = shift(file_, kept_);
     descriptor_ = moved ? open_locked(file_, about) : -1;

@@ -165,6 +165,56 @@ TEST(Trace, ATriggerIsArmedAgainUntilItHasFiredSoOften) {
   }
 }
 
+/// A trace without a step takes no place among those that are kept: restarts without a crossing cost no capture.
+TEST(Trace, AStartWhoseTriggerDoesNotFireKeepsEveryCapture) {
+  const hysteron::test::ScratchFolder scratch;
+  const std::string file = scratch / "trace";
+  TraceTrigger trigger{.signal = TraceTrigger::Signal::input, .index = 0, .level = 0.3, .before = 5, .after = 5};
+  trigger.captures = 2;
+  (void)traced_run({.file = file, .trigger = trigger, .files = 3}, 500);
+  const auto newest = hysteron::test::contents_of(file);
+  const auto oldest = hysteron::test::contents_of(file + ".1");
+  trigger.level = 100.0;
+  for (int start = 0; start < 5; ++start) {
+    EXPECT_EQ(replayed(traced_run({.file = file, .trigger = trigger, .files = 3}, 500)).steps, 0U);
+    EXPECT_EQ(hysteron::test::contents_of(file + ".1"), newest) << start;
+    EXPECT_EQ(hysteron::test::contents_of(file + ".2"), oldest) << start;
+  }
+  // A task that was killed left the head alone, or a torn record behind it.
+  for (const std::size_t bytes : {21U, 10U, 0U}) {
+    const auto empty = hysteron::test::contents_of(file);
+    std::filesystem::resize_file(file, empty.size() - bytes);
+    (void)traced_run({.file = file, .trigger = trigger, .files = 3}, 500);
+    EXPECT_EQ(hysteron::test::contents_of(file + ".1"), newest) << bytes;
+  }
+  trigger.level = 0.3;
+  trigger.captures = 1;
+  EXPECT_GT(replayed(traced_run({.file = file, .trigger = trigger, .files = 3}, 500)).steps, 5U);
+  EXPECT_EQ(hysteron::test::contents_of(file + ".1"), newest) << "the empty one was written over";
+  (void)traced_run({.file = file, .trigger = trigger, .files = 3}, 500);
+  EXPECT_EQ(hysteron::test::contents_of(file + ".2"), newest) << "a capture is put aside";
+}
+
+/// A trigger is an edge: a level that holds from the start has to be left first. A fault of the first step has begun.
+TEST(Trace, ATriggerIsAnEdgeAndAFaultBeginsWithTheFirstStep) {
+  const hysteron::test::ScratchFolder scratch;
+  const TraceTrigger always{.signal = TraceTrigger::Signal::input, .index = 0, .level = -9.0, .before = 5, .after = 5};
+  EXPECT_EQ(replayed(traced_run({.file = scratch / "level", .trigger = always}, 500)).steps, 0U);
+  const std::string file = scratch / "fault";
+  Accumulator program;
+  {
+    Trace trace({.file = file, .trigger = TraceTrigger{.before = 5, .after = 5}, .waits = true}, program);
+    for (std::uint64_t k = 0; k < 50; ++k) {
+      trace.before_step(k, program);
+      trace.step(k, k, Fault::lost_link, std::array{1.0}, std::array{1.0, 0.0}, std::array{1.0, 0.0});
+    }
+  }
+  std::vector<TraceStep> steps;
+  (void)replayed(hysteron::test::contents_of(file), &steps);
+  ASSERT_EQ(steps.size(), 6U);
+  EXPECT_EQ(steps.front().number, 0U);
+}
+
 /// No room at the start: the trace of before has its name, and another is begun where there is room.
 TEST(Trace, AFullDiskAtTheStartIsACutThatIsMended) {
   const hysteron::test::ScratchFolder scratch;

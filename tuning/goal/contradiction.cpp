@@ -42,11 +42,29 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
       mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
     }
   }
-  diagnostics.error(
-      error::limits_contradict, place,
-      parts.size() > 1 ? fmt::format("No controller was found that keeps {} together.", fmt::join(parts, " and "))
-                       : fmt::format("No controller was found that keeps {}.", parts.empty() ? "the limits" : parts[0]),
-      mend + ", free a further parameter of the controller, or search from more points: --start 20.", std::move(notes));
+  const std::string limits = parts.empty()
+                                 ? "the limits"
+                                 : fmt::format("{}{}", fmt::join(parts, " and "), parts.size() > 1 ? " together" : "");
+  if (result.is_held_by_test) {
+    std::vector<std::string> values;
+    for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+      values.push_back(fmt::format("{} = {:.4g}", problem.parameters[j].name, result.x[static_cast<Eigen::Index>(j)]));
+    }
+    notes.push_back({.place = problem.settings.place,
+                     .text = fmt::format("beside {} the loop {}, {}, and has no value there", fmt::join(values, ", "),
+                                         what_it_does(LoopState::TooSlow), length_of_test(problem))});
+    diagnostics.error(
+        error::limits_contradict, place,
+        fmt::format("No controller was found that keeps {} and whose loop settles within the test.", limits),
+        fmt::format("let the test last longer than its {}: duration in [goal], or a longer record. "
+                    "A slower loop may keep the limits. Else {}.",
+                    length_of_test(problem), mend),
+        std::move(notes));
+    return;
+  }
+  diagnostics.error(error::limits_contradict, place, fmt::format("No controller was found that keeps {}.", limits),
+                    mend + ", free a further parameter of the controller, or search from more points: --start 20.",
+                    std::move(notes));
 }
 
 }  // namespace hysteron

@@ -35,6 +35,7 @@ constexpr double near_bound = 1e-2;
 constexpr double beside_bound = 1e-4;
 constexpr double hardly_worse = 1e-3;  ///< as a share of the cost, or of the excess of a broken limit
 constexpr double at_bound = 1e-6;
+constexpr double beside_slow = 0.02;  ///< as a share of the parameters: so near to loops that are too slow
 
 struct Candidate {
   VectorXd x{};
@@ -169,8 +170,6 @@ class GoalSearch {
       refuse_open_loop(*open_seen_);
     }
     const bool one = problem_.plants.size() == 1;
-    const std::string seconds = fmt::format(
-        "{:.4g} s", static_cast<double>(problem_.drive.steps - problem_.begin) * problem_.drive.sample_time);
     throw InputError(
         error::no_stable_loop, problem_.settings.place,
         fmt::format("The loop {} at the start{}, and at none of {} points spread over the bounds does it settle{}.",
@@ -178,7 +177,7 @@ class GoalSearch {
                     points_tried_, one ? "" : " with every plant"),
         too_slow_ ? fmt::format("let the test last longer than its {}: duration in [goal], or a longer record. Some of "
                                 "these loops settle, only more slowly.",
-                                seconds)
+                                length_of_test(problem_))
                   : "start from a controller with which the loop is stable, most often with a smaller gain, or narrow "
                     "the bounds around one.");
   }
@@ -205,7 +204,10 @@ class GoalSearch {
   /// Evaluates a point, and remembers it where it is the best so far.
   bool take(const VectorXd& x, bool with_derivatives) {
     ++result_.evaluations;
-    if (model_.evaluate(x, with_derivatives) != LoopState::Settles) {
+    if (const LoopState state = model_.evaluate(x, with_derivatives); state != LoopState::Settles) {
+      if (state == LoopState::TooSlow) {
+        slow_points_.push_back(x);
+      }
       return false;
     }
     const Candidate here{x, model_.cost(), model_.largest_excess()};
@@ -372,7 +374,30 @@ class GoalSearch {
     }
   }
 
+  /// The largest difference of a parameter, as a share of itself at `best`.
+  [[nodiscard]] double distance(const VectorXd& best, const VectorXd& x) const {
+    return ((x - best).array().abs() / best.array().abs().max(beside_slow * typical_.array())).maxCoeff();
+  }
+
+  /// Whether loops that are too slow lie beside the result, and it gets worse away from them: a bound that nobody gave.
+  bool is_held_by_test(const Candidate& best) {
+    const auto nearest =
+        std::ranges::min_element(slow_points_, {}, [&](const VectorXd& x) { return distance(best.x, x); });
+    if (nearest == slow_points_.end()) {
+      return false;
+    }
+    const VectorXd step = std::min(1.0, beside_slow / distance(best.x, *nearest)) * (*nearest - best.x);
+    result_.evaluations += 2;
+    if (model_.evaluate(best.x + step, false) != LoopState::TooSlow) {
+      return false;
+    }
+    const VectorXd away = (best.x - step).cwiseMax(lower_).cwiseMin(upper_);
+    return model_.evaluate(away, false) != LoopState::Settles ||
+           best.is_better_than({away, model_.cost(), model_.largest_excess()});
+  }
+
   void finish(const Candidate& best, GoalStatus status) {
+    result_.is_held_by_test = is_held_by_test(best);
     result_.x = best.x;
     result_.status = best.excess > 0.0 && status != GoalStatus::Cancelled ? GoalStatus::Contradiction : status;
     for (Index j = 0; j < best.x.size(); ++j) {
@@ -411,14 +436,23 @@ class GoalSearch {
   }
 
   [[nodiscard]] std::string message() const {
+    const std::string held = result_.is_held_by_test
+                                 ? fmt::format(" Beside it the loop {}, {}: let the test last longer.",
+                                               what_it_does(LoopState::TooSlow), length_of_test(problem_))
+                                 : "";
     switch (result_.status) {
       case GoalStatus::Tuned:
-        return problem_.limits.empty() ? "The loop is tuned." : "The loop is tuned, and all limits are kept.";
+        return (problem_.limits.empty() ? "The loop is tuned." : "The loop is tuned, and all limits are kept.") + held;
       case GoalStatus::NotConverged:
-        return fmt::format("The search ended before it converged; the best point is kept{}.",
-                           problem_.limits.empty() ? "" : ", and all limits are kept");
+        return fmt::format("The search ended before it converged; the best point is kept{}.{}",
+                           problem_.limits.empty() ? "" : ", and all limits are kept", held);
       case GoalStatus::Contradiction:
-        return "The limits were not kept together; the point that breaks them least is the result.";
+        return result_.is_held_by_test
+                   ? "The limits were not kept together by a loop that settles within the test. Of these loops, the "
+                     "one "
+                     "that breaks them least is the result." +
+                         held
+                   : "The limits were not kept together; the point that breaks them least is the result.";
       case GoalStatus::Cancelled:
         return "The search was cancelled; the best point so far is kept.";
     }
@@ -439,6 +473,7 @@ class GoalSearch {
   int start_number_ = 0;
   int points_tried_ = 0;                    ///< where a start does not settle
   bool too_slow_ = false;                   ///< some loop dies away, but not within the test
+  std::vector<VectorXd> slow_points_{};     ///< that the search met, and could not take
   std::optional<std::size_t> open_seen_{};  ///< the plant of the first point whose loop settles and is open
   double cost_unit_ = 1.0;
   Candidate best_{};
@@ -448,6 +483,10 @@ class GoalSearch {
 };
 
 }  // namespace
+
+std::string length_of_test(const GoalProblem& problem) {
+  return fmt::format("{:.4g} s", static_cast<double>(problem.drive.steps - problem.begin) * problem.drive.sample_time);
+}
 
 GoalResult tune_for_goal(const GoalProblem& problem, const GoalOptions& options) {
   return GoalSearch(problem, options).run();

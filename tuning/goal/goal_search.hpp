@@ -36,7 +36,7 @@ struct GoalOptions {
 enum class GoalStatus : std::uint8_t {
   Tuned,
   NotConverged,   ///< the limits are kept; the search for the best ended early
-  Contradiction,  ///< the limits cannot be kept together; the point that breaks them least is the result
+  Contradiction,  ///< no loop that settles within the test was found to keep the limits; the least broken is the result
   Cancelled
 };
 
@@ -66,6 +66,9 @@ struct GoalResult {
   std::vector<LimitResult> limits{};           ///< limit by limit, plant by plant
   LoopState start_state = LoopState::Settles;  ///< of the first plant that does not settle
   std::size_t start_plant = 0;                 ///< that plant
+  /// The search ran against loops that settle too slowly for the length of the test: they have no value, and better
+  /// ones may be among them.
+  bool is_held_by_test = false;
   /// √J reached from each start; not a number where limits stay broken, infinite where no loop settles.
   std::vector<double> start_errors{};
   int best_start = 0;
@@ -78,6 +81,9 @@ struct GoalResult {
 /// @throws InputError HY531 where nothing comes back of what is put into the loop, HY532 where no point was found at
 /// which the loop settles.
 [[nodiscard]] GoalResult tune_for_goal(const GoalProblem& problem, const GoalOptions& options = {});
+
+/// How long the test lasts from its step on, with its unit: 1.5 s.
+[[nodiscard]] std::string length_of_test(const GoalProblem& problem);
 
 /// The parameter file with the tuned values in it, and what stands at the top of it and beside its values.
 [[nodiscard]] parameters::ParameterFile tuned_file(parameters::ParameterFile file, const GoalProblem& problem,

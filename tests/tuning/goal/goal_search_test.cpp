@@ -9,6 +9,7 @@
 #include "support/errors.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/tuning/goal/loops.hpp"
+#include "tuning/goal/contradiction.hpp"
 
 namespace hysteron {
 namespace {
@@ -156,7 +157,39 @@ TEST(GoalSearch, NamesTheLimitThatCannotBeKept) {
   EXPECT_FALSE(result.limits[0].is_kept);
   EXPECT_NEAR(result.x[0], 4.0, 1e-3);
   EXPECT_EQ(result.at_bound[0], AtBound::Lower);
+  EXPECT_FALSE(result.is_held_by_test);
   EXPECT_GT(result.limits[0].against, 0.9);
+}
+
+/// K from 0.1 on keeps each of these limits. Below K = 0.445 the loop settles too slowly for a test of 1.5 s: a bound
+/// that nobody gave, and no contradiction.
+TEST(GoalSearch, NamesATestThatIsTooShortForItsLimits) {
+  const auto problem_of = [](double start, const std::string& duration, const std::string& limit) {
+    return loops::problem_of(loops::integrator(),
+                             settings_of_gain(start, "settling_time = 0.5\n" + duration + "[goal.limits]\n" + limit,
+                                              "{min = 0.1, max = 50.0}"));
+  };
+  for (const std::string limit :
+       {"effort = 0.3\n", "effort = 0.01\n", "gain_margin_db = 60.0\n", "phase_margin_deg = 89.9\n"}) {
+    for (const double start : {0.2, 1.0}) {
+      const GoalProblem problem = problem_of(start, "", limit);
+      const GoalResult result = tune_for_goal(problem);
+      EXPECT_EQ(result.status, GoalStatus::Contradiction) << limit;
+      EXPECT_TRUE(result.is_held_by_test) << limit << start << " at " << result.x[0];
+      EXPECT_THAT(result.message, ::testing::HasSubstr("settles too slowly for the length of the test, 1.5 s"));
+      Diagnostics said;
+      report_contradiction(problem, result, said);
+      ASSERT_EQ(said.all().size(), 1U);
+      EXPECT_THAT(said.all()[0].cause, ::testing::HasSubstr("whose loop settles within the test")) << limit;
+      EXPECT_THAT(said.all()[0].mend, ::testing::StartsWith("let the test last longer than its 1.5 s")) << limit;
+      EXPECT_THAT(said.all()[0].mend, ::testing::Not(::testing::HasSubstr("--start"))) << limit;
+    }
+    const GoalResult longer = tune_for_goal(problem_of(0.2, "duration = 40.0\n", limit));
+    EXPECT_FALSE(longer.is_held_by_test) << limit;
+    const bool is_kept = limit != "effort = 0.01\n";
+    EXPECT_EQ(longer.status, is_kept ? GoalStatus::Tuned : GoalStatus::Contradiction) << limit << longer.message;
+    EXPECT_TRUE(is_kept || longer.x[0] == 0.1) << longer.x[0];
+  }
 }
 
 /// y(k+1) = A·y(k) + B·u(k), A = 1.05, B = 0.05, runs away by itself. Ms ≤ 1.2 needs B·K ≥ (A − 1)·(1 + 1/1.2), that is

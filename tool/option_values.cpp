@@ -46,4 +46,11 @@ CLI::Validator number_above_zero() {
                    [](std::string_view text) { return is_number(text, [](double number) { return number > 0.0; }); });
 }
 
+CLI::Validator number_within(double low, double high) {
+  return validator(fmt::format("a number from {} to {}", number_text(low), number_text(high)),
+                   [low, high](std::string_view text) {
+                     return is_number(text, [low, high](double number) { return number >= low && number <= high; });
+                   });
+}
+
 }  // namespace hysteron::tool

@@ -15,4 +15,7 @@ namespace hysteron::tool {
 /// A finite number above 0.
 [[nodiscard]] CLI::Validator number_above_zero();
 
+/// A finite number from `low` to `high`. CLI::Range takes nan, which is beyond neither of its ends.
+[[nodiscard]] CLI::Validator number_within(double low, double high);
+
 }  // namespace hysteron::tool

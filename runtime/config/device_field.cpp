@@ -1,5 +1,6 @@
 #include "runtime/config/device_field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <new>
@@ -34,6 +35,9 @@ constexpr std::array device_counts{
     DeviceCount{"wrong_answers", "answers that were not of their request", &DeviceStatus::wrong_answers},
     DeviceCount{"bad_checksums", "answers with a wrong checksum, on a serial line", &DeviceStatus::bad_checksums},
 };
+
+/// A connection and an answer, as long as each may take. Beyond this a fault is told, however long that is.
+constexpr std::chrono::milliseconds longest_first_exchange{1000};
 
 double seconds(nanoseconds time) {
   return std::chrono::duration<double>(time).count();
@@ -72,6 +76,7 @@ DeviceField::DeviceField(const RunConfig& config, bool in_turn, const std::funct
     rounds_since_good_.emplace_back(config.devices[i].values.size());
     names_.push_back(config.devices[i].name);
     may_be_absent_.push_back(config.devices[i].may_be_absent);
+    first_exchange_.emplace_back(std::min(2 * config.devices[i].response, longest_first_exchange));
   }
 }
 
@@ -84,18 +89,25 @@ RemoteReading DeviceField::reading_of(const DeviceLink& link) const noexcept {
   return reading;
 }
 
-bool DeviceField::is_absent(std::size_t device) const noexcept {
-  if (!may_be_absent_[device]) {
-    return false;
-  }
+bool DeviceField::has_answered(std::size_t device) const noexcept {
   const DeviceStatus status = devices_[device]->status();
-  return status.answers == 0 && status.exceptions == 0;
+  return status.answers != 0 || status.exceptions != 0;
+}
+
+bool DeviceField::has_time(std::size_t device, const RemoteReading& reading) const noexcept {
+  return !in_turn_ && reading.quality == Quality::never && reading.age <= first_exchange_[device];
+}
+
+bool DeviceField::is_absent(std::size_t device) const noexcept {
+  return may_be_absent_[device] && !has_answered(device);
 }
 
 std::size_t DeviceField::absent() const noexcept {
   std::size_t count = 0;
   for (std::size_t device = 0; device < devices_.size(); ++device) {
-    count += is_absent(device) ? 1 : 0;
+    // A device without values is never asked.
+    const bool is_asked = !rounds_since_good_[device].empty();
+    count += is_asked && !has_answered(device) && !has_time(device, devices_[device]->read(0)) ? 1 : 0;
   }
   return count;
 }
@@ -137,9 +149,15 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
     rounds();
   }
   Fault fault = Fault::none;
-  const auto note = [&](Fault found, std::size_t port) {
-    faulty_port_ = fault == Fault::none ? port : faulty_port_;
-    fault = fault == Fault::none ? found : fault;
+  is_awaited_ = false;
+  const auto note = [&](const DeviceLink& link, const RemoteReading& reading, std::size_t port) {
+    const Fault found = fault_of(link, reading);
+    const bool is_awaited = has_time(link.device, reading);
+    if (found != Fault::none && (fault == Fault::none || (is_awaited_ && !is_awaited))) {
+      fault = found;
+      faulty_port_ = port;
+      is_awaited_ = is_awaited;
+    }
   };
   for (const DeviceInput& input : inputs_) {
     const RemoteReading reading = reading_of(input.link);
@@ -148,7 +166,9 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
         if (reading.quality != Quality::never) {
           inputs[input.port] = reading.value;
         }
-        note(input.link.faults ? fault_of(input.link, reading) : Fault::none, input.port);
+        if (input.link.faults) {
+          note(input.link, reading, input.port);
+        }
         break;
       case Tells::age:
         inputs[input.port] = seconds(reading.age);
@@ -162,7 +182,7 @@ Fault DeviceField::read(std::span<double> inputs) noexcept {
     const RemoteReading reading = reading_of(output.link);
     // In the first cycle in turn nothing has been written yet.
     if (output.link.faults && !(in_turn_ && reading.quality == Quality::never)) {
-      note(fault_of(output.link, reading), input_count_ + output.port);
+      note(output.link, reading, input_count_ + output.port);
     }
   }
   return fault;

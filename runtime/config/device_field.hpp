@@ -4,6 +4,7 @@
 // threads: each cycle writes and reads in turn, so that a run repeats.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -31,6 +32,7 @@ class DeviceField final : public FieldIo {
   /// lost_link where a device has not been reached for as long as a value may be old, stale_input where it was reached
   /// and refuses the value. Before that a value keeps its last number.
   Fault read(std::span<double> inputs) noexcept override;
+  [[nodiscard]] bool is_awaited() const noexcept override { return is_awaited_; }
   [[nodiscard]] std::uint64_t not_taken() const noexcept override;
   void count(std::span<double> into) const noexcept override;
   [[nodiscard]] std::size_t faulty_port() const noexcept override { return faulty_port_; }
@@ -44,11 +46,15 @@ class DeviceField final : public FieldIo {
   [[nodiscard]] modbus::RemoteReading reading_of(const DeviceLink& link) const noexcept;
   [[nodiscard]] Fault fault_of(const DeviceLink& link, const modbus::RemoteReading& reading) const noexcept;
   void rounds() noexcept;
+  [[nodiscard]] bool has_answered(std::size_t device) const noexcept;
+  /// Whether a value that was never good is still within the time of its first exchange.
+  [[nodiscard]] bool has_time(std::size_t device, const modbus::RemoteReading& reading) const noexcept;
   /// Has never answered, and may be left out.
   [[nodiscard]] bool is_absent(std::size_t device) const noexcept;
 
-  std::vector<std::string> names_{};   ///< of the devices
-  std::vector<bool> may_be_absent_{};  ///< by device
+  std::vector<std::string> names_{};                        ///< of the devices
+  std::vector<bool> may_be_absent_{};                       ///< by device
+  std::vector<std::chrono::nanoseconds> first_exchange_{};  ///< by device: the time that it has
   std::vector<DeviceInput> inputs_;
   std::vector<DeviceOutput> outputs_;
   std::vector<std::unique_ptr<modbus::Device>> devices_;
@@ -56,6 +62,7 @@ class DeviceField final : public FieldIo {
   std::size_t faulty_port_ = no_port;
   std::int64_t period_;  ///< of the task
   bool in_turn_;
+  bool is_awaited_ = false;
   std::vector<std::vector<std::int64_t>> rounds_since_good_;  ///< in turn, where only rounds count as time
   std::vector<double> written_;                               ///< by output on a device
 };

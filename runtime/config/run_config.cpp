@@ -45,6 +45,17 @@ std::optional<std::size_t> index_of(std::string_view name, const std::vector<Pro
   return std::nullopt;
 }
 
+/// The signal of that name, or the elements of the vector.
+std::vector<std::size_t> indices_of(std::string_view name, const std::vector<ProgramSignal>& signals) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (is_or_is_element_of(signals[i].name, name)) {
+      indices.push_back(i);
+    }
+  }
+  return indices;
+}
+
 class Reader {
  public:
   Reader(const std::string& file, std::string_view text, const ProgramShape& shape)
@@ -161,34 +172,63 @@ class Reader {
                         1000 * second);
   }
 
-  /// The port that a table is about; nothing, with an error, where the diagram has none of that name.
-  std::optional<std::size_t> port_of(const toml::key& key, std::string_view kind,
-                                     const std::vector<ProgramSignal>& signals) {
-    const auto index = index_of(key.str(), signals);
-    if (!index) {
+  /// The ports that a table is about: one, or each element of a vector. None, with an error, where the diagram has no
+  /// such name, or where a key can be of one element alone.
+  std::vector<std::size_t> ports_of(const toml::key& key, const toml::table& node, std::string_view kind,
+                                    const std::vector<ProgramSignal>& signals) {
+    const auto indices = indices_of(key.str(), signals);
+    if (indices.empty()) {
       const auto names = names_of(signals);
       const auto near = nearest_name(key.str(), names);
       found_.error(error::unknown_port_in_run_file, place_of(file_, key.source()),
                    shape_.name + " has no " + std::string(kind) + " " + std::string(key.str()) + ".",
                    near.empty() ? "name one that the diagram declares, or remove the table."
                                 : "did you mean " + std::string(near) + "?");
-    } else if (!ports_seen_.insert(&signals[*index]).second) {
-      found_.error(error::run_key_twice, place_of(file_, key.source()),
-                   "The " + std::string(kind) + " " + signals[*index].name + " has been given before.",
-                   "keep one of the two; case makes no difference.");
     }
-    return index;
+    const bool is_vector = !indices.empty() && !equal_ignoring_case(signals[indices.front()].name, key.str());
+    if (const auto* const device = node.get("device"); is_vector && device != nullptr) {
+      const std::string heading = "[" + std::string(kind) + "s." + toml_key(signals[indices.front()].name) + "]";
+      found_.error(error::wrong_run_value, place_of(file_, device->source()),
+                   std::string(key.str()) + " is a vector, and each of its elements lies at a register of its own.",
+                   "give each element a table: " + heading + ", with device and register below it.");
+      return {};
+    }
+    for (const std::size_t index : indices) {
+      if (!ports_seen_.insert(&signals[index]).second) {
+        found_.error(error::run_key_twice, place_of(file_, key.source()),
+                     "The " + std::string(kind) + " " + signals[index].name + " has been given before.",
+                     is_vector || element_of(signals[index].name)
+                         ? "keep one of the two; the name of a vector is each of its elements."
+                         : "keep one of the two; case makes no difference.");
+        break;
+      }
+    }
+    return indices;
+  }
+
+  /// What is wrong with a table of a vector is said once, of its first element.
+  template <class Read>
+  void read_each(const std::vector<std::size_t>& ports, const Read& read) {
+    const std::size_t before = found_.all().size();
+    for (const std::size_t port : ports) {
+      if (found_.all().size() == before) {
+        read(port);
+      }
+    }
   }
 
   void read_output(const toml::key& key, const toml::table& node) {
-    const auto index = port_of(key, "output", shape_.outputs);
-    if (!index) {
-      return;
+    for (const std::size_t port : indices_of(key.str(), shape_.outputs)) {
+      has_safe_value_[port] = has_safe_value_[port] || node.contains("safe");
     }
+    read_each(ports_of(key, node, "output", shape_.outputs), [&](std::size_t port) { read_output(port, key, node); });
+  }
+
+  void read_output(std::size_t port, const toml::key& key, const toml::table& node) {
     TomlReader table(file_, "[outputs." + std::string(key.str()) + "]", node, run_table("outputs").keys, found_);
-    OutputSafety& output = config_.task.outputs[*index];
-    output.low = shape_.outputs[*index].low;
-    output.high = shape_.outputs[*index].high;
+    OutputSafety& output = config_.task.outputs[port];
+    output.low = shape_.outputs[port].low;
+    output.high = shape_.outputs[port].high;
     table.read("low", output.low);
     table.read("high", output.high);
     table.read("safe", output.value);
@@ -196,14 +236,13 @@ class Reader {
     table.read("ramp", output.ramp);
     table.read_whole("hold_cycles", output.hold_cycles);
     if (table.has("bump")) {
-      table.read("bump", config_.bumps[*index]);
+      table.read("bump", config_.bumps[port]);
     }
     std::size_t action = 0;
     table.read_choice("on_fault", action);
     output.action = static_cast<SafeAction>(action);
-    devices_.read_output(*index, read_longest_age(table), table);
-    has_safe_value_[*index] = has_safe_value_[*index] || table.has("safe");
-    check_safe_value(*index, table);
+    devices_.read_output(port, read_longest_age(table), table);
+    check_safe_value(port, table);
     if (output.action == SafeAction::ramp && !table.has("ramp")) {
       found_.error(error::unfit_safe_value, table.place("on_fault"), "A ramp is asked for, and no rate is given.",
                    "write the change a second: ramp = 20.0.");
@@ -255,12 +294,10 @@ class Reader {
   }
 
   void read_input(const toml::key& key, const toml::table& node) {
-    const auto index = port_of(key, "input", shape_.inputs);
-    if (!index) {
-      return;
-    }
-    TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, run_table("inputs").keys, found_);
-    devices_.read_input(*index, read_longest_age(table), table);
+    read_each(ports_of(key, node, "input", shape_.inputs), [&](std::size_t port) {
+      TomlReader table(file_, "[inputs." + std::string(key.str()) + "]", node, run_table("inputs").keys, found_);
+      devices_.read_input(port, read_longest_age(table), table);
+    });
   }
 
   std::int64_t read_longest_age(TomlReader& table) const {

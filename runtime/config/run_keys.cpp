@@ -416,8 +416,12 @@ constexpr std::array file_keys{RunKey{"task"},          RunKey{"watchdog"}, RunK
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
     RunTable{"[watchdog]", "What watches it.", watchdog_keys},
-    RunTable{"[outputs.NAME]", "A table for each output of the diagram.", output_keys},
-    RunTable{"[inputs.NAME]", "A table for each input that is not only written by clients.", input_keys},
+    RunTable{"[outputs.NAME]", "A table for each output of the diagram; the name of a vector is each of its elements.",
+             output_keys},
+    RunTable{
+        "[inputs.NAME]",
+        "A table for each input that is not only written by clients; the name of a vector is each of its elements.",
+        input_keys},
     RunTable{"[devices.NAME]", "A Modbus device with inputs or outputs of the task.", device_keys},
     RunTable{"[retain]", "What is kept through a restart; without the table, nothing.", retain_keys},
     RunTable{"[trace]", "The record of the run; without the table, none.", trace_keys},

@@ -108,7 +108,9 @@ void TomlReader::read(std::string_view key, double& into) {
     return wrong_type(key, "a number", "1.5");
   }
   if (!std::isfinite(*value) || *value < low || *value > high) {
-    return out_of_range(key, std::isinf(low) ? "a finite number" : "a finite number above 0");
+    return out_of_range(key, std::isinf(low)    ? "a finite number"
+                             : std::isinf(high) ? "a finite number above 0"
+                                                : "from " + number_text(low) + " to " + number_text(high));
   }
   into = *value;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t longest_line = 500;  // less than a pipe takes at once
 constexpr std::chrono::seconds pace{1};
-constexpr std::chrono::seconds time_to_answer{5};
+constexpr std::chrono::seconds time_to_answer{1};
 
 /// What to look for.
 std::string_view meaning_of(Fault fault) {
@@ -199,10 +199,15 @@ std::string RunNotices::at_the_end() const {
       guard_ == nullptr || !guard_->holds_on()
           ? ""
           : fmt::format("; its guard, process {}, goes on until the devices have their safe values", guard_->process());
+  // A run that ends before its notice was due says it here.
+  const auto absent = field_ == nullptr ? std::vector<std::string>{} : field_->absent_devices();
+  const std::string never =
+      absent.empty() ? "" : fmt::format("; never answered since the start: {}", fmt::join(absent, ", "));
   // What no broker took is said, and makes no failure of the run: the network is not the task's.
   const auto mqtt = beside_.find("MQTT");
   const std::string problem = mqtt == beside_.end() ? "" : mqtt->second->problem();
-  return faults + left + not_written() + (problem.empty() ? "" : fmt::format("; rows for MQTT are lost: {}", problem));
+  return faults + never + left + not_written() +
+         (problem.empty() ? "" : fmt::format("; rows for MQTT are lost: {}", problem));
 }
 
 std::string RunNotices::not_written() const {

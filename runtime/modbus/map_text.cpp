@@ -88,6 +88,18 @@ std::string namespace_of(const std::string& title) {
   return name + "_registers";
 }
 
+constexpr std::string_view hashed_columns =
+    "area,address,registers,type,name,unit,low,high,access,kind,meaning,bit,scale,offset,word_order";
+
+std::string hashed_cells(const RegisterMap& map, const MapEntry& entry) {
+  const Point& point = map.point_of(entry);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name_of(entry.at.area), entry.at.address,
+                     entry.at.count, name_of(entry.format.type), csv_cell(point.name), csv_cell(point.unit),
+                     number_text(point.low), number_text(point.high), access_of(point), kind_name(point.kind),
+                     csv_cell(point.meaning), entry.at.is_bit() ? std::to_string(entry.at.bit) : "",
+                     number_text(entry.format.scale), number_text(entry.format.offset), order_of(entry));
+}
+
 }  // namespace
 
 std::string reference_number(const Stretch& at) {
@@ -95,15 +107,18 @@ std::string reference_number(const Stretch& at) {
   return fmt::format("{}{:05}{}", digits[static_cast<std::size_t>(at.area)], at.address + 1, bit_text(at));
 }
 
-std::string as_csv(const RegisterMap& map) {
-  std::string text = "area,address,registers,type,name,unit,low,high,access,kind,meaning,bit,scale,offset,word_order\n";
+std::string hashed_text(const RegisterMap& map) {
+  std::string text = std::string(hashed_columns) + "\n";
   for (const MapEntry& entry : map.entries()) {
-    const Point& point = map.point_of(entry);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name_of(entry.at.area), entry.at.address,
-                        entry.at.count, name_of(entry.format.type), csv_cell(point.name), csv_cell(point.unit),
-                        number_text(point.low), number_text(point.high), access_of(point), kind_name(point.kind),
-                        csv_cell(point.meaning), entry.at.is_bit() ? std::to_string(entry.at.bit) : "",
-                        number_text(entry.format.scale), number_text(entry.format.offset), order_of(entry));
+    text += hashed_cells(map, entry) + "\n";
+  }
+  return text;
+}
+
+std::string as_csv(const RegisterMap& map) {
+  std::string text = std::string(hashed_columns) + ",retained\n";
+  for (const MapEntry& entry : map.entries()) {
+    text += hashed_cells(map, entry) + (map.point_of(entry).is_retained ? ",true\n" : ",false\n");
   }
   return text;
 }
@@ -185,6 +200,7 @@ struct Register {{
   double offset;
   std::string_view word_order;
   int bit;  // of a boolean in a register; else -1
+  bool retained;  // what was written is there again after a restart
 }};
 
 inline constexpr std::array<Register, {4}> registers{{{{
@@ -192,10 +208,11 @@ inline constexpr std::array<Register, {4}> registers{{{{
       map.title(), map.hash(), name_of(map.order()), namespace_of(map.title()), map.entries().size());
   for (const MapEntry& entry : map.entries()) {
     const Point& point = map.point_of(entry);
-    text += fmt::format("    {{{}, Area::{}, {}, {}, \"{}\", {}, {}, {}, {}, \"{}\", {}}},\n", cpp_text(point.name),
+    text += fmt::format("    {{{}, Area::{}, {}, {}, \"{}\", {}, {}, {}, {}, \"{}\", {}, {}}},\n", cpp_text(point.name),
                         name_of(entry.at.area), entry.at.address, entry.at.count, name_of(entry.format.type),
                         cpp_text(point.unit), point.writable, number_text(entry.format.scale),
-                        number_text(entry.format.offset), order_of(entry), static_cast<int>(entry.at.bit));
+                        number_text(entry.format.offset), order_of(entry), static_cast<int>(entry.at.bit),
+                        point.is_retained);
   }
   text += fmt::format(R"(}}}};
 

@@ -405,7 +405,7 @@ RegisterMap make_register_map(std::span<const Point> points, const MapRequest& r
         map.entries_.begin());
   }
   map.first_[4] = map.entries_.size();
-  map.hash_ = sha256(fmt::format("{}\n{}", name_of(map.order_), as_csv(map)));
+  map.hash_ = sha256(fmt::format("{}\n{}", name_of(map.order_), hashed_text(map)));
   if (request.has_discovery) {
     map.chain_ = make_chain(map);
     if (chain_address + map.chain_.size() > area_size) {

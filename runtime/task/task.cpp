@@ -79,6 +79,7 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
   if (tripped_) {
     fault = Fault::hang;
     faulty_port_ = no_port;
+    is_awaited_ = false;
   } else {
     if (attachments_.trace != nullptr) {
       attachments_.trace->before_step(moment.number, running());
@@ -87,8 +88,10 @@ bool Task::cycle(const CycleMoment& moment) noexcept {
     follow_change(moment.number);
   }
   safe_.step(computed_, fault);
-  status_.fault = safe_.worst();
-  status_.state = status_.fault == Fault::none ? TaskState::running : TaskState::faulted;
+  status_.fault = is_awaited_ ? Fault::none : safe_.worst();
+  status_.state = is_awaited_                    ? TaskState::starting
+                  : status_.fault == Fault::none ? TaskState::running
+                                                 : TaskState::faulted;
   faults_.note(status_.fault, status_.fault == fault ? faulty_port_ : inputs_.size() + safe_.worst_output());
   const bool written = write_outputs();
   if (attachments_.trace != nullptr && !tripped_) {
@@ -151,16 +154,22 @@ void Task::take_orders() noexcept {
 Fault Task::read_inputs() noexcept {
   Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(inputs_);
   faulty_port_ = fault == Fault::none ? no_port : attachments_.field->faulty_port();
-  if (fault == Fault::none &&
+  is_awaited_ = fault != Fault::none && attachments_.field->is_awaited();
+  const auto is_free = [&] { return fault == Fault::none || is_awaited_; };
+  const auto found = [&](Fault one, std::size_t port) {
+    fault = one;
+    faulty_port_ = port;
+    is_awaited_ = false;
+  };
+  if (is_free() &&
       (client_is_lost_.load(std::memory_order_relaxed) || client_was_lost_.load(std::memory_order_relaxed))) {
-    fault = Fault::lost_client;
+    found(Fault::lost_client, no_port);
   }
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
     const bool is_number = std::isfinite(inputs_[i]);
-    if ((stale || !is_number) && fault == Fault::none) {
-      fault = Fault::stale_input;
-      faulty_port_ = i;
+    if ((stale || !is_number) && is_free()) {
+      found(Fault::stale_input, i);
     }
     // A number that is none would stay in the program's state for ever.
     inputs_[i] = is_number ? inputs_[i] : last_good_[i];

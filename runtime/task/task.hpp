@@ -118,6 +118,7 @@ class Task final : private CycleBody {
   TaskStatus status_{};
   FaultLog faults_{};
   std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found
+  bool is_awaited_ = false;            ///< what it found: no fault yet, for the first exchange still has time
   std::vector<double> field_counts_;
   std::vector<double> inputs_;
   std::vector<double> last_good_;

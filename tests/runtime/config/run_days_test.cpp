@@ -41,6 +41,27 @@ TEST(RunDays, WhatAStartWaitsForIsRead) {
   EXPECT_EQ(errors_of(safe_y + "[online_change]\nsocket = \"a.socket\"\nload = 1.5\n"), "805@5:8 ");
 }
 
+/// The name of a vector is each of its elements, as in a history and in MQTT; a register is of one element.
+TEST(RunDays, AVectorIsGivenByItsName) {
+  ProgramShape shape = plant();
+  shape.inputs = {{.name = "S[0]"}, {.name = "S[1]"}, {.name = "Z"}};
+  shape.outputs = {{.name = "Y[1]", .low = -1.0}, {.name = "Y[2]", .low = -1.0}};
+  const std::string retain = "[retain]\nfolder = \"kept\"\n";
+  const std::string both = "[outputs.y]\nsafe = 0.5\nslew = 2.0\n";
+  const auto config = parse_run_config("RUN.toml", retain + both + "[inputs.S]\nretain = true\n", shape);
+  EXPECT_TRUE(config.task.inputs[0].is_retained && config.task.inputs[1].is_retained);
+  EXPECT_FALSE(config.task.inputs[2].is_retained);
+  for (const OutputSafety& output : config.task.outputs) {
+    EXPECT_EQ(output.value, 0.5);
+    EXPECT_EQ(output.slew, 2.0);
+  }
+  EXPECT_EQ(errors_of(both + "[outputs.\"Y[1]\"]\nsafe = 0.5\n", shape), "802@1:10 ") << "which of the two counts?";
+  EXPECT_EQ(errors_of("[outputs.Y]\nsafe = -2.0\n", shape), "808@2:8 ") << "once, and not for each element";
+  EXPECT_EQ(errors_of("[devices.a]\n" + both + "device = \"a\"\n", shape), "804@5:10 ");
+  EXPECT_EQ(errors_of("[devices.a]\n" + both + "[inputs.S]\ndevice = \"a\"\n", shape), "804@6:10 ");
+  EXPECT_EQ(errors_of(both + "[inputs.T]\nretain = true\n", shape), "807@4:9 ");
+}
+
 TEST(RunDays, RetainIsOfInputsThatClientsWriteAndOfAFolder) {
   const std::string retain = "[retain]\nfolder = \"kept\"\n";
   const auto config = parse_run_config("RUN.toml", safe_y + retain + "[inputs.Z]\nretain = true\n", plant());

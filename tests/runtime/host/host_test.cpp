@@ -134,11 +134,24 @@ TEST(Host, ADeviceThatNeverAnswersDelaysNoCycle) {
   const auto client = host.client({"task.cycles", "task.fault"});
   // A cycle that waited for the device would take a minute, and this test gives up before.
   EXPECT_TRUE(test::soon([&] { return client->read(0).value > 100.0; }));
-  EXPECT_EQ(client->read(1).value, static_cast<double>(Fault::lost_link));
+  EXPECT_TRUE(test::soon([&] { return client->read(1).value == static_cast<double>(Fault::lost_link); }));
   EXPECT_TRUE(test::soon([&] { return stage.taken() == -1.0; })) << "the other device is served meanwhile";
   const auto [code, said] = host.end();
   EXPECT_EQ(code, 1);
   EXPECT_TRUE(said.ends_with("fault: lost link")) << said;
+}
+
+TEST(Host, ADeviceThatIsLeftOutIsSaidHoweverShortTheRun) {
+  Stage stage;
+  const auto silent = modbus::listen_on("127.0.0.1", 0, {});
+  HostProcess host(run_file(stage.port, fmt::format("[inputs.X]\ndevice = \"silent\"\n[devices.silent]\nport = {}\n"
+                                                    "on_absence = \"go_on\"\n",
+                                                    modbus::port_of(silent))));
+  stage.start();
+  EXPECT_TRUE(test::soon([&] { return host.told().find("Device: silent has not answered") != std::string::npos; }));
+  const auto [code, said] = host.end();
+  EXPECT_EQ(code, 0) << said;
+  EXPECT_NE(said.find("; never answered since the start: silent"), std::string::npos) << said;
 }
 
 TEST(Host, ADeviceThatDoesNotTakeTheSafeValuesIsSaidAtTheEndAndLeftToTheGuard) {

@@ -232,7 +232,7 @@ TEST(Discovery, ATornChainIsNone) {
 TEST(MapText, CsvQuotesAndJsonParses) {
   const RegisterMap map = make_register_map(test::points_of_every_type(), {.title = "T"});
   EXPECT_THAT(as_csv(map), HasSubstr("\nholding,0,4,int64,I64.W,um/V,-1000000000000000,1000000000000000,read write,"
-                                     "parameter,\"a value, \"\"so\"\" to say\",,1,0,ABCD\n"));
+                                     "parameter,\"a value, \"\"so\"\" to say\",,1,0,ABCD,false\n"));
   const auto json = nlohmann::json::parse(as_json(map));
   EXPECT_EQ(json["hash"], map.hash());
   EXPECT_EQ(json["points"].size(), map.points().size());
@@ -241,6 +241,14 @@ TEST(MapText, CsvQuotesAndJsonParses) {
   const Point open{.name = "X", .meaning = "a|b"};
   const RegisterMap one = make_register_map(std::vector{open}, {.title = "T"});
   EXPECT_TRUE(nlohmann::json::parse(as_json(one))["points"][0]["low"].is_null());
+  std::vector kept{open};
+  kept[0].is_retained = true;
+  const RegisterMap retained = make_register_map(kept, {.title = "T"});
+  EXPECT_THAT(as_csv(retained), HasSubstr(",retained\n"));
+  EXPECT_THAT(as_csv(retained), testing::EndsWith(",true\n"));
+  EXPECT_THAT(as_cpp(retained), HasSubstr(", -1, true},\n"));
+  EXPECT_THAT(as_cpp(one), HasSubstr(", -1, false},\n"));
+  EXPECT_EQ(retained.hash(), one.hash()) << "what is kept moves no value";
   EXPECT_THAT(as_markdown(one), HasSubstr("| input | 0 | 300001 | real64 | X |  |  |  | read | a\\|b |\n"));
 }
 

@@ -40,8 +40,11 @@ class Field final : public FieldIo {
     return fault;
   }
   void write(std::span<const double> outputs) noexcept override { written.push_back(outputs[0]); }
+  [[nodiscard]] bool is_awaited() const noexcept override { return awaited; }
+  [[nodiscard]] std::size_t absent() const noexcept override { return fault != Fault::none && !awaited ? 1 : 0; }
   double input = 1.0;
   Fault fault = Fault::none;
+  bool awaited = false;
   std::vector<double> written;
 };
 
@@ -260,6 +263,31 @@ TEST(Task, FaultsOfTheFieldMakeTheOutputsSafeWhileTheyLast) {
     run(task);
     EXPECT_EQ(field.written[4], 3.0);  // the program went on
   }
+}
+
+/// Until the first exchange the outputs are safe, and no fault has begun; another fault is one at once.
+TEST(Task, WhatIsAwaitedAtTheStartIsNoFault) {
+  Accumulator program;
+  Field field;
+  field.fault = Fault::lost_link;
+  field.awaited = true;
+  Task task(program, settings(1), {.field = &field});
+  program.during_step = [&](std::span<double>) { field.awaited = field.written.size() < 5; };
+  Task lost(program, settings(8), {.field = &field});
+  run(task);
+  EXPECT_EQ(field.written.front(), -1.0);
+  EXPECT_EQ(test::value(task.door(), "task.faults"), 0.0);
+  EXPECT_EQ(task.fault(), Fault::stop);
+  run(lost);
+  EXPECT_EQ(lost.faults().count, 1U) << "it went on after its time";
+  EXPECT_EQ(test::value(task.door(), "task.shortages"), 0.0);
+  EXPECT_EQ(test::value(lost.door(), "task.shortages"), 8.0) << "a device never answered";
+  field.awaited = true;
+  program.during_step = {};
+  Task client(program, settings(1), {.field = &field});
+  client.client_lost(true);
+  run(client);
+  EXPECT_EQ(client.faults().last, Fault::lost_client);
 }
 
 TEST(Task, AnInputThatIsNoNumberNeverReachesTheProgram) {

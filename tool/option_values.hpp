@@ -12,6 +12,9 @@ namespace hysteron::tool {
 /// A finite number from 0 on.
 [[nodiscard]] CLI::Validator number_from_zero();
 
+/// A finite number from `least` to `most`. CLI::Range takes "nan".
+[[nodiscard]] CLI::Validator number_between(double least, double most);
+
 /// A finite number above 0.
 [[nodiscard]] CLI::Validator number_above_zero();
 

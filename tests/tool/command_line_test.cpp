@@ -114,6 +114,10 @@ TEST(CommandLine, NumbersOutOfTheirLimits) {
   for (const auto& [line, said] : std::vector<std::pair<std::string, std::string>>{
            {diagnose + "--effort -1", "--effort: a number above 0 is needed, not -1."},
            {diagnose + "--time-limit nan", "--time-limit: a number above 0 is needed, not nan."},
+           {"hysteron fleet m.csv --out d --time-limit nan",
+            "--time-limit: a number from 0.001 to 1000000 is needed, not nan."},
+           {"hysteron fleet-report d --false-share nan",
+            "--false-share: a number from 1e-6 to 0.5 is needed, not nan."},
            {diagnose + "--material -3", "--material: a number from 0 on is needed, not -3."},
            {diagnose + "--seed -1", "--seed: a whole number from 0 on is needed, not -1."},
            {serve + "--cycles -1", "--cycles: a whole number from 1 on is needed, not -1."},

@@ -146,7 +146,9 @@ class CommandLine {
       options->group("Commands");
       options->get_formatter()->label("Positionals", "Arguments");
       actions_[options] = {command.add(*options), command.writes_files};
-      options->add_flag("--quiet", quiet_, "Says errors and warnings alone: no report, no notes, no progress.");
+      options->add_flag("--quiet", quiet_,
+                        command.writes_files ? "Says errors and warnings alone: no report, no notes, no progress."
+                                             : "No notes, no progress; results are printed all the same.");
     }
   }
 

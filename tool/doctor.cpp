@@ -4,19 +4,23 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/config/run_keys.hpp"
 #include "support/errors.hpp"
+#include "support/numbers.hpp"
 #include "tool/commands.hpp"
 #include "tool/jitter.hpp"
 #include "tool/option_values.hpp"
+#include "tool/processor_list.hpp"
 #include "tool/realtime_host.hpp"
 
 namespace hysteron::tool {
@@ -54,6 +58,25 @@ std::int64_t period_of(const std::string& text) {
                      "write a time from 10us to 1s: --period 1ms.");
   }
   return *period;
+}
+
+/// Refuses a folder that is no machine's, and a processor that the machine has not.
+void check_machine(const DoctorOptions& options) {
+  const std::filesystem::path root = options.root;
+  std::error_code none;
+  if (!std::filesystem::is_directory(root / "proc", none) && !std::filesystem::is_directory(root / "sys", none)) {
+    throw InputError(error::bad_usage, {},
+                     fmt::format("--root {}: there is neither a folder proc nor a folder sys in it.", options.root),
+                     "name the folder into which /proc and /sys of the other machine were copied.");
+  }
+  const std::vector<unsigned> processors = processors_of(root);
+  if (options.processor && !processors.empty() &&
+      std::ranges::find(processors, *options.processor) == processors.end()) {
+    throw InputError(error::bad_usage, {},
+                     fmt::format("--processor {}: the processors of this machine are {}.", *options.processor,
+                                 processors_text(processors)),
+                     fmt::format("name one of these: --processor {}.", processors.back()));
+  }
 }
 
 std::string findings_text(const std::vector<HostFinding>& findings) {
@@ -133,6 +156,15 @@ int doctor(const DoctorOptions& options, Console& console) {
   request.cycles = static_cast<std::uint64_t>(options.seconds * 1e9 / static_cast<double>(request.period));
   request.scheduling = {.priority = options.priority,
                         .processor = options.processor ? static_cast<int>(*options.processor) : -1};
+  check_machine(options);
+  const bool is_measured = options.seconds > 0.0 && std::filesystem::equivalent(options.root, "/");
+  if (is_measured && request.cycles == 0) {
+    throw InputError(
+        error::bad_usage, {},
+        fmt::format("--seconds {} is shorter than one period of {}: nothing would be measured.",
+                    number_text(options.seconds), options.period),
+        fmt::format("give {} or more, or 0 for no measurement.", static_cast<double>(request.period) * 1e-9));
+  }
   const auto findings =
       look_at_host({.root = options.root, .processor = options.processor, .priority = options.priority});
   if (!options.json) {
@@ -140,7 +172,7 @@ int doctor(const DoctorOptions& options, Console& console) {
   }
   std::optional<Jitter> jitter;
   // The measurement is of this machine.
-  if (request.cycles > 0 && options.root == "/") {
+  if (is_measured) {
     runtime::MonotonicClock clock;
     jitter = measure_jitter(request, clock);
   }
@@ -158,7 +190,7 @@ Action add_doctor(CLI::App& app) {
   const auto options = std::make_shared<DoctorOptions>();
   app.add_flag("--rt", options->rt, "Whether this machine can run a cyclic task in time.");
   app.add_option("--seconds", options->seconds, "How long the measurement takes; 0: none. Else 10.")
-      ->check(CLI::Range(0.0, 86'400.0))
+      ->check(number_between(0.0, 86'400.0))
       ->option_text("N");
   app.add_option("--period", options->period, "Of the measurement; else 1ms.")->option_text("TIME");
   app.add_option("--processor", options->processor, "The processor that the task keeps to, as processor under [task].")

@@ -173,7 +173,7 @@ Action add_fleet(CLI::App& app) {
       ->check(CLI::Range(1, 1024))
       ->option_text("N");
   app.add_option("--time-limit", options->run.time_limit, "Seconds for each record, 600 without it.")
-      ->check(number_within(0.001, 1e6))
+      ->check(number_between(0.001, 1e6))
       ->option_text("SECONDS");
   app.add_option("--memory", options->run.megabytes, "Megabytes of address space for each record, 4096 without it.")
       ->check(CLI::Range(1, 1 << 20))

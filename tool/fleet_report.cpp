@@ -120,7 +120,7 @@ Action add_fleet_report(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--false-share", options->false_share,
                  "How many of the findings may be false on average, 0.05 without it.")
-      ->check(number_within(1e-6, 0.5))
+      ->check(number_between(1e-6, 0.5))
       ->option_text("SHARE");
   app.add_flag("--json", options->json, "Prints the report as JSON.");
   app.footer(std::string(fleet_report_examples));

@@ -254,7 +254,7 @@ Action add_online_change(CLI::App& app) {
       ->option_text("NAME");
   app.add_option("--load", options->load,
                  "What part of the period a step of the new version may take at this change: 0.9.")
-      ->check(number_within(1e-3, 1.0))
+      ->check(number_between(1e-3, 1.0))
       ->option_text("NUMBER");
   app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(online_change_examples));

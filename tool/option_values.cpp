@@ -41,16 +41,16 @@ CLI::Validator number_from_zero() {
                    [](std::string_view text) { return is_number(text, [](double number) { return number >= 0.0; }); });
 }
 
+CLI::Validator number_between(double least, double most) {
+  return validator(fmt::format("a number from {} to {}", number_text(least), number_text(most)),
+                   [least, most](std::string_view text) {
+                     return is_number(text, [least, most](double number) { return number >= least && number <= most; });
+                   });
+}
+
 CLI::Validator number_above_zero() {
   return validator("a number above 0",
                    [](std::string_view text) { return is_number(text, [](double number) { return number > 0.0; }); });
-}
-
-CLI::Validator number_within(double low, double high) {
-  return validator(fmt::format("a number from {} to {}", number_text(low), number_text(high)),
-                   [low, high](std::string_view text) {
-                     return is_number(text, [low, high](double number) { return number >= low && number <= high; });
-                   });
 }
 
 }  // namespace hysteron::tool

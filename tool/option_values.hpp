@@ -12,10 +12,10 @@ namespace hysteron::tool {
 /// A finite number from 0 on.
 [[nodiscard]] CLI::Validator number_from_zero();
 
+/// A finite number from `least` to `most`. CLI::Range takes nan, which is beyond neither of its ends.
+[[nodiscard]] CLI::Validator number_between(double least, double most);
+
 /// A finite number above 0.
 [[nodiscard]] CLI::Validator number_above_zero();
-
-/// A finite number from `low` to `high`. CLI::Range takes nan, which is beyond neither of its ends.
-[[nodiscard]] CLI::Validator number_within(double low, double high);
 
 }  // namespace hysteron::tool

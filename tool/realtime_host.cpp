@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -12,6 +11,8 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
+
+#include "tool/processor_list.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -37,13 +38,6 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-std::optional<std::uint64_t> number_of(std::string_view text) {
-  std::uint64_t number = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return problem == std::errc{} && end == text.data() + text.size() && !text.empty() ? std::optional(number)
-                                                                                     : std::nullopt;
-}
-
 /// The numbers of entries as cpu0, cpu1 or 24, 25 in a folder, sorted; empty where there is none.
 std::vector<unsigned> numbered(const fs::path& folder, std::string_view prefix) {
   std::vector<unsigned> numbers;
@@ -51,13 +45,19 @@ std::vector<unsigned> numbered(const fs::path& folder, std::string_view prefix) 
   for (fs::directory_iterator next(folder, none), end; !none && next != end; next.increment(none)) {
     const std::string name = next->path().filename().string();
     const auto number =
-        name.starts_with(prefix) ? number_of(std::string_view(name).substr(prefix.size())) : std::nullopt;
+        name.starts_with(prefix) ? parse_whole_number(std::string_view(name).substr(prefix.size())) : std::nullopt;
     if (number) {
       numbers.push_back(static_cast<unsigned>(*number));
     }
   }
   std::ranges::sort(numbers);
   return numbers;
+}
+
+std::vector<unsigned> joined(const std::vector<unsigned>& some, const std::vector<unsigned>& others) {
+  std::set<unsigned> all(some.begin(), some.end());
+  all.insert(others.begin(), others.end());
+  return {all.begin(), all.end()};
 }
 
 class Host {
@@ -70,7 +70,7 @@ class Host {
         processor_(question.processor  ? question.processor
                    : isolated_.empty() ? std::nullopt
                                        : std::optional(isolated_.front())),
-        all_(numbered(cpu_, "cpu")) {}
+        all_(processors_of(root_)) {}
 
   [[nodiscard]] std::vector<HostFinding> findings() const {
     return {kernel(),      preemption(), throttling(), clock_source(), governor(),
@@ -176,7 +176,16 @@ class Host {
                     : ""};
   }
 
+  /// Of a thing that /sys tells by processors, where it names none.
+  static HostFinding without_processors(const std::string& name) {
+    return {
+        .name = name, .found = "not told", .rating = Rating::unknown, .why = "/sys/devices/system/cpu cannot be read."};
+  }
+
   [[nodiscard]] HostFinding governor() const {
+    if (all_.empty()) {
+      return without_processors("governor");
+    }
     std::map<std::string, std::vector<unsigned>> of;
     for (const unsigned cpu : looked_at()) {
       if (const auto one = line_of(cpu_ / fmt::format("cpu{}/cpufreq/scaling_governor", cpu))) {
@@ -209,6 +218,9 @@ class Host {
 
   /// The deepest state that is on counts.
   [[nodiscard]] HostFinding idle_states() const {
+    if (all_.empty()) {
+      return without_processors("idle states");
+    }
     std::map<std::string, std::vector<unsigned>> of;
     std::set<unsigned> states;
     std::vector<unsigned> deep;
@@ -219,7 +231,7 @@ class Host {
       std::string name;
       for (const unsigned state : numbered(folder, "state")) {
         const fs::path one = folder / fmt::format("state{}", state);
-        const auto latency = number_of(line_of(one / "latency").value_or(""));
+        const auto latency = parse_whole_number(line_of(one / "latency").value_or(""));
         is_any = is_any || latency.has_value();
         if (!latency || line_of(one / "disable").value_or("0") != "0") {
           continue;
@@ -258,12 +270,22 @@ class Host {
   }
 
   [[nodiscard]] HostFinding isolation() const {
-    const unsigned wanted = processor_.value_or(all_.empty() ? 0 : all_.back());
-    const std::string line = fmt::format(
-        "sed -i 's/^GRUB_CMDLINE_LINUX=\"/&isolcpus=managed_irq,domain,{0} nohz_full={0} rcu_nocbs={0} /' "
-        "/etc/default/grub "
-        "&& update-grub && reboot   # and processor = {0} under [task]",
-        wanted);
+    if (all_.empty()) {
+      return without_processors("isolated processors");
+    }
+    const unsigned wanted = processor_.value_or(all_.back());
+    const auto quiet = parse_processors(line_of(cpu_ / "nohz_full").value_or("")).value_or(std::vector<unsigned>());
+    // Those that are isolated stay so. Of two lists on the kernel's line one counts: what stands there is taken out.
+    const std::vector<unsigned> kept = joined(isolated_, {wanted});
+    const std::vector<unsigned> ticking = joined(kept, quiet);
+    const bool is_one_left = ticking.size() < all_.size();
+    const std::string line =
+        is_one_left ? fmt::format(
+                          "sed -i -E '/^GRUB_CMDLINE_LINUX/s/(isolcpus|nohz_full|rcu_nocbs)=[^ \"\\x27]* ?//g; "
+                          "s/^GRUB_CMDLINE_LINUX=\"/&isolcpus=managed_irq,domain,{0} nohz_full={1} rcu_nocbs={1} /' "
+                          "/etc/default/grub && update-grub && reboot   # and processor = {2} under [task]",
+                          processors_text(kept), processors_text(ticking), wanted)
+                    : "";
     if (isolated_.empty() || (processor_ && std::ranges::find(isolated_, *processor_) == isolated_.end())) {
       const bool is_single = all_.size() < 2;
       return {
@@ -271,10 +293,12 @@ class Host {
           .found = isolated_.empty() ? "none" : fmt::format("{}, and not {}", processors_text(isolated_), *processor_),
           .rating = Rating::improvable,
           .why = is_single ? "The machine has one processor, which the task shares with everything else."
-                           : "Other programs and the kernel's own work run on the task's processor.",
-          .command = is_single ? "" : line};
+                 : is_one_left
+                     ? "Other programs and the kernel's own work run on the task's processor."
+                     : "No other processor is left for other programs and the kernel's own work: let the task keep to "
+                       "one that is isolated.",
+          .command = line};
     }
-    const auto quiet = parse_processors(line_of(cpu_ / "nohz_full").value_or("")).value_or(std::vector<unsigned>());
     const bool is_quiet = std::ranges::find(quiet, wanted) != quiet.end();
     return {
         .name = "isolated processors",
@@ -311,7 +335,9 @@ class Host {
               .why = "The task keeps to no processor that interrupts could be kept from: isolate one first."};
     }
     std::vector<unsigned> others;
-    std::ranges::copy_if(all_, std::back_inserter(others), [&](unsigned one) { return one != *processor_; });
+    std::ranges::copy_if(all_, std::back_inserter(others), [&](unsigned one) {
+      return one != *processor_ && std::ranges::find(isolated_, one) == isolated_.end();
+    });
     HostFinding finding{.name = "interrupts",
                         .found = there.empty()
                                      ? fmt::format("none on {}", *processor_)
@@ -350,8 +376,9 @@ class Host {
     if (!limit) {
       return unknown_limit("real-time priority");
     }
-    const bool is_allowed = has_right(nice_right) || number_of(*limit).value_or(*limit == "unlimited" ? 99 : 0) >=
-                                                         static_cast<std::uint64_t>(priority_);
+    const bool is_allowed =
+        has_right(nice_right) ||
+        parse_whole_number(*limit).value_or(*limit == "unlimited" ? 99 : 0) >= static_cast<std::uint64_t>(priority_);
     return {.name = "real-time priority",
             .found = has_right(nice_right) ? "the right is there" : "up to " + *limit,
             .rating = is_allowed ? Rating::good : Rating::bad,
@@ -439,41 +466,10 @@ std::vector<HostFinding> look_at_host(const HostQuestion& question) {
   return Host(question).findings();
 }
 
-std::optional<std::vector<unsigned>> parse_processors(std::string_view text) {
-  std::vector<unsigned> processors;
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) {
-    text.remove_suffix(1);
-  }
-  while (!text.empty()) {
-    const auto comma = std::min(text.find(','), text.size());
-    const std::string_view part = text.substr(0, comma);
-    const auto dash = std::min(part.find('-'), part.size());
-    const auto first = number_of(part.substr(0, dash));
-    const auto last = dash == part.size() ? first : number_of(part.substr(dash + 1));
-    constexpr std::uint64_t most = 65'535;
-    if (!first || !last || *last < *first || *last > most) {
-      return std::nullopt;
-    }
-    for (std::uint64_t one = *first; one <= *last; ++one) {
-      processors.push_back(static_cast<unsigned>(one));
-    }
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return processors;
-}
-
-std::string processors_text(const std::vector<unsigned>& processors) {
-  std::string text;
-  for (std::size_t i = 0; i < processors.size();) {
-    std::size_t last = i;
-    while (last + 1 < processors.size() && processors[last + 1] == processors[last] + 1) {
-      ++last;
-    }
-    text += (text.empty() ? "" : ",") + std::to_string(processors[i]) +
-            (last == i ? "" : "-" + std::to_string(processors[last]));
-    i = last + 1;
-  }
-  return text;
+std::vector<unsigned> processors_of(const fs::path& root) {
+  const fs::path folder = root / "sys/devices/system/cpu";
+  const auto online = parse_processors(line_of(folder / "online").value_or(""));
+  return online && !online->empty() ? *online : numbered(folder, "cpu");
 }
 
 }  // namespace hysteron::tool

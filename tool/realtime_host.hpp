@@ -33,10 +33,7 @@ struct HostQuestion {
 /// In the order in which it is best mended.
 [[nodiscard]] std::vector<HostFinding> look_at_host(const HostQuestion& question);
 
-/// Of a list of processors as the kernel writes it, "0-2,5": 0, 1, 2, 5. Nothing where it is none.
-[[nodiscard]] std::optional<std::vector<unsigned>> parse_processors(std::string_view text);
-
-/// 0-2,5
-[[nodiscard]] std::string processors_text(const std::vector<unsigned>& processors);
+/// Those that are online, sorted; empty where /sys below the root does not tell.
+[[nodiscard]] std::vector<unsigned> processors_of(const std::filesystem::path& root);
 
 }  // namespace hysteron::tool

@@ -88,4 +88,13 @@ inline std::string with(std::string text, const std::string& part, const std::st
   return text.replace(text.find(part), part.size(), other);
 }
 
+/// What is left out, a line each.
+inline std::string all_of(const std::vector<Neglected>& list) {
+  std::string text;
+  for (const Neglected& one : list) {
+    text += one.what + "; " + one.size + "; " + one.why + "\n";
+  }
+  return text;
+}
+
 }  // namespace hysteron::robots

@@ -12,14 +12,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string all_of(const std::vector<Neglected>& list) {
-  std::string text;
-  for (const Neglected& one : list) {
-    text += one.what + "; " + one.size + "; " + one.why + "\n";
-  }
-  return text;
-}
-
 std::string refusal(const std::string& text, const JointOptions& options = {}) {
   try {
     (void)joint_of_text(text, options);

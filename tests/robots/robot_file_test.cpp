@@ -44,14 +44,6 @@ std::string without(std::string text, const std::vector<std::string>& pieces) {
   return text;
 }
 
-std::string all_of(const std::vector<Neglected>& list) {
-  std::string text;
-  for (const Neglected& one : list) {
-    text += one.what + "; " + one.size + "; " + one.why + "\n";
-  }
-  return text;
-}
-
 TEST(RobotFile, SetsAJointAndLeavesEveryOtherByte) {
   const RobotFile file = merged(joint_of_text(servo), {.joint = "shoulder"}, "arm.xml", robot);
   const std::string rest = without(

@@ -14,6 +14,7 @@
 #include "tests/support/scratch_folder.hpp"
 #include "tests/tool/workbench.hpp"
 #include "tool/jitter.hpp"
+#include "tool/processor_list.hpp"
 #include "tool/realtime_host.hpp"
 
 namespace hysteron::tool {
@@ -180,13 +181,59 @@ TEST(RealtimeHost, AnotherProcessorIsNotIsolated) {
   EXPECT_THAT(all.command, HasSubstr("for i in 0 1 2; do"));
 }
 
-/// Nothing that cannot be read is called good, or bad.
+/// What is isolated stays isolated: in both lists, and kept from interrupts.
+TEST(RealtimeHost, AMendKeepsWhatIsIsolated) {
+  Tree tree = good_machine();
+  tree["sys/devices/system/cpu/isolated"] = "2-3";
+  tree["sys/devices/system/cpu/nohz_full"] = "(null)";
+  tree["proc/irq/24/smp_affinity_list"] = "0-3";
+  const HostFinding ticking = finding(tree, "isolated processors");
+  EXPECT_EQ(ticking.found, "2-3, with a tick");
+  EXPECT_THAT(ticking.command, HasSubstr("isolcpus=managed_irq,domain,2-3 nohz_full=2-3 rcu_nocbs=2-3 "));
+  EXPECT_THAT(ticking.command, HasSubstr("processor = 2 under [task]"));
+  EXPECT_THAT(finding(tree, "interrupts").command, HasSubstr("echo 0-1 > /proc/irq/$i/smp_affinity_list"));
+  EXPECT_THAT(finding(tree, "isolated processors", {.processor = 1}).command, HasSubstr("domain,1-3 nohz_full=1-3"));
+  // One processor is left to everything else.
+  tree["sys/devices/system/cpu/isolated"] = "1-3";
+  const HostFinding last = finding(tree, "isolated processors", {.processor = 0});
+  EXPECT_EQ(last.command, "");
+  EXPECT_THAT(last.why, HasSubstr("No other processor is left"));
+}
+
+/// The command for GRUB is typed: on a line without lists, and on one that has lists already.
+TEST(RealtimeHost, TheKernelsLineHasEachListOnce) {
+  Tree tree = good_machine();
+  tree["sys/devices/system/cpu/isolated"] = "2-3";
+  tree["sys/devices/system/cpu/nohz_full"] = "";
+  const std::string command = finding(tree, "isolated processors").command;
+  const std::string sed = command.substr(0, command.find(" /etc/default/grub"));
+  const test::Workbench bench;
+  bench.write("grub",
+              "GRUB_CMDLINE_LINUX_DEFAULT=\"quiet nohz_full=2-3\"\n"
+              "GRUB_CMDLINE_LINUX=\"isolcpus=2-3 rcu_nocbs=2 net.ifnames=0\"\n");
+  for (int time = 0; time < 2; ++time) {
+    const auto typed = bench.shell(sed + " grub && cat grub");
+    EXPECT_EQ(typed.code, 0) << typed.err;
+    EXPECT_EQ(typed.out,
+              "GRUB_CMDLINE_LINUX_DEFAULT=\"quiet \"\n"
+              "GRUB_CMDLINE_LINUX=\"isolcpus=managed_irq,domain,2-3 nohz_full=2-3 rcu_nocbs=2-3 net.ifnames=0\"\n");
+  }
+}
+
+TEST(RealtimeHost, AProcessorThatIsOffIsNone) {
+  Tree tree = good_machine();
+  tree["sys/devices/system/cpu/online"] = "0-1,3";
+  tree["proc/irq/24/smp_affinity_list"] = "0-3";
+  EXPECT_THAT(finding(tree, "interrupts").command, HasSubstr("echo 0-1 > "));
+}
+
+/// Nothing that cannot be read is called good, or bad, or none.
 TEST(RealtimeHost, WhatCannotBeReadIsUnknown) {
   for (const HostFinding& one : findings_of({})) {
-    if (one.name != "isolated processors") {  // a machine that names none has none
-      EXPECT_EQ(one.rating, Rating::unknown) << one.name;
-    }
-    EXPECT_NE(one.why, "") << one.name;
+    EXPECT_EQ(one.rating, Rating::unknown) << one.name;
+    EXPECT_EQ(one.found, "not told") << one.name;
+    EXPECT_THAT(one.why, HasSubstr(" be read.")) << one.name;
+    EXPECT_EQ(one.command, "") << one.name;
   }
   EXPECT_EQ(finding({{"proc/sys/kernel/osrelease", "6.1"}}, "kernel").found, "6.1");
 }
@@ -259,6 +306,22 @@ TEST(DoctorCommand, SaysWhatToType) {
     sum += one.at("count").get<std::uint64_t>();
   }
   EXPECT_EQ(sum, 50U);
+  // What cannot be looked at, or measured, is refused.
+  bench.write("empty/note.txt", "");
+  for (const auto& [options, cause] : std::map<std::string, std::string>{
+           {"--root nowhere", "--root nowhere: there is neither a folder proc nor a folder sys in it."},
+           {"--root empty", "--root empty: there is neither a folder proc nor a folder sys in it."},
+           {"--root empty/note.txt", "--root empty/note.txt: there is neither a folder proc nor a folder sys in it."},
+           {"--root good --processor 9", "--processor 9: the processors of this machine are 0-3."},
+           {"--processor 1023", "--processor 1023: the processors of this machine are 0"},
+           {"--seconds nan", "hysteron doctor: --seconds: a number from 0 to 86400 is needed, not nan."},
+           {"--seconds inf", "hysteron doctor: --seconds: a number from 0 to 86400 is needed, not inf."},
+           {"--seconds 0.0001", "--seconds 0.0001 is shorter than one period of 1ms: nothing would be measured."}}) {
+    const auto refused = bench.shell("timeout 20 hysteron doctor --rt " + options);
+    EXPECT_EQ(refused.code, 2) << options;
+    EXPECT_EQ(refused.out, "") << options;
+    EXPECT_THAT(refused.err, testing::StartsWith("HY730 error: " + cause)) << options;
+  }
   EXPECT_THAT(bench.shell("hysteron doctor").err,
               testing::StartsWith("HY730 error: The doctor was not asked anything."));
   EXPECT_THAT(bench.shell("hysteron doctor --rt --period 1").err,

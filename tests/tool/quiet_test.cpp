@@ -49,6 +49,20 @@ TEST(Quiet, LeavesWhatIsTheResultItself) {
   }
 }
 
+/// The help of a command says what --quiet does there.
+TEST(Quiet, HelpSaysWhetherResultsStay) {
+  const QuietBench bench;
+  for (const char* const command : {"check", "record", "compare", "map", "doctor", "blocks", "test"}) {
+    const std::string help = bench.shell(std::string("hysteron help ") + command).out;
+    EXPECT_THAT(help, HasSubstr("No notes, no progress; results are printed all the same.")) << command;
+  }
+  for (const char* const command : {"run", "tune", "draw", "export"}) {
+    const std::string help = bench.shell(std::string("hysteron help ") + command).out;
+    EXPECT_THAT(help, HasSubstr("Says errors and warnings alone: no report, no notes, no progress.")) << command;
+  }
+  EXPECT_NE(bench.shell("hysteron check plant.st --quiet").out, "");
+}
+
 TEST(Width, HelpAndErrorsFitTheTerminal) {
   const QuietBench bench;
   for (const char* const command : {"help tune", "help run", "help", "run plan.st --in log.csv --out out.csv"}) {

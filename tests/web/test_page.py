@@ -148,6 +148,13 @@ class LivePage(unittest.TestCase):
         browser.type(field, "a lot")
         browser.click("#stage")
         browser.wait_for(f"{notice}.includes('is no number')")
+        browser.type(field, "1,000")
+        browser.click("#stage")
+        browser.wait_for(f"{notice}.includes('can be read in two ways. Write 1.000 or 1000. Nothing was staged.')")
+        self.assertEqual(browser.evaluate(staged), "")
+        browser.type(field, "0,125")
+        browser.click("#stage")
+        browser.wait_for(f"{staged} === '0.125'")
 
         browser.type(field, "0.2")
         browser.click("#stage")
@@ -207,6 +214,10 @@ class LivePage(unittest.TestCase):
         self.assertFalse(browser.evaluate("document.getElementById('xy-section').hidden"))
         chosen = "document.getElementById('{}').selectedOptions[0].textContent"
         self.assertEqual(browser.evaluate(chosen.format("xy-across")), "U [V]")
+        for choice in ("xy-across", "xy-up"):
+            texts = browser.evaluate(f"[...document.getElementById('{choice}').options].map(option => option.textContent)")
+            self.assertEqual(sorted(set(texts)), sorted(texts), "each signal once")
+            self.assertIn("REST [um]", texts)
         self.assertEqual(browser.evaluate(chosen.format("xy-up")), "Y [um]")
         browser.wait_for("Number(document.getElementById('xy').dataset.points) > 20")
         ink = ("(() => { const c = document.getElementById('xy'); const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"

@@ -230,6 +230,11 @@ function typed() {
     const text = input.value.trim();
     input.classList.remove("refused");
     if (text === "") continue;
+    if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(text)) {  // a decimal comma, or one between thousands
+      input.classList.add("refused");
+      throw new Error(`${point.name}: “${text}” can be read in two ways. ` +
+        `Write ${text.replace(",", ".")} or ${text.replace(",", "")}.`);
+    }
     const truth = { TRUE: 1, FALSE: 0 }[text.toUpperCase()];
     const value = truth === undefined ? Number(text.replace(",", ".")) : truth;
     if (!Number.isFinite(value)) {

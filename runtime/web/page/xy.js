@@ -22,10 +22,12 @@ class XyView {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }
 
-  // Every signal of the trends that is a number; first an output over an input, where there are both.
+  // Every signal of the trends that is a number, by its name once: an output is a signal of the diagram, too. First an output over an input, where there are both.
   build(trends) {
     this.trends = trends;
-    const signals = trends.signals.map((signal, at) => ({ ...signal, at })).filter(signal => signal.type !== "boolean");
+    const known = new Set();
+    const signals = trends.signals.map((signal, at) => ({ ...signal, at })).filter(signal =>
+      signal.type !== "boolean" && known.size < known.add(signal.name.toUpperCase()).size);
     const choose = (id, preferred) => {
       const before = place(id).selectedOptions[0]?.textContent;
       place(id).replaceChildren(...signals.map(signal => new Option(named(signal.name, signal.unit), signal.at)));

@@ -188,8 +188,11 @@ class Schemas(unittest.TestCase):
 
     def test_map(self):
         self.holds("map", self.printed("map", "plant.st", "--format", "json"))
+
+    def test_doctor(self):
+        (self.folder / "machine" / "proc").mkdir(parents=True)  # of a machine that tells nothing
         self.holds("doctor", self.printed("doctor", "--rt", "--seconds", "0.02", "--json", codes=(0, 1)),
-                   self.printed("doctor", "--rt", "--root", ".", "--json", codes=(0, 1)))
+                   self.printed("doctor", "--rt", "--root", "machine", "--json", codes=(0, 1)))
 
     def test_fleet(self):
         (self.folder / "broken.csv").write_text("no record")

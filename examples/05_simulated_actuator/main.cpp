@@ -39,16 +39,7 @@ constexpr std::size_t rows_at_first = 200;  ///< one second, in which the machin
 
 /// How far y strays from the reference of the row before, about its mean, um.
 double spread(const std::vector<double>& ref, const std::vector<double>& y) {
-  std::vector<double> errors;
-  double sum = 0.0;
-  for (std::size_t k = rows_at_first; k + 1 < y.size(); ++k) {
-    errors.push_back(y[k + 1] - ref[k]);
-    sum += errors.back();
-  }
-  for (double& error : errors) {
-    error -= sum / static_cast<double>(errors.size());
-  }
-  return rms(errors);
+  return difference({y.begin() + 1, y.end()}, ref, rows_at_first + 1);
 }
 
 /// Tunes the model of example 4 on the identification record, and drives the machine by its inverse as generated code.
@@ -66,15 +57,11 @@ void feed_forward(const std::filesystem::path& folder, const records::Record& id
   const Program feedforward = feedforward_of("feedforward", plant);
   const std::vector<double> u = run_generated(feedforward, reference, folder / "generated");
   const std::vector<double> y = simulated::play(u, settings);
-  std::vector<double> line;
-  for (const double wanted : ref) {
-    line.push_back(simulated::voltage_without_model(wanted));
-  }
   fmt::print(
       "\nIts inverse, generated to C++, compiled, and driven by loops inside loops that the log did not contain\n");
   fmt::print("  the interpreter's bits: {}\n", u == simulate(feedforward, reference).front() ? "equal" : "DIFFERENT");
   fmt::print("  error of a straight line     {:6.2f} um, RMS about its mean\n",
-             spread(ref, simulated::play(line, settings)));
+             spread(ref, simulated::play(simulated::voltage_without_model(ref), settings)));
   fmt::print("  error of the feedforward     {:6.2f} um\n", spread(ref, y));
 
   records::Record driven = record_of(u, y, settings.sample_time);
@@ -94,10 +81,7 @@ void example(const std::filesystem::path& folder) {
   fmt::print("  creep of the mean            {:6.2f} um a decade of time\n", figures.creep);
   fmt::print("  noise                        {:6.3f} um, standard deviation\n", figures.noise);
 
-  std::vector<double> test_u;
-  for (const double wanted : simulated::test_reference(settings.sample_time)) {
-    test_u.push_back(simulated::voltage_without_model(wanted));
-  }
+  const std::vector<double> test_u = simulated::voltage_without_model(simulated::test_reference(settings.sample_time));
   const records::Record identification = record_of(u, y, settings.sample_time);
   records::write_csv(folder / "simulated_identify.csv", identification);
   records::write_csv(folder / "simulated_test.csv",

@@ -20,7 +20,8 @@ constexpr std::string_view usage =
     "\n"
     "  hysteron-simulate identify OUT.csv     its identification record: t, u, y; 40 periods of 1 Hz, 0 to 3.6 V\n"
     "  hysteron-simulate reference OUT.csv    the reference of a feedforward test: t, ref, u; u by a straight line\n"
-    "  hysteron-simulate play IN.csv OUT.csv  plays the u of a record at 200 Hz from rest, and adds the y that answers\n"
+    "  hysteron-simulate play IN.csv OUT.csv  plays the u of a record at 200 Hz from rest, and adds the y that "
+    "answers\n"
     "\n"
     "t in seconds, u in volts, ref and y in micrometres. Equal input gives equal output, to the bit.\n";
 
@@ -36,14 +37,9 @@ void identify(const std::string& out) {
 void reference(const std::string& out) {
   const simulated::Settings settings;
   const std::vector<double> ref = simulated::test_reference(settings.sample_time);
-  std::vector<double> u;
-  u.reserve(ref.size());
-  for (const double value : ref) {
-    u.push_back(simulated::voltage_without_model(value));
-  }
   Record record = Record::even(0.0, settings.sample_time, ref.size());
   record.add({.name = "ref", .unit = "", .values = ref});
-  record.add({.name = "u", .unit = "", .values = u});
+  record.add({.name = "u", .unit = "", .values = simulated::voltage_without_model(ref)});
   hysteron::records::write_csv(out, record);
 }
 

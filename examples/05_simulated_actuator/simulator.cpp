@@ -102,8 +102,13 @@ std::vector<double> test_reference(double sample_time) {
   return reference;
 }
 
-double voltage_without_model(double reference) {
-  return 1.83 + reference / 12.55;
+std::vector<double> voltage_without_model(std::span<const double> reference) {
+  std::vector<double> u;
+  u.reserve(reference.size());
+  for (const double value : reference) {
+    u.push_back(1.83 + value / 12.55);
+  }
+  return u;
 }
 
 }  // namespace simulated

@@ -81,6 +81,6 @@ std::vector<double> identification_voltage(double sample_time);
 std::vector<double> test_reference(double sample_time);
 
 /// The straight line from that reference to a voltage, which a controller without a model of the hysteresis would use.
-double voltage_without_model(double reference);
+std::vector<double> voltage_without_model(std::span<const double> reference);
 
 }  // namespace simulated

@@ -4,8 +4,9 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
+
+#include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::soak {
 namespace {
@@ -133,8 +134,7 @@ DiskImage image_of(const std::filesystem::path& folder) {
   DiskImage image;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) {
-      std::ifstream file(entry.path(), std::ios::binary);
-      image[entry.path().lexically_relative(folder).string()] = {std::istreambuf_iterator<char>(file), {}};
+      image[entry.path().lexically_relative(folder).string()] = test::contents_of(entry.path());
     }
   }
   return image;

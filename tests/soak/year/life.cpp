@@ -22,7 +22,6 @@
 namespace hysteron::soak {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t minute = 60 * second;
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 /// Parameters of a set: whole multiples of this beside their presets, so that a double holds them.

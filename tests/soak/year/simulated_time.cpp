@@ -18,7 +18,6 @@
 namespace hysteron::soak {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
 std::int64_t in_nanoseconds(const timespec& time) noexcept {

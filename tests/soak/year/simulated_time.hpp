@@ -14,6 +14,8 @@
 
 namespace hysteron::soak {
 
+inline constexpr std::int64_t second = 1'000'000'000;  ///< in nanoseconds, as all times here
+
 class SimulatedTime {
  public:
   /// What is done at each wake of the cyclic thread, in this thread: given when it wished to be woken, says when it is.

@@ -20,7 +20,6 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <random>
@@ -46,8 +45,6 @@
 
 namespace hysteron::soak {
 namespace {
-
-constexpr std::int64_t second = 1'000'000'000;
 
 struct Options {
   PlanSettings plan{.span = 365 * 86'400 * second, .period = 1'000'000};
@@ -76,11 +73,6 @@ struct Sum {
   std::uint64_t trace_steps = 0;
   std::uint64_t unreadable_traces = 0;
 };
-
-std::string text_of_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// What the file is for.
 std::string kind_of(const std::string& name) {
@@ -279,7 +271,7 @@ class Year {
       if (!std::filesystem::exists(file) || std::filesystem::file_size(file) == 0) {
         continue;
       }
-      const std::string bytes = text_of_file(file);
+      const std::string bytes = test::contents_of(file);
       runtime::TraceHead head;
       std::uint64_t steps = 0;
       const std::string problem = runtime::read_trace(bytes, head, [&](const runtime::TraceHead&) {

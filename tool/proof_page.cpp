@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "plots/page.hpp"
 #include "support/markup.hpp"
@@ -25,10 +25,10 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 @media print { section { break-inside: avoid-page; } section.long { break-inside: auto; } tr { break-inside: avoid; } }
 )";
 
-using Fact = std::pair<std::string_view, std::string>;
+using Fact = std::pair<std::string, std::string>;
 
-/// A fact a line; the value is HTML.
-std::string facts(std::initializer_list<Fact> rows) {
+/// A fact a line, in HTML.
+std::string facts(const std::vector<Fact>& rows) {
   std::string html = "<table class=\"facts\">\n";
   for (const auto& [name, value] : rows) {
     html += value.empty() ? "" : fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, value);
@@ -85,12 +85,12 @@ std::string schedule_html(const Json& schedule) {
 }
 
 std::string files_html(const Json& files) {
-  std::string html = "<table class=\"facts\">\n";
+  std::vector<Fact> rows;
   for (const Json& one : files) {
-    html += fmt::format("<tr><th>{}</th><td>{} bytes<br/>{}</td></tr>\n", value_html(one["file"]),
-                        value_html(one["bytes"]), hash_html(one["sha256"]));
+    rows.emplace_back(value_html(one["file"]),
+                      fmt::format("{} bytes<br/>{}", value_html(one["bytes"]), hash_html(one["sha256"])));
   }
-  return html + "</table>\n";
+  return facts(rows);
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ std::optional<std::size_t> stack_of(std::vector<std::string> compile, const fs::
 
 std::vector<Signal> run_in_c(const Program& program, const std::vector<GeneratedFile>& files,
                              const std::vector<std::string>& sources, const std::string& main, const Drive& drive,
-                             TargetProof& proof) {
+                             TargetProof& proof, bool tells_stack) {
   const auto compiler = find_compiler("CC", {"cc", "gcc", "clang"});
   if (!compiler) {
     throw InputError(error::no_compiler, {}, "There is no C compiler (cc, gcc or clang) on the path.",
@@ -248,7 +248,9 @@ std::vector<Signal> run_in_c(const Program& program, const std::vector<Generated
                                  first_lines(errors)),
                      "set CC to a compiler for C99.");
   }
-  proof.stack_bytes = stack_of(compile, folder.path(), sources.front());
+  if (tells_stack) {
+    proof.stack_bytes = stack_of(compile, folder.path(), sources.front());
+  }
   return run_rows({.command = {executable.string()},
                    .name = program.graph.name,
                    .outputs = program.graph.outputs.size(),
@@ -331,16 +333,16 @@ TargetProof prove(const Program& program, const Target& target, const std::vecto
       found = run_in_vectors(program, files, drive);
     } else if (target.name == "c") {
       found = run_in_c(program, files, {namespace_identifier(program.graph.name) + ".c"}, main_of_c(program.graph),
-                       drive, proof);
+                       drive, proof, true);
     } else if (target.name == "fmu") {
       const FmuOptions fmu{.version = options.fmi == "2" ? FmiVersion::Two : FmiVersion::Three,
                            .float32 = options.float32};
       const FmuContents contents = generate_fmu(program, fmu);
       std::vector<std::string> sources = contents.sources;
       std::erase_if(sources, [](const std::string& one) { return one.find("_fmi") != std::string::npos; });
-      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, fmu), drive, proof);
+      found = run_in_c(program, contents.files, sources, main_of_fmu(program, contents, fmu), drive, proof,
+                       false);  // the functions of FMI are not in those sources
       proof.way += ", through FMI";
-      proof.stack_bytes.reset();  // the functions of FMI are not in it
     } else {
       std::string text = files.front().text;
       proof.way = "read back";

@@ -203,7 +203,7 @@ std::string Lowering::meant_brackets(const language::Binary& binary, Type left, 
   }
   const auto text = [&](language::ExpressionId first, language::ExpressionId last) {
     const auto from = span_of(first).offset;
-    return std::string_view(*source_.text).substr(from, span_of(last).offset + span_of(last).length - from);
+    return source_.text_of({from, span_of(last).offset + span_of(last).length - from});
   };
   const language::ExpressionId other = left == Type::Word ? binary.right : binary.left;
   const auto* const comparison = std::get_if<language::Binary>(&source_.expressions[other].node);
@@ -243,8 +243,7 @@ Wire Lowering::lower_bit(const language::Binary& binary, language::Span span) {
     return {};
   }
   if (word.type != Type::Word) {
-    const language::Span of = span_of(masked.left);
-    const auto name = std::string_view(*source_.text).substr(of.offset, of.length);
+    const auto name = source_.text_of(span_of(masked.left));
     const std::string whole = word.type == Type::Int ? std::string(name) : fmt::format("LREAL_TO_DINT({})", name);
     report_(error::type_mismatch, span,
             fmt::format("'{}' is {} and has no bit {}", name, type_name(word.type), binary.bit),

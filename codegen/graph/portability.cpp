@@ -281,8 +281,7 @@ class Check {
   }
 
   [[nodiscard]] std::string text_of(ExpressionId id) const {
-    const language::Span span = source_.expressions[id].span;
-    return source_.text->substr(span.offset, span.length);
+    return std::string(source_.text_of(source_.expressions[id].span));
   }
 
   /// Lowers an expression into a graph of its own, in which constants are literals and all else is an input.

@@ -278,10 +278,8 @@ class Order {
       return;
     }
     const Declared& declared = definition_.variables[found->second];
-    Read read{.statement = statement,
-              .variable = found->second,
-              .span = span,
-              .text = std::string(source_.text->substr(span.offset, span.length))};
+    Read read{
+        .statement = statement, .variable = found->second, .span = span, .text = std::string(source_.text_of(span))};
     if (declared.kind == Declared::Kind::LibraryBlock) {
       const auto node = nodes_.find(upper(declared.field.name));
       if (node == nodes_.end()) {

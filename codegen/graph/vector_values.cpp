@@ -193,7 +193,7 @@ std::optional<Elements> VectorValues::value_of(const language::Binary& binary, S
     return std::nullopt;
   }
   if (binary.bit >= 0 && left->vector) {
-    const auto name = std::string_view(*file_.text).substr(span.offset, span.length);
+    const auto name = file_.text_of(span);
     const auto vector = name.substr(0, name.rfind('.'));
     error_(error::vector_for_value, span,
            fmt::format("whether '{}' is an element or a bit of each element can be meant", name),

@@ -348,6 +348,17 @@ class ProjectReader {
 
 }  // namespace
 
+const DrawnElement* find_element(const DrawnPou& pou, std::uint64_t id) {
+  const auto found = std::ranges::find(pou.elements, id, &DrawnElement::id);
+  return found == pou.elements.end() ? nullptr : &*found;
+}
+
+const DrawnVariable* find_variable(const DrawnPou& pou, std::string_view name) {
+  const auto found = std::ranges::find_if(
+      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, name); });
+  return found == pou.variables.end() ? nullptr : &*found;
+}
+
 std::vector<DrawnPou> read_project(const std::string& file, const std::string& text) {
   return ProjectReader(file, text).run();
 }

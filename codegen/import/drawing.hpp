@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/diagnostic.hpp"
@@ -69,6 +70,12 @@ struct DrawnPou {
   std::vector<DrawnElement> elements{};
   std::uint32_t line = 0;
 };
+
+/// By its localId; null where there is none.
+[[nodiscard]] const DrawnElement* find_element(const DrawnPou& pou, std::uint64_t id);
+
+/// By its name; null where none is declared.
+[[nodiscard]] const DrawnVariable* find_variable(const DrawnPou& pou, std::string_view name);
 
 /// Reads a project. Throws InputError: HY743 where the text is no PLCopen XML or larger than any project is, HY744
 /// where a variable is of a kind that no diagram has.

@@ -78,8 +78,8 @@ std::optional<Type> result_type(const DrawnPou& pou, const Variables& variables,
   }
   for (const DrawnPin& pin : function.inputs) {
     for (const Link& link : pin.links) {
-      const auto found = std::ranges::find(pou.elements, link.element, &DrawnElement::id);
-      if (found != pou.elements.end() && found->kind == tc6::in_variable && !equal_ignoring_case(pin.name, "G")) {
+      const DrawnElement* const found = find_element(pou, link.element);
+      if (found != nullptr && found->kind == tc6::in_variable && !equal_ignoring_case(pin.name, "G")) {
         if (const auto type = type_of_text(variables, found->text)) {
           return type;
         }

@@ -23,11 +23,10 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
   if (element.kind != tc6::in_variable) {
     return false;
   }
-  const auto variable = std::ranges::find_if(
-      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, element.text); });
-  return variable == pou.variables.end() ? type_of_literal(with_known_literals(element.text)).has_value()
-                                         : variable->section == DrawnVariable::Section::Constant ||
-                                               variable->remark.find("@param") != std::string::npos;
+  const DrawnVariable* const variable = find_variable(pou, element.text);
+  return variable == nullptr ? type_of_literal(with_known_literals(element.text)).has_value()
+                             : variable->section == DrawnVariable::Section::Constant ||
+                                   variable->remark.find("@param") != std::string::npos;
 }
 
 }  // namespace
@@ -62,14 +61,13 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
                "Hand the value in by an input and out by an output.");
       }
     }
-    const bool wired =
-        element.kind == tc6::in_out_variable && !element.inputs.empty() &&
-        std::ranges::any_of(element.inputs.front().links, [&](const Link& link) {
-          const auto from = std::ranges::find(pou.elements, link.element, &DrawnElement::id);
-          return from == pou.elements.end() || std::ranges::none_of(from->both, [&](const DrawnPin& one) {
-                   return equal_ignoring_case(one.name, link.pin);
-                 });
-        });
+    const bool wired = element.kind == tc6::in_out_variable && !element.inputs.empty() &&
+                       std::ranges::any_of(element.inputs.front().links, [&](const Link& link) {
+                         const DrawnElement* const from = find_element(pou, link.element);
+                         return from == nullptr || std::ranges::none_of(from->both, [&](const DrawnPin& one) {
+                                  return equal_ignoring_case(one.name, link.pin);
+                                });
+                       });
     if (wired) {
       object("a wire assigns it", "Assign it by an output variable, outVariable.");
     }
@@ -88,12 +86,11 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
 }
 
 std::string handed_over(const DrawnPou& pou, const DrawnPin& pin) {
-  const auto declared = std::ranges::find_if(
-      pou.variables, [&](const DrawnVariable& one) { return equal_ignoring_case(one.name, pin.expression); });
+  const DrawnVariable* const declared = find_variable(pou, pin.expression);
   using Section = DrawnVariable::Section;
   const bool may_change =
-      declared != pou.variables.end() && (declared->section == Section::Output || declared->section == Section::Local ||
-                                          declared->section == Section::Both);
+      declared != nullptr && (declared->section == Section::Output || declared->section == Section::Local ||
+                              declared->section == Section::Both);
   return may_change ? in_capitals(declared->name) : std::string();
 }
 
@@ -148,8 +145,8 @@ bool is_driven(const DrawnPou& pou, std::string_view instance, std::string_view 
         return true;
       }
       return std::ranges::any_of(pin.links, [&](const Link& link) {
-        const auto source = std::ranges::find(pou.elements, link.element, &DrawnElement::id);
-        return source == pou.elements.end() || !is_constant(pou, *source);
+        const DrawnElement* const source = find_element(pou, link.element);
+        return source == nullptr || !is_constant(pou, *source);
       });
     }
   }

@@ -444,9 +444,11 @@ class Reader {
     }
     const DrawnVariable& variable = *found->second;
     if (variable.section == DrawnVariable::Section::Both) {
-      const bool own = assigned_.contains(in_capitals(name));
-      made_.taken_in.insert(made_.taken_in.end(), own ? 0U : 1U, in_capitals(name));
-      return own ? name_of_output(variable) : variable.name;
+      if (assigned_.contains(in_capitals(name))) {
+        return name_of_output(variable);
+      }
+      made_.taken_in.push_back(in_capitals(name));
+      return variable.name;
     }
     const auto type = known_type(variable.type);
     const bool last_cycles = assigned_somewhere_.contains(in_capitals(name)) && !assigned_.contains(in_capitals(name));

@@ -203,15 +203,15 @@ class Importer {
   /// A network has inputs and outputs alone: what is both becomes one of each, as far as it is read and assigned.
   std::vector<DrawnVariable> apart(const DrawnPou& pou, const import::NetworkText& network) {
     using Section = DrawnVariable::Section;
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+      return std::ranges::find(names, in_capitals(name)) != names.end();
+    };
     std::vector<DrawnVariable> list;
     for (const DrawnVariable& one : pou.variables) {
       if (one.section != Section::Both) {
         list.push_back(one);
         continue;
       }
-      const auto has = [](const std::vector<std::string>& names, const std::string& name) {
-        return std::ranges::find(names, in_capitals(name)) != names.end();
-      };
       DrawnVariable variable = one;
       const bool assigned = has(network.assigned, import::name_of_output(one));
       if (!assigned || !one.external || has(network.taken_in, one.name)) {

@@ -254,16 +254,13 @@ ExpressionId Parser::bit_of(ExpressionId word, std::uint32_t begin) {
   const auto literal = [&](std::int64_t value) {
     return make({.node = IntLiteral{.value = value, .is_word = true}, .span = span}, 1);
   };
-  const auto joined = [&](Operator op, ExpressionId left, ExpressionId right) {
-    return left == no_expression ? left
-                                 : make({.node = Binary{op, left, right}, .span = since(begin)}, heights_[left] + 1);
+  const auto joined = [&](Operator op, ExpressionId left, ExpressionId right, std::int8_t read) {
+    return left == no_expression  // nested too deeply
+               ? left
+               : make({.node = Binary{op, left, right, read}, .span = since(begin)}, heights_[left] + 1);
   };
-  const ExpressionId masked = joined(Operator::And, word, literal(std::int64_t{1} << bit));
-  const ExpressionId read = joined(Operator::NotEqual, masked, literal(0));
-  if (read != no_expression) {  // nested too deeply
-    std::get<Binary>(file_.expressions[read].node).bit = static_cast<std::int8_t>(bit);
-  }
-  return read;
+  const ExpressionId masked = joined(Operator::And, word, literal(std::int64_t{1} << bit), -1);
+  return joined(Operator::NotEqual, masked, literal(0), static_cast<std::int8_t>(bit));
 }
 
 bool Parser::index(ExpressionId& index) {

@@ -173,6 +173,10 @@ struct SourceFile {
 
   /// The place of a span: file, line and column.
   [[nodiscard]] Place place(Span span) const;
+  /// What is written there.
+  [[nodiscard]] std::string_view text_of(Span span) const {
+    return std::string_view(*text).substr(span.offset, span.length);
+  }
 };
 
 /// Parses a text. Finds every syntax error, not only the first; the tree then holds what could be read.

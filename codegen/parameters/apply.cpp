@@ -224,11 +224,11 @@ void report_unknown_parameter(const Graph& graph, std::string_view path, const P
     return;
   }
   if (const Node* const instance = find_instance(graph, path)) {
+    const std::string parameter = first_parameter(graph, path);
     diagnostics.error(error::unknown_key, place,
                       fmt::format("{} is a {}, not a parameter.", path, instance->block->about.name),
-                      first_parameter(graph, path).empty()
-                          ? "remove it; the diagram gives all of its parameters."
-                          : fmt::format("name a parameter of it, such as {}.", first_parameter(graph, path)));
+                      parameter.empty() ? "remove it; the diagram gives all of its parameters."
+                                        : fmt::format("name a parameter of it, such as {}.", parameter));
     return;
   }
   if (is_input(graph, path)) {

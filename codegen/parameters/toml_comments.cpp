@@ -19,17 +19,23 @@ struct Line {
   std::string_view comment{};  ///< from its # on; empty where there is none
 };
 
+/// The place of the quote that ends a text which begins at `at`; `at` itself where none begins there.
+std::size_t end_of_quoted(std::string_view code, std::size_t at) {
+  const char quote = code[at];
+  if (quote != '"' && quote != '\'') {
+    return at;
+  }
+  for (++at; at < code.size() && code[at] != quote; ++at) {
+    at += code[at] == '\\' && quote == '"' ? 1 : 0;
+  }
+  return at;
+}
+
 Line cut(std::string_view text) {
   Line line{.code = trimmed(text, blanks)};
-  char quote = '\0';
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quote != '\0') {
-      i += c == '\\' && quote == '"' ? 1 : 0;
-      quote = c == quote ? '\0' : quote;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '#') {
+    i = end_of_quoted(text, i);
+    if (i < text.size() && text[i] == '#') {
       line.code = trimmed(text.substr(0, i), blanks);
       line.comment = trimmed(text.substr(i), blanks);
       break;
@@ -42,20 +48,16 @@ Line cut(std::string_view text) {
 class ValueDepth {
  public:
   void follow(std::string_view code) {
-    char quote = '\0';
     for (std::size_t i = 0; i < code.size(); ++i) {
       const char c = code[i];
-      if (quote != '\0') {
-        i += c == '\\' && quote == '"' ? 1 : 0;
-        quote = c == quote ? '\0' : quote;
-      } else if (c == ']' || c == '}') {
+      if (c == ']' || c == '}') {
         --depth_;
       } else if (c == ',') {
         is_in_element_ = is_in_element_ && depth_ > 1;
       } else if (blanks.find(c) == std::string_view::npos) {
         begin_element();
         depth_ += c == '[' || c == '{' ? 1 : 0;
-        quote = c == '"' || c == '\'' ? c : quote;
+        i = end_of_quoted(code, i);
       }
     }
   }

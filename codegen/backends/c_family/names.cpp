@@ -32,7 +32,7 @@ std::string namespace_identifier(std::string_view name) {
 
 std::vector<std::string> port_members(const std::vector<Port>& ports) {
   Identifiers identifiers(cpp_words);
-  return port_names(ports, [&](const PortGroup& group) { return identifiers.make({group.name}); });
+  return port_names(port_groups(ports), [&](const PortGroup& group) { return identifiers.make({group.name}); });
 }
 
 StructLayout::StructLayout(const Graph& graph, const Routine& routine, std::span<const std::string_view> reserved)

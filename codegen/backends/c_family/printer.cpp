@@ -152,7 +152,7 @@ void WriterOfC::begin_rate(const Rate& rate, std::string& text) {
 }
 
 void WriterOfC::begin_loop(std::uint32_t count, std::string& text) {
-  append(text, fmt::format("for ({0} {1} = 0U; {1} < {2}U; ++{1}) {{\n", dialect_.place, place_name(), count));
+  append(text, fmt::format("for ({0} {1} = 0U; {1} < {2}U; ++{1}) {{\n", dialect_.place, place_, count));
 }
 
 void WriterOfC::define(ValueId id, std::string_view name, std::string& text) {

@@ -82,7 +82,7 @@ class WriterOfC : public StepWriter {
   void set_cell(std::uint32_t cell, ValueId value, std::string& text) override;
   void set_element(std::uint32_t cell, ValueId index, ValueId value, std::string& text) override;
 
-  [[nodiscard]] std::string_view place_name() override { return place_; }
+  [[nodiscard]] std::string_view place_name() const override { return place_; }
   void begin_loop(std::uint32_t count, std::string& text) override;
   void end_loop(std::string& text) override { text += "}\n"; }
 

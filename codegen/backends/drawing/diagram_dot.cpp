@@ -440,9 +440,8 @@ class Drawing {
 
   /// On one line.
   [[nodiscard]] std::string text_of(ExpressionId id) const {
-    const auto span = expression(id).span;
     std::string text;
-    for (const char c : std::string_view(*definitions_.source->text).substr(span.offset, span.length)) {
+    for (const char c : definitions_.source->text_of(expression(id).span)) {
       const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
       if (!space || (!text.empty() && text.back() != ' ')) {
         text += space ? ' ' : c;

@@ -25,10 +25,9 @@ struct PortGroup {
 
 /// By port what it is called: of an array the elements, `x[2]`. `make` gives the name of a group.
 template <class Make>
-[[nodiscard]] std::vector<std::string> port_names(const std::vector<Port>& ports, Make make) {
+[[nodiscard]] std::vector<std::string> port_names(const std::vector<PortGroup>& groups, Make make) {
   std::vector<std::string> names;
-  names.reserve(ports.size());
-  for (const PortGroup& group : port_groups(ports)) {
+  for (const PortGroup& group : groups) {
     const std::string name(make(group));
     for (std::uint32_t i = 0; i < group.length; ++i) {
       names.push_back(group.is_array() ? name + "[" + std::to_string(i) + "]" : name);

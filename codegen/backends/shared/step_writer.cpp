@@ -1,7 +1,6 @@
 #include "codegen/backends/shared/step_writer.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "codegen/backends/shared/generated_file.hpp"
 

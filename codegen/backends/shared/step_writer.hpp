@@ -52,7 +52,7 @@ class StepWriter {
   /// The variable of an output, for values that are one.
   [[nodiscard]] virtual std::string_view output_name(std::uint32_t /*output*/) const { return {}; }
   /// A loop over the places of an array, round a line that names its place; nothing where the target has none.
-  [[nodiscard]] virtual std::string_view place_name() { return {}; }
+  [[nodiscard]] virtual std::string_view place_name() const { return {}; }
   virtual void begin_loop(std::uint32_t /*count*/, std::string& /*text*/) {}
   virtual void end_loop(std::string& /*text*/) {}
   /// What a shared value is called that is no port and no state.

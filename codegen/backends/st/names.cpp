@@ -63,19 +63,13 @@ StBlockNames::StBlockNames(const Graph& graph, const Routine& routine, const StD
   }
 }
 
-/// The pins of a block of the library are single ones, since each may be wired by itself.
 void StBlockNames::name_ports(const std::vector<Port>& ports, std::vector<std::string>& names,
                               std::vector<std::string_view>& list) {
-  if (keeps_pins_) {
-    for (const Port& port : ports) {
-      list.push_back(keep(port.name));
-    }
-    return;
-  }
-  names = port_names(ports, [this](const PortGroup& group) { return keep(group.name); });
+  names = port_names(groups(ports), [this](const PortGroup& group) { return keep(group.name); });
   list.assign(names.begin(), names.end());
 }
 
+/// The pins of a block of the library are single ones, since each may be wired by itself.
 std::vector<PortGroup> StBlockNames::groups(const std::vector<Port>& ports) const {
   if (!keeps_pins_) {
     return port_groups(ports);

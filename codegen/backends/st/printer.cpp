@@ -99,19 +99,18 @@ std::string StPrinter::text(ValueId id, int outer) const {
 
 /// An argument of a function: a compiler finds the type of an integer by its literal, which is then too narrow.
 std::string StPrinter::argument(ValueId id) const {
-  const Value& value = tape()[id];
-  if (value.op == Op::IntLiteral && !is_named(id) && value.literal == std::numeric_limits<std::int32_t>::min()) {
-    return "(-DINT#2147483647 - DINT#1)";
+  if (!is_integer(id)) {
+    return text(id);
   }
-  return value.op == Op::IntLiteral && !is_named(id) ? st_typed_literal("DINT", literal(Type::Int, value.literal))
-                                                     : text(id);
+  const double value = tape()[id].literal;
+  return value == std::numeric_limits<std::int32_t>::min() ? "(-DINT#2147483647 - DINT#1)"
+                                                           : st_typed_literal("DINT", literal(Type::Int, value));
 }
 
 /// The bits of an integer, as a DWORD.
 std::string StPrinter::pattern(ValueId id) const {
-  const Value& value = tape()[id];
-  return value.op == Op::IntLiteral && !is_named(id)
-             ? fmt::format("DWORD#16#{:08X}", static_cast<std::uint32_t>(static_cast<std::int32_t>(value.literal)))
+  return is_integer(id)
+             ? fmt::format("DWORD#16#{:08X}", static_cast<std::uint32_t>(static_cast<std::int32_t>(tape()[id].literal)))
              : "DINT_TO_DWORD(" + argument(id) + ")";
 }
 
@@ -230,19 +229,18 @@ void StPrinter::print_power_inside(const Value& value, int outer, std::string& o
 bool StPrinter::is_word(ValueId id) const {
   const Value& value = tape()[id];
   constexpr double largest_word = 65535.0;
-  return !is_named(id) && (value.op == Op::WordToInt ||
-                           (value.op == Op::IntLiteral && value.literal >= 0.0 && value.literal <= largest_word));
+  return (value.op == Op::WordToInt && !is_named(id)) ||
+         (is_integer(id) && value.literal >= 0.0 && value.literal <= largest_word);
 }
 
 /// The lower 16 bits of an integer, as a WORD: by operations on WORDs as far as these are the same.
 void StPrinter::print_as_word(ValueId id, int outer, std::string& out) const {
   constexpr double bits_of_word = 16.0;
   const Value& value = tape()[id];
-  if (is_word(id)) {
-    return value.op == Op::WordToInt ? print(value.args[0], outer, out)
-                                     : append(out, literal(Type::Word, value.literal));
+  if (value.op == Op::WordToInt && !is_named(id)) {
+    return print(value.args[0], outer, out);
   }
-  if (value.op == Op::IntLiteral && !is_named(id)) {
+  if (is_integer(id)) {
     return append(out, literal(Type::Word, static_cast<std::uint16_t>(static_cast<std::int32_t>(value.literal))));
   }
   const bool logic = value.op == Op::IntAnd || value.op == Op::IntOr || value.op == Op::IntXor;
@@ -262,8 +260,7 @@ void StPrinter::print_as_word(ValueId id, int outer, std::string& out) const {
 /// AND, OR and XOR of two WORDs, and NOT as what turns every bit.
 void StPrinter::print_bits(const Value& value, int outer, std::string& out) const {
   constexpr double every_bit = 65535.0;
-  const Value& last = tape()[value.args[1]];
-  if (value.op == Op::IntXor && last.op == Op::IntLiteral && last.literal == every_bit && !is_named(value.args[1])) {
+  if (value.op == Op::IntXor && is_integer(value.args[1]) && tape()[value.args[1]].literal == every_bit) {
     std::string turned;
     print_as_word(value.args[0], Strength::Primary, turned);
     const bool twice = turned.starts_with("NOT ");

@@ -83,6 +83,8 @@ class StPrinter final : public ExpressionPrinter {
   void print_power_inside(const Value& value, int outer, std::string& out) const;
   [[nodiscard]] std::string argument(ValueId id) const;
   [[nodiscard]] std::string pattern(ValueId id) const;
+  /// A literal of an integer, which the text writes where it is used.
+  [[nodiscard]] bool is_integer(ValueId id) const { return tape()[id].op == Op::IntLiteral && !is_named(id); }
   [[nodiscard]] bool is_word(ValueId id) const;
   void print_as_word(ValueId id, int outer, std::string& out) const;
   void print_bits(const Value& value, int outer, std::string& out) const;
@@ -130,7 +132,7 @@ class StWriter final : public StepWriter {
   void call(const Statement& statement, bool reset, std::string& text) override;
   [[nodiscard]] std::string_view output_name(std::uint32_t output) const override { return layout_.outputs[output]; }
   [[nodiscard]] std::string_view word_for(const Value& value) const override { return word_for_result(value.op); }
-  [[nodiscard]] std::string_view place_name() override;
+  [[nodiscard]] std::string_view place_name() const override { return place_; }
   void begin_loop(std::uint32_t count, std::string& text) override;
   void end_loop(std::string& text) override { text += "END_FOR;\n"; }
 
@@ -145,7 +147,6 @@ class StWriter final : public StepWriter {
 
   StPrinter& printer_;
   const Layout& layout_;
-  const StNames& names_;
   std::string place_;
 };
 

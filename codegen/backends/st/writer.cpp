@@ -11,8 +11,9 @@ constexpr std::size_t widest_call = 100;
 
 StWriter::StWriter(const Graph& the_graph, const Routine& the_routine, StPrinter& printer, Identifiers& the_locals,
                    const Layout& layout, const StNames& names)
-    : StepWriter(the_graph, the_routine, printer, the_locals), printer_(printer), layout_(layout), names_(names) {
+    : StepWriter(the_graph, the_routine, printer, the_locals), printer_(printer), layout_(layout) {
   must_be_named = printer.guards().must_be_named();
+  printer.print_variable(names.place, place_);
 }
 
 void StWriter::write_reset_body(std::string& text) {
@@ -105,24 +106,16 @@ void StWriter::set_element(std::uint32_t cell, ValueId index, ValueId value, std
 
 void StWriter::fill_cell(std::uint32_t cell, ValueId value, std::string& text) {
   uses_place = true;
-  std::string place;
-  printer_.print_variable(names_.place, place);
-  append(text, fmt::format("FOR {} := 0 TO {} DO ", place, routine.cells[cell].field.length - 1));
+  append(text, fmt::format("FOR {} := 0 TO {} DO ", place_, routine.cells[cell].field.length - 1));
   printer_.print_cell(cell, text);
-  append(text, "[", place, "] := ");
+  append(text, "[", place_, "] := ");
   printer_.print(value, text);
   text += "; END_FOR;\n";
 }
 
-std::string_view StWriter::place_name() {
-  place_.clear();
-  printer_.print_variable(names_.place, place_);
-  return place_;
-}
-
 void StWriter::begin_loop(std::uint32_t count, std::string& text) {
   uses_place = true;
-  append(text, fmt::format("FOR {} := 0 TO {} DO\n", place_name(), count - 1));
+  append(text, fmt::format("FOR {} := 0 TO {} DO\n", place_, count - 1));
 }
 
 // --- values that have a name ---

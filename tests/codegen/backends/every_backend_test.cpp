@@ -19,7 +19,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "codegen/backends/c/c.hpp"
@@ -323,7 +322,8 @@ std::string every_fmu(const EveryDiagram& diagram, const test::ScratchFolder& fo
                                 : "uint16_t";
   };
   const std::vector<std::string> values = every_values(diagram);
-  const auto& [inputs, outputs] = std::tie(diagram.program.graph.inputs, diagram.program.graph.outputs);
+  const std::vector<Port>& inputs = diagram.program.graph.inputs;
+  const std::vector<Port>& outputs = diagram.program.graph.outputs;
   std::string step;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     step += fmt::format("    {{ const {} v = {}; {} }}\n", c_type(inputs[i].type), values.at(i),

@@ -65,6 +65,10 @@ struct GoalProblem {
   std::vector<GoalLimit> limits{};          ///< in the order of limit_texts
 
   [[nodiscard]] const Graph& graph() const { return plants.front().program.graph; }
+  /// " with heavy.toml"; nothing of the only plant.
+  [[nodiscard]] std::string with_plant(std::size_t plant) const {
+    return plants.size() > 1 ? " with " + plants[plant].name : std::string();
+  }
   [[nodiscard]] double weight() const { return settings.effort_weight ? settings.effort_weight->value : 0.0; }
 };
 

@@ -32,8 +32,8 @@ struct FoundParameter {
 };
 
 struct Outcome {
-  std::string
-      verdict{};  ///< of a diagnosis; converged or nearly converged of a fit; tuned of a goal; no errors of a check
+  /// Of a diagnosis; converged or nearly converged of a fit; tuned of a goal; no errors of a check.
+  std::string verdict{};
   std::vector<FoundEffect> effects{};
   std::vector<FoundParameter> parameters{};
   /// The probability of each by the record alone, without a prior; where none was weighed, the confidence of the

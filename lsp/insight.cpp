@@ -22,13 +22,13 @@ using nlohmann::json;
 // CompletionItemKind of LSP 3.17.
 constexpr int kind_field = 5;
 constexpr int kind_variable = 6;
+constexpr int kind_class = 7;
 constexpr int kind_keyword = 14;
 
 /// What a statement or a section may begin with.
 constexpr std::array<std::string_view, 9> statement_words{
     "FUNCTION_BLOCK", "END_FUNCTION_BLOCK", "VAR_INPUT", "VAR_OUTPUT", "VAR", "VAR CONSTANT", "END_VAR", "IF",
     "END_IF"};
-constexpr int kind_class = 7;
 
 /// The variable of a name that is nearest to an offset: of the block around it, else of any block of the file.
 const language::Variable* variable_in(const language::SourceFile& tree, std::string_view name, std::size_t offset) {

@@ -47,6 +47,11 @@ json Server::range(std::string_view text, std::size_t begin, std::size_t end) co
   return {{"start", as_json(position_of(text, begin, encoding_))}, {"end", as_json(position_of(text, end, encoding_))}};
 }
 
+std::pair<std::size_t, std::size_t> Server::offsets(std::string_view text, const json& range) const {
+  return {offset_of(text, position_in(range.at("start")), encoding_),
+          offset_of(text, position_in(range.at("end")), encoding_)};
+}
+
 const Server::Document& Server::document(const json& params) const {
   const auto uri = params.at("textDocument").at("uri").get<std::string>();
   const auto found = documents_.find(uri);
@@ -138,14 +143,10 @@ json Server::named(const std::string& method, const json& params) const {
 json Server::actions(const json& params) const {
   const auto& open = document(params);
   const auto uri = params.at("textDocument").at("uri").get<std::string>();
-  const auto offsets = [&](const json& range) {
-    return std::pair(offset_of(open.text, position_in(range.at("start")), encoding_),
-                     offset_of(open.text, position_in(range.at("end")), encoding_));
-  };
-  const auto [begin, end] = offsets(params.at("range"));
+  const auto [begin, end] = offsets(open.text, params.at("range"));
   auto list = json::array();
   for (const json& one : open.diagnostics) {
-    const auto [first, last] = offsets(one.at("range"));
+    const auto [first, last] = offsets(open.text, one.at("range"));
     if (one.contains("data") && first <= end && begin <= last) {
       const auto word = one["data"].get<std::string>();
       const json edit{{"range", one["range"]}, {"newText", word}};
@@ -239,9 +240,7 @@ void Server::change(Document& open, const json& change) const {
     open.text = std::move(text);
     return;
   }
-  const auto& range = change.at("range");
-  const auto begin = offset_of(open.text, position_in(range.at("start")), encoding_);
-  const auto end = offset_of(open.text, position_in(range.at("end")), encoding_);
+  const auto [begin, end] = offsets(open.text, change.at("range"));
   open.text.replace(begin, std::max(begin, end) - begin, text);
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lsp/document.hpp"
@@ -45,6 +47,7 @@ class Server {
   nlohmann::json published(const std::string& uri, Document& document) const;
   [[nodiscard]] const Document& document(const nlohmann::json& params) const;
   [[nodiscard]] nlohmann::json range(std::string_view text, std::size_t begin, std::size_t end) const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> offsets(std::string_view text, const nlohmann::json& range) const;
 
   Card card_;
   Encoding encoding_ = Encoding::Utf16;

@@ -30,7 +30,7 @@ inline std::string unit_behind(const std::string& unit) {
 
 class AxisGraph {
  public:
-  /// Both outlive it.
+  /// The program outlives it.
   explicit AxisGraph(const Program& program)
       : graph_(program.graph), outputs_(units::Solution(program.graph, program.schedule).outputs()) {}
 
@@ -113,7 +113,7 @@ class AxisGraph {
     return {};
   }
 
-  [[nodiscard]] std::optional<double> factor(const std::string& unit, const char* to) const {
+  [[nodiscard]] static std::optional<double> factor(const std::string& unit, const char* to) {
     double found = 0.0;
     return !unit.empty() && units::conversion(unit, to, found) ? std::optional(found) : std::nullopt;
   }

@@ -13,8 +13,14 @@ namespace hysteron::robots {
 std::string text_of(double number) {
   return fmt::format("{:.9g}", number == 0.0 ? 0.0 : number);
 }
-std::string text_of(const Range& range, double factor) {
-  return text_of(factor * range.low) + " " + text_of(factor * range.high);
+std::string text_of(const Range& range) {
+  return text_of(range.low) + " " + text_of(range.high);
+}
+std::string range_text(const Range& range, const std::string& unit) {
+  return fmt::format("{:.4g} to {:.4g} {}", range.low, range.high, unit);
+}
+std::string gain_text(const Actuator& actuator, const std::string& force_unit) {
+  return fmt::format("{:.4g} {} for each {}", actuator.gain, force_unit, actuator.unit.empty() ? "1" : actuator.unit);
 }
 bool has_both_ends(const Range& range) {
   return std::isfinite(range.low) && std::isfinite(range.high);
@@ -37,7 +43,7 @@ void Unmapped::add(std::string what, std::string why, std::string size) {
 
 void Unmapped::add_half_open(const char* what, const Range& range, const std::string& unit) {
   if (range.is_bounded() && !has_both_ends(range)) {
-    add(what, "a range needs both ends", fmt::format("{:.4g} to {:.4g} {}", range.low, range.high, unit));
+    add(what, "a range needs both ends", range_text(range, unit));
   }
 }
 

@@ -14,7 +14,10 @@ namespace hysteron::robots {
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 [[nodiscard]] std::string text_of(double number);
-[[nodiscard]] std::string text_of(const Range& range, double factor);
+[[nodiscard]] std::string text_of(const Range& range);
+/// For a list of what is left out: `-5 to 5 V`, and of an actuator `8 N for each V`.
+[[nodiscard]] std::string range_text(const Range& range, const std::string& unit);
+[[nodiscard]] std::string gain_text(const Actuator& actuator, const std::string& force_unit);
 [[nodiscard]] bool has_both_ends(const Range& range);
 /// J without that of the link. Throws InputError HY730 where the link has more.
 [[nodiscard]] double armature_of(const Joint& joint, const FileOptions& options);

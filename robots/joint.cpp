@@ -118,7 +118,7 @@ class JointReader : private AxisGraph {
     if (const auto constant = constant_of(wire)) {
       return {.constant = *constant};
     }
-    if (const auto force = factor(unit_of(wire), turns_ ? "N*m" : "N");
+    if (const auto force = factor(unit_of(wire), units_of_joint(turns_).force);
         force && !force_seen && to_acceleration != 0.0) {
       take_inertia(*force / std::fabs(to_si_ * to_acceleration), wire);
       force_seen = true;
@@ -216,7 +216,8 @@ class JointReader : private AxisGraph {
   Terms terms_of_operation(const Node& node, double c, bool force) {
     const Wire first = graph_.wire(node, 0);
     const Wire second = node.wire_count > 1 ? graph_.wire(node, 1) : Wire{};
-    const auto factor_of = [&](const Wire& wire) { return constant_of(wire); };
+    const auto first_factor = constant_of(first);
+    const auto second_factor = constant_of(second);
     const auto scaled = [&](const Wire& wire, double factor) {
       return terms_of(wire, c * factor, force).times(factor);
     };
@@ -228,11 +229,11 @@ class JointReader : private AxisGraph {
     if (node.op == Op::Negate) {
       return scaled(first, -1.0);
     }
-    if (node.op == Op::Multiply && (factor_of(first) || factor_of(second))) {
-      return factor_of(first) ? scaled(second, *factor_of(first)) : scaled(first, *factor_of(second));
+    if (node.op == Op::Multiply && (first_factor || second_factor)) {
+      return first_factor ? scaled(second, *first_factor) : scaled(first, *second_factor);
     }
-    if (node.op == Op::Divide && factor_of(second)) {
-      return scaled(first, 1.0 / *factor_of(second));
+    if (node.op == Op::Divide && second_factor) {
+      return scaled(first, 1.0 / *second_factor);
     }
     refuse(fmt::format("An operation at {} is not linear, which a joint is.", node.owner()),
            "export the axis alone: sums, and products with constants.", graph_.place(node.span));
@@ -268,7 +269,7 @@ class JointReader : private AxisGraph {
       terms.velocity -= parameter(node, "COEFFICIENT") * scale;
       if (const double quadratic = parameter(node, "QUADRATIC"); quadratic != 0.0) {
         leave(node, "a joint's damping is linear", c * quadratic * scale * scale / (to_si_ * to_si_),
-              fmt::format("at 1 {}/s, and grows with the square", turns_ ? "rad" : "m"));
+              fmt::format("at 1 {}/s, and grows with the square", units_of_joint(turns_).position));
       }
       return terms;
     }
@@ -288,7 +289,7 @@ class JointReader : private AxisGraph {
     terms.friction += level;
     if (const double preslide = parameter(node, "PRESLIDE"); preslide > 0.0 && level > 0.0) {
       leave(node, "a joint's dry friction has no elastic travel before it slides", not_a_number,
-            fmt::format("{} {} of travel", short_text(preslide * to_si_ / scale), turns_ ? "rad" : "m"));
+            fmt::format("{} {} of travel", short_text(preslide * to_si_ / scale), units_of_joint(turns_).position));
     }
     return terms;
   }
@@ -341,19 +342,19 @@ class JointReader : private AxisGraph {
 
   Joint joint_of_terms(const Terms& terms) {
     const std::optional<double> inertia = options_.inertia ? options_.inertia : inertia_;
-    const std::string force = turns_ ? "N*m" : "N";
+    const JointUnits units = units_of_joint(turns_);
     if (!inertia) {
       refuse(fmt::format("No signal on the way to {} has the unit {}: what is moved is not known.",
-                         graph_.nodes[velocity_].path, force),
+                         graph_.nodes[velocity_].path, units.force),
              fmt::format("state it in the diagram, as TORQUE : LREAL; (* @unit {} *), or the inertia by --inertia.",
-                         force));
+                         units.force));
     }
     // Stated to three digits is stated well; where the units tell two, --inertia says which one counts.
     const auto stated = [&](double told) { return std::fabs(told - *inertia) <= 0.005 * told; };
     if (!told_.empty() && std::ranges::none_of(told_, stated)) {
       refuse(fmt::format("--inertia {} contradicts the units of the diagram, which tell {} {}.", short_text(*inertia),
-                         short_text(told_.front()), turns_ ? "kg*m^2" : "kg"),
-             fmt::format("leave --inertia out, or correct the unit {} or the gain behind it.", force));
+                         short_text(told_.front()), units.inertia),
+             fmt::format("leave --inertia out, or correct the unit {} or the gain behind it.", units.force));
     }
     Joint joint{.turns = turns_,
                 .velocity = graph_.nodes[velocity_].path + ".XOUT",
@@ -368,7 +369,8 @@ class JointReader : private AxisGraph {
     for (const Left& one : left_) {
       std::string size = one.size;
       if (std::isfinite(one.acceleration)) {
-        size = fmt::format("{} {}{}{}", short_text(one.acceleration * *inertia), force, size.empty() ? "" : " ", size);
+        size = fmt::format("{} {}{}{}", short_text(one.acceleration * *inertia), units.force, size.empty() ? "" : " ",
+                           size);
       }
       joint.neglected.push_back({.what = fmt::format("{}, a {}", one.node->path, name_of(*one.node)),
                                  .why = one.why,

@@ -42,6 +42,17 @@ struct Actuator {
   Range force{};       ///< of the force or torque
 };
 
+/// Of a joint that turns, and of one that slides.
+struct JointUnits {
+  const char* position;
+  const char* force;
+  const char* inertia;
+};
+constexpr JointUnits units_of_joint(bool turns) {
+  return turns ? JointUnits{.position = "rad", .force = "N*m", .inertia = "kg*m^2"}
+               : JointUnits{.position = "m", .force = "N", .inertia = "kg"};
+}
+
 /// In SI units: rad and N·m of a joint that turns, m and N of one that slides.
 struct Joint {
   bool turns = true;
@@ -57,8 +68,9 @@ struct Joint {
   std::optional<Actuator> actuator{};                      ///< none where no input drives it
   std::vector<Neglected> neglected{};
 
-  [[nodiscard]] std::string force_unit() const { return turns ? "N*m" : "N"; }
-  [[nodiscard]] std::string position_unit() const { return turns ? "rad" : "m"; }
+  [[nodiscard]] std::string position_unit() const { return units_of_joint(turns).position; }
+  [[nodiscard]] std::string force_unit() const { return units_of_joint(turns).force; }
+  [[nodiscard]] std::string inertia_unit() const { return units_of_joint(turns).inertia; }
 };
 
 struct JointOptions {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "robots/file_parts.hpp"
 #include "robots/joint_law.hpp"
@@ -17,6 +18,13 @@ namespace {
 
 /// Says whether an attribute is stated already: by the element, by a default of it, or by nothing.
 using Known = std::function<bool(const std::string&)>;
+
+/// Without automatic limits, no range counts until its word says so.
+Known known_of(MjcfAttributes stated, const MjcfDefaults& defaults) {
+  return [stated = std::move(stated), is_automatic = defaults.has_automatic_limits()](const std::string& name) {
+    return stated.contains(name) || (name.ends_with("limited") && !is_automatic);
+  };
+}
 
 /// A constant force moves the point that the spring pulls to. Without a spring it is the bias of the actuator.
 bool is_in_spring(const Joint& joint) {
@@ -44,7 +52,7 @@ Attributes joint_attributes(const Joint& joint, const FileOptions& options, doub
                  fmt::format("{:.4g} {}", joint.offset, joint.force_unit()));
   }
   if (has_both_ends(joint.position)) {
-    result.emplace_back("range", text_of(joint.position, angle));
+    result.emplace_back("range", text_of(joint.position.times(angle)));
     if (known("limited")) {
       result.emplace_back("limited", "true");
     }
@@ -66,7 +74,7 @@ void add_ranges(Attributes& result, const Joint& joint, double gear, const Known
   const Actuator& actuator = *joint.actuator;
   const auto range = [&](const Range& limits, const char* name, const char* limited, double factor) {
     if (has_both_ends(limits)) {
-      result.emplace_back(name, text_of(limits.times(factor), 1.0));
+      result.emplace_back(name, text_of(limits.times(factor)));
       if (known(limited)) {
         result.emplace_back(limited, "true");
       }
@@ -126,8 +134,7 @@ Attributes new_actuator_attributes(const Joint& joint, const Known& known, Unmap
 void list_actuator(const Joint& joint, const std::string& what, const std::string& why, Unmapped& unmapped) {
   const Actuator& actuator = *joint.actuator;
   const std::string force = joint.force_unit();
-  unmapped.add(what, why,
-               fmt::format("{:.4g} {} for each {}", actuator.gain, force, actuator.unit.empty() ? "1" : actuator.unit));
+  unmapped.add(what, why, gain_text(actuator, force));
   constexpr const char* stays = "the actuator stays as it is";
   if (actuator.lag > 0.0) {
     unmapped.add("lag of the actuator", stays, fmt::format("{:.4g} s", actuator.lag));
@@ -137,17 +144,15 @@ void list_actuator(const Joint& joint, const std::string& what, const std::strin
   }
   const auto range = [&](const char* name, const Range& limits, const std::string& unit) {
     if (limits.is_bounded()) {
-      unmapped.add(name, stays, fmt::format("{:.4g} to {:.4g} {}", limits.low, limits.high, unit));
+      unmapped.add(name, stays, range_text(limits, unit));
     }
   };
   range("range of the control", actuator.control, actuator.unit.empty() ? actuator.input : actuator.unit);
   range("range of the force", actuator.force, force);
 }
 
-void merge_actuator(const Joint& joint, const FileOptions& options, const pugi::xml_document& robot, XmlEdit& edit,
-                    RobotFile& file, Unmapped& unmapped) {
-  const pugi::xml_node root = robot.child("mujoco");
-  const MjcfDefaults defaults(root);
+void merge_actuator(const Joint& joint, const FileOptions& options, const pugi::xml_node& root,
+                    const MjcfDefaults& defaults, XmlEdit& edit, RobotFile& file, Unmapped& unmapped) {
   std::vector<pugi::xml_node> drives;
   for (const pugi::xml_node section : root.children("actuator")) {
     for (const pugi::xml_node one : section.children()) {
@@ -157,9 +162,7 @@ void merge_actuator(const Joint& joint, const FileOptions& options, const pugi::
     }
   }
   const MjcfAttributes stated = defaults.of_actuator(drives.empty() ? pugi::xml_node() : drives.front());
-  const Known known = [&](const std::string& name) {
-    return stated.contains(name) || (name.ends_with("limited") && !defaults.has_automatic_limits());
-  };
+  const Known known = known_of(stated, defaults);
   if (drives.empty()) {
     const Attributes attributes = new_actuator_attributes(joint, known, unmapped);
     const std::string element =
@@ -232,28 +235,24 @@ RobotFile mujoco_bench(const Joint& joint, const FileOptions& options) {
 RobotFile merged_mujoco(const Joint& joint, const FileOptions& options, const std::string& name,
                         const pugi::xml_document& robot, const std::string& text) {
   const pugi::xml_node node = joint_node(robot, "/mujoco/worldbody//joint", options, name);
-  const MjcfDefaults defaults(robot.child("mujoco"));
+  const pugi::xml_node root = robot.child("mujoco");
+  const MjcfDefaults defaults(root);
   const MjcfAttributes stated = defaults.of_joint(node);
   const std::string type = stated.contains("type") ? stated.at("type") : "hinge";
   refuse_kind(joint, options, name, type, type == (joint.turns ? "hinge" : "slide"));
   std::string unit = "degree";
-  for (const pugi::xml_node compiler : robot.child("mujoco").children("compiler")) {
+  for (const pugi::xml_node compiler : root.children("compiler")) {
     unit = compiler.attribute("angle").as_string(unit.c_str());
   }
   const double angle = joint.turns && unit != "radian" ? 180.0 / std::numbers::pi : 1.0;
   Unmapped unmapped;
   RobotFile file;
   XmlEdit edit(text);
-  const Attributes attributes = joint_attributes(
-      joint, options, angle,
-      [&](const std::string& one) {
-        return stated.contains(one) || (one == "limited" && !defaults.has_automatic_limits());
-      },
-      unmapped);
+  const Attributes attributes = joint_attributes(joint, options, angle, known_of(stated, defaults), unmapped);
   note(file, "joint", attributes);
   apply(edit, node, attributes);
   if (joint.actuator) {
-    merge_actuator(joint, options, robot, edit, file, unmapped);
+    merge_actuator(joint, options, root, defaults, edit, file, unmapped);
   }
   for (const pugi::xpath_node& one : robot.select_nodes("//include")) {
     unmapped.add("a file that the robot includes",

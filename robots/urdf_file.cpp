@@ -30,7 +30,7 @@ UrdfParts urdf_parts(const Joint& joint, const FileOptions& options, const std::
   const bool is_endless = type == "continuous";
   if (is_endless && has_both_ends(joint.position)) {
     unmapped.add("range of the position", "a continuous joint has none; write it as revolute",
-                 fmt::format("{:.4g} to {:.4g} rad", joint.position.low, joint.position.high));
+                 range_text(joint.position, joint.position_unit()));
   } else if (has_both_ends(joint.position)) {
     parts.limit = {{"lower", text_of(joint.position.low)}, {"upper", text_of(joint.position.high)}};
   }
@@ -43,8 +43,7 @@ UrdfParts urdf_parts(const Joint& joint, const FileOptions& options, const std::
       parts.limit.emplace_back("effort", text_of(largest));
     }
     if (range.is_bounded() && range.low != -range.high) {
-      unmapped.add("range of the force", "URDF has one effort for both directions",
-                   fmt::format("{:.4g} to {:.4g} {}", range.low, range.high, force));
+      unmapped.add("range of the force", "URDF has one effort for both directions", range_text(range, force));
     }
   }
   if (std::isfinite(joint.speed)) {
@@ -70,7 +69,7 @@ UrdfParts urdf_parts(const Joint& joint, const FileOptions& options, const std::
   }
   const std::string why = "URDF has no word for it";
   if (const double armature = armature_of(joint, options); armature > 0.0) {
-    unmapped.add("inertia of rotor and gear", why, fmt::format("{:.4g} {}", armature, joint.turns ? "kg*m^2" : "kg"));
+    unmapped.add("inertia of rotor and gear", why, fmt::format("{:.4g} {}", armature, joint.inertia_unit()));
   }
   if (joint.stiffness != 0.0) {
     unmapped.add("stiffness", why, fmt::format("{:.4g} {}/{}", joint.stiffness, force, joint.position_unit()));
@@ -79,9 +78,7 @@ UrdfParts urdf_parts(const Joint& joint, const FileOptions& options, const std::
     unmapped.add("a constant force", why, fmt::format("{:.4g} {}", joint.offset, force));
   }
   if (joint.actuator) {
-    unmapped.add(fmt::format("gain of {}", joint.actuator->input), why,
-                 fmt::format("{:.4g} {} for each {}", joint.actuator->gain, force,
-                             joint.actuator->unit.empty() ? "1" : joint.actuator->unit));
+    unmapped.add(fmt::format("gain of {}", joint.actuator->input), why, gain_text(*joint.actuator, force));
     if (joint.actuator->lag > 0.0) {
       unmapped.add("lag of the actuator", why, fmt::format("{:.4g} s", joint.actuator->lag));
     }

@@ -1,7 +1,6 @@
 #include "robots/xml_edit.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace hysteron::robots {
 namespace {

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hysteron::robots {
@@ -18,8 +19,6 @@ class XmlEdit {
   void set(std::size_t name_at, const std::string& attribute, const std::string& value);
   /// Puts children in as the first of an element, each with a line and an indent of its own. Once for an element.
   void add_children(std::size_t name_at, const std::vector<std::string>& children);
-  /// Puts text in at a place, behind what was put there before.
-  void insert(std::size_t at, const std::string& text);
   [[nodiscard]] std::string text() const;
 
  private:
@@ -30,6 +29,8 @@ class XmlEdit {
     std::map<std::string, std::pair<std::size_t, std::size_t>> values{};  ///< place and length, without the quotes
   };
   [[nodiscard]] Tag tag_at(std::size_t name_at) const;
+  /// Puts text in at a place, behind what was put there before.
+  void insert(std::size_t at, const std::string& text);
   /// The blanks that the line of a place begins with.
   [[nodiscard]] std::string indent_of(std::size_t at) const;
 

@@ -25,8 +25,7 @@ struct OutputFile {
 };
 
 /// Writes one file. Missing folders are made; permissions of an existing file are kept; a symbolic link is followed;
-/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700, DiskFullError
-/// among them.
+/// a device or pipe (/dev/stdout) is written in place. Throws InputError HY700, among them DiskFullError.
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
 /// Writes a set of files, all or none. All are on the disk before the first is renamed, so that only a failing rename

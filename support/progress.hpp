@@ -21,13 +21,13 @@ class Progress {
   /// A stream that is no terminal gets nothing. `clock` gives seconds; the default is the steady clock.
   explicit Progress(std::string title, std::FILE* stream = stderr, std::function<double()> clock = {});
   ~Progress() { finish(); }
-
-  /// No line of the program is drawn from now on: for who asked for silence.
-  static void silence();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   Progress(Progress&&) = delete;
   Progress& operator=(Progress&&) = delete;
+
+  /// No line of the program is drawn from now on: for who asked for silence.
+  static void silence();
 
   /// Says how far the work is, 0 to 1, and what it is at. Cheap enough for an inner loop.
   void update(double fraction, std::string_view text = {});

@@ -128,8 +128,7 @@ bool given(const CLI::App& command, const char* name) {
 
 /// `--out -`: the result itself goes to the standard output.
 bool out_is_standard(const CLI::App& command) {
-  const CLI::Option* const option = command.get_option_no_throw("--out");
-  return option != nullptr && option->count() > 0 && option->results().back() == "-";
+  return given(command, "--out") && command.get_option("--out")->results().back() == "-";
 }
 
 class CommandLine {

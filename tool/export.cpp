@@ -52,7 +52,6 @@ struct ExportOptions {
   std::string into;
   std::string output;
   std::string input_record;
-  double inertia = 0.0;
   double link_inertia = 0.0;
   double gear = 1.0;
 };
@@ -149,11 +148,7 @@ int export_joint(const ExportOptions& options, Console& console) {
   DiagramOptions diagram = options.diagram;
   diagram.keep_names = true;
   const Program program = load_diagram(diagram, warnings);
-  robots::JointOptions how = options.joint;
-  if (options.inertia > 0.0) {
-    how.inertia = options.inertia;
-  }
-  const robots::Joint motor = robots::joint_of(program, how);
+  const robots::Joint motor = robots::joint_of(program, options.joint);
   const robots::Joint joint = robots::behind_gear(motor, options.gear);
   const robots::FileOptions file{.format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
                                  .joint = options.name,
@@ -203,7 +198,8 @@ Action add_export(CLI::App& app) {
       ->option_text("SPEED.XOUT");
   app.add_option("--input", options->joint.input, "The input that is the actuator, where several drive.")
       ->option_text("U");
-  app.add_option("--inertia", options->inertia, "What the diagram moves, kg*m^2 or kg, where its units do not tell it.")
+  app.add_option("--inertia", options->joint.inertia,
+                 "What the diagram moves, kg*m^2 or kg, where its units do not tell it.")
       ->check(number_above_zero())
       ->option_text("J");
   app.add_option("--link-inertia", options->link_inertia, "What of it the bodies of the robot have already.")

@@ -27,6 +27,7 @@
 #include "tool/option_values.hpp"
 #include "tool/version.hpp"
 #include "tool/writable.hpp"
+#include "tuning/goal/goal_problem.hpp"
 
 namespace hysteron::tool {
 namespace {
@@ -81,7 +82,7 @@ std::vector<std::string> plants_named_in(const std::string& parameter_file) {
   std::vector<std::string> files;
   try {
     for (const auto& plant : parameters::read_parameter_file(parameter_file).goal.plants) {
-      files.push_back((std::filesystem::path(parameter_file).parent_path() / plant.text).string());
+      files.push_back(file_of_plant(parameter_file, plant.text));
     }
   } catch (const InputError&) {  // the command of the unit says what is wrong with it
   }

@@ -27,6 +27,10 @@ struct Table {
   std::vector<std::string> paths{};
   std::vector<std::vector<double>> rows{};
   std::vector<Place> places{};  ///< by set; one for all where no file has them
+
+  [[nodiscard]] const Place& place_of(std::size_t set) const {
+    return places.size() == 1 ? places.front() : places[set];
+  }
 };
 
 [[noreturn]] void refuse(std::string cause, std::string mend) {
@@ -322,10 +326,10 @@ void check_types(const Table& table, const SetOptions& options, const Graph& gra
       wrong(first, fmt::format("{} is a list of numbers, and {} gives one number.", path, source),
             "write the lists into parameter files, and run the diagram once with each: --params P.toml.");
     }
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    for (std::size_t i = 0; field.type != Type::Real && i < table.rows.size(); ++i) {
       const double number = table.rows[i][k];
-      if (std::holds_alternative<double>(value_for(graph, path, number)) && field.type != Type::Real) {
-        wrong(table.places.size() == 1 ? first : table.places[i],
+      if (std::holds_alternative<double>(parameters::value_for(field, number))) {
+        wrong(table.place_of(i),
               fmt::format("{} takes {}, and {} gives it {}.", path,
                           field.type == Type::Bool ? "TRUE or FALSE, as 1 or 0" : "whole numbers", source,
                           number_text(number)),
@@ -354,7 +358,7 @@ ParameterSets parameter_sets(const SetOptions& options, const Graph& graph) {
   ParameterSets sets{.paths = std::move(table.paths), .rows = std::move(table.rows)};
   Graph set = graph;
   for (std::size_t i = 0; i < sets.rows.size(); ++i) {
-    const Place& place = table.places.size() == 1 ? table.places.front() : table.places[i];
+    const Place& place = table.place_of(i);
     parameters::ParameterFile file{.file = options.file};
     for (std::size_t k = 0; k < sets.paths.size(); ++k) {
       file.values.push_back({.path = sets.paths[k],

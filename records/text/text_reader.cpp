@@ -326,7 +326,6 @@ class Reader {
                                        number_text(layout_.counted->start), number_text(layout_.counted->increment)));
   }
 
-  /// Numbers words in the order in which they come.
   static std::string mend_of_word(std::string_view word) {
     if (word.size() > 2 && word.front() == '0' && (word[1] == 'x' || word[1] == 'X')) {
       std::uint64_t value = 0;
@@ -338,6 +337,7 @@ class Reader {
     return "write a number, such as 1.25e-3, or record the signal again.";
   }
 
+  /// Numbers words in the order in which they come.
   static void take_word(TableColumn& column, std::string_view word) {
     const auto known = std::ranges::find(column.dictionary, word);
     column.words.push_back(static_cast<std::uint32_t>(known - column.dictionary.begin()));

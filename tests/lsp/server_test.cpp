@@ -139,6 +139,12 @@ TEST_F(LspServer, CompletesAnnotationsAndUnits) {
 }
 
 TEST_F(LspServer, MendsAMisspeltWord) {
+  const json whole{{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}};
+  const auto actions_for = [&](const json& diagnostics) {
+    return ask(
+        "textDocument/codeAction",
+        {{"textDocument", {{"uri", uri}}}, {"range", whole}, {"context", {{"diagnostics", diagnostics}}}})["result"];
+  };
   for (const auto& [right, wrong] : {std::pair("XIN := X", "XNI := X"),
                                      {"FILTER.XOUT", "FILTER.XUOT"},
                                      {"HY_LAG", "HY_LGA"},
@@ -146,10 +152,7 @@ TEST_F(LspServer, MendsAMisspeltWord) {
     const std::string text = with(right, wrong);
     const auto found = open(text);
     ASSERT_FALSE(found.empty()) << wrong;
-    const json whole{{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}};
-    const auto actions =
-        ask("textDocument/codeAction",
-            {{"textDocument", {{"uri", uri}}}, {"range", whole}, {"context", {{"diagnostics", found}}}})["result"];
+    const json actions = actions_for(found);
     ASSERT_FALSE(actions.empty()) << found.dump();
     EXPECT_EQ(actions[0]["kind"], "quickfix");
     const json edit = actions[0]["edit"]["changes"][uri][0];
@@ -162,11 +165,7 @@ TEST_F(LspServer, MendsAMisspeltWord) {
     EXPECT_EQ(mended, diagram);
   }
   open(with("Y := FILTER.XOUT;", ""));  // an output that nothing drives: something to think about
-  EXPECT_EQ(ask("textDocument/codeAction",
-                {{"textDocument", {{"uri", uri}}},
-                 {"range", {{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}}},
-                 {"context", {{"diagnostics", json::array()}}}})["result"],
-            json::array());
+  EXPECT_EQ(actions_for(json::array()), json::array());
 }
 
 /// Two blocks, the outer with an instance of the inner one; X and Y are names in both.

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "codegen/interpreter/machine.hpp"
+#include "support/root_mean_square.hpp"
 #include "tests/robots/axes.hpp"
+#include "tuning/signal_names.hpp"
 
 namespace hysteron::robots {
 namespace {
@@ -20,14 +22,7 @@ Compared compared(const std::string& text, double amplitude, double frequency) {
   const Program program = program_of(text);
   const Joint joint = joint_of(program, {});
   Machine<double> machine(program);
-  const Wire velocity = [&] {
-    for (std::uint32_t i = 0; i < program.graph.nodes.size(); ++i) {
-      if (program.graph.nodes[i].path + ".XOUT" == joint.velocity) {
-        return Wire{.from = Wire::From::Node, .port = 0, .index = i};
-      }
-    }
-    return Wire{};
-  }();
+  const Wire velocity = find_signal(program.graph, joint.velocity, {});
   std::vector<double> control;
   std::vector<double> wanted;
   for (int k = 0; k < 4000; ++k) {
@@ -37,12 +32,13 @@ Compared compared(const std::string& text, double amplitude, double frequency) {
     wanted.push_back(joint.velocity_to_si * machine.value(velocity));
   }
   const std::vector<double> got = velocities(joint, control, 1e-3);
-  Compared result;
+  RootMeanSquare error;
+  RootMeanSquare size;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
-    result.error += std::pow(got[k] - wanted[k], 2);
-    result.size += std::pow(wanted[k], 2);
+    error.add(got[k] - wanted[k]);
+    size.add(wanted[k]);
   }
-  return {.error = std::sqrt(result.error / 4000.0), .size = std::sqrt(result.size / 4000.0)};
+  return {.error = error.value(), .size = size.value()};
 }
 
 TEST(JointLaw, IsTheDiagramOfAServoWithFriction) {

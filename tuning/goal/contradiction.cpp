@@ -24,24 +24,26 @@ void report_contradiction(const GoalProblem& problem, const GoalResult& result, 
   std::ranges::stable_sort(broken, std::greater{}, &LimitResult::against);
   for (const LimitResult& limit : broken) {
     const GoalLimit& one = problem.limits[limit.limit];
-    const std::string plant = problem.plants.size() > 1 ? " with " + problem.plants[limit.plant].name : std::string();
     place = parts.empty() ? one.place : place;
     const std::string part = fmt::format("{} = {}", text_of(one.kind).key.name, number_text(one.limit));
     if (std::ranges::find(parts, part) == parts.end()) {  // with several plants it is broken more than once
       parts.push_back(part);
     }
     notes.push_back(
-        {.place = one.place, .text = fmt::format("{} is {:.4g}{}", text_of(one.kind).name, limit.value, plant)});
+        {.place = one.place,
+         .text = fmt::format("{} is {:.4g}{}", text_of(one.kind).name, limit.value, problem.with_plant(limit.plant))});
   }
   std::string mend = parts.size() > 1 ? "loosen one of them" : "loosen it";
+  bool has_bound = false;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     if (result.at_bound[j] != AtBound::Free) {
+      has_bound = true;
       const FreeParameter& free = problem.parameters[j];
       notes.push_back({.place = free.place,
                        .text = fmt::format("{} is on its {} bound", free.name, bound_name(result.at_bound[j]))});
-      mend = parts.size() > 1 ? "loosen one of them, or widen the bounds" : "loosen it, or widen the bounds";
     }
   }
+  mend += has_bound ? ", or widen the bounds" : "";
   const std::string limits = parts.empty()
                                  ? "the limits"
                                  : fmt::format("{}{}", fmt::join(parts, " and "), parts.size() > 1 ? " together" : "");

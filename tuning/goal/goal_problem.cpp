@@ -287,11 +287,10 @@ class GoalBuilder {
       add_plant(file_.file, program_);
     }
     for (const PlacedText& plant : goal_.plants) {
-      // Beside the file that names it, wherever the command is run.
-      const std::filesystem::path beside = std::filesystem::path(file_.file).parent_path() / plant.text;
       ParameterFile values;
       try {
-        values = parameters::by_element(parameters::read_parameter_file(beside.string()), program_.graph);
+        const std::string file = file_of_plant(file_.file, plant.text);
+        values = parameters::by_element(parameters::read_parameter_file(file), program_.graph);
       } catch (const InputError& error) {
         for (Diagnostic one : error.diagnostics().all()) {
           one.notes.push_back({.place = plant.place, .text = "named as a plant here"});
@@ -347,6 +346,10 @@ class GoalBuilder {
 };
 
 }  // namespace
+
+std::string file_of_plant(const std::string& goal_file, const std::string& plant) {
+  return (std::filesystem::path(goal_file).parent_path() / plant).string();
+}
 
 GoalProblem goal_problem(const Program& program, const ParameterFile& file, std::span<const records::Record> records) {
   return GoalBuilder(program, file, records).build();

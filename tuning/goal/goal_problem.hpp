@@ -65,8 +65,15 @@ struct GoalProblem {
   std::vector<GoalLimit> limits{};          ///< in the order of limit_texts
 
   [[nodiscard]] const Graph& graph() const { return plants.front().program.graph; }
+  /// " with heavy.toml"; nothing of the only plant.
+  [[nodiscard]] std::string with_plant(std::size_t plant) const {
+    return plants.size() > 1 ? " with " + plants[plant].name : std::string();
+  }
   [[nodiscard]] double weight() const { return settings.effort_weight ? settings.effort_weight->value : 0.0; }
 };
+
+/// The parameter file of a plant: beside the file that names it, wherever the command is run.
+[[nodiscard]] std::string file_of_plant(const std::string& goal_file, const std::string& plant);
 
 /// The problem of a file that has [goal]. `program` is compiled with keep_names; a record is taken where the signal is
 /// one. Throws InputError with everything found: HY530, HY531, HY534, HY603, HY606, HY708, HY716, and what the

@@ -127,7 +127,7 @@ class GoalSearch {
     const auto& loop = *problem_.settings.loop;
     throw InputError(error::no_loop_there, loop.place,
                      fmt::format("What is put in at {} never comes back there: no loop passes it{}.", loop.text,
-                                 problem_.plants.size() > 1 ? " with " + problem_.plants[plant].name : ""),
+                                 problem_.with_plant(plant)),
                      "name a signal inside the loop. Where the controller stands at its bound when the test ends, "
                      "the loop is open: ask for a smaller step.");
   }
@@ -135,13 +135,11 @@ class GoalSearch {
   /// The start, or where its loop does not settle, the best of a few points that do; none where none was found.
   std::optional<VectorXd> settling_start(int start) {
     const VectorXd own = spread(start);
-    if (const LoopState state = model_.evaluate(own, false); state == LoopState::Settles) {
-      if (!open_plant()) {
-        return own;
-      }
-    } else {
-      too_slow_ = too_slow_ || state == LoopState::TooSlow;
+    const LoopState of_own = model_.evaluate(own, false);
+    if (of_own == LoopState::Settles && !open_plant()) {
+      return own;
     }
+    too_slow_ = too_slow_ || of_own == LoopState::TooSlow;
     constexpr int enough = 8;
     Candidate best;
     int found = 0;
@@ -169,12 +167,11 @@ class GoalSearch {
     if (open_seen_) {
       refuse_open_loop(*open_seen_);
     }
-    const bool one = problem_.plants.size() == 1;
     throw InputError(
         error::no_stable_loop, problem_.settings.place,
         fmt::format("The loop {} at the start{}, and at none of {} points spread over the bounds does it settle{}.",
-                    what_it_does(result_.start_state), one ? "" : " with " + problem_.plants[result_.start_plant].name,
-                    points_tried_, one ? "" : " with every plant"),
+                    what_it_does(result_.start_state), problem_.with_plant(result_.start_plant), points_tried_,
+                    problem_.plants.size() == 1 ? "" : " with every plant"),
         too_slow_ ? fmt::format("let the test last longer than its {}: duration in [goal], or a longer record. Some of "
                                 "these loops settle, only more slowly.",
                                 length_of_test(problem_))
@@ -183,6 +180,7 @@ class GoalSearch {
   }
 
   // ---- search -----------------------------------------------------------------------------------------------------
+
   GoalStatus search_from(const VectorXd& from) {
     best_ = {};
     places_.clear();
@@ -449,8 +447,7 @@ class GoalSearch {
       case GoalStatus::Contradiction:
         return result_.is_held_by_test
                    ? "The limits were not kept together by a loop that settles within the test. Of these loops, the "
-                     "one "
-                     "that breaks them least is the result." +
+                     "one that breaks them least is the result." +
                          held
                    : "The limits were not kept together; the point that breaks them least is the result.";
       case GoalStatus::Cancelled:

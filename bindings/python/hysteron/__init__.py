@@ -20,4 +20,5 @@ from ._results import (Controller, Effect, Estimate, Family, Fit, Fitted, Gap, L
 __version__ = _library.library.hysteron_version().decode()
 
 __all__ = ["compile", "read_record", "relay", "Diagram", "Machine", "Port", "Parameter", "Record", "Fit", "Fitted",
-           "Score", "TunedLoop", "Tuned", "Plant", "LoopFigures", "Margin", "Limit", "Relay", "Controller", "Model", "Verdict", "Effect", "Estimate", "Setting", "Gap", "Family", "Rival", "Error", "Message", "InputWarning"]
+           "Score", "TunedLoop", "Tuned", "Plant", "LoopFigures", "Margin", "Limit", "Relay", "Controller", "Model",
+           "Verdict", "Effect", "Estimate", "Setting", "Gap", "Family", "Rival", "Error", "Message", "InputWarning"]

@@ -357,7 +357,7 @@ void OnlineChange::require_sound(const ProgramShape& next, const ChangeWish& wis
 ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const ChangeWish& asked) {
   try {
     const auto lock = one_at_a_time();
-    require_sound(program->shape(), asked);
+    require_same_interface(program_->shape(), program->shape());
     const ChangeWish wish = as_named(asked, program->shape());
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
     auto held = wish.only_check ? nullptr : held_commits(task_->door());

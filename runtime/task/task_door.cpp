@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace hysteron::runtime {
@@ -104,13 +103,6 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
           .right = kind == PointKind::input ? WriteRight::inputs : WriteRight::parameters};
 }
 
-/// Whether another value waits for a commit. A limit that is off is no number, and is none that waits.
-bool is_staged(const StagedParameters& parameters, std::size_t parameter) {
-  const double staged = parameters.staged()[parameter];
-  const double committed = parameters.committed()[parameter];
-  return staged != committed && !(std::isnan(staged) && std::isnan(committed));
-}
-
 }  // namespace
 
 std::span<const char* const> status_names() {
@@ -205,7 +197,7 @@ void TaskDoor::read_live(LiveValues& into) {
   }
   const std::vector<double>& staged = parameters_.staged();
   for (std::size_t i = 0; i < staged.size(); ++i) {
-    if (is_staged(parameters_, i)) {
+    if (parameters_.is_staged(i)) {
       into.staged.push_back({.point = first_parameter_ + i, .value = staged[i]});
     }
   }
@@ -306,7 +298,7 @@ void TaskDoor::version_changed(const StepProgram& version, std::span<const std::
   const StagedParameters before = parameters_;
   parameters_ = StagedParameters(judged_by_, values);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] && is_staged(before, i)) {
+    if (places[i] && before.is_staged(i)) {
       parameters_.stage(i, before.staged()[i]);
     }
   }

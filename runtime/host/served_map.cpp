@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "runtime/host/notices.hpp"
-#include "runtime/modbus/lock_file.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 

@@ -81,12 +81,12 @@ std::size_t width_of(const ProgramShape& shape, std::size_t field_points) {
          command_count + shape.inner.size();
 }
 
-TaskOrders first_orders(const StepProgram& program) {
-  TaskOrders orders{.inputs = {},
-                    .input_writes = std::vector<std::uint64_t>(program.shape().inputs.size(), 0),
-                    .parameters = parameters_of(program)};
-  for (const ProgramSignal& input : program.shape().inputs) {
-    orders.inputs.push_back(input.preset);
+TaskOrders first_orders(const StepProgram& program, const std::vector<InputSettings>& settings) {
+  const std::vector<ProgramSignal>& inputs = program.shape().inputs;
+  TaskOrders orders{
+      .inputs = {}, .input_writes = std::vector<std::uint64_t>(inputs.size(), 0), .parameters = parameters_of(program)};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    orders.inputs.push_back(settings[i].start.value_or(inputs[i].preset));
   }
   return orders;
 }
@@ -109,19 +109,20 @@ std::span<const char* const> status_names() {
   return names_of_statuses;
 }
 
-TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
-                   const std::vector<Point>& field_points)
-    : device_inputs_(std::move(device_inputs)),
-      snapshots_(width_of(program.shape(), field_points.size())),
+TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>& inputs,
+                   const std::vector<OutputSafety>& safety, const std::vector<Point>& field_points)
+    : snapshots_(width_of(program.shape(), field_points.size())),
       published_(width_of(program.shape(), field_points.size())),
       judged_by_({.parameters = program.shape().parameters, .relations = program.shape().relations}),
       gone_(program.shape().parameters.size(), false),
       parameters_(judged_by_, parameters_of(program)),
-      wanted_(first_orders(program)),
+      wanted_(first_orders(program, inputs)),
       orders_(wanted_) {
   const ProgramShape& shape = program.shape();
   for (std::size_t i = 0; i < shape.inputs.size(); ++i) {
-    add(point_of(shape.inputs[i], PointKind::input, !device_inputs_[i]));
+    Point point = point_of(shape.inputs[i], PointKind::input, !inputs[i].from_device);
+    point.is_retained = inputs[i].is_retained;
+    add(std::move(point));
   }
   for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
     Point point = point_of(shape.outputs[i], PointKind::output, false);
@@ -211,7 +212,7 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   for (const PointWrite& one : writes) {
     const Point& point = points_[one.point];
     if (point.kind == PointKind::input) {
-      if (device_inputs_[one.point]) {
+      if (!point.writable) {
         return point.name + " is given by a device.";
       }
       wanted.inputs[one.point] = one.value;
@@ -254,13 +255,6 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   orders_.filling() = wanted_;
   orders_.publish();
   return {};
-}
-
-void TaskDoor::begin_with(std::size_t input, double value, bool is_retained) {
-  const std::lock_guard lock(servers_);
-  points_[input].is_retained = is_retained;
-  wanted_.inputs[input] = value;
-  orders_.filling() = wanted_;
 }
 
 void TaskDoor::hold_commits(bool held) {

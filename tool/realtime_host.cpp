@@ -10,7 +10,6 @@
 #include <set>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include "tool/processor_list.hpp"
 
@@ -31,11 +30,20 @@ std::optional<std::string> line_of(const fs::path& path) {
   return std::getline(file, line) ? std::optional(line) : std::nullopt;
 }
 
-std::string text_of(const fs::path& path) {
+/// What stands behind a key at the begin of its line; empty where no line begins so, or none can be read.
+std::string behind_key(const fs::path& path, std::string_view key) {
   std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(key)) {
+      return line.substr(key.size());
+    }
+  }
+  return "";
+}
+
+/// Of a file that holds a list of processors; empty where it does not.
+std::vector<unsigned> processors_in(const fs::path& path) {
+  return parse_processors(line_of(path).value_or("")).value_or(std::vector<unsigned>());
 }
 
 /// The numbers of entries as cpu0, cpu1 or 24, 25 in a folder, sorted; empty where there is none.
@@ -66,7 +74,7 @@ class Host {
       : root_(question.root),
         priority_(question.priority),
         cpu_(root_ / "sys/devices/system/cpu"),
-        isolated_(parse_processors(line_of(cpu_ / "isolated").value_or("")).value_or(std::vector<unsigned>())),
+        isolated_(processors_in(cpu_ / "isolated")),
         processor_(question.processor  ? question.processor
                    : isolated_.empty() ? std::nullopt
                                        : std::optional(isolated_.front())),
@@ -80,10 +88,8 @@ class Host {
  private:
   [[nodiscard]] HostFinding kernel() const {
     const auto release = line_of(root_ / "proc/sys/kernel/osrelease");
-    return {.name = "kernel",
-            .found = release.value_or("not told"),
-            .rating = release ? Rating::good : Rating::unknown,
-            .why = release ? "" : "/proc/sys/kernel/osrelease cannot be read."};
+    return release ? HostFinding{.name = "kernel", .found = *release}
+                   : not_told("kernel", "/proc/sys/kernel/osrelease cannot be read.");
   }
 
   /// PREEMPT_RT says so in a file of its own and in the version; PREEMPT_DYNAMIC has its model in debugfs, for root.
@@ -119,8 +125,7 @@ class Host {
       finding.found = "none or voluntary";
       finding.rating = Rating::bad;
     } else {
-      return {
-          .name = "preemption", .found = "not told", .rating = Rating::unknown, .why = "/proc/version cannot be read."};
+      return not_told("preemption", "/proc/version cannot be read.");
     }
     return finding;
   }
@@ -128,10 +133,7 @@ class Host {
   [[nodiscard]] HostFinding throttling() const {
     const auto runtime = line_of(root_ / "proc/sys/kernel/sched_rt_runtime_us");
     if (!runtime) {
-      return {.name = "throttling",
-              .found = "not told",
-              .rating = Rating::unknown,
-              .why = "/proc/sys/kernel/sched_rt_runtime_us cannot be read."};
+      return not_told("throttling", "/proc/sys/kernel/sched_rt_runtime_us cannot be read.");
     }
     if (*runtime == "-1") {
       return {.name = "throttling", .found = "off"};
@@ -150,10 +152,7 @@ class Host {
     const fs::path folder = root_ / "sys/devices/system/clocksource/clocksource0";
     const auto source = line_of(folder / "current_clocksource");
     if (!source) {
-      return {.name = "clock source",
-              .found = "not told",
-              .rating = Rating::unknown,
-              .why = "/sys/devices/system/clocksource cannot be read."};
+      return not_told("clock source", "/sys/devices/system/clocksource cannot be read.");
     }
     // Those that a program reads without a call to the kernel.
     static const std::set<std::string, std::less<>> quick{"tsc", "kvm-clock", "hyperv_clocksource_tsc_page",
@@ -178,8 +177,7 @@ class Host {
 
   /// Of a thing that /sys tells by processors, where it names none.
   static HostFinding without_processors(const std::string& name) {
-    return {
-        .name = name, .found = "not told", .rating = Rating::unknown, .why = "/sys/devices/system/cpu cannot be read."};
+    return not_told(name, "/sys/devices/system/cpu cannot be read.");
   }
 
   [[nodiscard]] HostFinding governor() const {
@@ -274,7 +272,7 @@ class Host {
       return without_processors("isolated processors");
     }
     const unsigned wanted = processor_.value_or(all_.back());
-    const auto quiet = parse_processors(line_of(cpu_ / "nohz_full").value_or("")).value_or(std::vector<unsigned>());
+    const auto quiet = processors_in(cpu_ / "nohz_full");
     // Those that are isolated stay so. Of two lists on the kernel's line one counts: what stands there is taken out.
     const std::vector<unsigned> kept = joined(isolated_, {wanted});
     const std::vector<unsigned> ticking = joined(kept, quiet);
@@ -323,10 +321,7 @@ class Host {
       }
     }
     if (!is_read) {
-      return {.name = "interrupts",
-              .found = "not told",
-              .rating = Rating::unknown,
-              .why = "No affinity in /proc/irq can be read."};
+      return not_told("interrupts", "No affinity in /proc/irq can be read.");
     }
     if (!processor_) {
       return {.name = "interrupts",
@@ -393,33 +388,24 @@ class Host {
   }
 
   static HostFinding unknown_limit(const std::string& name) {
-    return {.name = name, .found = "not told", .rating = Rating::unknown, .why = "/proc/self/limits cannot be read."};
+    return not_told(name, "/proc/self/limits cannot be read.");
+  }
+
+  static HostFinding not_told(const std::string& name, const std::string& why) {
+    return {.name = name, .found = "not told", .rating = Rating::unknown, .why = why};
   }
 
   /// The soft limit, as /proc/self/limits names it.
   [[nodiscard]] std::optional<std::string> limit_of(std::string_view name) const {
-    std::istringstream lines(text_of(root_ / "proc/self/limits"));
-    for (std::string line; std::getline(lines, line);) {
-      if (line.starts_with(name)) {
-        std::istringstream rest(line.substr(name.size()));
-        std::string soft;
-        return rest >> soft ? std::optional(soft) : std::nullopt;
-      }
-    }
-    return std::nullopt;
+    std::istringstream rest(behind_key(root_ / "proc/self/limits", name));
+    std::string soft;
+    return rest >> soft ? std::optional(soft) : std::nullopt;
   }
 
   [[nodiscard]] bool has_right(unsigned right) const {
-    constexpr std::string_view key = "CapEff:";
-    std::istringstream lines(text_of(root_ / "proc/self/status"));
-    for (std::string line; std::getline(lines, line);) {
-      std::uint64_t bits = 0;
-      if (line.starts_with(key)) {
-        std::istringstream(line.substr(key.size())) >> std::hex >> bits;
-        return (bits >> right & 1U) != 0;
-      }
-    }
-    return false;
+    std::uint64_t bits = 0;
+    std::istringstream(behind_key(root_ / "proc/self/status", "CapEff:")) >> std::hex >> bits;
+    return (bits >> right & 1U) != 0;
   }
 
   /// The task's processor; all where it has none.
@@ -468,8 +454,8 @@ std::vector<HostFinding> look_at_host(const HostQuestion& question) {
 
 std::vector<unsigned> processors_of(const fs::path& root) {
   const fs::path folder = root / "sys/devices/system/cpu";
-  const auto online = parse_processors(line_of(folder / "online").value_or(""));
-  return online && !online->empty() ? *online : numbered(folder, "cpu");
+  const auto online = processors_in(folder / "online");
+  return online.empty() ? numbered(folder, "cpu") : online;
 }
 
 }  // namespace hysteron::tool

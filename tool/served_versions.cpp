@@ -45,7 +45,7 @@ bool are_same_files(const std::vector<OutputFile>& a, const std::vector<OutputFi
 
 /// Read until nothing was written meanwhile, or a second has passed. A text that is half written is an error of that
 /// moment alone.
-LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings, bool& is_steady) {
+LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings) {
   constexpr int most_tries = 10;
   constexpr std::chrono::milliseconds pause{100};
   for (int tries = 1;; ++tries) {
@@ -53,12 +53,12 @@ LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings, bool& i
     auto files = files_of(options);
     try {
       Program diagram = load_diagram(options, own);
-      is_steady = are_same_files(files, files_of(options));
+      const bool is_steady = are_same_files(files, files_of(options));
       if (is_steady || tries == most_tries) {
         for (const Diagnostic& one : own.all()) {
           warnings.add(one);
         }
-        return {.diagram = std::move(diagram), .files = std::move(files)};
+        return {.diagram = std::move(diagram), .files = std::move(files), .is_steady = is_steady};
       }
     } catch (const InputError&) {
       if (tries == most_tries || are_same_files(files, files_of(options))) {
@@ -72,9 +72,8 @@ LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings, bool& i
 }  // namespace
 
 LoadedVersion load_version(const DiagramOptions& options, Diagnostics& warnings) {
-  bool is_steady = false;
-  LoadedVersion loaded = load(options, warnings, is_steady);
-  if (!is_steady) {
+  LoadedVersion loaded = load(options, warnings);
+  if (!loaded.is_steady) {
     throw InputError(error::online_change_not_now, {.file = options.file},
                      "The diagram or its parameters were written while they were read.",
                      "ask again once they are whole.");
@@ -83,9 +82,8 @@ LoadedVersion load_version(const DiagramOptions& options, Diagnostics& warnings)
 }
 
 LoadedVersion first_version(const DiagramOptions& options, Diagnostics& warnings) {
-  bool is_steady = false;
-  LoadedVersion loaded = load(options, warnings, is_steady);
-  if (!is_steady) {
+  LoadedVersion loaded = load(options, warnings);
+  if (!loaded.is_steady) {
     runtime::tell("Start", fmt::format("{} or its parameters are written again and again; what was read last runs.",
                                        options.file));
   }

@@ -21,6 +21,7 @@ namespace hysteron::tool {
 struct LoadedVersion {
   Program diagram;
   std::vector<OutputFile> files{};
+  bool is_steady = false;  ///< none of them was written meanwhile
 };
 
 /// Throws InputError as load_diagram; HY853 where files are written again and again while they are read.

@@ -1,7 +1,6 @@
 #include "runtime/config/modbus_reader.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <string_view>
 #include <utility>
 #include <variant>

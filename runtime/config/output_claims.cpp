@@ -10,7 +10,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -102,8 +101,12 @@ Address address_of(const std::string& name) {
   return address;
 }
 
+modbus::Descriptor new_socket() {
+  return modbus::Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+}
+
 modbus::Descriptor socket_or_throw() {
-  modbus::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  modbus::Descriptor socket = new_socket();
   if (!socket.is_open()) {
     throw std::system_error(errno, std::system_category(), "a socket to claim an output by");
   }
@@ -112,13 +115,16 @@ modbus::Descriptor socket_or_throw() {
 
 bool bind_to(const modbus::Descriptor& socket, const std::string& name) {
   const Address address = address_of(name);
-  if (::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) == 0) {
-    return true;
-  }
-  if (errno != EADDRINUSE) {
+  return ::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address.text), address.size) == 0;
+}
+
+/// False where another has the name.
+bool bind_or_throw(const modbus::Descriptor& socket, const std::string& name) {
+  const bool is_bound = bind_to(socket, name);
+  if (!is_bound && errno != EADDRINUSE) {
     throw std::system_error(errno, std::system_category(), "the name by which an output is claimed");
   }
-  return false;
+  return is_bound;
 }
 
 bool connect_to(const modbus::Descriptor& socket, const std::string& name) {
@@ -180,7 +186,7 @@ std::optional<OutputClaims::Holder> OutputClaims::claim() {
   for (const Claim& claim : claims_) {
     sockets.push_back(socket_or_throw());
     move_up(sockets.back());
-    if (!bind_to(sockets.back(), claim.name)) {
+    if (!bind_or_throw(sockets.back(), claim.name)) {
       Holder holder{.output = claim.output, .address = claim.address, .guard = guard_of(claim)};
       holder.is_foreign = !holder.guard && !is_of_a_task(claim);
       if (holder.is_foreign && passes_over_foreign_) {
@@ -227,11 +233,9 @@ bool OutputClaims::end_guard() {
 void OutputClaims::guard_listens() {
   guards_.clear();
   for (const Claim& claim : claims_) {
-    const int number = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    guards_.emplace_back(number);
-    const Address address = address_of(guard_name(claim.name));
-    (void)::bind(number, reinterpret_cast<const sockaddr*>(&address.text), address.size);
-    (void)::listen(number, SOMAXCONN);
+    guards_.push_back(new_socket());
+    (void)bind_to(guards_.back(), guard_name(claim.name));
+    (void)::listen(guards_.back().number(), SOMAXCONN);
   }
 }
 
@@ -247,21 +251,22 @@ void OutputClaims::drain() const noexcept {
 }
 
 void look_up_hosts(RunConfig& config, std::chrono::milliseconds patience) {
-  std::vector<std::string> hosts;
-  std::vector<modbus::TcpLink*> links;
+  // Each name is asked for once: devices that share a connection have the same link.
+  std::map<std::string, std::vector<modbus::TcpLink*>> links;
   for (modbus::DeviceOptions& device : config.devices) {
     if (auto* const link = std::get_if<modbus::TcpLink>(&device.link)) {
-      hosts.push_back(link->host);
-      links.push_back(link);
+      links[link->host].push_back(link);
     }
   }
-  // Each name once: devices that share a connection have the same link.
-  std::vector<std::string> names = hosts;
-  std::ranges::sort(names);
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  const auto found = modbus::addresses_within(names, patience);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    links[i]->known = found[static_cast<std::size_t>(std::ranges::lower_bound(names, hosts[i]) - names.begin())];
+  std::vector<std::string> hosts;
+  for (const auto& [host, of_host] : links) {
+    hosts.push_back(host);
+  }
+  const auto found = modbus::addresses_within(hosts, patience);
+  for (std::size_t i = 0; i < hosts.size(); ++i) {
+    for (modbus::TcpLink* const link : links[hosts[i]]) {
+      link->known = found[i];
+    }
   }
 }
 

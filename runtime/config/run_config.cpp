@@ -379,7 +379,7 @@ class Reader {
   void check_retained_inputs() {
     const auto is_any =
         std::ranges::any_of(config_.task.inputs, [](const InputSettings& one) { return one.is_retained; });
-    if (is_any && !config_.retain && !root_.contains("retain")) {
+    if (is_any && !root_.contains("retain")) {
       found_.error(error::wrong_run_value, {.file = file_}, "An input has retain = true, and nothing is retained.",
                    "add [retain] with folder = \"retained\", or remove the key.");
     }

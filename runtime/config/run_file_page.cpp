@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -31,7 +30,7 @@ std::string range_text(const RunKey& key) {
   const auto text_of = [&](double value) {
     return key.kind == KeyKind::time ? time_text(value) : fmt::format("{}", number_text(value));
   };
-  std::string range = key.low == std::numeric_limits<double>::min() ? "above 0"
+  std::string range = key.low == above_zero ? "above 0"
                       : std::isfinite(key.low) && std::isfinite(key.high)
                           ? text_of(key.low) + " to " + text_of(key.high)
                           : "";

@@ -12,7 +12,6 @@ namespace {
 using Words = std::string_view;
 using enum KeyKind;
 
-constexpr double above_zero = std::numeric_limits<double>::min();
 constexpr double us = 1e3;
 constexpr double ms = 1e6;
 constexpr double s = 1e9;

@@ -152,7 +152,7 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   for (const std::string& name : wish.as_given) {
     const std::size_t place = place_of(shape.parameters, name).value();
     carried.parameters[place] = plan.given[place];
-    const auto is_left = [&](const std::string& left) { return left.starts_with(name + " ("); };
+    const auto is_left = [&](const std::string& left) { return without_reason(left) == name; };
     if (std::ranges::none_of(carried.left, is_left)) {
       carried.left.push_back(name + " (as given)");
       --carried.parameters_taken;
@@ -203,8 +203,11 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
   report.states_carried = carried.states_taken;
   for (std::string& one : carried.left) {
     // What only this version has is new in it; on the way back it goes on as it was.
-    auto& list = plan.own_state && is_new(one) ? report.as_before : report.left;
-    list.push_back(&list == &report.left ? std::move(one) : without_reason(one));
+    if (plan.own_state && is_new(one)) {
+      report.as_before.push_back(without_reason(one));
+    } else {
+      report.left.push_back(std::move(one));
+    }
   }
 }
 
@@ -357,7 +360,7 @@ void OnlineChange::require_sound(const ProgramShape& next, const ChangeWish& wis
 ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const ChangeWish& asked) {
   try {
     const auto lock = one_at_a_time();
-    require_sound(program->shape(), asked);
+    require_same_interface(program_->shape(), program->shape());
     const ChangeWish wish = as_named(asked, program->shape());
     auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
     auto held = wish.only_check ? nullptr : held_commits(task_->door());

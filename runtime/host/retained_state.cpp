@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/task/carry.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
 
@@ -67,14 +66,14 @@ RetainedState::RetainedState(const RetainConfig& config, StepProgram& program, s
         "mismatch = \"cold\", which puts the files aside.");
   }
   if (recovery_.values) {
+    const RetainedValues& values = *recovery_.values;
+    const KeptLayout kept = read_description(values.described, values.state.size());
     if (recovery_.by_name) {
-      carry(program, given);
+      carry(program, given, kept);
     } else {
       take(program, given);
     }
-    const RetainedValues& values = *recovery_.values;
-    starts_ = carry_inputs(read_description(values.described, values.state.size()), values.inputs, program.shape(),
-                           inputs_, left_);
+    starts_ = carry_inputs(kept, values.inputs, program.shape(), inputs_, left_);
   }
   told_ += recovery_.note.empty() ? "" : ", " + recovery_.note;
 }
@@ -95,10 +94,9 @@ void RetainedState::take(StepProgram& program, std::span<const double> given) {
   }
 }
 
-void RetainedState::carry(StepProgram& program, std::span<const double> given) {
+void RetainedState::carry(StepProgram& program, std::span<const double> given, const KeptLayout& kept) {
   const RetainedValues& values = *recovery_.values;
   const ProgramShape& shape = program.shape();
-  const KeptLayout kept = read_description(values.described, values.state.size());
   CarriedValues carried = kept.parameters.size() == values.parameters.size()
                               ? carry_parameters(kept, values.parameters, shape, given)
                               : CarriedValues{.parameters = {given.begin(), given.end()}};

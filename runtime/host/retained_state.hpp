@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/config/run_config.hpp"
+#include "runtime/task/carry.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/step_program.hpp"
 
@@ -40,7 +41,7 @@ class RetainedState {
 
  private:
   void take(StepProgram& program, std::span<const double> given);
-  void carry(StepProgram& program, std::span<const double> given);
+  void carry(StepProgram& program, std::span<const double> given, const KeptLayout& kept);
 
   RetainConfig config_;
   RetainFolder folder_;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "runtime/host/notices.hpp"
-#include "runtime/modbus/lock_file.hpp"
 #include "support/atomic_file.hpp"
 #include "support/text_file.hpp"
 
@@ -61,10 +60,7 @@ PlannedMap planned_map(const ModbusConfig& config, const std::string& title, Poi
 
 /// The map of a program that does not run yet.
 PlannedMap planned_map(const RunConfig& config, const StepProgram& program) {
-  TaskDoor door(program, device_inputs(config.task), config.task.outputs, config.task.field_points);
-  for (std::size_t input = 0; input < config.task.inputs.size(); ++input) {
-    door.begin_with(input, program.shape().inputs[input].preset, config.task.inputs[input].is_retained);
-  }
+  TaskDoor door(program, config.task.inputs, config.task.outputs, config.task.field_points);
   return planned_map(config.modbus.value_or(ModbusConfig{}), program.shape().name, door);
 }
 

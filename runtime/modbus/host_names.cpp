@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
@@ -27,12 +28,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::optional<std::vector<std::string>> found_by(const char* host, int flags) {
+std::optional<std::vector<std::string>> found_by(const std::string& host, int flags) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = flags;
   addrinfo* found = nullptr;
-  if (::getaddrinfo(host, nullptr, &hints, &found) != 0) {
+  if (::getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0) {
     return std::nullopt;
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> release(found, &::freeaddrinfo);
@@ -49,7 +50,7 @@ std::optional<std::vector<std::string>> found_by(const char* host, int flags) {
 
 /// Without a name server; nothing where the host is a name.
 std::optional<std::vector<std::string>> numeric(const std::string& host) {
-  return found_by(host.c_str(), AI_NUMERICHOST);
+  return found_by(host, AI_NUMERICHOST);
 }
 
 /// A process that asks for one host, and the pipe on which it answers.
@@ -111,7 +112,7 @@ bool read_answer(Asking& asking, Clock::time_point until) {
 }  // namespace
 
 std::vector<std::string> addresses_of(const std::string& host) {
-  if (auto found = found_by(host.c_str(), 0)) {
+  if (auto found = found_by(host, 0)) {
     return std::move(*found);
   }
   return ::strcasecmp(host.c_str(), "localhost") == 0 ? numeric("127.0.0.1").value_or(std::vector<std::string>())
@@ -155,39 +156,39 @@ HostName::HostName(std::string host, std::vector<std::string> known)
 }
 
 std::string HostName::next_address(std::chrono::milliseconds patience) {
-  if (next_ < known_.size()) {
-    return known_[next_++];
+  if (next_ == known_.size()) {
+    next_ = 0;
+    if (!is_numeric_) {
+      look_up(patience);
+    }
   }
-  next_ = 0;
-  if (is_numeric_) {
-    return known_[next_++];
-  }
+  return known_.empty() ? "" : known_[next_++];
+}
+
+void HostName::look_up(std::chrono::milliseconds patience) {
   if (asked_ == nullptr) {
-    asked_ = std::make_shared<LookUp>();
+    const auto asked = std::make_shared<LookUp>();
     try {
-      std::thread([asked = asked_, host = host_] {
+      std::thread([asked, host = host_] {
         auto found = addresses_of(host);
         const std::scoped_lock lock(asked->lock);
         asked->found = std::move(found);
         asked->done.notify_all();
       }).detach();
     } catch (const std::system_error&) {
-      asked_.reset();  // no thread is left; the next time one may be
-      return known_.empty() ? "" : known_[next_++];
+      return;  // no thread is left; the next time one may be
     }
+    asked_ = asked;
   }
-  bool is_answered = false;
-  {
-    std::unique_lock lock(asked_->lock);
-    is_answered = asked_->done.wait_for(lock, patience, [&] { return asked_->found.has_value(); });
-    if (is_answered && !asked_->found->empty()) {
-      known_ = std::move(*asked_->found);
-    }
+  std::unique_lock lock(asked_->lock);
+  if (!asked_->done.wait_for(lock, patience, [&] { return asked_->found.has_value(); })) {
+    return;
   }
-  if (is_answered) {
-    asked_.reset();
+  if (!asked_->found->empty()) {
+    known_ = std::move(*asked_->found);
   }
-  return known_.empty() ? "" : known_[next_++];
+  lock.unlock();
+  asked_.reset();
 }
 
 void HostName::was_reached() {

@@ -36,6 +36,9 @@ class HostName {
  private:
   struct LookUp;
 
+  /// Takes newer addresses, where they come in time.
+  void look_up(std::chrono::milliseconds patience);
+
   std::string host_;
   std::vector<std::string> known_;
   std::size_t next_ = 0;  ///< of known_

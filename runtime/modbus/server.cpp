@@ -187,8 +187,8 @@ class Server::Loop {
                                   SOCK_NONBLOCK | SOCK_CLOEXEC));
       if (!socket.is_open()) {
         if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-          change_watch(listener_->socket(), listening_mark,
-                       0);  // or the loop would spin on a connection it cannot take
+          // Or the loop would spin on a connection it cannot take.
+          change_watch(listener_->socket(), listening_mark, 0);
           listen_again_ = now + accept_pause;
         }
         return;

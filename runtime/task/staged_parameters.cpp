@@ -75,9 +75,7 @@ class Relation {
 
 std::string refusal_of(const ProgramShape& shape, std::span<const double> values, std::span<const double> has) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    // A limit that is off is no number, and may stay so.
-    const bool stays = values[i] == has[i] || (std::isnan(values[i]) && std::isnan(has[i]));
-    if (!stays) {
+    if (!is_same_value(values[i], has[i])) {
       if (auto refusal = refusal_of(shape.parameters[i], values[i]); !refusal.empty()) {
         return refusal;
       }

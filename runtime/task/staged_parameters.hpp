@@ -2,6 +2,8 @@
 // all.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +11,11 @@
 #include "runtime/task/step_program.hpp"
 
 namespace hysteron::runtime {
+
+/// Equal, or both no number: a limit that is off is none, and may stay so.
+[[nodiscard]] inline bool is_same_value(double a, double b) noexcept {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
 
 class StagedParameters {
  public:
@@ -22,6 +29,10 @@ class StagedParameters {
   /// was staged stays staged then, to be mended. What stays as it is in the program is not judged.
   [[nodiscard]] std::string commit();
 
+  /// Whether another value waits for a commit.
+  [[nodiscard]] bool is_staged(std::size_t parameter) const {
+    return !is_same_value(staged_[parameter], committed_[parameter]);
+  }
   [[nodiscard]] bool any_staged() const { return staged_ != committed_; }
   [[nodiscard]] const std::vector<double>& staged() const { return staged_; }
   [[nodiscard]] const std::vector<double>& committed() const { return committed_; }

@@ -17,19 +17,11 @@ const TaskSettings& fitting(const TaskSettings& settings, const ProgramShape& sh
 
 }  // namespace
 
-std::vector<bool> device_inputs(const TaskSettings& settings) {
-  std::vector<bool> result;
-  for (const InputSettings& input : settings.inputs) {
-    result.push_back(input.from_device);
-  }
-  return result;
-}
-
 Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments attachments)
     : program_(&program),
       settings_(fitting(settings, program.shape())),
       attachments_(attachments),
-      door_(program, device_inputs(settings), settings.outputs, settings.field_points),
+      door_(program, settings.inputs, settings.outputs, settings.field_points),
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
       watchdog_(settings.watchdog),
       field_counts_(settings.field_points.size()),
@@ -42,7 +34,6 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
     const double start = settings_.inputs[i].start.value_or(program.shape().inputs[i].preset);
     inputs_.push_back(start);
     last_good_.push_back(start);
-    door_.begin_with(i, start, settings_.inputs[i].is_retained);
   }
 }
 

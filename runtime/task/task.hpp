@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "runtime/task/changeable_program.hpp"
@@ -23,13 +22,6 @@
 
 namespace hysteron::runtime {
 
-struct InputSettings {
-  bool from_device = false;
-  std::uint64_t longest_age = 0;  ///< cycles since the last write of a server; 0: never stale
-  bool is_retained = false;       ///< what servers write is kept through a restart
-  std::optional<double> start{};  ///< what it begins with; else the diagram's
-};
-
 struct TaskSettings {
   LoopSettings loop{};
   WatchdogSettings watchdog{};
@@ -41,9 +33,6 @@ struct TaskSettings {
   bool reset_after_lost_client = false;
   std::vector<Point> field_points{};  ///< what the field says of itself (FieldIo::count)
 };
-
-/// By input: whether a device gives it.
-[[nodiscard]] std::vector<bool> device_inputs(const TaskSettings& settings);
 
 /// Each may be null.
 struct TaskAttachments {

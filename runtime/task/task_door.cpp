@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace hysteron::runtime {
@@ -82,12 +81,12 @@ std::size_t width_of(const ProgramShape& shape, std::size_t field_points) {
          command_count + shape.inner.size();
 }
 
-TaskOrders first_orders(const StepProgram& program) {
-  TaskOrders orders{.inputs = {},
-                    .input_writes = std::vector<std::uint64_t>(program.shape().inputs.size(), 0),
-                    .parameters = parameters_of(program)};
-  for (const ProgramSignal& input : program.shape().inputs) {
-    orders.inputs.push_back(input.preset);
+TaskOrders first_orders(const StepProgram& program, const std::vector<InputSettings>& settings) {
+  const std::vector<ProgramSignal>& inputs = program.shape().inputs;
+  TaskOrders orders{
+      .inputs = {}, .input_writes = std::vector<std::uint64_t>(inputs.size(), 0), .parameters = parameters_of(program)};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    orders.inputs.push_back(settings[i].start.value_or(inputs[i].preset));
   }
   return orders;
 }
@@ -104,32 +103,26 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
           .right = kind == PointKind::input ? WriteRight::inputs : WriteRight::parameters};
 }
 
-/// Whether another value waits for a commit. A limit that is off is no number, and is none that waits.
-bool is_staged(const StagedParameters& parameters, std::size_t parameter) {
-  const double staged = parameters.staged()[parameter];
-  const double committed = parameters.committed()[parameter];
-  return staged != committed && !(std::isnan(staged) && std::isnan(committed));
-}
-
 }  // namespace
 
 std::span<const char* const> status_names() {
   return names_of_statuses;
 }
 
-TaskDoor::TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
-                   const std::vector<Point>& field_points)
-    : device_inputs_(std::move(device_inputs)),
-      snapshots_(width_of(program.shape(), field_points.size())),
+TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>& inputs,
+                   const std::vector<OutputSafety>& safety, const std::vector<Point>& field_points)
+    : snapshots_(width_of(program.shape(), field_points.size())),
       published_(width_of(program.shape(), field_points.size())),
       judged_by_({.parameters = program.shape().parameters, .relations = program.shape().relations}),
       gone_(program.shape().parameters.size(), false),
       parameters_(judged_by_, parameters_of(program)),
-      wanted_(first_orders(program)),
+      wanted_(first_orders(program, inputs)),
       orders_(wanted_) {
   const ProgramShape& shape = program.shape();
   for (std::size_t i = 0; i < shape.inputs.size(); ++i) {
-    add(point_of(shape.inputs[i], PointKind::input, !device_inputs_[i]));
+    Point point = point_of(shape.inputs[i], PointKind::input, !inputs[i].from_device);
+    point.is_retained = inputs[i].is_retained;
+    add(std::move(point));
   }
   for (std::size_t i = 0; i < shape.outputs.size(); ++i) {
     Point point = point_of(shape.outputs[i], PointKind::output, false);
@@ -205,7 +198,7 @@ void TaskDoor::read_live(LiveValues& into) {
   }
   const std::vector<double>& staged = parameters_.staged();
   for (std::size_t i = 0; i < staged.size(); ++i) {
-    if (is_staged(parameters_, i)) {
+    if (parameters_.is_staged(i)) {
       into.staged.push_back({.point = first_parameter_ + i, .value = staged[i]});
     }
   }
@@ -219,7 +212,7 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   for (const PointWrite& one : writes) {
     const Point& point = points_[one.point];
     if (point.kind == PointKind::input) {
-      if (device_inputs_[one.point]) {
+      if (!point.writable) {
         return point.name + " is given by a device.";
       }
       wanted.inputs[one.point] = one.value;
@@ -264,13 +257,6 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
   return {};
 }
 
-void TaskDoor::begin_with(std::size_t input, double value, bool is_retained) {
-  const std::lock_guard lock(servers_);
-  points_[input].is_retained = is_retained;
-  wanted_.inputs[input] = value;
-  orders_.filling() = wanted_;
-}
-
 void TaskDoor::hold_commits(bool held) {
   const std::lock_guard lock(servers_);
   commits_are_held_ = held;
@@ -306,7 +292,7 @@ void TaskDoor::version_changed(const StepProgram& version, std::span<const std::
   const StagedParameters before = parameters_;
   parameters_ = StagedParameters(judged_by_, values);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] && is_staged(before, i)) {
+    if (places[i] && before.is_staged(i)) {
       parameters_.stage(i, before.staged()[i]);
     }
   }

@@ -58,15 +58,22 @@ struct TaskStatus {
   std::span<const double> field{};  ///< as the points of the field
 };
 
+struct InputSettings {
+  bool from_device = false;       ///< nobody else may write it
+  std::uint64_t longest_age = 0;  ///< cycles since the last write of a server; 0: never stale
+  bool is_retained = false;       ///< what servers write is kept through a restart
+  std::optional<double> start{};  ///< what it begins with; else the diagram's
+};
+
 /// The names of what a task says of itself: task.state, …
 [[nodiscard]] std::span<const char* const> status_names();
 
 class TaskDoor final : public PointDoor {
  public:
-  /// `device_inputs`, by input: given by a device, so that nobody else may write it. `safety`, by output.
-  /// `field_points`: what the field says of itself. The program must outlive the door.
-  TaskDoor(const StepProgram& program, std::vector<bool> device_inputs, const std::vector<OutputSafety>& safety,
-           const std::vector<Point>& field_points = {});
+  /// `inputs`, by input, and `safety`, by output. `field_points`: what the field says of itself. The program must
+  /// outlive the door.
+  TaskDoor(const StepProgram& program, const std::vector<InputSettings>& inputs,
+           const std::vector<OutputSafety>& safety, const std::vector<Point>& field_points = {});
 
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;
@@ -74,9 +81,6 @@ class TaskDoor final : public PointDoor {
   [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
   void read_live(LiveValues& into) override;
   void shortage(Shortage what, bool is_there) noexcept override;
-
-  /// Before the task runs: what an input begins with, and whether it is retained.
-  void begin_with(std::size_t input, double value, bool is_retained);
 
   // For an online change, from a thread beside the cyclic one:
   /// While it is under way no set of parameters is committed, which would be judged by the version that goes.
@@ -102,7 +106,6 @@ class TaskDoor final : public PointDoor {
 
   std::vector<Point> points_;
   std::vector<Point> inner_;
-  std::vector<bool> device_inputs_;
   std::size_t first_parameter_ = 0;
   std::size_t first_command_ = 0;
   SnapshotRing snapshots_;

@@ -11,9 +11,6 @@
 namespace hysteron::runtime {
 namespace {
 
-/// A record is its length, its kind and its contents.
-constexpr std::size_t record_head = 5;
-
 /// From one try to begin another file to the next, where the disk is full or the folder gone.
 constexpr std::chrono::seconds time_between_tries{10};
 
@@ -42,7 +39,7 @@ std::span<const std::byte> bytes_of(const T& value) {
 }  // namespace
 
 std::uint64_t memory_before(const TraceTrigger& trigger, std::size_t inputs, std::size_t outputs) {
-  const std::uint64_t step = record_head + 20 + sizeof(double) * (inputs + 2 * outputs);
+  const std::uint64_t step = record_head + length_of_step(inputs, outputs);
   return 2 * std::max<std::uint64_t>(1, trigger.before) * step;
 }
 
@@ -193,7 +190,7 @@ bool Trace::push(TraceKind kind, std::span<const std::span<const std::byte>> con
     parts[i + 1] = contents[i];
     length += static_cast<std::uint32_t>(contents[i].size());
   }
-  std::array<std::byte, 5> head{};
+  std::array<std::byte, record_head> head{};
   std::memcpy(head.data(), &length, sizeof(length));
   head[4] = static_cast<std::byte>(kind);
   parts[0] = head;

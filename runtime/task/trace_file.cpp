@@ -8,8 +8,6 @@
 namespace hysteron::runtime {
 namespace {
 
-constexpr std::string_view first_line = "hysteron trace 1";
-
 std::string lines_of(std::string_view word, const std::vector<TraceColumn>& columns) {
   std::string text;
   for (const TraceColumn& column : columns) {
@@ -84,8 +82,6 @@ std::string at_byte(std::string_view what, std::size_t byte) {
 }
 
 std::size_t length_of(TraceKind kind, const TraceHead& head) {
-  const std::size_t inputs = head.inputs.size() * sizeof(double);
-  const std::size_t outputs = head.outputs.size() * sizeof(double);
   const std::size_t parameters = head.parameters.size() * sizeof(double);
   switch (kind) {
     case TraceKind::state:
@@ -95,7 +91,7 @@ std::size_t length_of(TraceKind kind, const TraceHead& head) {
     case TraceKind::reset:
       return 0;
     case TraceKind::step:
-      return 20 + inputs + 2 * outputs;
+      return length_of_step(head.inputs.size(), head.outputs.size());
     case TraceKind::end:
       return 16;
     case TraceKind::program:
@@ -133,11 +129,11 @@ void hand_on(TraceKind kind, std::string_view bytes, const TraceVisitor& visitor
 
 /// The head; gives back where the data begins, 0 with a fault.
 std::size_t read_head(std::string_view bytes, TraceHead& head, std::string& fault) {
-  if (!bytes.starts_with(std::string(first_line) + "\n")) {
-    fault = "this is no trace: it does not begin with \"" + std::string(first_line) + "\"";
+  if (!bytes.starts_with(std::string(trace_first_line) + "\n")) {
+    fault = "this is no trace: it does not begin with \"" + std::string(trace_first_line) + "\"";
     return 0;
   }
-  std::size_t at = first_line.size() + 1;
+  std::size_t at = trace_first_line.size() + 1;
   for (;;) {
     const auto end = bytes.find('\n', at);
     if (end == std::string_view::npos) {
@@ -145,7 +141,7 @@ std::size_t read_head(std::string_view bytes, TraceHead& head, std::string& faul
       return 0;
     }
     const auto line = bytes.substr(at, end - at);
-    if (line == "data") {
+    if (line == trace_last_line_of_head) {
       return end + 1;
     }
     if (!read_line(line, head)) {
@@ -161,7 +157,7 @@ std::size_t read_head(std::string_view bytes, TraceHead& head, std::string& faul
 bool is_begin_of_trace(std::string_view bytes) {
   // A file system may give a file its size before its bytes: a power cut between the two leaves zeros.
   const bool is_blank = bytes.find_first_not_of('\0') == std::string_view::npos;
-  return is_blank || bytes.starts_with(first_line) || first_line.starts_with(bytes);
+  return is_blank || bytes.starts_with(trace_first_line) || trace_first_line.starts_with(bytes);
 }
 
 TraceHead head_of(const StepProgram& program) {
@@ -176,10 +172,10 @@ TraceHead head_of(const StepProgram& program) {
 }
 
 std::string text_of(const TraceHead& head) {
-  return std::string(first_line) + "\nprogram " + head.program + "\nlayout " + head.layout + "\nperiod " +
+  return std::string(trace_first_line) + "\nprogram " + head.program + "\nlayout " + head.layout + "\nperiod " +
          std::to_string(head.period) + "\nstate " + std::to_string(head.state_size) + "\n" +
          lines_of("input", head.inputs) + lines_of("output", head.outputs) + lines_of("parameter", head.parameters) +
-         "data\n";
+         std::string(trace_last_line_of_head) + "\n";
 }
 
 std::string read_trace(std::string_view bytes, TraceHead& head,
@@ -194,18 +190,18 @@ std::string read_trace(std::string_view bytes, TraceHead& head,
                  .computed = std::vector<double>(head.outputs.size()),
                  .outputs = std::vector<double>(head.outputs.size())};
   std::vector<double> parameters(head.parameters.size());
-  while (bytes.size() - at >= 5) {
+  while (bytes.size() - at >= record_head) {
     std::uint32_t length = 0;
     std::memcpy(&length, bytes.data() + at, sizeof(length));
     const auto kind = static_cast<TraceKind>(bytes[at + 4]);
     if (length_of(kind, head) != length) {
       return at_byte("a record of an unknown kind or wrong length", at);
     }
-    if (bytes.size() - at - 5 < length) {
+    if (bytes.size() - at - record_head < length) {
       break;  // cut off
     }
-    hand_on(kind, bytes.substr(at + 5, length), visitor, step, parameters);
-    at += 5 + length;
+    hand_on(kind, bytes.substr(at + record_head, length), visitor, step, parameters);
+    at += record_head + length;
   }
   return {};
 }

@@ -60,6 +60,18 @@ struct TraceStep {
   std::vector<double> outputs{};
 };
 
+/// What a trace begins with, and what ends its head: each is a line.
+inline constexpr std::string_view trace_first_line = "hysteron trace 1";
+inline constexpr std::string_view trace_last_line_of_head = "data";
+
+/// Before the contents of a record: their length and its kind.
+inline constexpr std::size_t record_head = 5;
+
+/// The length of the contents of a step.
+[[nodiscard]] constexpr std::size_t length_of_step(std::size_t inputs, std::size_t outputs) {
+  return 20 + sizeof(double) * (inputs + 2 * outputs);
+}
+
 /// Whether a file that begins so is a trace, or what a power cut left of one: its begin, or zeros.
 [[nodiscard]] bool is_begin_of_trace(std::string_view bytes);
 

@@ -56,13 +56,17 @@ bool is_file(const std::filesystem::path& path) {
 /// Whether a trace has no step, as where its trigger did not fire: it is worth no place among those that are kept.
 bool holds_no_step(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string line;
-  for (bool is_first = true; line != "data"; is_first = false) {
-    if (!std::getline(in, line) || in.eof() || (is_first && line != "hysteron trace 1")) {
-      return false;  // zeros that a power cut left, or a head that is torn: not known to be empty
+  std::string line(trace_first_line.size() + 1, '\0');
+  in.read(line.data(), static_cast<std::streamsize>(line.size()));
+  if (line != std::string(trace_first_line) + "\n") {
+    return false;  // zeros that a power cut left
+  }
+  while (line != trace_last_line_of_head) {
+    if (!std::getline(in, line) || in.eof()) {
+      return false;  // a head that is torn: not known to be empty
     }
   }
-  std::array<char, 5> head{};  // of a record: the length of its contents, and its kind
+  std::array<char, record_head> head{};
   while (in.read(head.data(), head.size())) {
     std::uint32_t length = 0;
     std::memcpy(&length, head.data(), sizeof(length));

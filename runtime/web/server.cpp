@@ -299,7 +299,6 @@ class Server::Loop final : public Host {
       : door_(door), options_(options), responder_(door, subject, options.access) {
     check_access(options.endpoint, options.access);
     listener_.emplace(options.endpoint.address, options.endpoint.port, Place{}, options.tell);
-    door_.shortage(Shortage::page, !listener_->is_open());
     listen();
     tick(Clock::now());
     thread_ = std::thread([this] { run(); });
@@ -368,6 +367,7 @@ class Server::Loop final : public Host {
 
   /// At once, or as soon as the address is there.
   void listen() {
+    door_.shortage(Shortage::page, !listener_->is_open());
     if (listener_->is_open()) {
       acceptor_.emplace(context_, protocol_of(options_.endpoint),
                         ::fcntl(listener_->socket().number(), F_DUPFD_CLOEXEC, 0));
@@ -376,9 +376,7 @@ class Server::Loop final : public Host {
     }
     pause_.expires_at(*listener_->next_try());
     pause_.async_wait([this](beast::error_code /*fault*/) {
-      if (listener_->try_again(Clock::now())) {
-        door_.shortage(Shortage::page, false);
-      }
+      (void)listener_->try_again(Clock::now());
       listen();
     });
   }

@@ -159,7 +159,7 @@ END_FUNCTION_BLOCK
   for (const auto engine : {tool::Engine::interpreter, tool::Engine::compiled}) {
     for (const Set& set : sets) {
       const auto program = tool::step_program(compile_text(bounded), engine, false);
-      runtime::TaskDoor door(*program, {false}, {{}});
+      runtime::TaskDoor door(*program, {{}}, {{}});
       std::vector<runtime::PointWrite> writes;
       const auto add = [&](const std::string& name, double value) {
         const auto points = door.points();

@@ -64,7 +64,7 @@ Point output(std::string name, std::string unit = "1") {
 TEST(WebMetrics, EveryPointOfATaskButItsCommands) {
   test::Accumulator program;
   program.mutable_shape().parameters[0].unit = "mm";
-  TaskDoor door(program, {false}, {{}, {}});
+  TaskDoor door(program, {{}}, {{}, {}});
   LoopStatistics statistics;
   statistics.run = 42;
   statistics.skipped = 3;

@@ -53,7 +53,7 @@ struct PageBench {
   }
 
   test::Accumulator program;
-  TaskDoor door{with_unit(program), {false}, {{}, {}}};
+  TaskDoor door{with_unit(program), {{}}, {{}, {}}};
   Responder responder;
 };
 
@@ -306,7 +306,7 @@ TEST(WebResponder, AsksTheHistoryUnderTheRulesOfThePage) {
   history.second();
   history.stop();
   test::Accumulator program;
-  TaskDoor door(program, {false}, {{}, {}});
+  TaskDoor door(program, {{}}, {{}, {}});
   const Subject subject{.name = "A", .history = history.file(), .history_points = {"U", "Y"}};
   const auto ask = [&](Responder& responder, std::string_view target, std::string_view authorization = {}) {
     Answer answer =

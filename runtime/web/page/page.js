@@ -281,15 +281,14 @@ place("discard").addEventListener("click", () =>
 // Asks twice: the states of a running control are lost.
 place("reset").addEventListener("click", () => {
   const button = place("reset");
-  if (button.dataset.sure !== "yes") {
-    button.dataset.sure = "yes";
-    button.textContent = "Reset: every state begins anew?";
-    setTimeout(() => { button.dataset.sure = ""; button.textContent = "Reset the task"; }, 5000);
-    return;
-  }
-  button.dataset.sure = "";
-  button.textContent = "Reset the task";
-  give("/api/reset", "Reset: every state begins anew.", "The task goes on as before.");
+  const show = isAsked => {
+    button.dataset.sure = isAsked ? "yes" : "";
+    button.textContent = isAsked ? "Reset: every state begins anew?" : "Reset the task";
+  };
+  const isSure = button.dataset.sure === "yes";
+  show(!isSure);
+  if (isSure) give("/api/reset", "Reset: every state begins anew.", "The task goes on as before.");
+  else setTimeout(() => show(false), 5000);
 });
 
 async function save() {

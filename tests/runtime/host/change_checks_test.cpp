@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "support/errors.hpp"
 #include "tests/runtime/host/running_plant.hpp"
 #include "tests/runtime/task/integrators.hpp"
 

@@ -2,14 +2,11 @@
 // all.
 #include "runtime/host/online_change.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
-#include <thread>
 
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
-#include <string>
 
 #include "runtime/modbus/point_format.hpp"
 #include "tests/runtime/namespaces.hpp"

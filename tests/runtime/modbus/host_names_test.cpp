@@ -1,7 +1,6 @@
 // A name server that gives no answer keeps nobody waiting longer than he can: each test here would never end if it did.
 #include "runtime/modbus/host_names.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

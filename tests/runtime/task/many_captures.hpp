@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 
@@ -15,6 +13,7 @@
 #include "runtime/task/trace.hpp"
 #include "tests/runtime/namespaces.hpp"
 #include "tests/runtime/task/accumulator.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::runtime::test {
 
@@ -70,12 +69,10 @@ inline Captures capture_many_times(const std::filesystem::path& folder, std::uin
         continue;
       }
       ++result.files;
-      std::ifstream stream(one, std::ios::binary);
-      const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
       Accumulator program;
       ReplayResult replayed;
-      const bool is_sound = replay(bytes, program, replayed).empty() && replayed.different == 0 &&
-                            replayed.without_state == 0 && replayed.steps > trigger.after;
+      const bool is_sound = replay(hysteron::test::contents_of(one), program, replayed).empty() &&
+                            replayed.different == 0 && replayed.without_state == 0 && replayed.steps > trigger.after;
       result.different += is_sound ? 0 : 1;
     }
   }

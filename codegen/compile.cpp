@@ -152,9 +152,7 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, const Comp
         }
       }
     }
-    for (const Diagnostic& one : own.all()) {
-      diagnostics.add(one);
-    }
+    diagnostics.add_all(own);
   }
   return result;
 }
@@ -271,9 +269,7 @@ Program compile_source(language::SourceFile parsed, const CompileOptions& option
   if (syntax.has_errors()) {
     throw InputError(std::move(syntax));
   }
-  for (const Diagnostic& one : syntax.all()) {
-    warnings.add(one);
-  }
+  warnings.add_all(syntax);
   return program;
 }
 

@@ -157,10 +157,7 @@ class Staging {
     committed_ = true;
     for (const fs::path& folder : folders) {
       // The names are in place already; a folder that cannot be flushed is no reason to report a failure.
-      const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-      if (opened.number() >= 0) {
-        ::fsync(opened.number());
-      }
+      (void)flush_folder(folder);
     }
   }
 
@@ -208,6 +205,11 @@ class Staging {
 };
 
 }  // namespace
+
+bool flush_folder(const fs::path& folder) noexcept {
+  const Descriptor opened(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return opened.number() >= 0 && ::fsync(opened.number()) == 0;
+}
 
 void write_file_atomically(const fs::path& path, std::string_view contents) {
   Staging staging;

@@ -43,6 +43,7 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void add(Diagnostic diagnostic) { list_.push_back(std::move(diagnostic)); }
+  void add_all(const Diagnostics& others) { list_.insert(list_.end(), others.list_.begin(), others.list_.end()); }
   void error(int number, Place place, std::string cause, std::string mend, std::vector<Note> notes = {}) {
     add({number, Severity::Error, std::move(place), std::move(cause), std::move(mend), std::move(notes)});
   }

@@ -57,9 +57,7 @@ int format_files(const FmtOptions& options, Console& console) {
         console.print(path + " formatted\n");
       }
     } catch (const InputError& error) {
-      for (const Diagnostic& one : error.diagnostics().all()) {
-        refused.add(one);
-      }
+      refused.add_all(error.diagnostics());
     }
   }
   if (refused.has_errors()) {

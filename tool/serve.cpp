@@ -86,9 +86,7 @@ int serve(const ServeOptions& options, Console& console) {
   inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
   inputs.push_back({.file = options.read_token_file, .named_by = "--web-read-token-file"});
   runtime::refuse_to_overwrite_inputs(config, inputs);
-  for (const Diagnostic& one : config.warnings.all()) {
-    warnings.add(one);
-  }
+  warnings.add_all(config.warnings);
   console.report(warnings);
   const auto history = config.history.value_or(runtime::HistoryConfig{});
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {

@@ -55,9 +55,7 @@ LoadedVersion load(const DiagramOptions& options, Diagnostics& warnings) {
       Program diagram = load_diagram(options, own);
       const bool is_steady = are_same_files(files, files_of(options));
       if (is_steady || tries == most_tries) {
-        for (const Diagnostic& one : own.all()) {
-          warnings.add(one);
-        }
+        warnings.add_all(own);
         return {.diagram = std::move(diagram), .files = std::move(files), .is_steady = is_steady};
       }
     } catch (const InputError&) {
@@ -161,9 +159,7 @@ std::string ServedVersions::answer(runtime::OnlineChange& change, const std::str
     answer["warnings"] = as_json(warnings);
   } catch (const InputError& refused) {
     Diagnostics all = warnings;
-    for (const Diagnostic& one : refused.diagnostics().all()) {
-      all.add(one);
-    }
+    all.add_all(refused.diagnostics());
     answer["errors"] = as_json(all);
   } catch (const std::exception& fault) {
     Diagnostics other;

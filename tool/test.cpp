@@ -347,9 +347,7 @@ int run_tests(const TestOptions& options, Console& console) {
         console.print(report_text(results.back(), Console::colour()));
       }
     } catch (const InputError& error) {
-      for (const Diagnostic& one : error.diagnostics().all()) {
-        refused.add(one);
-      }
+      refused.add_all(error.diagnostics());
     }
   }
   if (!options.junit.empty()) {

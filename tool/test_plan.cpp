@@ -19,12 +19,6 @@
 namespace hysteron::tool {
 namespace {
 
-void add_all(const Diagnostics& found, Diagnostics& diagnostics) {
-  for (const Diagnostic& one : found.all()) {
-    diagnostics.add(one);
-  }
-}
-
 /// Each once: what the diagram lacks, every one of its cases would tell again.
 void add_new(const Diagnostics& found, Diagnostics& diagnostics) {
   for (const Diagnostic& one : found.all()) {
@@ -313,7 +307,7 @@ const Program* TestPlanner::program_of(const TestCase& test, Diagnostics& diagno
                         fmt::format("Which block \"{}\" tests cannot be told: {}.", test.name, first.cause),
                         "name one that the diagram has, as in block = \"PLANT\".");
     } else {
-      add_all(refused.diagnostics(), diagnostics);
+      diagnostics.add_all(refused.diagnostics());
     }
     return nullptr;
   }
@@ -327,7 +321,7 @@ PlannedCase TestPlanner::plan(const TestCase& test, Diagnostics& diagnostics) {
       planned = CasePlan(test, *program, folder_, found).run();
     }
   } catch (const InputError& refused) {
-    add_all(refused.diagnostics(), found);
+    found.add_all(refused.diagnostics());
   }
   add_new(found, diagnostics);
   return planned;

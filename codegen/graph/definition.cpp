@@ -488,9 +488,7 @@ Definitions define(std::shared_ptr<const language::SourceFile> source, Diagnosti
   if (of_vectors.has_errors()) {  // what could not become elements is missing in the text
     std::ranges::for_each(definitions.list, [](Definition& one) { one.usable = false; });
   }
-  for (const Diagnostic& one : of_vectors.all()) {
-    diagnostics.add(one);
-  }
+  diagnostics.add_all(of_vectors);
   return definitions;
 }
 

@@ -152,9 +152,7 @@ class Importer {
     try {
       network = import::text_of_network(file_, pou, own_, targets_);
     } catch (const InputError& error) {
-      for (const Diagnostic& one : error.diagnostics().all()) {
-        refused_.add(one);
-      }
+      refused_.add_all(error.diagnostics());
       return "";
     }
     return fmt::format("FUNCTION_BLOCK {}{}\n{}\n{}END_FUNCTION_BLOCK\n", pou.name, comment(remark),

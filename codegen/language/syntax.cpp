@@ -50,9 +50,7 @@ SourceFile parse_file(const std::string& path, Diagnostics& diagnostics) {
   try {
     return parse(path, read_text_file(path), diagnostics);
   } catch (const InputError& problem) {
-    for (const auto& diagnostic : problem.diagnostics().all()) {
-      diagnostics.add(diagnostic);
-    }
+    diagnostics.add_all(problem.diagnostics());
     SourceFile file;
     file.path = path;
     file.text = std::make_shared<const std::string>();

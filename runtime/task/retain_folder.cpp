@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "runtime/task/retain.hpp"
+#include "support/atomic_file.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -120,8 +121,7 @@ std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> byt
   if (rename(fresh.c_str(), path.c_str()) != 0) {
     return problem(path);
   }
-  const File folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  return folder.get() < 0 || fsync(folder.get()) != 0 ? problem(folder_) : std::string();
+  return flush_folder(folder_) ? std::string() : problem(folder_);
 }
 
 std::string RetainFolder::put_aside(std::size_t slot) {

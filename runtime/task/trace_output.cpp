@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "runtime/task/trace_file.hpp"
+#include "support/atomic_file.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -192,12 +193,7 @@ std::size_t TraceOutput::write(std::string_view bytes) {
 
 void TraceOutput::flush() const noexcept {
   (void)::fsync(descriptor_);
-  const auto folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
-  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (opened >= 0) {
-    (void)::fsync(opened);
-    (void)::close(opened);
-  }
+  (void)flush_folder(file_.parent_path());
 }
 
 void TraceOutput::give_back() noexcept {

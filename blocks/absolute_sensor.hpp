@@ -27,7 +27,7 @@ struct AbsoluteSensor : Stateless {
     S SHARE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SHARE).in("1").within(0.0, 1.0).otherwise(0.0).neutral_at(0.0).means(
+      return Fields{HY_FIELD(SHARE).in("1").within(0.0, 1.0).otherwise(0.0).neutral_at(0.0).means(
           "how blind it is: 0 sees the direction, 1 does not")};
     }
   };

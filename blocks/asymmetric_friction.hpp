@@ -34,7 +34,7 @@ struct AsymmetricFriction {
     S PRESLIDE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(UP).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction while V is above 0"),
           HY_FIELD(DOWN).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction while V is below 0"),
           HY_FIELD(PRESLIDE).in("'v*s").above(0.0).otherwise(0.001).means("travel from rest to the whole friction")};

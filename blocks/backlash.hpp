@@ -29,9 +29,8 @@ struct Backlash {
     S START;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple_cat(GapParams<S>::fields(),
-                            std::tuple{HY_FIELD(START).in("1").within(-1.0, 1.0).otherwise(0.0).means(
-                                "place of the first sample in the gap")});
+      return concatenate(GapParams<S>::fields(), Fields{HY_FIELD(START).in("1").within(-1.0, 1.0).otherwise(0.0).means(
+                                                     "place of the first sample in the gap")});
     }
   };
   template <class S>
@@ -42,10 +41,10 @@ struct Backlash {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the middle play in the step before"),
-                        HY_FIELD(NARROW).in("'x").otherwise(0.0).means("of the narrow play"),
-                        HY_FIELD(WIDE).in("'x").otherwise(0.0).means("of the wide play"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
+      return Fields{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the middle play in the step before"),
+                    HY_FIELD(NARROW).in("'x").otherwise(0.0).means("of the narrow play"),
+                    HY_FIELD(WIDE).in("'x").otherwise(0.0).means("of the wide play"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
     }
   };
   template <class S>

@@ -23,8 +23,8 @@ struct Blink {
     S TLOW;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(THIGH).in("s").otherwise(0.5).at_least(0.0).means("time TRUE"),
-                        HY_FIELD(TLOW).in("s").otherwise(0.5).at_least(0.0).means("time FALSE")};
+      return Fields{HY_FIELD(THIGH).in("s").otherwise(0.5).at_least(0.0).means("time TRUE"),
+                    HY_FIELD(TLOW).in("s").otherwise(0.5).at_least(0.0).means("time FALSE")};
     }
   };
   template <class S>
@@ -33,8 +33,8 @@ struct Blink {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(HIGH).otherwise(1.0).means("TRUE in the part of THIGH"),
-                        HY_FIELD(COUNT).otherwise(0.0).means("steps since this part began")};
+      return Fields{HY_FIELD(HIGH).otherwise(1.0).means("TRUE in the part of THIGH"),
+                    HY_FIELD(COUNT).otherwise(0.0).means("steps since this part began")};
     }
   };
   template <class S>
@@ -42,8 +42,7 @@ struct Blink {
     Bool<S> RUN;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(RUN).otherwise(1.0).means("TRUE: blinks; FALSE: Q is FALSE and the time starts again")};
+      return Fields{HY_FIELD(RUN).otherwise(1.0).means("TRUE: blinks; FALSE: Q is FALSE and the time starts again")};
     }
   };
   template <class S>

@@ -26,13 +26,13 @@ struct Branch {
     S EPS;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(EPS)
-                            .in("'x")
-                            .at_least(0.0)
-                            .otherwise(0.0)
-                            .neutral_at(0.0)
-                            .effect("branch_chatter", Family::Hysteresis)
-                            .means("dead band: a return up to this is no reversal")};
+      return Fields{HY_FIELD(EPS)
+                        .in("'x")
+                        .at_least(0.0)
+                        .otherwise(0.0)
+                        .neutral_at(0.0)
+                        .effect("branch_chatter", Family::Hysteresis)
+                        .means("dead band: a return up to this is no reversal")};
     }
   };
   template <class S>
@@ -43,10 +43,10 @@ struct Branch {
     S ORIGIN;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
-                        HY_FIELD(HEADING).otherwise(0.0).means("direction so far: -1, 0 or 1"),
-                        HY_FIELD(EXTREME).in("'x").otherwise(0.0).means("extreme since the last branching point"),
-                        HY_FIELD(ORIGIN).in("'x").otherwise(0.0).means("last branching point")};
+      return Fields{HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
+                    HY_FIELD(HEADING).otherwise(0.0).means("direction so far: -1, 0 or 1"),
+                    HY_FIELD(EXTREME).in("'x").otherwise(0.0).means("extreme since the last branching point"),
+                    HY_FIELD(ORIGIN).in("'x").otherwise(0.0).means("last branching point")};
     }
   };
   template <class S>
@@ -55,8 +55,8 @@ struct Branch {
     Bool<S> R1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal, not its rate"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset: the present sample starts a branch")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal, not its rate"),
+                    HY_FIELD(R1).otherwise(0.0).means("reset: the present sample starts a branch")};
     }
   };
   template <class S>
@@ -67,10 +67,10 @@ struct Branch {
     S P;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(Q).means("TRUE in the step in which a reversal is declared"),
-                        HY_FIELD(DIRECTION).means("1 upwards, -1 downwards, 0 before the first motion"),
-                        HY_FIELD(XB).in("'x").means("signal at the last branching point"),
-                        HY_FIELD(P).in("'x").means("momentum: distance from the branching point")};
+      return Fields{HY_FIELD(Q).means("TRUE in the step in which a reversal is declared"),
+                    HY_FIELD(DIRECTION).means("1 upwards, -1 downwards, 0 before the first motion"),
+                    HY_FIELD(XB).in("'x").means("signal at the last branching point"),
+                    HY_FIELD(P).in("'x").means("momentum: distance from the branching point")};
     }
   };
 

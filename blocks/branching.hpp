@@ -2,8 +2,6 @@
 // blocks.
 #pragma once
 
-#include <tuple>
-
 #include "blocks/description.hpp"
 
 namespace hysteron {
@@ -47,12 +45,12 @@ struct BranchMemory {
   Bool<S> SKELETON;
   using Self = BranchMemory;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(HEADING).otherwise(0.0).means("direction of the input: -1, 0 or 1"),
-                      HY_FIELD(EXTREME_X).in("'x").otherwise(0.0).means("extreme of the input on this branch"),
-                      HY_FIELD(EXTREME_Y).in("'y").otherwise(0.0).means("output at that extreme"),
-                      HY_FIELD(BRANCH_X).in("'x").otherwise(0.0).means("input at the last branching point"),
-                      HY_FIELD(BRANCH_Y).in("'y").otherwise(0.0).means("output at the last branching point"),
-                      HY_FIELD(SKELETON).otherwise(1.0).means("before the first branching point")};
+    return Fields{HY_FIELD(HEADING).otherwise(0.0).means("direction of the input: -1, 0 or 1"),
+                  HY_FIELD(EXTREME_X).in("'x").otherwise(0.0).means("extreme of the input on this branch"),
+                  HY_FIELD(EXTREME_Y).in("'y").otherwise(0.0).means("output at that extreme"),
+                  HY_FIELD(BRANCH_X).in("'x").otherwise(0.0).means("input at the last branching point"),
+                  HY_FIELD(BRANCH_Y).in("'y").otherwise(0.0).means("output at the last branching point"),
+                  HY_FIELD(SKELETON).otherwise(1.0).means("before the first branching point")};
   }
 };
 

@@ -32,16 +32,15 @@ struct Clock : PastSignal {
     S T_LOST;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-0.1, 0.1).means(
-              "seconds lost per second, or won"),
-          HY_FIELD(LOST).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost at once"),
-          HY_FIELD(T_LOST)
-              .role(FieldRole::Instant)
-              .in("s")
-              .at_least(0.0)
-              .otherwise(0.0)
-              .means("time at which they are lost")};
+      return Fields{HY_FIELD(SKEW).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-0.1, 0.1).means(
+                        "seconds lost per second, or won"),
+                    HY_FIELD(LOST).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("seconds lost at once"),
+                    HY_FIELD(T_LOST)
+                        .role(FieldRole::Instant)
+                        .in("s")
+                        .at_least(0.0)
+                        .otherwise(0.0)
+                        .means("time at which they are lost")};
     }
   };
   template <class S>
@@ -54,13 +53,12 @@ struct Clock : PastSignal {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(PAST).role(FieldRole::PastInputs).in("'x").otherwise(0.0).means("past samples, in a ring"),
-          HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
-          HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
-          HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
-          HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
-          HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
+      return Fields{HY_FIELD(PAST).role(FieldRole::PastInputs).in("'x").otherwise(0.0).means("past samples, in a ring"),
+                    HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
+                    HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
+                    HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
+                    HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
     }
   };
   template <class S>

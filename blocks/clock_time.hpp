@@ -12,7 +12,7 @@ struct StepCount {
   Int<S> COUNT;
   using Self = StepCount;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
+    return Fields{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0")};
   }
 };
 

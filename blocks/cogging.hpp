@@ -27,7 +27,7 @@ struct Cogging {
     S POS1;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(POS1).in("'p").otherwise(0.0).means("position one step ago")};
+      return Fields{HY_FIELD(POS1).in("'p").otherwise(0.0).means("position one step ago")};
     }
   };
   template <class S>
@@ -36,8 +36,8 @@ struct Cogging {
     S POS;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(POS).in("'p").otherwise(0.0).means("position; counts in the step after")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(POS).in("'p").otherwise(0.0).means("position; counts in the step after")};
     }
   };
   template <class S>

@@ -29,8 +29,8 @@ struct SumState {
   S LOST;
   using Self = SumState;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(SUM).in(unit).otherwise(0.0).means(meaning),
-                      HY_FIELD(LOST).in(unit).otherwise(0.0).means("what rounding took from the sum")};
+    return Fields{HY_FIELD(SUM).in(unit).otherwise(0.0).means(meaning),
+                  HY_FIELD(LOST).in(unit).otherwise(0.0).means("what rounding took from the sum")};
   }
   static SumState of(const CompensatedSum<S>& sum) { return {.SUM = sum.high, .LOST = sum.low}; }
   [[nodiscard]] CompensatedSum<S> sum() const { return {.high = SUM, .low = LOST}; }

@@ -19,7 +19,7 @@ struct Constant : Stateless {
   struct Params {
     S K;
     using Self = Params;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(K).in("'x").otherwise(0.0).means("value")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(K).in("'x").otherwise(0.0).means("value")}; }
   };
   template <class S>
   using In = NoFields<S>;

@@ -21,8 +21,8 @@ struct CounterState {
   Bool<S> LAST;
   using Self = CounterState;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
-                      HY_FIELD(LAST).otherwise(0.0).means(last)};
+    return Fields{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
+                  HY_FIELD(LAST).otherwise(0.0).means(last)};
   }
 };
 
@@ -31,7 +31,7 @@ struct CounterOut {
   Bool<S> Q;
   Int<S> CV;
   using Self = CounterOut;
-  static constexpr auto fields() { return std::tuple{HY_FIELD(Q).means(reached), HY_FIELD(CV).means("count")}; }
+  static constexpr auto fields() { return Fields{HY_FIELD(Q).means(reached), HY_FIELD(CV).means("count")}; }
 };
 
 }  // namespace hysteron

@@ -50,7 +50,7 @@ struct Creep {
     Bool<S> SINCE_START;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).means("share of a step, per decade"),
           HY_FIELD(T_ONSET).in("s").above(0.0).otherwise(0.1).means("time from which it creeps"),
           HY_FIELD(SETTLED).otherwise(1.0).means("starts as if the first input had stood for ever; FALSE: as if 0 had"),
@@ -69,10 +69,10 @@ struct Creep {
     S FIRST;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(RATES).in("'x/s").otherwise(0.0).means("rates of the lags one sample ago"),
-                        HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
-                        HY_FIELD(FIRST).in("'x").otherwise(0.0).means("the sum in the first step")};
+      return Fields{HY_FIELD(RATES).in("'x/s").otherwise(0.0).means("rates of the lags one sample ago"),
+                    HY_FIELD(X1).in("'x").otherwise(0.0).means("input one sample ago"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen"),
+                    HY_FIELD(FIRST).in("'x").otherwise(0.0).means("the sum in the first step")};
     }
   };
   template <class S>

@@ -27,7 +27,7 @@ struct CrossCoupling {
     S Z_REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(GAIN).in("'x/'z").otherwise(0.0).neutral_at(0.0).means("what a unit of Z adds"),
           HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the lag"),
           HY_FIELD(Z_REFERENCE).role(FieldRole::ReferenceSize).in("'z").otherwise(0.0).means("Z that adds nothing")};
@@ -41,10 +41,10 @@ struct CrossCoupling {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAGGED).in("'z").otherwise(0.0).means("Z behind the lag, one step ago"),
-                        HY_FIELD(Z1).in("'z").otherwise(0.0).means("Z one step ago"),
-                        HY_FIELD(RATE1).in("'z/s").otherwise(0.0).means("rate of LAGGED"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(LAGGED).in("'z").otherwise(0.0).means("Z behind the lag, one step ago"),
+                    HY_FIELD(Z1).in("'z").otherwise(0.0).means("Z one step ago"),
+                    HY_FIELD(RATE1).in("'z/s").otherwise(0.0).means("rate of LAGGED"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>
@@ -53,8 +53,8 @@ struct CrossCoupling {
     S Z;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(Z).in("'z").otherwise(0.0).means("other signal; counts in the step after")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(Z).in("'z").otherwise(0.0).means("other signal; counts in the step after")};
     }
   };
   template <class S>

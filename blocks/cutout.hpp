@@ -31,20 +31,20 @@ struct Cutout {
     using Self = Params;
     static constexpr auto fields() {
       constexpr double unbounded = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(MN)
-                            .role(FieldRole::LowerBound)
-                            .in("'z")
-                            .otherwise(-unbounded)
-                            .neutral_at(-unbounded)
-                            .means("Z below which it is off"),
-                        HY_FIELD(MX)
-                            .role(FieldRole::UpperBound)
-                            .in("'z")
-                            .otherwise(unbounded)
-                            .neutral_at(unbounded)
-                            .means("Z above which it is off"),
-                        HY_FIELD(BAND).in("'z").at_least(0.0).otherwise(0.0).means(
-                            "how far within a limit Z comes before it is on again")};
+      return Fields{HY_FIELD(MN)
+                        .role(FieldRole::LowerBound)
+                        .in("'z")
+                        .otherwise(-unbounded)
+                        .neutral_at(-unbounded)
+                        .means("Z below which it is off"),
+                    HY_FIELD(MX)
+                        .role(FieldRole::UpperBound)
+                        .in("'z")
+                        .otherwise(unbounded)
+                        .neutral_at(unbounded)
+                        .means("Z above which it is off"),
+                    HY_FIELD(BAND).in("'z").at_least(0.0).otherwise(0.0).means(
+                        "how far within a limit Z comes before it is on again")};
     }
   };
   template <class S>
@@ -55,10 +55,10 @@ struct Cutout {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(PART).in("1").otherwise(1.0).means("share of the sample before in which it was on"),
-                        HY_FIELD(Z1).in("'z").otherwise(0.0).means("Z one sample ago"),
-                        HY_FIELD(OFF).otherwise(0.0).means("TRUE while it is off"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(PART).in("1").otherwise(1.0).means("share of the sample before in which it was on"),
+                    HY_FIELD(Z1).in("'z").otherwise(0.0).means("Z one sample ago"),
+                    HY_FIELD(OFF).otherwise(0.0).means("TRUE while it is off"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>
@@ -67,8 +67,8 @@ struct Cutout {
     S Z;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("what the actuator is asked for"),
-                        HY_FIELD(Z).in("'z").otherwise(0.0).means("signal with the limits; counts in the step after")};
+      return Fields{HY_FIELD(XIN).in("'x").means("what the actuator is asked for"),
+                    HY_FIELD(Z).in("'z").otherwise(0.0).means("signal with the limits; counts in the step after")};
     }
   };
   template <class S>

@@ -33,7 +33,7 @@ struct DahlFriction {
     S PRESLIDE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(LEVEL).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction while sliding"),
           HY_FIELD(PRESLIDE).in("'v*s").above(0.0).otherwise(0.001).means("travel over which it builds up to 63 %")};
     }

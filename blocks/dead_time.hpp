@@ -29,20 +29,20 @@ struct DeadTime : PastSignal {
     S X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(DEAD_TIME)
-                            .role(FieldRole::DeadTime)
-                            .in("s")
-                            .at_least(0.0)
-                            .otherwise(0.0)
-                            .neutral_at(0.0)
-                            .means("dead time"),
-                        HY_FIELD(SETTLED).otherwise(1.0).means(
-                            "starts as if the first input had stood for ever; FALSE: as if X0 had"),
-                        HY_FIELD(X0)
-                            .role(FieldRole::StartValue)
-                            .in("'x")
-                            .otherwise(0.0)
-                            .means("signal before a reset, and before the start if not SETTLED")};
+      return Fields{HY_FIELD(DEAD_TIME)
+                        .role(FieldRole::DeadTime)
+                        .in("s")
+                        .at_least(0.0)
+                        .otherwise(0.0)
+                        .neutral_at(0.0)
+                        .means("dead time"),
+                    HY_FIELD(SETTLED).otherwise(1.0).means(
+                        "starts as if the first input had stood for ever; FALSE: as if X0 had"),
+                    HY_FIELD(X0)
+                        .role(FieldRole::StartValue)
+                        .in("'x")
+                        .otherwise(0.0)
+                        .means("signal before a reset, and before the start if not SETTLED")};
     }
   };
   template <class S>
@@ -54,12 +54,11 @@ struct DeadTime : PastSignal {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(PAST).role(FieldRole::PastInputs).in("'x").otherwise(0.0).means("past samples, in a ring"),
-          HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
-          HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
-          HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
-          HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(PAST).role(FieldRole::PastInputs).in("'x").otherwise(0.0).means("past samples, in a ring"),
+                    HY_FIELD(HEAD).otherwise(0.0).means("place of the next sample in the ring"),
+                    HY_FIELD(HELD).otherwise(0.0).means("number of past samples that count"),
+                    HY_FIELD(BEFORE).in("'x").otherwise(0.0).means("signal before those"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>
@@ -68,8 +67,8 @@ struct DeadTime : PastSignal {
     Bool<S> R1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset: the past becomes X0")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(R1).otherwise(0.0).means("reset: the past becomes X0")};
     }
   };
 

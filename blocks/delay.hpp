@@ -21,11 +21,11 @@ struct Delay {
     S X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X0)
-                            .role(FieldRole::StartValue)
-                            .in("'x")
-                            .otherwise(0.0)
-                            .means("output in the first sample and at a reset")};
+      return Fields{HY_FIELD(X0)
+                        .role(FieldRole::StartValue)
+                        .in("'x")
+                        .otherwise(0.0)
+                        .means("output in the first sample and at a reset")};
     }
   };
   template <class S>
@@ -33,7 +33,7 @@ struct Delay {
     S X1;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago")};
+      return Fields{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago")};
     }
   };
   template <class S>
@@ -42,14 +42,14 @@ struct Delay {
     Bool<S> R1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: XOUT is X0")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: XOUT is X0")};
     }
   };
   template <class S>
   struct Out {
     S XOUT;
     using Self = Out;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XOUT).in("'x").means("signal one sample ago")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(XOUT).in("'x").means("signal one sample ago")}; }
   };
 
   template <class S>

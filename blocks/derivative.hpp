@@ -27,8 +27,8 @@ struct Derivative {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>
@@ -37,17 +37,15 @@ struct Derivative {
     Bool<S> RUN;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(RUN).otherwise(1.0).means("FALSE resets the output to 0")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(RUN).otherwise(1.0).means("FALSE resets the output to 0")};
     }
   };
   template <class S>
   struct Out {
     S XOUT;
     using Self = Out;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x/s").means("rate of change of the signal")};
-    }
+    static constexpr auto fields() { return Fields{HY_FIELD(XOUT).in("'x/s").means("rate of change of the signal")}; }
   };
 
   template <class S>

@@ -31,10 +31,10 @@ struct Derivative4 {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
-                        HY_FIELD(X2).in("'x").otherwise(0.0).means("signal two samples ago"),
-                        HY_FIELD(X3).in("'x").otherwise(0.0).means("signal three samples ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
+                    HY_FIELD(X2).in("'x").otherwise(0.0).means("signal two samples ago"),
+                    HY_FIELD(X3).in("'x").otherwise(0.0).means("signal three samples ago"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>

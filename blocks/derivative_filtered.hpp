@@ -26,7 +26,7 @@ struct DerivativeFiltered {
     S T1;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the filter")};
+      return Fields{HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("time constant of the filter")};
     }
   };
   template <class S>
@@ -36,9 +36,9 @@ struct DerivativeFiltered {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
-                        HY_FIELD(RATE).in("'x/s").otherwise(0.0).means("output one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(X1).in("'x").otherwise(0.0).means("signal one sample ago"),
+                    HY_FIELD(RATE).in("'x/s").otherwise(0.0).means("output one sample ago"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>

@@ -10,11 +10,11 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
 #include "blocks/families.hpp"
+#include "blocks/fields.hpp"
 #include "blocks/roles.hpp"
 #include "blocks/scalar.hpp"
 
@@ -183,7 +183,7 @@ constexpr BoundField<Struct, Member> describe(Member Struct::*member, std::strin
 /// A structure without members: the state of a block that has none, say.
 template <class S>
 struct NoFields {
-  static constexpr auto fields() { return std::tuple{}; }
+  static constexpr auto fields() { return Fields{}; }
 };
 
 enum class Group : std::uint8_t { Memory, Arithmetic, Function, Shaping, Dynamics, Control, Logic, Time, Rate };
@@ -212,9 +212,8 @@ struct About {
 /// The descriptions of one structure, as a plain array.
 template <class Struct>
 constexpr auto fields_of() {
-  return std::apply(
-      [](const auto&... field) { return std::array<Field, sizeof...(field)>{static_cast<const Field&>(field)...}; },
-      Struct::fields());
+  return Struct::fields().apply(
+      [](const auto&... field) { return std::array<Field, sizeof...(field)>{static_cast<const Field&>(field)...}; });
 }
 
 /// What every block offers. S is double here; the contract tests hold it for the other scalars.

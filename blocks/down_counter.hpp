@@ -28,9 +28,9 @@ struct DownCounter {
     Int<S> PV;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(CD).means("counts down as it rises"),
-                        HY_FIELD(LD).otherwise(0.0).means("load, dominant: CV becomes PV"),
-                        HY_FIELD(PV).means("preset value")};
+      return Fields{HY_FIELD(CD).means("counts down as it rises"),
+                    HY_FIELD(LD).otherwise(0.0).means("load, dominant: CV becomes PV"),
+                    HY_FIELD(PV).means("preset value")};
     }
   };
   template <class S>

@@ -24,7 +24,7 @@ struct Drift : OfClockTime {
     S RATE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(RATE).in("'x/s").otherwise(0.0).neutral_at(0.0).means("drift per second")};
+      return Fields{HY_FIELD(RATE).in("'x/s").otherwise(0.0).neutral_at(0.0).means("drift per second")};
     }
   };
   template <class S>

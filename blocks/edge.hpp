@@ -12,7 +12,7 @@ struct Edge {
   struct In {
     Bool<S> CLK;
     using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(CLK).means("signal whose edge is wanted")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(CLK).means("signal whose edge is wanted")}; }
   };
 };
 
@@ -20,7 +20,7 @@ template <class S, Label meaning>
 struct EdgeState {
   Bool<S> M;
   using Self = EdgeState;
-  static constexpr auto fields() { return std::tuple{HY_FIELD(M).otherwise(0.0).means(meaning)}; }
+  static constexpr auto fields() { return Fields{HY_FIELD(M).otherwise(0.0).means(meaning)}; }
 };
 
 }  // namespace hysteron

@@ -65,9 +65,9 @@ struct RateState {
   Bool<S> STARTED;
   using Self = RateState;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
-                      HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means(rate),
-                      HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+    return Fields{HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
+                  HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means(rate),
+                  HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
   }
 };
 

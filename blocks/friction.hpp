@@ -12,8 +12,8 @@ struct FrictionIn {
   S V;
   using Self = FrictionIn;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
-                      HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; not of this step's XOUT")};
+    return Fields{HY_FIELD(XIN).in("'x").means("driving force, torque, or a voltage in proportion to it"),
+                  HY_FIELD(V).in("'v").otherwise(0.0).means("velocity; not of this step's XOUT")};
   }
 };
 
@@ -26,8 +26,8 @@ struct DryFrictionState {
   S V1;
   using Self = DryFrictionState;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1"),
-                      HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one sample ago")};
+    return Fields{HY_FIELD(STOP).in("1").otherwise(0.0).means("part of the friction that acts, -1 to 1"),
+                  HY_FIELD(V1).in("'v").otherwise(0.0).means("velocity one sample ago")};
   }
 };
 

@@ -20,7 +20,7 @@ struct Gain {
     S K;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(K).in("'y/'x").otherwise(1.0).neutral_at(1.0).means("gain")};
+      return Fields{HY_FIELD(K).in("'y/'x").otherwise(1.0).neutral_at(1.0).means("gain")};
     }
   };
   template <class S>
@@ -29,13 +29,13 @@ struct Gain {
   struct In {
     S XIN;
     using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(XIN).in("'x").means("signal")}; }
   };
   template <class S>
   struct Out {
     S XOUT;
     using Self = Out;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XOUT).in("'y").means("signal times K")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(XOUT).in("'y").means("signal times K")}; }
   };
 
   template <class S>

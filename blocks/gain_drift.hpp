@@ -28,7 +28,7 @@ struct GainDrift : OfClockTime {
     S SETTLING;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(RATE).in("1/s").otherwise(0.0).neutral_at(0.0).means("change of the gain per second, at first"),
           HY_FIELD(SETTLING).in("1/s").at_least(0.0).otherwise(0.0).means("one over the time in which it settles")};
     }

@@ -19,13 +19,13 @@ struct CycleParams : RippleParams<S, unit, period> {
     const auto amplitude = [](auto field, std::string_view meaning) {
       return field.in("'x").otherwise(0.0).neutral_at(0.0).means(meaning);
     };
-    return std::tuple_cat(RippleParams<S, unit, period>::fields(),
-                          std::tuple{amplitude(HY_FIELD(SINE2), "sine of the second harmonic, two a period"),
-                                     amplitude(HY_FIELD(COSINE2), "cosine of the second harmonic"),
-                                     amplitude(HY_FIELD(SINE3), "sine of the third harmonic"),
-                                     amplitude(HY_FIELD(COSINE3), "cosine of the third harmonic"),
-                                     amplitude(HY_FIELD(SINE4), "sine of the fourth harmonic"),
-                                     amplitude(HY_FIELD(COSINE4), "cosine of the fourth harmonic")});
+    return concatenate(RippleParams<S, unit, period>::fields(),
+                       Fields{amplitude(HY_FIELD(SINE2), "sine of the second harmonic, two a period"),
+                              amplitude(HY_FIELD(COSINE2), "cosine of the second harmonic"),
+                              amplitude(HY_FIELD(SINE3), "sine of the third harmonic"),
+                              amplitude(HY_FIELD(COSINE3), "cosine of the third harmonic"),
+                              amplitude(HY_FIELD(SINE4), "sine of the fourth harmonic"),
+                              amplitude(HY_FIELD(COSINE4), "cosine of the fourth harmonic")});
   }
   /// The sum of the harmonics at a place in periods.
   [[nodiscard]] S cycle(const S& turns) const {

@@ -33,7 +33,7 @@ struct Held {
     S PHASE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(PERIOD).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means(
               "time from one value to the next"),
           HY_FIELD(PHASE).in("1").within(0.0, 1.0).otherwise(0.0).means("age of the first value, in periods")};
@@ -47,10 +47,10 @@ struct Held {
     S LAST;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0"),
-                        HY_FIELD(TURN).otherwise(0.0).means("runs of the task since the start"),
-                        HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(LAST).in("'x").otherwise(0.0).means("value that is held")};
+      return Fields{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start; the first step has 0"),
+                    HY_FIELD(TURN).otherwise(0.0).means("runs of the task since the start"),
+                    HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
+                    HY_FIELD(LAST).in("'x").otherwise(0.0).means("value that is held")};
     }
   };
   template <class S>

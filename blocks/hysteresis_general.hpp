@@ -53,35 +53,34 @@ struct HysteresisGeneral {
     S RETURN_POINT;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple_cat(
+      return concatenate(
           Rich<S>::fields(),
-          std::tuple{
-              HY_FIELD(BOUC_WEN)
-                  .in("1")
-                  .within(-1.0, 1.0)
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("curve_shape", Family::Hysteresis)
-                  .means("slope of Bouc and Wen's element where it begins, over C1"),
-              HY_FIELD(BOUC_WEN_TRAVEL)
-                  .shapes("BOUC_WEN")
-                  .in("'x")
-                  .above(0.0)
-                  .otherwise(1.0)
-                  .means("what that element reaches at most, and over which it does so"),
-              HY_FIELD(BOUC_WEN_SKEW)
-                  .shapes("BOUC_WEN")
-                  .in("1")
-                  .within(0.0, 0.9)
-                  .otherwise(0.5)
-                  .means("share by which it bends less while it is undone; 0 for Dahl's element"),
-              HY_FIELD(RETURN_POINT)
-                  .in("1")
-                  .within(0.0, 1.0)
-                  .otherwise(0.0)
-                  .neutral_at(0.0)
-                  .effect("return_point_memory", Family::Hysteresis)
-                  .means("0: remembers the last branching point; 1: resumes a branch when the loop in it closes")});
+          Fields{HY_FIELD(BOUC_WEN)
+                     .in("1")
+                     .within(-1.0, 1.0)
+                     .otherwise(0.0)
+                     .neutral_at(0.0)
+                     .effect("curve_shape", Family::Hysteresis)
+                     .means("slope of Bouc and Wen's element where it begins, over C1"),
+                 HY_FIELD(BOUC_WEN_TRAVEL)
+                     .shapes("BOUC_WEN")
+                     .in("'x")
+                     .above(0.0)
+                     .otherwise(1.0)
+                     .means("what that element reaches at most, and over which it does so"),
+                 HY_FIELD(BOUC_WEN_SKEW)
+                     .shapes("BOUC_WEN")
+                     .in("1")
+                     .within(0.0, 0.9)
+                     .otherwise(0.5)
+                     .means("share by which it bends less while it is undone; 0 for Dahl's element"),
+                 HY_FIELD(RETURN_POINT)
+                     .in("1")
+                     .within(0.0, 1.0)
+                     .otherwise(0.0)
+                     .neutral_at(0.0)
+                     .effect("return_point_memory", Family::Hysteresis)
+                     .means("0: remembers the last branching point; 1: resumes a branch when the loop in it closes")});
     }
   };
   template <class S>
@@ -101,21 +100,21 @@ struct HysteresisGeneral {
     S BOUC_WEN_Z;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple_cat(
+      return concatenate(
           BranchMemory<S>::fields(),
-          std::tuple{HY_FIELD(LAST_X).in("'x").otherwise(0.0).means("input one sample ago"),
-                     HY_FIELD(RATE_PART).in("'y").otherwise(0.0).means("R on this branch"),
-                     HY_FIELD(EXTREME_W).in("'y").otherwise(0.0).means("output at the extreme, with return points"),
-                     HY_FIELD(START_X).in("'x").otherwise(0.0).means("start of the branch, with return points"),
-                     HY_FIELD(START_Y).in("'y").otherwise(0.0).means("output there"),
-                     HY_FIELD(RATE_PART_W).in("'y").otherwise(0.0).means("R on that branch"),
-                     HY_FIELD(ON_SKELETON).otherwise(1.0).means("that branch is the skeleton"),
-                     HY_FIELD(VIRGIN).otherwise(1.0).means("the motion began on the skeleton"),
-                     HY_FIELD(STARTS).otherwise(0.0).means("interrupted branches below that one"),
-                     HY_FIELD(STARTS_X).in("'x").otherwise(0.0).means("their starts, the innermost last"),
-                     HY_FIELD(STARTS_Y).in("'y").otherwise(0.0).means("outputs there"),
-                     HY_FIELD(MOVING).otherwise(0.0).means("a sample has been seen, so that there is a rate"),
-                     HY_FIELD(BOUC_WEN_Z).in("'x").otherwise(0.0).means("z of Bouc and Wen's element")});
+          Fields{HY_FIELD(LAST_X).in("'x").otherwise(0.0).means("input one sample ago"),
+                 HY_FIELD(RATE_PART).in("'y").otherwise(0.0).means("R on this branch"),
+                 HY_FIELD(EXTREME_W).in("'y").otherwise(0.0).means("output at the extreme, with return points"),
+                 HY_FIELD(START_X).in("'x").otherwise(0.0).means("start of the branch, with return points"),
+                 HY_FIELD(START_Y).in("'y").otherwise(0.0).means("output there"),
+                 HY_FIELD(RATE_PART_W).in("'y").otherwise(0.0).means("R on that branch"),
+                 HY_FIELD(ON_SKELETON).otherwise(1.0).means("that branch is the skeleton"),
+                 HY_FIELD(VIRGIN).otherwise(1.0).means("the motion began on the skeleton"),
+                 HY_FIELD(STARTS).otherwise(0.0).means("interrupted branches below that one"),
+                 HY_FIELD(STARTS_X).in("'x").otherwise(0.0).means("their starts, the innermost last"),
+                 HY_FIELD(STARTS_Y).in("'y").otherwise(0.0).means("outputs there"),
+                 HY_FIELD(MOVING).otherwise(0.0).means("a sample has been seen, so that there is a rate"),
+                 HY_FIELD(BOUC_WEN_Z).in("'x").otherwise(0.0).means("z of Bouc and Wen's element")});
     }
   };
   template <class S>

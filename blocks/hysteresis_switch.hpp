@@ -22,14 +22,14 @@ struct HysteresisSwitch {
     S EPS;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(EPS).in("'x").otherwise(0.0).at_least(0.0).means("half the width of the band")};
+      return Fields{HY_FIELD(EPS).in("'x").otherwise(0.0).at_least(0.0).means("half the width of the band")};
     }
   };
   template <class S>
   struct State {
     Bool<S> HELD;
     using Self = State;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(HELD).otherwise(0.0).means("Q of the step before")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(HELD).otherwise(0.0).means("Q of the step before")}; }
   };
   template <class S>
   struct In {
@@ -37,7 +37,7 @@ struct HysteresisSwitch {
     S XIN2;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN1).in("'x").means("signal"), HY_FIELD(XIN2).in("'x").means("threshold")};
+      return Fields{HY_FIELD(XIN1).in("'x").means("signal"), HY_FIELD(XIN2).in("'x").means("threshold")};
     }
   };
   template <class S>

@@ -32,7 +32,7 @@ struct Integral {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(XIN).in("'x").means("signal to be integrated"),
           HY_FIELD(RUN).otherwise(1.0).means("integrates while TRUE, holds while FALSE"),
           HY_FIELD(R1).otherwise(0.0).means("reset, dominant: loads X0"),
@@ -45,7 +45,7 @@ struct Integral {
     Bool<S> Q;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x*s").means("integral"), HY_FIELD(Q).means("NOT R1")};
+      return Fields{HY_FIELD(XOUT).in("'x*s").means("integral"), HY_FIELD(Q).means("NOT R1")};
     }
   };
 

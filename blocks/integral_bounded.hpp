@@ -13,20 +13,20 @@ struct IntegralBounds {
   using Self = IntegralBounds;
   static constexpr auto fields() {
     constexpr double unbounded = std::numeric_limits<double>::infinity();
-    return std::tuple{HY_FIELD(MN)
-                          .role(FieldRole::LowerBound)
-                          .in("'x*s")
-                          .otherwise(-unbounded)
-                          .neutral_at(-unbounded)
-                          .effect("saturation", Family::StaticCurve)
-                          .means("lower bound"),
-                      HY_FIELD(MX)
-                          .role(FieldRole::UpperBound)
-                          .in("'x*s")
-                          .otherwise(unbounded)
-                          .neutral_at(unbounded)
-                          .effect("saturation", Family::StaticCurve)
-                          .means("upper bound")};
+    return Fields{HY_FIELD(MN)
+                      .role(FieldRole::LowerBound)
+                      .in("'x*s")
+                      .otherwise(-unbounded)
+                      .neutral_at(-unbounded)
+                      .effect("saturation", Family::StaticCurve)
+                      .means("lower bound"),
+                  HY_FIELD(MX)
+                      .role(FieldRole::UpperBound)
+                      .in("'x*s")
+                      .otherwise(unbounded)
+                      .neutral_at(unbounded)
+                      .effect("saturation", Family::StaticCurve)
+                      .means("upper bound")};
   }
 
   [[nodiscard]] Bool<S> below(const CompensatedSum<S>& sum) const { return sum.high < MN; }
@@ -44,9 +44,9 @@ struct BoundedOut {
   Bool<S> QHIGH;
   using Self = BoundedOut;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XOUT).in("'x*s").means("integral, between MN and MX"), HY_FIELD(Q).means("NOT R1"),
-                      HY_FIELD(QLOW).means("TRUE where MN holds the integral"),
-                      HY_FIELD(QHIGH).means("TRUE where MX holds the integral")};
+    return Fields{HY_FIELD(XOUT).in("'x*s").means("integral, between MN and MX"), HY_FIELD(Q).means("NOT R1"),
+                  HY_FIELD(QLOW).means("TRUE where MN holds the integral"),
+                  HY_FIELD(QHIGH).means("TRUE where MX holds the integral")};
   }
 };
 

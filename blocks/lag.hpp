@@ -28,7 +28,7 @@ struct Lag {
     Bool<S> SETTLED;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("time constant"),
           HY_FIELD(SETTLED).otherwise(1.0).means("starts as if the first input had stood for ever; FALSE: at X0")};
     }
@@ -42,12 +42,12 @@ struct Lag {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
-                        HY_FIELD(X0)
-                            .role(FieldRole::StartValue)
-                            .in("'x")
-                            .otherwise(0.0)
-                            .means("output at a reset, and at the start if not SETTLED")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"), HY_FIELD(R1).otherwise(0.0).means("reset: loads X0"),
+                    HY_FIELD(X0)
+                        .role(FieldRole::StartValue)
+                        .in("'x")
+                        .otherwise(0.0)
+                        .means("output at a reset, and at the start if not SETTLED")};
     }
   };
   template <class S>
@@ -56,8 +56,8 @@ struct Lag {
     S RATE;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("lagged signal"),
-                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
+      return Fields{HY_FIELD(XOUT).in("'x").means("lagged signal"),
+                    HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("its rate of change, (XIN - XOUT)/T1")};
     }
   };
 

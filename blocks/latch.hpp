@@ -12,13 +12,13 @@ struct Latch {
   struct State {
     Bool<Scalar> HELD;
     using Self = State;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(HELD).otherwise(0.0).means("Q1 of the step before")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(HELD).otherwise(0.0).means("Q1 of the step before")}; }
   };
   template <class Scalar>
   struct Out {
     Bool<Scalar> Q1;
     using Self = Out;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(Q1).means("TRUE from a set to a reset")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(Q1).means("TRUE from a set to a reset")}; }
   };
 
   template <class Scalar>

@@ -24,8 +24,8 @@ struct LeadLag {
     S T2;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("lead time constant"),
-                        HY_FIELD(T2).in("s").at_least(0.0).otherwise(0.0).means("lag time constant")};
+      return Fields{HY_FIELD(T1).in("s").at_least(0.0).otherwise(0.0).means("lead time constant"),
+                    HY_FIELD(T2).in("s").at_least(0.0).otherwise(0.0).means("lag time constant")};
     }
   };
   template <class S>
@@ -36,8 +36,8 @@ struct LeadLag {
     Bool<S> R1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset: settles at the present input")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(R1).otherwise(0.0).means("reset: settles at the present input")};
     }
   };
   template <class S>
@@ -46,8 +46,8 @@ struct LeadLag {
     S RATE;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("signal with lead and lag"),
-                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of the input behind the lag T2")};
+      return Fields{HY_FIELD(XOUT).in("'x").means("signal with lead and lag"),
+                    HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of the input behind the lag T2")};
     }
   };
 

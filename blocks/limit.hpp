@@ -27,18 +27,18 @@ struct Limit : Stateless {
     using Self = Params;
     static constexpr auto fields() {
       constexpr double unbounded = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(MN)
-                            .role(FieldRole::LowerBound)
-                            .in("'x")
-                            .otherwise(-unbounded)
-                            .neutral_at(-unbounded)
-                            .means("lower bound"),
-                        HY_FIELD(MX)
-                            .role(FieldRole::UpperBound)
-                            .in("'x")
-                            .otherwise(unbounded)
-                            .neutral_at(unbounded)
-                            .means("upper bound")};
+      return Fields{HY_FIELD(MN)
+                        .role(FieldRole::LowerBound)
+                        .in("'x")
+                        .otherwise(-unbounded)
+                        .neutral_at(-unbounded)
+                        .means("lower bound"),
+                    HY_FIELD(MX)
+                        .role(FieldRole::UpperBound)
+                        .in("'x")
+                        .otherwise(unbounded)
+                        .neutral_at(unbounded)
+                        .means("upper bound")};
     }
   };
   template <class S>
@@ -50,9 +50,9 @@ struct Limit : Stateless {
     Bool<S> QHIGH;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("signal, between MN and MX"),
-                        HY_FIELD(QLOW).means("TRUE where XIN is below MN"),
-                        HY_FIELD(QHIGH).means("TRUE where XIN is above MX")};
+      return Fields{HY_FIELD(XOUT).in("'x").means("signal, between MN and MX"),
+                    HY_FIELD(QLOW).means("TRUE where XIN is below MN"),
+                    HY_FIELD(QHIGH).means("TRUE where XIN is above MX")};
     }
   };
 

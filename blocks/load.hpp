@@ -27,19 +27,19 @@ struct Load : OfClockTime {
     S T_OFF;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("what the load takes off"),
-                        HY_FIELD(T_ON)
-                            .role(FieldRole::Instant)
-                            .in("s")
-                            .at_least(0.0)
-                            .otherwise(0.0)
-                            .means("clock time at which it is put on"),
-                        HY_FIELD(T_OFF)
-                            .role(FieldRole::Instant)
-                            .in("s")
-                            .at_least(0.0)
-                            .otherwise(std::numeric_limits<double>::infinity())
-                            .means("clock time at which it is taken off")};
+      return Fields{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("what the load takes off"),
+                    HY_FIELD(T_ON)
+                        .role(FieldRole::Instant)
+                        .in("s")
+                        .at_least(0.0)
+                        .otherwise(0.0)
+                        .means("clock time at which it is put on"),
+                    HY_FIELD(T_OFF)
+                        .role(FieldRole::Instant)
+                        .in("s")
+                        .at_least(0.0)
+                        .otherwise(std::numeric_limits<double>::infinity())
+                        .means("clock time at which it is taken off")};
     }
   };
   template <class S>

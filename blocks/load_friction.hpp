@@ -34,7 +34,7 @@ struct LoadFriction {
     S PRESLIDE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(LEVEL).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction without a load"),
           HY_FIELD(COEFFICIENT)
               .in("'x/'w")
@@ -52,8 +52,8 @@ struct LoadFriction {
     S W;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple_cat(FrictionIn<S>::fields(),
-                            std::tuple{HY_FIELD(W).in("'w").otherwise(0.0).means("load; its size counts")});
+      return concatenate(FrictionIn<S>::fields(),
+                         Fields{HY_FIELD(W).in("'w").otherwise(0.0).means("load; its size counts")});
     }
   };
   template <class S>

@@ -17,7 +17,7 @@ struct Not : Stateless {
   struct In {
     Bool<S> IN1;
     using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(IN1).means("operand")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(IN1).means("operand")}; }
   };
   template <class S>
   using Out = Truth<S, "the opposite of IN1">;

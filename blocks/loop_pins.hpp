@@ -19,7 +19,7 @@ struct LoopParams {
   S Y0;
   using Self = LoopParams;
   static constexpr auto fields() {
-    return std::tuple{
+    return Fields{
         HY_FIELD(C1).in(joined<y, "/", u>).above(0.0).otherwise(1.0).means(slope_at_start),
         HY_FIELD(C2).in(joined<y, "/", u, "^(1+C3)">).at_least(0.0).otherwise(0.0).means("growth of the slope"),
         HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
@@ -48,8 +48,8 @@ struct LoopIn {
   Bool<S> R1;
   using Self = LoopIn;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XIN).in("'x").means(meaning),
-                      HY_FIELD(R1).otherwise(0.0).means("reset: begins again at U0, Y0")};
+    return Fields{HY_FIELD(XIN).in("'x").means(meaning),
+                  HY_FIELD(R1).otherwise(0.0).means("reset: begins again at U0, Y0")};
   }
 };
 
@@ -61,7 +61,7 @@ struct LoopOut {
   Bool<S> Q;
   using Self = LoopOut;
   static constexpr auto fields() {
-    return std::tuple{
+    return Fields{
         HY_FIELD(XOUT).in("'y").means(meaning),
         HY_FIELD(P).in(u).means(joined<"momentum: ", travel, " since the branching point, twice that on the skeleton">),
         HY_FIELD(SLOPE).in(joined<y, "/", u>).means("slope of the loop, M(P)"),

@@ -29,8 +29,8 @@ struct SlopeM {
     S M;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'y").means("rate of the output"),
-                        HY_FIELD(M).in("'y/'u").means("slope at this momentum")};
+      return Fields{HY_FIELD(XOUT).in("'y").means("rate of the output"),
+                    HY_FIELD(M).in("'y/'u").means("slope at this momentum")};
     }
   };
 

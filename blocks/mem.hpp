@@ -33,9 +33,9 @@ struct Mem {
     S M;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'y").means("output: voltage, velocity, or rate of the output"),
-                        HY_FIELD(P).in("'x*s").means("momentum at the start of the sampling interval"),
-                        HY_FIELD(M).in("'y/'x").means("gain at this momentum")};
+      return Fields{HY_FIELD(XOUT).in("'y").means("output: voltage, velocity, or rate of the output"),
+                    HY_FIELD(P).in("'x*s").means("momentum at the start of the sampling interval"),
+                    HY_FIELD(M).in("'y/'x").means("gain at this momentum")};
     }
   };
 

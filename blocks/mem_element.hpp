@@ -28,10 +28,10 @@ struct MemSlopeParams {
   S C3;
   using Self = MemSlopeParams;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(C1).in("'y/'u").above(0.0).otherwise(1.0).means(
-                          "slope at a branching point, M(0); above 0, so that an inverse exists there"),
-                      HY_FIELD(C2).in("'y/'u/'p^C3").otherwise(0.0).means("growth of the slope"),
-                      HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum")};
+    return Fields{HY_FIELD(C1).in("'y/'u").above(0.0).otherwise(1.0).means(
+                      "slope at a branching point, M(0); above 0, so that an inverse exists there"),
+                  HY_FIELD(C2).in("'y/'u/'p^C3").otherwise(0.0).means("growth of the slope"),
+                  HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum")};
   }
 };
 
@@ -44,8 +44,8 @@ struct SlopeIn {
   Bool<S> R1;
   using Self = SlopeIn;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XIN).in(unit).means(meaning), HY_FIELD(P).in("'p").means("momentum"),
-                      HY_FIELD(R1).otherwise(0.0).means("branching point: P counts as 0")};
+    return Fields{HY_FIELD(XIN).in(unit).means(meaning), HY_FIELD(P).in("'p").means("momentum"),
+                  HY_FIELD(R1).otherwise(0.0).means("branching point: P counts as 0")};
   }
   [[nodiscard]] S momentum() const { return select(R1, S(0.0), P); }
 };
@@ -59,8 +59,8 @@ struct CheckedSlopeOut {
   Word<S> ERRORID;
   using Self = CheckedSlopeOut;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(XOUT).in(unit).means(meaning), HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
-                      HY_FIELD(ERROR).means(error), HY_FIELD(ERRORID).means(numbers)};
+    return Fields{HY_FIELD(XOUT).in(unit).means(meaning), HY_FIELD(M).in("'y/'u").means("slope at this momentum"),
+                  HY_FIELD(ERROR).means(error), HY_FIELD(ERRORID).means(numbers)};
   }
 };
 

@@ -34,11 +34,11 @@ struct MemInverse {
     Word<S> ERRORID;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'y").means("input for the element"),
-                        HY_FIELD(P).in("'y*s").means("momentum at the start of the sampling interval"),
-                        HY_FIELD(M).in("'x/'y").means("gain of the element at this momentum"),
-                        HY_FIELD(ERROR).means("the gain is not above 0"),
-                        HY_FIELD(ERRORID).means("0 no error, 4 gain not above 0")};
+      return Fields{HY_FIELD(XOUT).in("'y").means("input for the element"),
+                    HY_FIELD(P).in("'y*s").means("momentum at the start of the sampling interval"),
+                    HY_FIELD(M).in("'x/'y").means("gain of the element at this momentum"),
+                    HY_FIELD(ERROR).means("the gain is not above 0"),
+                    HY_FIELD(ERRORID).means("0 no error, 4 gain not above 0")};
     }
   };
 

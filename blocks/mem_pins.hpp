@@ -14,10 +14,10 @@ struct MemParams {
   Int<S> G;
   using Self = MemParams;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(C1).in(joined<y, "/", u>).above(0.0).otherwise(1.0).means(gain_at_zero),
-                      HY_FIELD(C2).in(joined<y, "/", u, "/(", u, "*s)^C3">).otherwise(0.0).means("growth of the gain"),
-                      HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
-                      HY_FIELD(G).within(0.0, 1.0).otherwise(1.0).means("0: g(u) = |u|; 1: g(u) = u")};
+    return Fields{HY_FIELD(C1).in(joined<y, "/", u>).above(0.0).otherwise(1.0).means(gain_at_zero),
+                  HY_FIELD(C2).in(joined<y, "/", u, "/(", u, "*s)^C3">).otherwise(0.0).means("growth of the gain"),
+                  HY_FIELD(C3).in("1").within(0.0, 10.0).otherwise(1.0).means("exponent of the momentum"),
+                  HY_FIELD(G).within(0.0, 1.0).otherwise(1.0).means("0: g(u) = |u|; 1: g(u) = u")};
   }
 };
 
@@ -28,7 +28,7 @@ struct MemIn {
   S P0;
   using Self = MemIn;
   static constexpr auto fields() {
-    return std::tuple{
+    return Fields{
         HY_FIELD(XIN).in("'x").means(meaning),
         HY_FIELD(R1).otherwise(0.0).means("reset: the momentum begins anew at P0"),
         HY_FIELD(P0).role(FieldRole::StartValue).in(joined<u, "*s">).otherwise(0.0).means("momentum after a reset")};

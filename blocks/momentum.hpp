@@ -26,7 +26,7 @@ struct Momentum {
     Int<S> G;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(G).within(0.0, 1.0).otherwise(0.0).means(
+      return Fields{HY_FIELD(G).within(0.0, 1.0).otherwise(0.0).means(
           "0: g(u) = |u|, momentum of a hysteresis; 1: g(u) = u, charge, flux or impulse of a MEM element")};
     }
   };
@@ -39,10 +39,9 @@ struct Momentum {
     S P0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(XIN).in("'x").means("rate of the input"),
-          HY_FIELD(R1).otherwise(0.0).means("branching point: the momentum begins anew at P0"),
-          HY_FIELD(P0).role(FieldRole::StartValue).in("'x*s").otherwise(0.0).means("momentum after a reset")};
+      return Fields{HY_FIELD(XIN).in("'x").means("rate of the input"),
+                    HY_FIELD(R1).otherwise(0.0).means("branching point: the momentum begins anew at P0"),
+                    HY_FIELD(P0).role(FieldRole::StartValue).in("'x*s").otherwise(0.0).means("momentum after a reset")};
     }
   };
   template <class S>
@@ -50,7 +49,7 @@ struct Momentum {
     S XOUT;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x*s").means("momentum at the start of the sampling interval")};
+      return Fields{HY_FIELD(XOUT).in("'x*s").means("momentum at the start of the sampling interval")};
     }
   };
 

@@ -14,14 +14,14 @@ struct Nonlinearity : Stateless {
     S REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("error at the distance REFERENCE"),
-                        HY_FIELD(CENTRE).role(FieldRole::Centre).in("'x").otherwise(0.0).means("signal without error"),
-                        HY_FIELD(REFERENCE)
-                            .role(FieldRole::ReferenceSize)
-                            .in("'x")
-                            .above(0.0)
-                            .otherwise(1.0)
-                            .means("distance from CENTRE at which the error is SIZE")};
+      return Fields{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("error at the distance REFERENCE"),
+                    HY_FIELD(CENTRE).role(FieldRole::Centre).in("'x").otherwise(0.0).means("signal without error"),
+                    HY_FIELD(REFERENCE)
+                        .role(FieldRole::ReferenceSize)
+                        .in("'x")
+                        .above(0.0)
+                        .otherwise(1.0)
+                        .means("distance from CENTRE at which the error is SIZE")};
     }
     /// The distance from CENTRE, in REFERENCE.
     [[nodiscard]] S distance(const S& x) const { return (x - CENTRE) / REFERENCE; }

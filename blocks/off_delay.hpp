@@ -23,9 +23,9 @@ struct OffDelay : Timer {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(-1.0).means(
-                            "steps since IN fell, -1 while it is TRUE, 2^31 - 1 once PT has passed"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE once IN has been TRUE")};
+      return Fields{HY_FIELD(COUNT).otherwise(-1.0).means(
+                        "steps since IN fell, -1 while it is TRUE, 2^31 - 1 once PT has passed"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("TRUE once IN has been TRUE")};
     }
   };
 

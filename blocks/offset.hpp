@@ -22,7 +22,7 @@ struct Offset : Stateless {
     S BIAS;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(BIAS).in("'x").otherwise(0.0).neutral_at(0.0).means("what is added")};
+      return Fields{HY_FIELD(BIAS).in("'x").otherwise(0.0).neutral_at(0.0).means("what is added")};
     }
   };
   template <class S>

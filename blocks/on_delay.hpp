@@ -23,7 +23,7 @@ struct OnDelay : Timer {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(-1.0).means(
+      return Fields{HY_FIELD(COUNT).otherwise(-1.0).means(
           "steps since IN rose, -1 while it is FALSE, 2^31 - 1 once PT has passed")};
     }
   };

@@ -16,9 +16,9 @@ struct PastSignal {
     Word<S> ERRORID;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'x").means("delayed signal"),
-                        HY_FIELD(ERROR).means("the delay is longer than 1024 samples, or below 0"),
-                        HY_FIELD(ERRORID).means("0 no error, 5 dead time too long or below 0")};
+      return Fields{HY_FIELD(XOUT).in("'x").means("delayed signal"),
+                    HY_FIELD(ERROR).means("the delay is longer than 1024 samples, or below 0"),
+                    HY_FIELD(ERRORID).means("0 no error, 5 dead time too long or below 0")};
     }
   };
 

@@ -19,11 +19,10 @@ struct Periodic {
     S OFFSET;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(AMPLITUDE).in("'x").otherwise(1.0).means("largest distance from OFFSET"),
-          HY_FIELD(FREQUENCY).in("Hz").otherwise(1.0).at_least(0.0).means("periods a second"),
-          HY_FIELD(PHASE).in("1").otherwise(0.0).within(-1.0, 1.0).means("phase at the start, in periods"),
-          HY_FIELD(OFFSET).in("'x").otherwise(0.0).means("mean value")};
+      return Fields{HY_FIELD(AMPLITUDE).in("'x").otherwise(1.0).means("largest distance from OFFSET"),
+                    HY_FIELD(FREQUENCY).in("Hz").otherwise(1.0).at_least(0.0).means("periods a second"),
+                    HY_FIELD(PHASE).in("1").otherwise(0.0).within(-1.0, 1.0).means("phase at the start, in periods"),
+                    HY_FIELD(OFFSET).in("'x").otherwise(0.0).means("mean value")};
     }
   };
   template <class S>
@@ -32,8 +31,8 @@ struct Periodic {
     S LOST;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(TURN).in("1").otherwise(0.0).means("phase since the start, in periods, modulo 1"),
-                        HY_FIELD(LOST).in("1").otherwise(0.0).means("low part that TURN could not hold")};
+      return Fields{HY_FIELD(TURN).in("1").otherwise(0.0).means("phase since the start, in periods, modulo 1"),
+                    HY_FIELD(LOST).in("1").otherwise(0.0).means("low part that TURN could not hold")};
     }
   };
   template <class S>
@@ -41,7 +40,7 @@ struct Periodic {
     Bool<S> RUN;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(RUN).otherwise(1.0).means("TRUE: runs; FALSE: the output is OFFSET and the phase starts again")};
     }
   };

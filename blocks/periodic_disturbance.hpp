@@ -28,16 +28,16 @@ struct PeriodicDisturbance {
     S FREQUENCY;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
-                        HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
-                        HY_FIELD(FREQUENCY).in("Hz").at_least(0.0).otherwise(50.0).means("periods a second")};
+      return Fields{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
+                    HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
+                    HY_FIELD(FREQUENCY).in("Hz").at_least(0.0).otherwise(50.0).means("periods a second")};
     }
   };
   template <class S>
   struct In {
     S XIN;
     using Self = In;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in("'x").means("signal")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(XIN).in("'x").means("signal")}; }
   };
   template <class S>
   using Out = Xout<S, "'x", "signal with the disturbance">;

@@ -36,7 +36,7 @@ struct Pid {
     using Self = Params;
     static constexpr auto fields() {
       constexpr double unbounded = std::numeric_limits<double>::infinity();
-      return std::tuple{
+      return Fields{
           HY_FIELD(KP).in("'u/'e").otherwise(1.0).means("proportional gain"),
           HY_FIELD(TR).in("s").otherwise(unbounded).above(0.0).means(
               "reset time of the integral; infinite: no integral"),
@@ -58,14 +58,14 @@ struct Pid {
     Bool<S> LAST_AUTO;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(INTEGRAL).in("'u").otherwise(0.0).means("integral part of the output"),
-                        HY_FIELD(RATE).in("'e/s").otherwise(0.0).means("filtered rate of PV"),
-                        HY_FIELD(LAST_PV).in("'e").otherwise(0.0).means("PV of the step before"),
-                        HY_FIELD(LAST_OUT).in("'u").otherwise(0.0).means("XOUT of the step before"),
-                        HY_FIELD(LAST_KP).in("'u/'e").otherwise(0.0).means("KP of the step before"),
-                        HY_FIELD(LAST_KD).in("'u*s/'e").otherwise(0.0).means("KP·TD of the step before"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step"),
-                        HY_FIELD(LAST_AUTO).otherwise(0.0).means("AUTO of the step before")};
+      return Fields{HY_FIELD(INTEGRAL).in("'u").otherwise(0.0).means("integral part of the output"),
+                    HY_FIELD(RATE).in("'e/s").otherwise(0.0).means("filtered rate of PV"),
+                    HY_FIELD(LAST_PV).in("'e").otherwise(0.0).means("PV of the step before"),
+                    HY_FIELD(LAST_OUT).in("'u").otherwise(0.0).means("XOUT of the step before"),
+                    HY_FIELD(LAST_KP).in("'u/'e").otherwise(0.0).means("KP of the step before"),
+                    HY_FIELD(LAST_KD).in("'u*s/'e").otherwise(0.0).means("KP·TD of the step before"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step"),
+                    HY_FIELD(LAST_AUTO).otherwise(0.0).means("AUTO of the step before")};
     }
   };
   template <class S>
@@ -76,10 +76,9 @@ struct Pid {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(AUTO).otherwise(1.0).means("TRUE: controls; FALSE: the output is X0"),
-                        HY_FIELD(PV).in("'e").means("process value, measured"),
-                        HY_FIELD(SP).in("'e").means("set point"),
-                        HY_FIELD(X0).in("'u").otherwise(0.0).means("manual output")};
+      return Fields{HY_FIELD(AUTO).otherwise(1.0).means("TRUE: controls; FALSE: the output is X0"),
+                    HY_FIELD(PV).in("'e").means("process value, measured"), HY_FIELD(SP).in("'e").means("set point"),
+                    HY_FIELD(X0).in("'u").otherwise(0.0).means("manual output")};
     }
   };
   template <class S>
@@ -90,10 +89,10 @@ struct Pid {
     Bool<S> QHIGH;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'u").means("controller output"),
-                        HY_FIELD(E).in("'e").means("control error, SP - PV"),
-                        HY_FIELD(QLOW).means("TRUE where XOUT is at MN or below"),
-                        HY_FIELD(QHIGH).means("TRUE where XOUT is at MX or above")};
+      return Fields{HY_FIELD(XOUT).in("'u").means("controller output"),
+                    HY_FIELD(E).in("'e").means("control error, SP - PV"),
+                    HY_FIELD(QLOW).means("TRUE where XOUT is at MN or below"),
+                    HY_FIELD(QHIGH).means("TRUE where XOUT is at MX or above")};
     }
   };
 

@@ -62,14 +62,14 @@ template <class S, Label unit, Label meaning>
 struct Xin {
   S XIN;
   using Self = Xin;
-  static constexpr auto fields() { return std::tuple{HY_FIELD(XIN).in(unit).means(meaning)}; }
+  static constexpr auto fields() { return Fields{HY_FIELD(XIN).in(unit).means(meaning)}; }
 };
 
 template <class S, Label unit, Label meaning>
 struct Xout {
   S XOUT;
   using Self = Xout;
-  static constexpr auto fields() { return std::tuple{HY_FIELD(XOUT).in(unit).means(meaning)}; }
+  static constexpr auto fields() { return Fields{HY_FIELD(XOUT).in(unit).means(meaning)}; }
 };
 
 /// An output that is 0, with ERROR and ERRORID, where it is not defined.
@@ -80,10 +80,10 @@ struct CheckedXout {
   Word<S> ERRORID;
   using Self = CheckedXout;
   static constexpr auto fields() {
-    return std::tuple{
-        HY_FIELD(XOUT).in(unit).means(meaning), HY_FIELD(ERROR).means("TRUE where XOUT is not defined; XOUT is then 0"),
-        HY_FIELD(ERRORID).means(
-            "0 no error, 1 divisor zero, 2 argument outside the domain, 3 points of a table do not rise")};
+    return Fields{HY_FIELD(XOUT).in(unit).means(meaning),
+                  HY_FIELD(ERROR).means("TRUE where XOUT is not defined; XOUT is then 0"),
+                  HY_FIELD(ERRORID).means(
+                      "0 no error, 1 divisor zero, 2 argument outside the domain, 3 points of a table do not rise")};
   }
   static CheckedXout of(const S& value, const Bool<S>& error, std::uint16_t id) {
     return {.XOUT = select(error, S(0.0), value),
@@ -98,7 +98,7 @@ struct TwoReals {
   S IN2;
   using Self = TwoReals;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(IN1).in(unit1).means("first operand"), HY_FIELD(IN2).in(unit2).means("second operand")};
+    return Fields{HY_FIELD(IN1).in(unit1).means("first operand"), HY_FIELD(IN2).in(unit2).means("second operand")};
   }
 };
 
@@ -108,7 +108,7 @@ struct TwoBools {
   Bool<S> IN2;
   using Self = TwoBools;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(IN1).means("first operand"), HY_FIELD(IN2).means("second operand")};
+    return Fields{HY_FIELD(IN1).means("first operand"), HY_FIELD(IN2).means("second operand")};
   }
 };
 
@@ -121,9 +121,9 @@ struct FourBools {
   Bool<S> IN4;
   using Self = FourBools;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(IN1).means("first operand"), HY_FIELD(IN2).means("second operand"),
-                      HY_FIELD(IN3).otherwise(neutral).means("third operand"),
-                      HY_FIELD(IN4).otherwise(neutral).means("fourth operand")};
+    return Fields{HY_FIELD(IN1).means("first operand"), HY_FIELD(IN2).means("second operand"),
+                  HY_FIELD(IN3).otherwise(neutral).means("third operand"),
+                  HY_FIELD(IN4).otherwise(neutral).means("fourth operand")};
   }
 };
 
@@ -131,7 +131,7 @@ template <class S, Label meaning>
 struct Truth {
   Bool<S> Q;
   using Self = Truth;
-  static constexpr auto fields() { return std::tuple{HY_FIELD(Q).means(meaning)}; }
+  static constexpr auto fields() { return Fields{HY_FIELD(Q).means(meaning)}; }
 };
 
 }  // namespace hysteron

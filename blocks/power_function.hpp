@@ -21,7 +21,7 @@ struct PowerFunction : Stateless {
   struct Params {
     S EXPONENT;
     using Self = Params;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(EXPONENT).in("1").otherwise(1.0).means("exponent")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(EXPONENT).in("1").otherwise(1.0).means("exponent")}; }
   };
   template <class S>
   using In = Xin<S, "", "base, in any unit">;

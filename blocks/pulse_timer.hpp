@@ -23,7 +23,7 @@ struct PulseTimer : Timer {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(-1.0).means(
+      return Fields{HY_FIELD(COUNT).otherwise(-1.0).means(
           "steps since the pulse began, -1 when ready for the next, 2^31 - 1 once it is over")};
     }
   };

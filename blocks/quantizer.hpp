@@ -27,19 +27,19 @@ struct Quantizer : Stateless {
     S SPREAD;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(QUANTUM)
-                            .role(FieldRole::Quantum)
-                            .in("'x")
-                            .otherwise(0.0)
-                            .at_least(0.0)
-                            .neutral_at(0.0)
-                            .means("step of the output"),
-                        HY_FIELD(SPREAD)
-                            .role(FieldRole::Softness)
-                            .in("1")
-                            .within(0.0, 0.4)
-                            .otherwise(0.0)
-                            .means("share of QUANTUM by which thresholds lie lower or higher; 0 for even steps")};
+      return Fields{HY_FIELD(QUANTUM)
+                        .role(FieldRole::Quantum)
+                        .in("'x")
+                        .otherwise(0.0)
+                        .at_least(0.0)
+                        .neutral_at(0.0)
+                        .means("step of the output"),
+                    HY_FIELD(SPREAD)
+                        .role(FieldRole::Softness)
+                        .in("1")
+                        .within(0.0, 0.4)
+                        .otherwise(0.0)
+                        .means("share of QUANTUM by which thresholds lie lower or higher; 0 for even steps")};
     }
   };
   template <class S>

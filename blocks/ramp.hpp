@@ -26,8 +26,8 @@ struct Ramp {
     Int<S> COUNT;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(FROM).in("'x").otherwise(0.0).means("X0 as RUN rose"),
-                        HY_FIELD(COUNT).otherwise(-1.0).means("steps since RUN rose, -1 while it is FALSE")};
+      return Fields{HY_FIELD(FROM).in("'x").otherwise(0.0).means("X0 as RUN rose"),
+                    HY_FIELD(COUNT).otherwise(-1.0).means("steps since RUN rose, -1 while it is FALSE")};
     }
   };
   template <class S>
@@ -38,10 +38,10 @@ struct Ramp {
     S TR;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(RUN).means("TRUE: ramp from X0 to X1; FALSE: X0"),
-                        HY_FIELD(X0).in("'x").otherwise(0.0).means("value before the ramp"),
-                        HY_FIELD(X1).in("'x").means("value after the ramp"),
-                        HY_FIELD(TR).in("s").at_least(0.0).means("time that the ramp takes")};
+      return Fields{HY_FIELD(RUN).means("TRUE: ramp from X0 to X1; FALSE: X0"),
+                    HY_FIELD(X0).in("'x").otherwise(0.0).means("value before the ramp"),
+                    HY_FIELD(X1).in("'x").means("value after the ramp"),
+                    HY_FIELD(TR).in("s").at_least(0.0).means("time that the ramp takes")};
     }
   };
   template <class S>
@@ -50,8 +50,7 @@ struct Ramp {
     S XOUT;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(BUSY).means("TRUE while on the way from X0 to X1"),
-                        HY_FIELD(XOUT).in("'x").means("ramp")};
+      return Fields{HY_FIELD(BUSY).means("TRUE while on the way from X0 to X1"), HY_FIELD(XOUT).in("'x").means("ramp")};
     }
   };
 

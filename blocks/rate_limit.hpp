@@ -24,10 +24,10 @@ struct RateLimit {
     using Self = Params;
     static constexpr auto fields() {
       constexpr double unbounded = std::numeric_limits<double>::infinity();
-      return std::tuple{HY_FIELD(RISE).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
-                            "largest rate upwards"),
-                        HY_FIELD(FALL).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
-                            "largest rate downwards, as a positive number")};
+      return Fields{HY_FIELD(RISE).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
+                        "largest rate upwards"),
+                    HY_FIELD(FALL).in("'x/s").otherwise(unbounded).at_least(0.0).neutral_at(unbounded).means(
+                        "largest rate downwards, as a positive number")};
     }
   };
   template <class S>
@@ -36,8 +36,8 @@ struct RateLimit {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the step before"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
+      return Fields{HY_FIELD(LAST).in("'x").otherwise(0.0).means("output of the step before"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
     }
     /// The output of the step before; in the first step the input, which so passes as it is.
     [[nodiscard]] S before(const S& input) const { return select(STARTED, LAST, input); }

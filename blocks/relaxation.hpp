@@ -29,7 +29,7 @@ struct Relaxation {
     Bool<S> SINCE_START;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(GAIN).in("1").otherwise(0.0).neutral_at(0.0).effect_within(-1.0, 1.0).means(
               "share of a step that follows slowly"),
           HY_FIELD(T1).in("s").at_least(0.0).otherwise(1.0).means("time constant"),
@@ -45,8 +45,8 @@ struct Relaxation {
     S FIRST;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple_cat(RateState<S, "rate of the lagged input one sample ago">::fields(),
-                            std::tuple{HY_FIELD(FIRST).in("'x").otherwise(0.0).means("x in the first step")});
+      return concatenate(RateState<S, "rate of the lagged input one sample ago">::fields(),
+                         Fields{HY_FIELD(FIRST).in("'x").otherwise(0.0).means("x in the first step")});
     }
   };
   template <class S>

@@ -20,9 +20,7 @@ struct ResetDominantLatch : Latch {
     Bool<Scalar> S;
     Bool<Scalar> R1;
     using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(S).means("set"), HY_FIELD(R1).means("reset, dominant")};
-    }
+    static constexpr auto fields() { return Fields{HY_FIELD(S).means("set"), HY_FIELD(R1).means("reset, dominant")}; }
   };
 
   template <class Scalar>

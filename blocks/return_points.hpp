@@ -5,8 +5,6 @@
 // closed: both are wiped out and the branch is resumed that began at S_(n−1) (Madelung's rules).
 #pragma once
 
-#include <tuple>
-
 #include "blocks/description.hpp"
 
 namespace hysteron {

@@ -51,9 +51,9 @@ struct RichParams : Enriched {
   S SHAPE_DEPTH;
   using Self = RichParams;
   static constexpr auto fields() {
-    return std::tuple_cat(
+    return concatenate(
         Enriched::fields(),
-        std::tuple{
+        Fields{
             HY_FIELD(ASYMMETRY)
                 .in("1")
                 .within(-1.0, 1.0)

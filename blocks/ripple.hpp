@@ -13,9 +13,9 @@ struct RippleParams {
   S PITCH;
   using Self = RippleParams;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
-                      HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
-                      HY_FIELD(PITCH).role(FieldRole::Period).in(unit).above(0.0).otherwise(1.0).means(period)};
+    return Fields{HY_FIELD(SINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the sine"),
+                  HY_FIELD(COSINE).in("'x").otherwise(0.0).neutral_at(0.0).means("amplitude of the cosine"),
+                  HY_FIELD(PITCH).role(FieldRole::Period).in(unit).above(0.0).otherwise(1.0).means(period)};
   }
 };
 

@@ -20,11 +20,11 @@ struct SampleAndHold {
     S X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X0)
-                            .role(FieldRole::StartValue)
-                            .in("'x")
-                            .otherwise(0.0)
-                            .means("output before the first tracked sample")};
+      return Fields{HY_FIELD(X0)
+                        .role(FieldRole::StartValue)
+                        .in("'x")
+                        .otherwise(0.0)
+                        .means("output before the first tracked sample")};
     }
   };
   template <class S>
@@ -32,7 +32,7 @@ struct SampleAndHold {
     S HELD;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(HELD).in("'x").otherwise(0.0).means("last tracked value")};
+      return Fields{HY_FIELD(HELD).in("'x").otherwise(0.0).means("last tracked value")};
     }
   };
   template <class S>
@@ -41,8 +41,8 @@ struct SampleAndHold {
     Bool<S> TRACK;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(TRACK).means("follows while TRUE, holds while FALSE")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(TRACK).means("follows while TRUE, holds while FALSE")};
     }
   };
   template <class S>

@@ -29,15 +29,15 @@ struct SaturatingCurve : Stateless {
     S REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(BEND).in("1").within(0.0, 1e6).otherwise(0.0).neutral_at(0.0).means(
-                            "square of REFERENCE over the limit"),
-                        HY_FIELD(CENTRE).role(FieldRole::Centre).in("'x").otherwise(0.0).means("signal without error"),
-                        HY_FIELD(REFERENCE)
-                            .role(FieldRole::ReferenceSize)
-                            .in("'x")
-                            .above(0.0)
-                            .otherwise(1.0)
-                            .means("distance from CENTRE that BEND refers to")};
+      return Fields{HY_FIELD(BEND).in("1").within(0.0, 1e6).otherwise(0.0).neutral_at(0.0).means(
+                        "square of REFERENCE over the limit"),
+                    HY_FIELD(CENTRE).role(FieldRole::Centre).in("'x").otherwise(0.0).means("signal without error"),
+                    HY_FIELD(REFERENCE)
+                        .role(FieldRole::ReferenceSize)
+                        .in("'x")
+                        .above(0.0)
+                        .otherwise(1.0)
+                        .means("distance from CENTRE that BEND refers to")};
     }
   };
   template <class S>

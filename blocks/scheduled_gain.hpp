@@ -27,13 +27,12 @@ struct ScheduledGain : Stateless {
     S Z_REFERENCE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(SHARE).in("1/'z").otherwise(0.0).neutral_at(0.0).means("share of the gain per unit of Z"),
-          HY_FIELD(Z_REFERENCE)
-              .role(FieldRole::ReferenceSize)
-              .in("'z")
-              .otherwise(0.0)
-              .means("Z at which the gain is 1")};
+      return Fields{HY_FIELD(SHARE).in("1/'z").otherwise(0.0).neutral_at(0.0).means("share of the gain per unit of Z"),
+                    HY_FIELD(Z_REFERENCE)
+                        .role(FieldRole::ReferenceSize)
+                        .in("'z")
+                        .otherwise(0.0)
+                        .means("Z at which the gain is 1")};
     }
   };
   template <class S>
@@ -42,8 +41,8 @@ struct ScheduledGain : Stateless {
     S Z;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(Z).in("'z").otherwise(0.0).means("signal that moves the gain")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(Z).in("'z").otherwise(0.0).means("signal that moves the gain")};
     }
   };
   template <class S>

@@ -34,7 +34,7 @@ struct SecondOrder {
     Bool<S> SETTLED;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(K).in("'y/'x").otherwise(1.0).neutral_at(1.0).means("gain at rest"),
           HY_FIELD(T).in("s").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("1/ω, of the undamped oscillation"),
           HY_FIELD(ZETA)
@@ -54,10 +54,10 @@ struct SecondOrder {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
-                        HY_FIELD(DEVIATION1).in("'x").otherwise(0.0).means("deviation one sample ago"),
-                        HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate one sample ago"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
+      return Fields{HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("input one sample ago"),
+                    HY_FIELD(DEVIATION1).in("'x").otherwise(0.0).means("deviation one sample ago"),
+                    HY_FIELD(RATE1).in("'x/s").otherwise(0.0).means("rate one sample ago"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("a sample has been seen")};
     }
   };
   template <class S>
@@ -67,13 +67,13 @@ struct SecondOrder {
     S X0;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).in("'x").means("signal"),
-                        HY_FIELD(R1).otherwise(0.0).means("reset: loads X0, at rest"),
-                        HY_FIELD(X0)
-                            .role(FieldRole::StartValue)
-                            .in("'y")
-                            .otherwise(0.0)
-                            .means("output at a reset, and at the start if not SETTLED")};
+      return Fields{HY_FIELD(XIN).in("'x").means("signal"),
+                    HY_FIELD(R1).otherwise(0.0).means("reset: loads X0, at rest"),
+                    HY_FIELD(X0)
+                        .role(FieldRole::StartValue)
+                        .in("'y")
+                        .otherwise(0.0)
+                        .means("output at a reset, and at the start if not SETTLED")};
     }
   };
   template <class S>
@@ -83,9 +83,9 @@ struct SecondOrder {
     S RATE;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XOUT).in("'y").means("response"),
-                        HY_FIELD(DEVIATION).in("'x").means("how far XOUT/K is from XIN"),
-                        HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of change of XOUT/K")};
+      return Fields{HY_FIELD(XOUT).in("'y").means("response"),
+                    HY_FIELD(DEVIATION).in("'x").means("how far XOUT/K is from XIN"),
+                    HY_FIELD(RATE).role(FieldRole::Rate).in("'x/s").means("rate of change of XOUT/K")};
     }
   };
 

@@ -19,9 +19,7 @@ struct SetDominantLatch : Latch {
     Bool<Scalar> S1;
     Bool<Scalar> R;
     using Self = In;
-    static constexpr auto fields() {
-      return std::tuple{HY_FIELD(S1).means("set, dominant"), HY_FIELD(R).means("reset")};
-    }
+    static constexpr auto fields() { return Fields{HY_FIELD(S1).means("set, dominant"), HY_FIELD(R).means("reset")}; }
   };
 
   template <class Scalar>

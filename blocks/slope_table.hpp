@@ -16,7 +16,7 @@ struct SlopeTableParams {
   Int<S> COUNT;
   using Self = SlopeTableParams;
   static constexpr auto fields() {
-    return std::tuple{
+    return Fields{
         HY_FIELD(P_TABLE).in("'p").means("momentum of each point, rising"),
         HY_FIELD(M_TABLE).in("'y/'u").means("slope at each point"),
         HY_FIELD(COUNT).role(FieldRole::PointCount).within(2, slope_table_capacity).means("number of points")};
@@ -28,7 +28,7 @@ struct SlopeTableState {
   Bool<S> RISING;
   using Self = SlopeTableState;
   static constexpr auto fields() {
-    return std::tuple{HY_FIELD(RISING).otherwise(0.0).means("TRUE where P_TABLE rose at reset")};
+    return Fields{HY_FIELD(RISING).otherwise(0.0).means("TRUE where P_TABLE rose at reset")};
   }
 };
 

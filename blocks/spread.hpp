@@ -28,7 +28,7 @@ struct GapParams {
   S SPREAD;
   using Self = GapParams;
   static constexpr auto fields() {
-    return std::tuple{
+    return Fields{
         HY_FIELD(WIDTH).in("'x").otherwise(0.0).at_least(0.0).neutral_at(0.0).means(
             "whole width of the gap, half of it on either side"),
         HY_FIELD(SPREAD)

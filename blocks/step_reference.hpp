@@ -23,7 +23,7 @@ struct StepReference {
     S T0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(X0).role(FieldRole::StartValue).in("'x").otherwise(0.0).means("value before the step"),
           HY_FIELD(X1).in("'x").otherwise(1.0).means("value after the step"),
           HY_FIELD(T0).role(FieldRole::StartValue).in("s").otherwise(0.0).at_least(0.0).means("time of the step")};
@@ -33,14 +33,14 @@ struct StepReference {
   struct State {
     Int<S> COUNT;
     using Self = State;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(COUNT).otherwise(0.0).means("steps since the start")}; }
   };
   template <class S>
   struct In {
     Bool<S> RUN;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(RUN).otherwise(1.0).means("TRUE: time runs; FALSE: X0, and time starts again")};
+      return Fields{HY_FIELD(RUN).otherwise(1.0).means("TRUE: time runs; FALSE: X0, and time starts again")};
     }
   };
   template <class S>

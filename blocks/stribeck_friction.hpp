@@ -32,7 +32,7 @@ struct StribeckFriction {
     S PRESLIDE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(LEVEL).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("friction at high velocity"),
           HY_FIELD(STICTION).in("1").at_least(0.0).otherwise(0.5).means("additional share of LEVEL at velocity 0"),
           HY_FIELD(V_STRIBECK)

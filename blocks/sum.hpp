@@ -24,9 +24,9 @@ struct Sum : Stateless {
     S IN4;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(IN1).in("'x").means("first summand"), HY_FIELD(IN2).in("'x").means("second summand"),
-                        HY_FIELD(IN3).in("'x").otherwise(0.0).means("third summand"),
-                        HY_FIELD(IN4).in("'x").otherwise(0.0).means("fourth summand")};
+      return Fields{HY_FIELD(IN1).in("'x").means("first summand"), HY_FIELD(IN2).in("'x").means("second summand"),
+                    HY_FIELD(IN3).in("'x").otherwise(0.0).means("third summand"),
+                    HY_FIELD(IN4).in("'x").otherwise(0.0).means("fourth summand")};
     }
   };
   template <class S>

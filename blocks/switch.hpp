@@ -23,9 +23,9 @@ struct Switch : Stateless {
     S IN1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(G).means("chooses IN1 while TRUE, IN0 while FALSE"),
-                        HY_FIELD(IN0).in("'x").means("signal while G is FALSE"),
-                        HY_FIELD(IN1).in("'x").means("signal while G is TRUE")};
+      return Fields{HY_FIELD(G).means("chooses IN1 while TRUE, IN0 while FALSE"),
+                    HY_FIELD(IN0).in("'x").means("signal while G is FALSE"),
+                    HY_FIELD(IN1).in("'x").means("signal while G is TRUE")};
     }
   };
   template <class S>

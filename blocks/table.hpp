@@ -28,10 +28,9 @@ struct Table {
     Bool<S> EXTRAPOLATE;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(X).in("'x").means("arguments, rising"), HY_FIELD(Y).in("'y").means("values"),
-          HY_FIELD(COUNT).role(FieldRole::PointCount).within(2, capacity).means("number of points"),
-          HY_FIELD(EXTRAPOLATE).otherwise(0.0).means("TRUE: straight on outside; FALSE: end values hold")};
+      return Fields{HY_FIELD(X).in("'x").means("arguments, rising"), HY_FIELD(Y).in("'y").means("values"),
+                    HY_FIELD(COUNT).role(FieldRole::PointCount).within(2, capacity).means("number of points"),
+                    HY_FIELD(EXTRAPOLATE).otherwise(0.0).means("TRUE: straight on outside; FALSE: end values hold")};
     }
   };
   template <class S>
@@ -39,7 +38,7 @@ struct Table {
     Bool<S> RISING;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(RISING).otherwise(0.0).means("TRUE where X rose at reset")};
+      return Fields{HY_FIELD(RISING).otherwise(0.0).means("TRUE where X rose at reset")};
     }
   };
   template <class S>

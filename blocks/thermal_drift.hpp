@@ -24,8 +24,8 @@ struct ThermalDrift : OfClockTime {
     S T1;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("drift when warm"),
-                        HY_FIELD(T1).in("s").above(0.0).otherwise(60.0).means("time constant of the warming")};
+      return Fields{HY_FIELD(SIZE).in("'x").otherwise(0.0).neutral_at(0.0).means("drift when warm"),
+                    HY_FIELD(T1).in("s").above(0.0).otherwise(60.0).means("time constant of the warming")};
     }
   };
   template <class S>

@@ -22,9 +22,8 @@ struct Timer {
     S PT;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{
-          HY_FIELD(IN).means("starts the timer"),
-          HY_FIELD(PT).in("s").at_least(0.0).means("preset time, exact in steps, at most 2^31 - 1 of them")};
+      return Fields{HY_FIELD(IN).means("starts the timer"),
+                    HY_FIELD(PT).in("s").at_least(0.0).means("preset time, exact in steps, at most 2^31 - 1 of them")};
     }
   };
   template <class S>
@@ -33,8 +32,7 @@ struct Timer {
     S ET;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(Q).means("output of the timer"),
-                        HY_FIELD(ET).in("s").means("elapsed time, from 0 to PT")};
+      return Fields{HY_FIELD(Q).means("output of the timer"), HY_FIELD(ET).in("s").means("elapsed time, from 0 to PT")};
     }
   };
 };

@@ -13,7 +13,7 @@ struct TypedDelay {
     Value<S> X0;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(X0).role(FieldRole::StartValue).otherwise(0.0).means("output in the first sample and at a reset")};
     }
   };
@@ -21,7 +21,7 @@ struct TypedDelay {
   struct State {
     Value<S> X1;
     using Self = State;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(X1).otherwise(0.0).means("XIN one sample ago")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(X1).otherwise(0.0).means("XIN one sample ago")}; }
   };
   template <class S>
   struct In {
@@ -29,14 +29,14 @@ struct TypedDelay {
     Bool<S> R1;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(XIN).means("what is delayed"), HY_FIELD(R1).otherwise(0.0).means("reset: XOUT is X0")};
+      return Fields{HY_FIELD(XIN).means("what is delayed"), HY_FIELD(R1).otherwise(0.0).means("reset: XOUT is X0")};
     }
   };
   template <class S>
   struct Out {
     Value<S> XOUT;
     using Self = Out;
-    static constexpr auto fields() { return std::tuple{HY_FIELD(XOUT).means("XIN one sample ago")}; }
+    static constexpr auto fields() { return Fields{HY_FIELD(XOUT).means("XIN one sample ago")}; }
   };
 
   template <class S>

@@ -27,9 +27,8 @@ struct UpCounter {
     Int<S> PV;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(CU).means("counts as it rises"),
-                        HY_FIELD(R).otherwise(0.0).means("reset, dominant: loads 0"),
-                        HY_FIELD(PV).means("preset value")};
+      return Fields{HY_FIELD(CU).means("counts as it rises"),
+                    HY_FIELD(R).otherwise(0.0).means("reset, dominant: loads 0"), HY_FIELD(PV).means("preset value")};
     }
   };
   template <class S>

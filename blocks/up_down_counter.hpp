@@ -27,9 +27,9 @@ struct UpDownCounter {
     Bool<S> LAST_DOWN;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
-                        HY_FIELD(LAST_UP).otherwise(0.0).means("CU of the step before"),
-                        HY_FIELD(LAST_DOWN).otherwise(0.0).means("CD of the step before")};
+      return Fields{HY_FIELD(COUNT).otherwise(0.0).means("count of the step before"),
+                    HY_FIELD(LAST_UP).otherwise(0.0).means("CU of the step before"),
+                    HY_FIELD(LAST_DOWN).otherwise(0.0).means("CD of the step before")};
     }
   };
   template <class S>
@@ -41,9 +41,9 @@ struct UpDownCounter {
     Int<S> PV;
     using Self = In;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(CU).means("counts up as it rises"), HY_FIELD(CD).means("counts down as it rises"),
-                        HY_FIELD(R).otherwise(0.0).means("reset, dominant: loads 0"),
-                        HY_FIELD(LD).otherwise(0.0).means("load: CV becomes PV"), HY_FIELD(PV).means("preset value")};
+      return Fields{HY_FIELD(CU).means("counts up as it rises"), HY_FIELD(CD).means("counts down as it rises"),
+                    HY_FIELD(R).otherwise(0.0).means("reset, dominant: loads 0"),
+                    HY_FIELD(LD).otherwise(0.0).means("load: CV becomes PV"), HY_FIELD(PV).means("preset value")};
     }
   };
   template <class S>
@@ -53,8 +53,8 @@ struct UpDownCounter {
     Int<S> CV;
     using Self = Out;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(QU).means("TRUE where CV has reached PV"),
-                        HY_FIELD(QD).means("TRUE where CV has reached 0"), HY_FIELD(CV).means("count")};
+      return Fields{HY_FIELD(QU).means("TRUE where CV has reached PV"),
+                    HY_FIELD(QD).means("TRUE where CV has reached 0"), HY_FIELD(CV).means("count")};
     }
   };
 

@@ -34,7 +34,7 @@ struct ValveStiction {
     S START;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(STICK).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("command that a reversal takes"),
           HY_FIELD(JUMP).in("'x").at_least(0.0).otherwise(0.0).neutral_at(0.0).means(
               "by how much the stem slips at once"),
@@ -53,10 +53,10 @@ struct ValveStiction {
     Bool<S> STARTED;
     using Self = State;
     static constexpr auto fields() {
-      return std::tuple{HY_FIELD(LAST).in("'x").otherwise(0.0).means("position of the stem in the step before"),
-                        HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("command one sample ago"),
-                        HY_FIELD(WAY).in("1").otherwise(0.0).means("1 while the stem moves up, -1 down, 0 at rest"),
-                        HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
+      return Fields{HY_FIELD(LAST).in("'x").otherwise(0.0).means("position of the stem in the step before"),
+                    HY_FIELD(X1).role(FieldRole::PastInput).in("'x").otherwise(0.0).means("command one sample ago"),
+                    HY_FIELD(WAY).in("1").otherwise(0.0).means("1 while the stem moves up, -1 down, 0 at rest"),
+                    HY_FIELD(STARTED).otherwise(0.0).means("TRUE after the first step")};
     }
   };
   template <class S>

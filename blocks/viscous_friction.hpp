@@ -27,7 +27,7 @@ struct ViscousFriction {
     S QUADRATIC;
     using Self = Params;
     static constexpr auto fields() {
-      return std::tuple{
+      return Fields{
           HY_FIELD(COEFFICIENT).in("'x/'v").at_least(0.0).otherwise(0.0).neutral_at(0.0).means("force over velocity"),
           HY_FIELD(QUADRATIC).in("'x/'v^2").otherwise(0.0).neutral_at(0.0).means("force over the square of it")};
     }

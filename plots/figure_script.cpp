@@ -3,7 +3,7 @@
 namespace hysteron::plots {
 namespace {
 
-constexpr std::string_view script = R"js(
+constexpr std::string_view figure_text = R"js(
 const figures = JSON.parse(document.getElementById("figures").textContent);
 
 function curveOf(grids, curve) {
@@ -58,7 +58,7 @@ document.documentElement.dataset.figures = figures.length;
 }  // namespace
 
 std::string_view figure_script() {
-  return script;
+  return figure_text;
 }
 
 }  // namespace hysteron::plots

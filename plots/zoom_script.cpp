@@ -3,7 +3,7 @@
 namespace hysteron::plots {
 namespace {
 
-constexpr std::string_view script = R"js(
+constexpr std::string_view zoom_text = R"js(
 function timesOf(time) {
   return time.values ? time.values.map(t => t === null ? NaN : t)
                      : Float64Array.from({ length: time.count }, (_, k) => time.start + k * time.step);
@@ -217,7 +217,7 @@ function zoomFigure(host, spec) {
 }  // namespace
 
 std::string_view zoom_script() {
-  return script;
+  return zoom_text;
 }
 
 }  // namespace hysteron::plots

@@ -63,7 +63,7 @@ struct Difference {
 };
 
 Difference difference(const robots::Joint& joint, const Program& program, const Drive& drive) {
-  const std::vector<Signal> run = interpret(program, drive, {find_signal(program.graph, joint.velocity, {})}, false);
+  const std::vector<Signal> run = interpret(program, drive, {find_signal(program.graph, joint.velocity, {})});
   std::vector<double> control(drive.steps, 0.0);
   if (joint.actuator) {
     const Port* const input = find_port(program.graph.inputs, joint.actuator->input);

@@ -63,7 +63,7 @@ std::string log_of_machine(std::string_view text) {
   Drive drive;
   drive.steps = rows_of_log;
   drive.sample_time = graph.sample_time();
-  const auto outputs = interpret(program, drive, output_wires(graph), false);
+  const auto outputs = interpret(program, drive, output_wires(graph));
   std::vector<double> time(rows_of_log);
   for (std::size_t k = 0; k < time.size(); ++k) {
     time[k] = static_cast<double>(graph.sample_time_ns * static_cast<std::int64_t>(k)) / 1e9;  // 0.41, not 0.41000…03

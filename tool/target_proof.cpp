@@ -30,7 +30,7 @@
 #include "tool/compiler.hpp"
 #include "tool/process.hpp"
 #include "tool/row_program.hpp"
-#include "tuning/simulation.hpp"
+#include "tuning/float32_run.hpp"
 
 namespace hysteron::tool {
 namespace {

@@ -27,6 +27,7 @@
 #include "tool/test_plan.hpp"
 #include "tool/test_report.hpp"
 #include "tool/writable.hpp"
+#include "tuning/float32_run.hpp"
 
 namespace hysteron::tool {
 namespace {

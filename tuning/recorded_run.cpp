@@ -10,6 +10,7 @@
 #include "support/errors.hpp"
 #include "support/names.hpp"
 #include "support/numbers.hpp"
+#include "tuning/float32_run.hpp"
 #include "tuning/record_units.hpp"
 #include "tuning/signal_names.hpp"
 

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "codegen/graph/defaults.hpp"
-#include "codegen/interpreter/machine.hpp"
 #include "records/time/time_grid.hpp"
 #include "records/time/time_unit.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "tuning/interpreted_run.hpp"
 
 namespace hysteron {
 namespace {
@@ -56,30 +56,6 @@ void check_values(const Port& input, const Signal& values, const records::Record
         "check the unit and the scale of the column, or widen @min and @max in the diagram.");
   }
 }
-
-template <class S>
-std::vector<Signal> run(const Program& program, const Drive& drive, const std::vector<Wire>& watched,
-                        const std::function<void(double)>& progress) {
-  Machine<S> machine(program, drive.sample_time);
-  std::vector<Signal> values(watched.size(), Signal(drive.steps));
-  for (std::size_t k = 0; k < drive.steps; ++k) {
-    for (std::size_t i = 0; i < drive.inputs.size(); ++i) {
-      machine.set_input(i, at_step(drive.inputs[i], k));
-    }
-    machine.step();
-    for (std::size_t i = 0; i < watched.size(); ++i) {
-      values[i][k] = machine.value(watched[i]);
-    }
-    if (progress && k % 64 == 0) {
-      progress(static_cast<double>(k) / static_cast<double>(drive.steps));
-    }
-  }
-  return values;
-}
-
-}  // namespace
-
-namespace {
 
 /// As @ts takes it: 50us, 1ms, 1s.
 std::string duration_text(double seconds) {
@@ -184,8 +160,8 @@ void settle_sample_time(const records::Record& record, Program& program, Diagnos
 }
 
 std::vector<Signal> interpret(const Program& program, const Drive& drive, const std::vector<Wire>& watched,
-                              bool float32, const std::function<void(double)>& progress) {
-  return float32 ? run<float>(program, drive, watched, progress) : run<double>(program, drive, watched, progress);
+                              const std::function<void(double)>& progress) {
+  return detail::interpreted_run<double>(program, drive, watched, progress);
 }
 
 std::vector<Wire> output_wires(const Graph& graph) {
@@ -203,7 +179,7 @@ std::vector<Signal> simulate(Program program, const records::Record& record) {
   if (diagnostics.has_errors()) {
     throw InputError(std::move(diagnostics));
   }
-  return interpret(program, drive, output_wires(program.graph), false);
+  return interpret(program, drive, output_wires(program.graph));
 }
 
 }  // namespace hysteron

@@ -39,9 +39,9 @@ struct Drive {
 /// Where the diagram states none, it takes the record's. Reports HY704.
 void settle_sample_time(const records::Record& record, Program& program, Diagnostics& diagnostics);
 
-/// Runs a program by the interpreter; the values of the wires watched, each over all steps.
+/// Runs a program by the interpreter, in LREAL; the values of the wires watched, each over all steps.
 [[nodiscard]] std::vector<Signal> interpret(const Program& program, const Drive& drive,
-                                            const std::vector<Wire>& watched, bool float32,
+                                            const std::vector<Wire>& watched,
                                             const std::function<void(double)>& progress = {});
 
 /// The wires of a diagram's outputs.

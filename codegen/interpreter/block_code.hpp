@@ -8,7 +8,6 @@
 #include <new>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -52,22 +51,21 @@ namespace detail {
 template <class Struct>
 std::vector<std::size_t> member_offsets() {
   static Struct sample{};
-  return std::apply(
-      [](const auto&... field) {
-        return std::vector<std::size_t>{static_cast<std::size_t>(
-            reinterpret_cast<const char*>(&(sample.*(field.member))) - reinterpret_cast<const char*>(&sample))...};
-      },
-      Struct::fields());
+  return Struct::fields().apply([](const auto&... field) {
+    return std::vector<std::size_t>{static_cast<std::size_t>(reinterpret_cast<const char*>(&(sample.*(field.member))) -
+                                                             reinterpret_cast<const char*>(&sample))...};
+  });
 }
 
 /// A structure whose members are read through pointers.
-template <class Struct, std::size_t... I>
-Struct gather(const void* const* pins, std::index_sequence<I...> /*indices*/) {
+template <class Struct>
+Struct gather(const void* const* pins) {
   constexpr auto fields = Struct::fields();
   Struct result{};
-  ((result.*(std::get<I>(fields).member) =
-        *static_cast<const std::remove_cvref_t<decltype(result.*(std::get<I>(fields).member))>*>(pins[I])),
-   ...);
+  fields.apply([&](const auto&... field) {
+    ((result.*(field.member) = *static_cast<const std::remove_cvref_t<decltype(result.*(field.member))>*>(*pins++)),
+     ...);
+  });
   return result;
 }
 /// The coefficients of a block; nothing where it has none.
@@ -83,11 +81,7 @@ template <class B, class S>
 using CoefficientsOf = typename CoefficientsOfBlock<B, S>::Type;
 
 template <class Struct>
-inline constexpr std::size_t field_count = std::tuple_size_v<decltype(Struct::fields())>;
-template <class Struct>
-Struct gather(const void* const* pins) {
-  return gather<Struct>(pins, std::make_index_sequence<field_count<Struct>>{});
-}
+inline constexpr std::size_t field_count = decltype(Struct::fields())::size;
 
 template <class B, class S>
 struct Code {
@@ -152,9 +146,7 @@ struct Code {
         out = B::template step<S>(with.params, memory, in, *at.ts);
       } else {
         out = output_of(with, memory, in, *at.ts);
-        if constexpr (HasMemory<B>) {
-          move_on(with, memory, in, out, *at.ts);
-        }
+        move_on(with, memory, in, out, *at.ts);
       }
     });
   }
@@ -175,6 +167,15 @@ struct Code {
     }
   }
 
+  /// Without memory a step is an output.
+  static typename BlockCode<S>::Run whole_step() {
+    if constexpr (HasMemory<B> || StepsAtOnce<B>) {
+      return &step;
+    } else {
+      return &output;
+    }
+  }
+
   static BlockCode<S> make() {
     static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Out>);
     static_assert(std::is_trivially_copyable_v<Prepared>);
@@ -188,7 +189,7 @@ struct Code {
             .reset = &reset,
             .output = &output,
             .update = HasMemory<B> ? &update : nullptr,
-            .step = &step};
+            .step = whole_step()};
   }
 };
 

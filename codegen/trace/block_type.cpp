@@ -44,7 +44,7 @@ void set_leaf(trace::Array<N>& member, Op op, std::uint32_t index) {
 template <class Struct>
 Struct leaves(Op op, std::uint32_t first) {
   Struct result{};
-  std::apply([&](const auto&... field) { (set_leaf(result.*(field.member), op, first++), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (set_leaf(result.*(field.member), op, first++), ...); });
   return result;
 }
 
@@ -58,8 +58,8 @@ ValueId id_of(const trace::Array<N>& /*member*/) {
 }
 template <class Struct>
 std::vector<ValueId> ids(const Struct& structure) {
-  return std::apply([&](const auto&... field) { return std::vector<ValueId>{id_of(structure.*(field.member))...}; },
-                    Struct::fields());
+  return Struct::fields().apply(
+      [&](const auto&... field) { return std::vector<ValueId>{id_of(structure.*(field.member))...}; });
 }
 
 template <class T>
@@ -75,8 +75,8 @@ template <class Struct>
 std::vector<Store> stores_of(const Struct& structure) {
   std::vector<Store> stores;
   std::uint32_t cell = 0;
-  std::apply([&](const auto&... field) { (collect_stores(structure.*(field.member), cell++, stores), ...); },
-             Struct::fields());
+  Struct::fields().apply(
+      [&](const auto&... field) { (collect_stores(structure.*(field.member), cell++, stores), ...); });
   return stores;
 }
 
@@ -104,7 +104,7 @@ BlockTrace trace_block() {
   const trace::Recording recording(result.tape);
   const auto in = leaves<typename B::template In<S>>(Op::Pin, 0);
   const auto params = leaves<typename B::template Params<S>>(
-      Op::Pin, static_cast<std::uint32_t>(std::tuple_size_v<decltype(B::template In<S>::fields())>));
+      Op::Pin, static_cast<std::uint32_t>(decltype(B::template In<S>::fields())::size));
   const auto ts = S::of(result.tape.leaf(Op::SampleTime, Type::Real, 0));
   auto state = leaves<State>(Op::Cell, 0);
 

@@ -68,7 +68,7 @@ std::vector<RecordSignals> wire_signals(const Task& task, const Program& program
     if (diagnostics.has_errors()) {
       throw InputError(std::move(diagnostics));
     }
-    std::vector<Signal> values = interpret(here, drive, wires, false);
+    std::vector<Signal> values = interpret(here, drive, wires);
     for (std::size_t i = 0; i < wires.size(); ++i) {
       result[i].push_back(std::move(values[i]));
     }

@@ -8,7 +8,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 
 #include "tests/blocks/contract.hpp"
@@ -83,14 +82,12 @@ void copy_by_name(To& to, const From& from) {
       }
     }
   };
-  std::apply(
-      [&](const auto&... target) {
-        const auto each = [&](const auto& one) {
-          std::apply([&](const auto&... source) { (set(one, source), ...); }, From::fields());
-        };
-        (each(target), ...);
-      },
-      To::fields());
+  To::fields().apply([&](const auto&... target) {
+    const auto each = [&](const auto& one) {
+      From::fields().apply([&](const auto&... source) { (set(one, source), ...); });
+    };
+    (each(target), ...);
+  });
 }
 
 /// A block that enriches another, beside that one, on the same random inputs and parameters.

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <random>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -39,7 +38,7 @@ class RandomIo {
   template <class Struct>
   Struct make() {
     Struct result{};
-    std::apply([&](const auto&... field) { (set(result.*(field.member), field), ...); }, Struct::fields());
+    Struct::fields().apply([&](const auto&... field) { (set(result.*(field.member), field), ...); });
     return result;
   }
 
@@ -90,15 +89,13 @@ To convert_value(const From& from) {
 template <class To, class From>
 To convert(const From& from) {
   To to{};
-  const auto targets = To::fields();
-  const auto sources = From::fields();
-  [&]<std::size_t... i>(std::index_sequence<i...>) {
-    ((to.*(std::get<i>(targets).member) =
-          convert_value<std::remove_reference_t<decltype(to.*(std::get<i>(targets).member))>>(
-              from.*(std::get<i>(sources).member))),
-     ...);
-  }
-  (std::make_index_sequence<std::tuple_size_v<decltype(sources)>>{});
+  From::fields().apply([&](const auto&... source) {
+    To::fields().apply([&](const auto&... target) {
+      ((to.*(target.member) =
+            convert_value<std::remove_reference_t<decltype(to.*(target.member))>>(from.*(source.member))),
+       ...);
+    });
+  });
   return to;
 }
 
@@ -115,7 +112,7 @@ int neutralise(Struct& structure) {
       }
     }
   };
-  std::apply([&](const auto&... field) { (set(field), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (set(field), ...); });
   return count;
 }
 
@@ -138,7 +135,7 @@ std::vector<std::uint64_t> bits(const Struct& structure) {
       result.push_back(static_cast<std::uint64_t>(member));
     }
   };
-  std::apply([&](const auto&... field) { (append(append, structure.*(field.member)), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (append(append, structure.*(field.member)), ...); });
   return result;
 }
 
@@ -151,7 +148,7 @@ std::vector<double> reals(const Struct& structure) {
       result.push_back(static_cast<double>(member));
     }
   };
-  std::apply([&](const auto&... field) { (append(structure.*(field.member)), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (append(structure.*(field.member)), ...); });
   return result;
 }
 

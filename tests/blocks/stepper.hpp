@@ -31,7 +31,7 @@ Struct presets() {
       member = static_cast<Member>(field.preset);
     }
   };
-  std::apply([&](const auto&... field) { (set(field), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (set(field), ...); });
   return result;
 }
 

@@ -25,7 +25,7 @@ std::vector<std::vector<double>> numbers(const Struct& structure) {
       result.push_back({static_cast<double>(member)});
     }
   };
-  std::apply([&](const auto&... field) { (append(structure.*(field.member)), ...); }, Struct::fields());
+  Struct::fields().apply([&](const auto&... field) { (append(structure.*(field.member)), ...); });
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "records/read.hpp"
 #include "tests/tool/workbench.hpp"
 #include "tool/compiled.hpp"
+#include "tuning/float32_run.hpp"
 
 namespace hysteron {
 namespace {
@@ -264,9 +265,9 @@ TEST(Compiled, SeveralProgramsInOneExecutable) {
     drive.inputs[0].push_back(std::cos(0.02 * static_cast<double>(k)) * 4.0);
   }
   const auto wires = output_wires(plain.graph);
-  const auto interpreted = interpret(plain, drive, wires, false);
+  const auto interpreted = interpret(plain, drive, wires);
   EXPECT_EQ(compiled.run(0, drive), interpreted);
-  EXPECT_EQ(compiled.run(1, drive), interpret(other, drive, wires, false));
+  EXPECT_EQ(compiled.run(1, drive), interpret(other, drive, wires));
   EXPECT_EQ(compiled.run(2, drive), interpret(plain, drive, wires, true));
   EXPECT_NE(compiled.run(1, drive)[0], interpreted[0]);
   EXPECT_EQ(interpreted[2], Signal(drive.steps, 20.0));

@@ -31,7 +31,7 @@ std::vector<S> run(double ts, std::uint64_t seed, std::size_t which, const S& di
       }
     }
   };
-  std::apply([&](const auto&... field) { (displace(params.*(field.member)), ...); }, B::template Params<S>::fields());
+  B::template Params<S>::fields().apply([&](const auto&... field) { (displace(params.*(field.member)), ...); });
   const std::size_t after_params = counter;
   typename B::template State<S> state{};
   if constexpr (HasMemory<B>) {
@@ -41,7 +41,7 @@ std::vector<S> run(double ts, std::uint64_t seed, std::size_t which, const S& di
   for (int k = 0; k < 12; ++k) {
     auto in = convert<typename B::template In<S>>(random.make<typename B::template In<double>>());
     counter = after_params;
-    std::apply([&](const auto&... field) { (displace(in.*(field.member)), ...); }, B::template In<S>::fields());
+    B::template In<S>::fields().apply([&](const auto&... field) { (displace(in.*(field.member)), ...); });
     const auto out = B::output(params, state, in, S(ts));
     if constexpr (HasMemory<B>) {
       B::update(params, state, in, out, S(ts));
@@ -51,7 +51,7 @@ std::vector<S> run(double ts, std::uint64_t seed, std::size_t which, const S& di
         results.push_back(member);
       }
     };
-    std::apply([&](const auto&... field) { (collect(out.*(field.member)), ...); }, B::template Out<S>::fields());
+    B::template Out<S>::fields().apply([&](const auto&... field) { (collect(out.*(field.member)), ...); });
   }
   return results;
 }
@@ -59,13 +59,11 @@ std::vector<S> run(double ts, std::uint64_t seed, std::size_t which, const S& di
 template <class Struct>
 std::size_t real_members() {
   std::size_t count = 0;
-  std::apply(
-      [&](const auto&... field) {
-        ((count +=
-          std::is_same_v<std::remove_cvref_t<decltype(std::declval<Struct&>().*(field.member))>, double> ? 1U : 0U),
-         ...);
-      },
-      Struct::fields());
+  Struct::fields().apply([&](const auto&... field) {
+    ((count +=
+      std::is_same_v<std::remove_cvref_t<decltype(std::declval<Struct&>().*(field.member))>, double> ? 1U : 0U),
+     ...);
+  });
   return count;
 }
 

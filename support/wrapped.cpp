@@ -16,6 +16,7 @@ namespace {
 /// Narrower than this nothing can be read, broken or not.
 constexpr std::size_t least_width = 20;
 constexpr std::size_t least_room = 12;  ///< behind an indent
+constexpr std::size_t below = 4;        ///< further in than a first column, a second one that stands below it
 
 /// Without the escape sequences of colours.
 std::size_t shown_count(std::string_view text) {
@@ -30,29 +31,26 @@ std::size_t shown_count(std::string_view text) {
   return character_count(shown);
 }
 
-/// `   9 |   AMP(XNI := U);`
-bool is_shown_source(std::string_view line) {
+/// `   9 |   AMP(XNI := U);`, or `   $ nproc`
+bool is_to_be_copied(std::string_view line) {
   const auto first = std::min(line.find_first_not_of(" 0123456789"), line.size());
-  return line.substr(first).starts_with("|");
+  return line.substr(first).starts_with("|") || line.substr(first).starts_with("$ ");
 }
 
-/// Where what follows of a line begins; nothing where the line is a row of a table.
-std::optional<std::size_t> hanging_indent(std::string_view line) {
+/// Where the second of two columns begins, 0 where there is one column; nothing where the line is a row of a table.
+std::optional<std::size_t> second_column(std::string_view line) {
   const std::size_t first = line.find_first_not_of(' ');
-  std::size_t indent = first;
+  std::size_t second = 0;
   std::size_t columns = 0;
-  for (auto gap = line.find("  ", first); gap != std::string_view::npos; gap = line.find("  ", indent)) {
+  for (auto gap = line.find("  ", first); gap != std::string_view::npos; gap = line.find("  ", second)) {
     const auto word = line.find_first_not_of(' ', gap);
     if (word == std::string_view::npos) {
       break;
     }
-    indent = word;
+    second = word;
     ++columns;
   }
-  if (columns > 1) {
-    return std::nullopt;
-  }
-  return shown_count(line.substr(0, indent));
+  return columns > 1 ? std::nullopt : std::optional(second);
 }
 
 /// The end of what fits into the width: a blank behind `first`, the first one at least; npos where there is none.
@@ -68,23 +66,49 @@ std::size_t break_of(std::string_view line, std::size_t first, std::size_t width
   return found;
 }
 
-void append_broken(std::string& result, std::string_view line, std::size_t width) {
-  const bool stays = line.find_first_not_of(' ') == std::string_view::npos || is_shown_source(line);
-  const auto indent = stays ? std::nullopt : hanging_indent(line);
+/// A line of one column, what follows of it `indent` characters from the left. The first word is not broken off.
+void append_broken(std::string& result, std::string_view line, std::size_t indent, std::size_t first,
+                   std::size_t width) {
   std::size_t room = width;
-  std::size_t first = indent.value_or(0);
-  while (indent && *indent + least_room <= width && shown_count(line) > room) {
+  while (shown_count(line) > room) {
     const std::size_t end = break_of(line, first, room);
     if (end == std::string_view::npos) {
       break;
     }
     result += line.substr(0, end);
-    result += "\n" + std::string(*indent, ' ');
+    result += "\n" + std::string(indent, ' ');
     line.remove_prefix(line.find_first_not_of(' ', end));
-    room = width - *indent;
+    room = width - indent;
     first = 0;
   }
   result += line;
+}
+
+void append_wrapped(std::string& result, std::string_view line, std::size_t width) {
+  const std::size_t first = line.find_first_not_of(' ');
+  const bool stays = first == std::string_view::npos || shown_count(line) <= width || is_to_be_copied(line);
+  const auto second = stays ? std::nullopt : second_column(line);
+  if (!second) {
+    result += line;
+    return;
+  }
+  const std::size_t hanging = std::max(first, *second);
+  const std::size_t indent = shown_count(line.substr(0, hanging));
+  if (indent + least_room <= width) {
+    append_broken(result, line, indent, hanging, width);
+    return;
+  }
+  if (first + below + least_room > width) {
+    result += line;
+    return;
+  }
+  const auto gap = *second == 0 ? line.size() : line.find_last_not_of(' ', *second - 1) + 1;
+  append_broken(result, line.substr(0, gap), first + below, first, width);
+  if (*second != 0) {
+    const std::string behind = std::string(first + below, ' ') + std::string(line.substr(*second));
+    result += '\n';
+    append_broken(result, behind, first + below, first + below, width);
+  }
 }
 
 }  // namespace
@@ -109,7 +133,7 @@ std::string wrapped(std::string_view text, std::size_t width) {
   std::string result;
   while (!text.empty()) {
     const auto end = std::min(text.find('\n'), text.size());
-    append_broken(result, text.substr(0, end), width);
+    append_wrapped(result, text.substr(0, end), width);
     result += end < text.size() ? "\n" : "";
     text.remove_prefix(std::min(end + 1, text.size()));
   }

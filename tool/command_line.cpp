@@ -144,10 +144,11 @@ class CommandLine {
       options->set_help_flag("-h,--help", "Shows this help.");
       options->group("Commands");
       options->get_formatter()->label("Positionals", "Arguments");
-      actions_[options] = {command.add(*options), command.writes_files};
+      actions_[options] = {command.add(*options), command.results};
       options->add_flag("--quiet", quiet_,
-                        command.writes_files ? "Says errors and warnings alone: no report, no notes, no progress."
-                                             : "No notes, no progress; results are printed all the same.");
+                        command.results == Results::Report
+                            ? "Says errors and warnings alone: no report, no notes, no progress."
+                            : "No notes, no progress; results are printed all the same.");
     }
   }
 
@@ -186,9 +187,9 @@ class CommandLine {
     if (chosen.empty()) {
       throw bad_usage("No command is given.", "`hysteron help` lists the commands.");
     }
-    const auto& [action, writes_files] = actions_.at(chosen.front());
+    const auto& [action, results] = actions_.at(chosen.front());
     const bool is_product = given(*chosen.front(), "--json") || out_is_standard(*chosen.front());
-    console.speak({.quiet = quiet_, .is_report = writes_files && !is_product});
+    console.speak({.quiet = quiet_, .results = is_product ? Results::Product : results});
     return action(console);
   }
 
@@ -196,7 +197,7 @@ class CommandLine {
   CLI::App app_{"Block diagrams for hysteresis and its compensation: check, run, tune, generate."};
   struct Chosen {
     Action action{};
-    bool writes_files = false;
+    Results results = Results::Product;
   };
   std::map<const CLI::App*, Chosen> actions_;
   bool quiet_ = false;

@@ -25,8 +25,8 @@ using Action = std::function<int(Console&)>;
 struct Command {
   std::string_view name;
   std::string_view summary;
-  Action (*add)(CLI::App& app);  ///< adds the options of the command
-  bool writes_files = false;     ///< what it prints speaks of these, and --quiet leaves it out
+  Action (*add)(CLI::App& app);        ///< adds the options of the command
+  Results results = Results::Product;  ///< where they are not asked for as JSON
 };
 
 /// All commands, in the order in which the help lists them.

@@ -15,17 +15,17 @@ namespace hysteron::tool {
 
 void Console::speak(const Speech& speech) {
   quiet_ = speech.quiet;
-  is_report_ = speech.is_report;
+  results_ = speech.results;
   if (quiet_) {
     Progress::silence();
   }
 }
 
 void Console::print(std::string_view all) {
-  if (is_report_ && quiet_) {
+  if (results_ == Results::Report && quiet_) {
     return;
   }
-  const std::string text = is_report_ ? wrapped(all, terminal_width(stdout)) : std::string(all);
+  const std::string text = results_ == Results::Product ? std::string(all) : wrapped(all, terminal_width(stdout));
   if (write_error_ == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
     write_error_ = errno;
   }

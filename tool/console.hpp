@@ -1,6 +1,7 @@
 // What a command prints: results to the standard output, diagnostics to the standard error.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -10,10 +11,17 @@
 
 namespace hysteron::tool {
 
+/// Whom the results of a command are for.
+enum class Results : std::uint8_t {
+  Product,   ///< a program too: as they are
+  Findings,  ///< a reader: broken to the width of a terminal
+  Report     ///< likewise, and they speak of files that were written: a quiet command leaves them out
+};
+
 /// How a command is to speak.
 struct Speech {
-  bool quiet = false;      ///< errors and warnings alone: neither notes, nor progress, nor reports
-  bool is_report = false;  ///< what is printed speaks of files that were written; else it is the product itself
+  bool quiet = false;  ///< errors and warnings alone: neither notes, nor progress, nor reports
+  Results results = Results::Product;
 };
 
 class Console {
@@ -21,8 +29,7 @@ class Console {
   /// From now on.
   void speak(const Speech& speech);
 
-  /// Results. A report is left out where the command is quiet, and broken to the width of a terminal. Where the reader
-  /// of a pipe has gone, what is left is dropped without a word.
+  /// Results. Where the reader of a pipe has gone, what is left is dropped without a word.
   void print(std::string_view text);
 
   /// What was understood of an input, `note: log.csv: ...`, to the standard error.
@@ -45,7 +52,7 @@ class Console {
 
  private:
   static inline bool quiet_ = false;  ///< of the program as a whole: notes are told where no console is at hand
-  bool is_report_ = false;
+  Results results_ = Results::Product;
   Sources sources_;
   int write_error_ = 0;
 };

@@ -17,6 +17,7 @@
 #include "runtime/config/run_keys.hpp"
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "support/wrapped.hpp"
 #include "tool/commands.hpp"
 #include "tool/jitter.hpp"
 #include "tool/option_values.hpp"
@@ -79,16 +80,23 @@ void check_machine(const DoctorOptions& options) {
   }
 }
 
-std::string findings_text(const std::vector<HostFinding>& findings) {
+/// In three columns of the width of a terminal, 0 for none; where the third would be narrow, below the others. A
+/// command stays in one line, to be copied.
+std::string findings_text(const std::vector<HostFinding>& findings, std::size_t width) {
+  constexpr std::size_t least_third = 30;
   std::size_t widest = 0;
   for (const HostFinding& one : findings) {
     widest = std::max(widest, one.name.size());
   }
+  const bool is_below = width != 0 && width < 14 + widest + least_third;
+  const std::string margin(is_below ? 4 : 14 + widest, ' ');
   std::string text;
   for (const HostFinding& one : findings) {
-    text += fmt::format("{:<10}  {:<{}}  {}\n", name_of(one.rating), one.name, widest, one.found);
-    const std::string margin(14 + widest, ' ');
-    text += one.why.empty() ? "" : fmt::format("{}{}\n", margin, one.why);
+    const std::string head = fmt::format("{:<10}  {:<{}}  ", name_of(one.rating), one.name, is_below ? 0 : widest);
+    const std::string found = wrapped(margin + one.found, width);
+    text += is_below ? fmt::format("{}\n{}\n", head.substr(0, head.size() - 2), found)
+                     : fmt::format("{}{}\n", head, found.substr(margin.size()));
+    text += one.why.empty() ? "" : wrapped(margin + one.why, width) + "\n";
     for (std::size_t begin = 0; begin < one.command.size();) {
       const std::size_t end = std::min(one.command.find('\n', begin), one.command.size());
       text += fmt::format("{}$ {}\n", margin, one.command.substr(begin, end - begin));
@@ -98,13 +106,15 @@ std::string findings_text(const std::vector<HostFinding>& findings) {
   return text;
 }
 
-std::string jitter_text(const JitterRequest& request, const Jitter& jitter) {
+std::string jitter_text(const JitterRequest& request, const Jitter& jitter, std::size_t width) {
   const auto time = [](std::int64_t value) { return runtime::short_time_text(static_cast<double>(value)); };
   std::string text = fmt::format(
       "\nwoken {} times, every {}, {}: 99 % within {}, 99.99 % within {}, the worst {} late; {} periods missed\n",
       jitter.lateness.count(), time(request.period), jitter.obtained, time(jitter.lateness.percentile(0.99)),
       time(jitter.lateness.percentile(0.9999)), time(jitter.lateness.worst()), jitter.skipped);
-  constexpr double longest_bar = 40.0;
+  constexpr std::size_t before_bar = 26;
+  const auto longest_bar =
+      static_cast<double>(width == 0 ? 40 : std::clamp<std::size_t>(width, before_bar, 66) - before_bar);
   std::uint64_t most = 1;
   for (const JitterClass& one : jitter.classes) {
     most = std::max(most, one.count);
@@ -168,7 +178,7 @@ int doctor(const DoctorOptions& options, Console& console) {
   const auto findings =
       look_at_host({.root = options.root, .processor = options.processor, .priority = options.priority});
   if (!options.json) {
-    console.print(findings_text(findings));
+    console.print(findings_text(findings, terminal_width(stdout)));
   }
   std::optional<Jitter> jitter;
   // The measurement is of this machine.
@@ -177,7 +187,7 @@ int doctor(const DoctorOptions& options, Console& console) {
     jitter = measure_jitter(request, clock);
   }
   console.print(options.json ? as_json(findings, request, jitter).dump(2) + "\n"
-                : jitter     ? jitter_text(request, *jitter)
+                : jitter     ? jitter_text(request, *jitter, terminal_width(stdout))
                              : "");
   const bool is_any_bad =
       std::ranges::any_of(findings, [](const HostFinding& one) { return one.rating == Rating::bad; });

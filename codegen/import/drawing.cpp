@@ -7,6 +7,7 @@
 #include <map>
 #include <pugixml.hpp>
 #include <string_view>
+#include <system_error>
 
 #include "codegen/plcopen/tc6.hpp"
 #include "support/errors.hpp"
@@ -106,6 +107,24 @@ Number number_of(const char* text) {
   const std::string_view view(text);
   std::from_chars(view.data(), view.data() + view.size(), value);
   return value;
+}
+
+std::optional<std::uint32_t> stated_number(const char* text) {
+  std::uint32_t value = 0;
+  const std::string_view view(text);
+  const auto [end, fault] = std::from_chars(view.data(), view.data() + view.size(), value);
+  return fault == std::errc() && end == view.data() + view.size() ? std::optional(value) : std::nullopt;
+}
+
+/// Some editors count from 0; others write 0 on each element whose place nobody chose. An order is one element's alone:
+/// where several have 0, it means nothing.
+void forget_unchosen_orders(std::vector<DrawnElement>& elements) {
+  const auto says_zero = [](const DrawnElement& one) { return is_executed(one) && one.order == 0U; };
+  if (std::ranges::count_if(elements, says_zero) > 1) {
+    for (DrawnElement& one : elements) {
+      one.order = one.order == 0U ? std::nullopt : one.order;
+    }
+  }
 }
 
 class ProjectReader {
@@ -262,6 +281,7 @@ class ProjectReader {
       }
       pou.elements.push_back(read_element(node));
     }
+    forget_unchosen_orders(pou.elements);
     name_what_is_handed_over(pou);
   }
 
@@ -288,7 +308,7 @@ class ProjectReader {
   DrawnElement read_element(xml_node node) {
     DrawnElement element{.kind = std::string(local_name(node.name())),
                          .id = number_of<std::uint64_t>(node.attribute(tc6::local_id).value()),
-                         .order = number_of<std::uint32_t>(node.attribute(tc6::execution_order).value()),
+                         .order = stated_number(node.attribute(tc6::execution_order).value()),
                          .instance = node.attribute(tc6::instance_name).value(),
                          .negated = node.attribute(tc6::negated).as_bool(),
                          .storage = node.attribute(tc6::storage).value(),
@@ -347,6 +367,10 @@ class ProjectReader {
 };
 
 }  // namespace
+
+bool is_executed(const DrawnElement& element) {
+  return element.kind == tc6::block || element.kind == tc6::out_variable || element.kind == tc6::coil;
+}
 
 const DrawnElement* find_element(const DrawnPou& pou, std::uint64_t id) {
   const auto found = std::ranges::find(pou.elements, id, &DrawnElement::id);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,7 @@ struct DrawnPin {
 struct DrawnElement {
   std::string kind{};  ///< the name of its XML element: block, inVariable, contact, …
   std::uint64_t id = 0;
-  std::uint32_t order = 0;  ///< of execution; 0: not stated
+  std::optional<std::uint32_t> order{};  ///< of execution, where it is stated
   double x = 0.0;
   double y = 0.0;
   std::string text{};      ///< expression, type of a block, variable of a contact or coil, name of a connector
@@ -70,6 +71,9 @@ struct DrawnPou {
   std::vector<DrawnElement> elements{};
   std::uint32_t line = 0;
 };
+
+/// Whether it does something when its turn comes: a block, or what assigns a variable.
+[[nodiscard]] bool is_executed(const DrawnElement& element);
 
 /// By its localId; null where there is none.
 [[nodiscard]] const DrawnElement* find_element(const DrawnPou& pou, std::uint64_t id);

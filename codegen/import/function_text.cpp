@@ -14,15 +14,14 @@ namespace hysteron::import {
 std::vector<std::size_t> order_of_execution(const DrawnPou& pou) {
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < pou.elements.size(); ++i) {
-    const std::string& kind = pou.elements[i].kind;
-    if (kind == tc6::block || kind == tc6::out_variable || kind == tc6::coil) {
+    if (is_executed(pou.elements[i])) {
       list.push_back(i);
     }
   }
   std::ranges::stable_sort(list, [&](std::size_t left, std::size_t right) {
     const DrawnElement& a = pou.elements[left];
     const DrawnElement& b = pou.elements[right];
-    const auto rank = [](const DrawnElement& one) { return one.order != 0 ? 0 : one.kind == tc6::block ? 2 : 1; };
+    const auto rank = [](const DrawnElement& one) { return one.order ? 0 : one.kind == tc6::block ? 2 : 1; };
     if (rank(a) != rank(b)) {
       return rank(a) < rank(b);
     }

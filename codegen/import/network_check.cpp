@@ -29,14 +29,33 @@ bool is_constant(const DrawnPou& pou, const DrawnElement& element) {
                                    variable->remark.find("@param") != std::string::npos;
 }
 
+std::vector<Objection> undecided_assignments(const DrawnPou& pou, const Targets& called) {
+  std::vector<Objection> result;
+  for (const auto& [name, elements] : assigners_in(pou, called)) {
+    std::set<std::uint32_t> orders;
+    for (const DrawnElement* const element : elements) {
+      const bool stated = element->order && orders.insert(*element->order).second;
+      if (!stated && elements.size() > 1) {
+        const DrawnElement* const other = elements.front() == element ? elements[1] : elements.front();
+        result.push_back({.element = element,
+                          .why = fmt::format("it assigns {}, as localId {} does, and no order says which is the last",
+                                             name, other->id),
+                          .mend = "Give each an executionOrderId of its own, or assign it once: choose between the "
+                                  "values by SEL or OR."});
+        break;
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned) {
   static const std::set<std::string_view> known{
       tc6::in_variable, tc6::out_variable, tc6::block,      tc6::connector, tc6::continuation,    tc6::contact,
       tc6::coil,        tc6::left_rail,    tc6::right_rail, tc6::comment,   tc6::in_out_variable, "vendorElement"};
-  std::vector<Objection> result;
-  std::map<std::string, int> targets;
+  std::vector<Objection> result = undecided_assignments(pou, assigned);
   std::set<std::string> instances;
   for (const DrawnElement& element : pou.elements) {
     const auto object = [&](std::string why, std::string mend) {
@@ -45,20 +64,13 @@ std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, 
     if (!known.contains(element.kind)) {
       object("no diagram has such an element", "Draw it with blocks and variables, or write it as text.");
     }
-    if ((element.kind == tc6::out_variable || element.kind == tc6::coil) && ++targets[in_capitals(element.text)] == 2) {
-      object("it is assigned twice", "Assign it once: choose between the values by SEL or OR.");
-    }
     for (const DrawnPin& pin : element.both) {
       const auto callee = own.find(in_capitals(element.text));
-      const std::string name = handed_over(pou, pin);
       if (callee == own.end() || callee->second->language == tc6::structured_text) {
         object("it has VAR_IN_OUT " + pin.name, "Hand the value in by an input and out by an output.");
-      } else if (name.empty()) {
+      } else if (handed_over(pou, pin).empty()) {
         object("its VAR_IN_OUT " + pin.name + " is handed no variable of the POU",
                "Connect a local variable, an output or a VAR_IN_OUT.");
-      } else if (hands_back(element, pin.name, assigned) && ++targets[name] == 2) {
-        object("it assigns " + name + ", which is assigned elsewhere too",
-               "Hand the value in by an input and out by an output.");
       }
     }
     const bool wired = element.kind == tc6::in_out_variable && !element.inputs.empty() &&
@@ -99,19 +111,19 @@ bool hands_back(const DrawnElement& block, std::string_view pin, const Targets& 
   return called != targets.end() && called->second.contains(in_capitals(pin));
 }
 
-std::set<std::string> targets_of(const DrawnPou& pou, const Targets& called) {
-  std::set<std::string> targets;
+std::map<std::string, std::vector<const DrawnElement*>> assigners_in(const DrawnPou& pou, const Targets& called) {
+  std::map<std::string, std::vector<const DrawnElement*>> assigners;
   for (const DrawnElement& element : pou.elements) {
     if (element.kind == tc6::out_variable || element.kind == tc6::coil) {
-      targets.insert(in_capitals(element.text));
+      assigners[in_capitals(element.text)].push_back(&element);
     }
     for (const DrawnPin& pin : element.both) {
       if (const std::string name = handed_over(pou, pin); !name.empty() && hands_back(element, pin.name, called)) {
-        targets.insert(name);
+        assigners[name].push_back(&element);
       }
     }
   }
-  return targets;
+  return assigners;
 }
 
 Targets targets_of_all(const std::string& file, const OwnBlocks& own) {
@@ -119,7 +131,10 @@ Targets targets_of_all(const std::string& file, const OwnBlocks& own) {
   for (std::size_t pass = 0; pass < deepest_handing; ++pass) {
     bool changed = false;
     for (const auto& [name, pou] : own) {
-      std::set<std::string> now = targets_of(*pou, targets);
+      std::set<std::string> now;
+      for (const auto& [target, assigners] : assigners_in(*pou, targets)) {
+        now.insert(target);
+      }
       changed = changed || now != targets[name];
       targets[name] = std::move(now);
     }

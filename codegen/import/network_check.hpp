@@ -27,10 +27,13 @@ using Targets = std::map<std::string, std::set<std::string>>;
 /// handed on through too many blocks.
 [[nodiscard]] Targets targets_of_all(const std::string& file, const OwnBlocks& own);
 
-/// Of one network.
-[[nodiscard]] std::set<std::string> targets_of(const DrawnPou& pou, const Targets& called);
+/// What assigns each variable of one network, by its name in capitals, as the file has it: output variables, coils, and
+/// blocks that hand a VAR_IN_OUT back.
+[[nodiscard]] std::map<std::string, std::vector<const DrawnElement*>> assigners_in(const DrawnPou& pou,
+                                                                                   const Targets& called);
 
-/// Elements that no diagram can express, and targets and instances that stand there twice.
+/// Elements that no diagram can express, instances that stand there twice, and targets whose last value no order
+/// states.
 [[nodiscard]] std::vector<Objection> objections_to(const DrawnPou& pou, const OwnBlocks& own, const Targets& assigned);
 
 /// The variable of the POU that a VAR_IN_OUT of a block may change, in capitals; empty where none is handed over.

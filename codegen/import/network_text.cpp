@@ -12,6 +12,7 @@
 #include "codegen/graph/text_order.hpp"
 #include "codegen/import/expression.hpp"
 #include "codegen/import/function_text.hpp"
+#include "codegen/import/made_variables.hpp"
 #include "codegen/import/network_check.hpp"
 #include "codegen/import/types.hpp"
 #include "codegen/plcopen/functions.hpp"
@@ -47,7 +48,8 @@ class Reader {
       }
     }
     for (const DrawnVariable& variable : pou.variables) {
-      taken_.insert({in_capitals(variable.name), in_capitals(name_of_output(variable))});
+      variables_made_.take(variable.name);
+      variables_made_.take(name_of_output(variable));
       variables_.emplace(in_capitals(variable.name), &variable);
     }
     states_.resize(pou.elements.size());
@@ -58,11 +60,8 @@ class Reader {
     for (const std::size_t i : order_of_execution(pou_)) {
       run_element(i);
     }
-    for (const auto& [key, delay] : delays_) {
-      made_.statements += fmt::format("  {}(XIN := {});\n", delay.instance, delay.value);
-      made_.locals += fmt::format("    {} : {}{};\n", delay.instance, delay_of(delay.type),
-                                  delay.start.empty() ? "" : fmt::format(" := (X0 := {})", delay.start));
-    }
+    made_.statements += variables_made_.statements();
+    made_.locals += variables_made_.declarations();
     if (refused_.has_errors()) {
       throw InputError(std::move(refused_));
     }
@@ -77,11 +76,9 @@ class Reader {
     Value value{};           ///< of a function, once done
     std::string variable{};  ///< that holds it
   };
-  struct Delay {
-    std::string instance{};
-    std::string value{};
-    std::string start{};
-    Type type = Type::Real;
+  struct Assigned {
+    std::string name{};  ///< that holds the value now
+    std::optional<std::uint32_t> order{};
   };
 
   void refuse(const DrawnElement& element, std::string_view why, std::string mend) {
@@ -100,7 +97,9 @@ class Reader {
     for (const Objection& one : objections_to(pou_, own_, targets_)) {
       refuse(*one.element, one.why, one.mend);
     }
-    assigned_somewhere_ = targets_of(pou_, targets_);
+    for (const auto& [name, assigners] : assigners_in(pou_, targets_)) {
+      to_come_.emplace(name, assigners.size());
+    }
   }
 
   // --- elements ---
@@ -132,13 +131,29 @@ class Reader {
     if (value.text.empty()) {
       return refuse(element, "nothing is connected to it", "Connect it, or take it out.");
     }
-    assign(*target->second, element.negated ? negated(value.text) : value.text);
+    assign(element, *target->second, element.negated ? negated(value.text) : value.text);
   }
 
-  void assign(const DrawnVariable& variable, const std::string& value) {
-    assigned_.insert(in_capitals(variable.name));
-    made_.assigned.push_back(in_capitals(name_of_output(variable)));
-    made_.statements += fmt::format("  {} := {};\n", name_of_output(variable), value);
+  /// A text assigns a variable once. What the drawing assigns before has a variable of its own, which is read until
+  /// then.
+  void assign(const DrawnElement& element, const DrawnVariable& variable, const std::string& value) {
+    const std::string key = in_capitals(variable.name);
+    const auto before = assigned_.find(key);
+    if (before != assigned_.end() && element.order < before->second.order) {
+      refuse(element,
+             fmt::format("it assigns {} behind an element of a higher order, which feeds what runs earlier", key),
+             "Give what is fed the higher executionOrderId.");
+    }
+    const bool last = --to_come_.at(key) == 0;
+    const auto type = known_type(variable.type);
+    const std::string target = last ? name_of_output(variable) : variables_made_.new_name(variable.name + "_BEFORE");
+    if (last) {
+      made_.assigned.push_back(in_capitals(target));
+    } else if (type) {
+      made_.locals += fmt::format("    {} : {};\n", target, type_name(type->type));
+    }
+    made_.statements += fmt::format("  {} := {};\n", target, value);
+    assigned_[key] = {.name = target, .order = element.order};
   }
 
   void run_function(const DrawnElement& element, State& state) {
@@ -169,7 +184,7 @@ class Reader {
     const bool shared = readers_[element.id] > 1 || state.value.text.size() > longest_expression;
     if ((shared || !state.variable.empty()) && state.value.type) {
       const std::string variable =
-          state.variable.empty() ? new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
+          state.variable.empty() ? variables_made_.new_name(fmt::format("{}_{}", name, element.id)) : state.variable;
       made_.locals += fmt::format("    {} : {};\n", variable, type_name(*state.value.type));
       made_.statements += fmt::format("  {} := {};\n", variable, state.value.text);
       state.value.text = variable;
@@ -240,7 +255,7 @@ class Reader {
     for (const DrawnPin& pin : element.both) {  // what it hands back
       if (const auto variable = variables_.find(handed_over(pou_, pin));
           variable != variables_.end() && hands_back(element, pin.name, targets_)) {
-        assign(*variable->second, pin_value(element, element.instance, pin.name).text);
+        assign(element, *variable->second, pin_value(element, element.instance, pin.name).text);
       }
     }
   }
@@ -308,7 +323,7 @@ class Reader {
       return input_value(pou_.elements[from->second], pou_.elements[from->second].inputs.front());
     }
     if (element.kind == tc6::block) {
-      if (reader.order == 0 || reader.kind != tc6::block) {
+      if (!reader.order || reader.kind != tc6::block) {
         run_element(index);  // what feeds a variable, or a block without an order of its own, runs before it
       }
       return element.instance.empty() ? function_value(index) : output_value(element, link.pin);
@@ -338,9 +353,9 @@ class Reader {
       return {"FALSE", std::nullopt};
     }
     if (state.variable.empty()) {
-      state.variable = new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
+      state.variable = variables_made_.new_name(fmt::format("{}_{}", in_capitals(element.text), element.id));
     }
-    return delayed(state.variable, *type, "");
+    return delayed(state.variable, *type);
   }
 
   Value output_value(const DrawnElement& element, const std::string& pin) {
@@ -370,7 +385,7 @@ class Reader {
           const auto type = known_type(one.type);
           const std::string output = fmt::format("{}.{}", declared->second->name, name_of_output(one));
           return called || !type ? Value{output, type ? std::optional(type->type) : std::nullopt}
-                                 : delayed(output, type->type, "");
+                                 : delayed(output, type->type);
         }
       }
     } else if (const BlockType* const block = known_block(declared->second->type)) {
@@ -405,17 +420,11 @@ class Reader {
       refuse(reader, fmt::format("it reads {} behind its call, where a PLC has the next cycle's value", value.text),
              "Let it run before the block: give it the lower executionOrderId.");
     }
-    return called || remembers ? value : delayed(value.text, *value.type, "");
+    return called || remembers ? value : delayed(value.text, *value.type);
   }
 
-  Value delayed(const std::string& text, Type type, const std::string& start) {
-    Delay& delay = delays_[in_capitals(text)];
-    if (delay.instance.empty()) {
-      std::string base = text + "_LAST";
-      std::ranges::replace(base, '.', '_');
-      delay = {.instance = new_name(base), .value = text, .start = start, .type = type};
-    }
-    return {delay.instance + ".XOUT", type};
+  Value delayed(const std::string& text, Type type, const std::string& start = {}) {
+    return {variables_made_.delayed(text, type, start), type};
   }
 
   Value expression_value(const DrawnElement& element, const std::string& text) {
@@ -443,27 +452,17 @@ class Reader {
       return "FALSE";
     }
     const DrawnVariable& variable = *found->second;
+    if (const auto assigned = assigned_.find(in_capitals(name)); assigned != assigned_.end()) {
+      return assigned->second.name;
+    }
     if (variable.section == DrawnVariable::Section::Both) {
-      if (assigned_.contains(in_capitals(name))) {
-        return name_of_output(variable);
-      }
       made_.taken_in.push_back(in_capitals(name));
       return variable.name;
     }
     const auto type = known_type(variable.type);
-    const bool last_cycles = assigned_somewhere_.contains(in_capitals(name)) && !assigned_.contains(in_capitals(name));
-    return last_cycles && type ? delayed(variable.name, type->type, with_known_literals(variable.initial)).text
-                               : variable.name;
-  }
-
-  std::string new_name(std::string base) {
-    base = is_reserved(base) || !taken_.insert(in_capitals(base)).second ? base + "_1" : base;
-    for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1));
-         ++number) {
-      base = base.substr(0, base.rfind('_')) + fmt::format("_{}", number);
-    }
-    taken_.insert(in_capitals(base));
-    return base;
+    return to_come_.contains(in_capitals(name)) && type
+               ? delayed(variable.name, type->type, with_known_literals(variable.initial)).text
+               : variable.name;
   }
 
   const std::string& file_;
@@ -475,10 +474,9 @@ class Reader {
   std::unordered_map<std::uint64_t, std::size_t> readers_;  ///< by localId: how many wires leave it
   Variables variables_;
   std::vector<State> states_;  ///< by element
-  std::map<std::string, Delay> delays_;
-  std::set<std::string> taken_;  ///< names, in capitals
-  std::set<std::string> assigned_somewhere_;
-  std::set<std::string> assigned_;
+  MadeVariables variables_made_;
+  std::map<std::string, std::size_t> to_come_;  ///< by target, in capitals: how many assignments of it
+  std::map<std::string, Assigned> assigned_;    ///< by target, in capitals
   std::set<std::string> called_;
   std::set<const DrawnElement*> told_;
   std::size_t depth_ = 0;

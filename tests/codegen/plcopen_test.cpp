@@ -326,7 +326,70 @@ TEST(Plcopen, WhatABlockHandsBackIsAssignedToTheVariableThatItTook) {
   }
 }
 
-TEST(Plcopen, WhatIsHandedOverIsAVariableThatIsAssignedOnce) {
+/// One variable behind the VAR_IN_OUT of two blocks: ADDING adds X to it, SCALING multiplies it by X.
+std::string handed_to_both(const std::string& order_of_adding, const std::string& order_of_scaling) {
+  const auto inner = [](const std::string& name, const std::string& function) {
+    std::string text = adding("TOTAL");
+    text.replace(text.find("ADD"), 3, function);
+    return R"(<pou name=")" + name + R"(" pouType="functionBlock"><interface>)" + input_x +
+           R"(<inOutVars><variable name="TOTAL">)" + lreal_variable + "</inOutVars></interface><body><FBD>" + text +
+           "</FBD></body></pou>";
+  };
+  const auto call = [](const std::string& id, const std::string& name, const std::string& order) {
+    return R"(<block localId=")" + id + R"(" typeName=")" + name + R"(" instanceName="THE_)" + name + R"(" )" + order +
+           R"(><inputVariables>
+           <variable formalParameter="X"><connectionPointIn><connection refLocalId="1"/></connectionPointIn></variable></inputVariables>
+         <inOutVariables><variable formalParameter="TOTAL"><connectionPointIn><connection refLocalId="2"/></connectionPointIn></variable></inOutVariables></block>)";
+  };
+  return R"(<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><dataTypes/><pous>)" + inner("ADDING", "ADD") +
+         inner("SCALING", "MUL") + R"(<pou name="OUTER" pouType="functionBlock"><interface>)" + input_x +
+         R"(<outputVars><variable name="Y">)" + lreal_variable + R"(</outputVars><localVars><variable name="SUM_1">)" +
+         lreal_variable +
+         R"(<variable name="THE_ADDING"><type><derived name="ADDING"/></type></variable>
+            <variable name="THE_SCALING"><type><derived name="SCALING"/></type></variable></localVars></interface><body><FBD>
+         <inVariable localId="1"><connectionPointOut/><expression>X</expression></inVariable>
+         <inOutVariable localId="2"><connectionPointOut/><expression>SUM_1</expression></inOutVariable>)" +
+         call("3", "ADDING", order_of_adding) + call("4", "SCALING", order_of_scaling) +
+         R"(<inVariable localId="5"><connectionPointOut/><expression>SUM_1</expression></inVariable>
+         <outVariable localId="6" executionOrderId="7"><connectionPointIn><connection refLocalId="5"/></connectionPointIn><expression>Y</expression></outVariable>
+         </FBD></body></pou></pous></types></project>)";
+}
+
+TEST(Plcopen, TheOrderOfExecutionDecidesWhichBlockHasAVariableFirst) {
+  struct Case {
+    const char* adding;
+    const char* scaling;
+    std::array<double, 3> sums;
+  };
+  for (const auto& [adding, scaling, sums] :
+       {Case{"0", "1", {4.0, 12.0, 28.0}}, Case{"1", "0", {2.0, 6.0, 14.0}}, Case{"3", "2", {2.0, 6.0, 14.0}}}) {
+    const auto order = [](const std::string& text) { return "executionOrderId=\"" + text + "\""; };
+    const Program program = compile_text(read_back(handed_to_both(order(adding), order(scaling))), {.top = "OUTER"});
+    Machine<double> machine(program, 1e-3);
+    machine.set_input(0, 2.0);
+    for (const double wanted : sums) {
+      machine.step();
+      EXPECT_EQ(machine.output(0), wanted) << adding << " " << scaling;
+    }
+  }
+}
+
+TEST(Plcopen, WithoutAnOrderAVariableThatIsAssignedTwiceIsRefused) {
+  // 0 on each element is what an editor writes where nobody chose.
+  for (const std::string order : {"", R"(executionOrderId="0")", R"(executionOrderId="5")"}) {
+    try {
+      read_back(handed_to_both(order, order));
+      FAIL() << order;
+    } catch (const InputError& error) {
+      const Diagnostic& told = error.diagnostics().all().front();
+      EXPECT_EQ(told.number, error::untranslatable_element);
+      EXPECT_NE(told.cause.find("assigns SUM_1, as localId"), std::string::npos) << told.cause;
+      EXPECT_NE(told.mend.find("executionOrderId"), std::string::npos) << told.mend;
+    }
+  }
+}
+
+TEST(Plcopen, WhatIsHandedOverIsAVariableOfThePou) {
   const auto cause = [](const std::string& xml) {
     try {
       read_back(xml);
@@ -339,7 +402,7 @@ TEST(Plcopen, WhatIsHandedOverIsAVariableThatIsAssignedOnce) {
   EXPECT_NE(cause(with_inner("X")).find("VAR_IN_OUT TOTAL is handed no variable"), std::string::npos);
   EXPECT_NE(cause(with_inner("SUM_1", R"(<outVariable localId="7"><connectionPointIn><connection refLocalId="1"/>
          </connectionPointIn><expression>SUM_1</expression></outVariable>)"))
-                .find("assigned"),
+                .find("assigns SUM_1"),
             std::string::npos);
 }
 

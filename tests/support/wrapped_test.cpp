@@ -22,6 +22,18 @@ TEST(Wrapped, HangsBelowTheSecondOfTwoColumns) {
             "  --out FILE     The result, and what is\n                 said of it in words.");
 }
 
+TEST(Wrapped, PutsTheSecondColumnBelowWhereItHasNoRoom) {
+  EXPECT_EQ(wrapped("  --out FILE                The result, and what is said of it.", 30),
+            "  --out FILE\n      The result, and what is\n      said of it.");
+  EXPECT_EQ(wrapped("  -p FILE, --params FILE, --more FILE      Read.", 24),
+            "  -p FILE, --params\n      FILE, --more FILE\n      Read.");
+}
+
+TEST(Wrapped, LeavesCommandsToBeCopied) {
+  const char* const command = "      $ echo performance > /sys/devices/system/cpu/cpu3/cpufreq/scaling_governor";
+  EXPECT_EQ(wrapped(command, 40), command);
+}
+
 TEST(Wrapped, LeavesTablesSourcesAndLongWords) {
   for (const char* const text :
        {"HYST.C1  8.0123  um/V  on its lower bound, as at the start",

@@ -92,6 +92,31 @@ TEST(Width, HelpAndErrorsFitTheTerminal) {
   }
 }
 
+/// What a reader sees of a narrow window: no line of words is longer. A command to be copied stays whole.
+TEST(Width, FindingsAndHelpFitANarrowTerminal) {
+  const QuietBench bench;
+  for (const char* const command :
+       {"help tune", "help export", "help doctor", "check wrong.st", "doctor --rt --seconds 0.01"}) {
+    const auto done =
+        bench.shell(std::string("printf 'FUNCTION_BLOCK W\nVAR_OUTPUT Y : LREAL; END_VAR\nY := NOWHERE_DECLARED;\n"
+                                "END_FUNCTION_BLOCK\n' > wrong.st; COLUMNS=40 hysteron ") +
+                    command);
+    std::istringstream lines(done.out + done.err);
+    std::string line;
+    std::size_t count = 0;
+    while (std::getline(lines, line)) {
+      const auto first = line.find_first_not_of(" 0123456789");
+      const std::string text = first == std::string::npos ? std::string() : line.substr(first);
+      const bool is_one_word = text.find(' ') == std::string::npos;
+      if (!text.starts_with("|") && !text.starts_with("$") && !is_one_word) {
+        EXPECT_LE(character_count(line), 40U) << command << ": " << line;
+      }
+      ++count;
+    }
+    EXPECT_GT(count, 3U) << command;
+  }
+}
+
 TEST(Width, WhatAProgramReadsIsNotBroken) {
   const QuietBench bench;
   EXPECT_EQ(bench.shell("COLUMNS=30 hysteron blocks HY_LAG --json").out,

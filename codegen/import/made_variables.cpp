@@ -1,0 +1,53 @@
+#include "codegen/import/made_variables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "codegen/graph/names.hpp"
+#include "codegen/graph/text_order.hpp"
+#include "support/names.hpp"
+
+namespace hysteron::import {
+
+void MadeVariables::take(const std::string& name) {
+  taken_.insert(in_capitals(name));
+}
+
+std::string MadeVariables::new_name(std::string base) {
+  base = is_reserved(base) || !taken_.insert(in_capitals(base)).second ? base + "_1" : base;
+  for (int number = 2; taken_.contains(in_capitals(base)) && base.ends_with(fmt::format("_{}", number - 1)); ++number) {
+    base = base.substr(0, base.rfind('_')) + fmt::format("_{}", number);
+  }
+  taken_.insert(in_capitals(base));
+  return base;
+}
+
+std::string MadeVariables::delayed(const std::string& value, Type type, const std::string& start) {
+  Delay& delay = delays_[in_capitals(value)];
+  if (delay.instance.empty()) {
+    std::string base = value + "_LAST";
+    std::ranges::replace(base, '.', '_');
+    delay = {.instance = new_name(base), .value = value, .start = start, .type = type};
+  }
+  return delay.instance + ".XOUT";
+}
+
+std::string MadeVariables::statements() const {
+  std::string text;
+  for (const auto& [value, delay] : delays_) {
+    text += fmt::format("  {}(XIN := {});\n", delay.instance, delay.value);
+  }
+  return text;
+}
+
+std::string MadeVariables::declarations() const {
+  std::string text;
+  for (const auto& [value, delay] : delays_) {
+    text += fmt::format("    {} : {}{};\n", delay.instance, delay_of(delay.type),
+                        delay.start.empty() ? "" : fmt::format(" := (X0 := {})", delay.start));
+  }
+  return text;
+}
+
+}  // namespace hysteron::import

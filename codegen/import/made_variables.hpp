@@ -1,0 +1,38 @@
+// The variables that the text of a network has and its drawing has not: names that nobody has taken, and delays.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "blocks/description.hpp"
+
+namespace hysteron::import {
+
+class MadeVariables {
+ public:
+  /// A name of the drawing: no variable is made of it.
+  void take(const std::string& name);
+
+  /// The name itself, or with a number behind it.
+  [[nodiscard]] std::string new_name(std::string base);
+
+  /// What a value was a cycle ago, as the output of a delay that starts at `start`.
+  [[nodiscard]] std::string delayed(const std::string& value, Type type, const std::string& start);
+
+  /// The delays, behind all other statements, and their declarations.
+  [[nodiscard]] std::string statements() const;
+  [[nodiscard]] std::string declarations() const;
+
+ private:
+  struct Delay {
+    std::string instance{};
+    std::string value{};
+    std::string start{};
+    Type type = Type::Real;
+  };
+  std::set<std::string> taken_;          ///< in capitals
+  std::map<std::string, Delay> delays_;  ///< by their value, in capitals
+};
+
+}  // namespace hysteron::import

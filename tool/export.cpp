@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "robots/joint.hpp"
+#include "robots/joint_json.hpp"
 #include "robots/joint_law.hpp"
 #include "robots/robot_file.hpp"
 #include "support/atomic_file.hpp"
@@ -17,6 +20,7 @@
 #include "support/text_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/diagram.hpp"
+#include "tool/exported_axes.hpp"
 #include "tool/option_values.hpp"
 #include "tool/record_options.hpp"
 #include "tool/writable.hpp"
@@ -32,6 +36,8 @@ constexpr std::string_view export_examples = R"(Examples:
   hysteron export axis.st --params tuned.toml --into robot.xml --joint shoulder --out fitted.xml
   hysteron export axis.st --params tuned.toml --into arm.urdf --format urdf --joint shoulder --out fitted.urdf
   hysteron export axis.st --gear 50 --link-inertia 0.02 --into robot.xml --joint elbow --out fitted.xml
+  hysteron export axis.st --joint shoulder=shoulder.toml --joint elbow=elbow.toml --gear elbow=50 --into robot.xml \
+                  --out fitted.xml
   hysteron export axis.st --params tuned.toml --in log.csv --out bench.xml
 
 The diagram is an axis: an integral whose unit is a velocity (rad/s, m/s), and what acts on it: gains, friction, springs,
@@ -39,6 +45,8 @@ limits and a lag of the drive. A signal with the unit N*m (N of what slides) say
 MuJoCo gets armature, damping, frictionloss, stiffness, springref and range of the joint, and an actuator with gain, bias,
 lag and ranges; URDF gets damping, friction and limits. Numbers are in rad, m, N*m and N, and angles of a robot as its
 compiler states. What has no place is listed with its size. Of a robot (--into) every other byte stays.
+Several --joint put one diagram into a robot several times, each with the parameters that were fitted to its axis; --gear,
+--link-inertia and --in then take JOINT=VALUE, or a value for all.
 --in runs the diagram and the joint, by the law that MuJoCo documents, over a record, and says how far they differ.
 Exit codes: 0 done; 2 the diagram is no axis, something has to be stated, or bad usage; nothing is written.
 )";
@@ -47,13 +55,28 @@ struct ExportOptions {
   DiagramOptions diagram;
   RecordOptions record;
   robots::JointOptions joint;
+  AxisTexts axes;
   std::string format = "mujoco";
-  std::string name = "axis";
   std::string into;
   std::string output;
-  std::string input_record;
-  double link_inertia = 0.0;
-  double gear = 1.0;
+  bool json = false;
+};
+
+/// The joint and the diagram over a record.
+struct Comparison {
+  double error = 0.0;             ///< of q', SI, RMS
+  double percent = 0.0;           ///< of the velocity
+  double sample_time = 0.0;       ///< s
+  std::optional<double> finer{};  ///< percent with a tenth of the step, where they differ by much
+};
+
+/// A joint of the robot, as it was written.
+struct ExportedJoint {
+  ExportedAxis axis{};
+  robots::Joint joint{};
+  std::vector<std::string> changes{};
+  std::vector<robots::Neglected> left_out{};
+  std::optional<Comparison> compared{};
 };
 
 /// Of q', SI.
@@ -102,30 +125,38 @@ Difference difference_of_finer_steps(const robots::Joint& joint, Program program
 }
 
 /// The joint and the diagram over a record, side by side, and whether the step makes what they differ by.
-std::string comparison(const ExportOptions& options, const robots::Joint& joint, const Program& program,
-                       Diagnostics& warnings) {
+Comparison comparison(const ExportOptions& options, const ExportedAxis& axis, const robots::Joint& joint,
+                      const Program& program, Diagnostics& warnings) {
+  constexpr double notable_percent = 2.0;
   Program timed = program;
-  const RecordOptions reading = with_settings_of(options.diagram.parameters, options.record);
-  const auto records = read_and_told({options.input_record}, reading, program, false, warnings);
+  const RecordOptions reading = with_settings_of(axis.parameters, options.record);
+  const auto records = read_and_told({axis.record}, reading, program, false, warnings);
   settle_sample_time(records.front(), timed, warnings);
   const Drive drive = drive_from(records.front(), timed, {}, warnings);
   if (warnings.has_errors()) {
     throw InputError(warnings);
   }
   const Difference found = difference(joint, timed, drive);
+  Comparison result{.error = found.error, .percent = found.percent, .sample_time = drive.sample_time};
+  if (found.percent > notable_percent) {
+    result.finer = difference_of_finer_steps(joint, timed, drive, 10).percent;
+  }
+  return result;
+}
+
+std::string comparison_text(const ExportedJoint& one) {
+  const Comparison& found = *one.compared;
   std::string text =
       fmt::format("over {}: the joint differs from the diagram by {:.3g} {}/s RMS, {:.2g} % of its velocity\n",
-                  options.input_record, found.error, joint.position_unit(), found.percent);
-  constexpr double notable_percent = 2.0;
-  if (found.percent > notable_percent) {
-    const double finer = difference_of_finer_steps(joint, timed, drive, 10).percent;
-    const std::string step = fmt::format("{:.4g} ms", 1e3 * drive.sample_time);
-    text += finer < 0.5 * found.percent
+                  one.axis.record, found.error, one.joint.position_unit(), found.percent);
+  if (found.finer) {
+    const std::string step = fmt::format("{:.4g} ms", 1e3 * found.sample_time);
+    text += *found.finer < 0.5 * found.percent
                 ? fmt::format(
                       "  the step of {} makes most of it, since the two integrate in ways of their own: with a "
                       "tenth of it, {:.2g} %\n",
-                      step, finer)
-                : fmt::format("  the step of {} is not the cause: with a tenth of it, {:.2g} %\n", step, finer);
+                      step, *found.finer)
+                : fmt::format("  the step of {} is not the cause: with a tenth of it, {:.2g} %\n", step, *found.finer);
   }
   return text;
 }
@@ -138,41 +169,105 @@ std::string listed(const std::vector<robots::Neglected>& list) {
   return text;
 }
 
-int export_joint(const ExportOptions& options, Console& console) {
-  std::vector<InputFile> inputs = inputs_of(options.diagram);
-  inputs.push_back({.file = options.into, .named_by = "--into"});
-  inputs.push_back({.file = options.input_record, .named_by = "--in"});
-  refuse_to_overwrite({.file = options.output}, inputs);
-  refuse_unwritable(options.output);
-  Diagnostics warnings;
-  DiagramOptions diagram = options.diagram;
-  diagram.keep_names = true;
-  const Program program = load_diagram(diagram, warnings);
-  const robots::Joint motor = robots::joint_of(program, options.joint);
-  const robots::Joint joint = robots::behind_gear(motor, options.gear);
-  const robots::FileOptions file{.format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
-                                 .joint = options.name,
-                                 .model = program.graph.name,
-                                 .link_inertia = options.link_inertia,
-                                 .sample_time = program.graph.sample_time()};
-  const robots::RobotFile robot = options.into.empty()
-                                      ? robots::bench_of(joint, file)
-                                      : robots::merged(joint, file, options.into, read_text_file(options.into));
-  const std::string compared =
-      options.input_record.empty() ? std::string() : comparison(options, motor, program, warnings);
-  write_file_atomically(options.output, robot.text);
+std::string text_of(const ExportOptions& options, const ExportedJoint& one, const std::string& diagram) {
   std::string text =
-      fmt::format("{}: joint {}, from {} of {}\n", options.output, options.name, joint.velocity, program.graph.name);
-  for (const std::string& change : robot.changes) {
+      fmt::format("{}: joint {}, from {} of {}{}\n", options.output, one.axis.joint, one.joint.velocity, diagram,
+                  options.axes.joints.size() > 1 && !one.axis.parameters.empty() ? " with " + one.axis.parameters : "");
+  for (const std::string& change : one.changes) {
     text += "  " + change + "\n";
   }
-  std::vector<robots::Neglected> left = joint.neglected;
-  left.insert(left.end(), robot.unmapped.begin(), robot.unmapped.end());
-  text += left.empty() ? "nothing is left out\n" : "left out:\n" + listed(left);
-  if (!options.into.empty() && file.format == robots::Format::Mujoco && options.link_inertia == 0.0) {
+  text += one.left_out.empty() ? "nothing is left out\n" : "left out:\n" + listed(one.left_out);
+  if (!options.into.empty() && options.format == "mujoco" && one.axis.link_inertia == 0.0) {
     text += "armature is all that the diagram moves: where bodies of the robot were part of it, state --link-inertia\n";
   }
-  console.print(text + compared);
+  return text + (one.compared ? comparison_text(one) : "");
+}
+
+nlohmann::ordered_json as_json(const ExportOptions& options, const std::vector<ExportedJoint>& joints,
+                               const std::string& diagram) {
+  using Json = nlohmann::ordered_json;
+  const auto name_or_null = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
+  Json list = Json::array();
+  for (const ExportedJoint& one : joints) {
+    Json json{{"name", one.axis.joint},
+              {"parameters", name_or_null(one.axis.parameters)},
+              {"gear", one.axis.gear},
+              {"link_inertia", one.axis.link_inertia}};
+    json.update(robots::joint_json(one.joint));
+    json["changes"] = one.changes;
+    json["left_out"] = robots::left_out_json(one.left_out);
+    json["compared"] = nullptr;
+    if (one.compared) {
+      json["compared"] = {{"record", one.axis.record},
+                          {"rms", one.compared->error},
+                          {"percent", one.compared->percent},
+                          {"step", one.compared->sample_time},
+                          {"percent_of_finer_step", one.compared->finer ? Json(*one.compared->finer) : Json(nullptr)}};
+    }
+    list.push_back(std::move(json));
+  }
+  return {{"robot", options.output},
+          {"into", name_or_null(options.into)},
+          {"format", options.format},
+          {"diagram", diagram},
+          {"joints", list}};
+}
+
+void refuse_overwriting(const ExportOptions& options, const std::vector<ExportedAxis>& axes) {
+  std::vector<InputFile> inputs = inputs_of(options.diagram);
+  inputs.push_back({.file = options.into, .named_by = "--into"});
+  for (const ExportedAxis& axis : axes) {
+    inputs.push_back({.file = axis.parameters, .named_by = "the parameters of " + axis.joint});
+    inputs.push_back({.file = axis.record, .named_by = "--in"});
+  }
+  refuse_to_overwrite({.file = options.output}, inputs);
+  refuse_unwritable(options.output);
+}
+
+int export_joints(const ExportOptions& options, Console& console) {
+  const std::vector<ExportedAxis> axes = exported_axes(options.axes);
+  if (axes.size() > 1 && options.into.empty()) {
+    throw InputError(
+        error::bad_usage, {}, fmt::format("{} joints, and no robot that they belong to.", axes.size()),
+        "name the robot by --into: how its joints hang together stands there. Without it a bench has one joint.");
+  }
+  refuse_overwriting(options, axes);
+  Diagnostics warnings;
+  std::string robot = options.into.empty() ? std::string() : read_text_file(options.into);
+  std::string diagram_name;
+  std::vector<ExportedJoint> joints;
+  for (const ExportedAxis& axis : axes) {
+    DiagramOptions diagram = options.diagram;
+    diagram.keep_names = true;
+    diagram.parameters = axis.parameters;
+    const Program program = load_diagram(diagram, warnings);
+    diagram_name = program.graph.name;
+    const robots::Joint motor = robots::joint_of(program, options.joint);
+    ExportedJoint made{.axis = axis, .joint = robots::behind_gear(motor, axis.gear)};
+    const robots::FileOptions file{.format = options.format == "urdf" ? robots::Format::Urdf : robots::Format::Mujoco,
+                                   .joint = axis.joint,
+                                   .model = program.graph.name,
+                                   .link_inertia = axis.link_inertia,
+                                   .sample_time = program.graph.sample_time()};
+    robots::RobotFile written = options.into.empty() ? robots::bench_of(made.joint, file)
+                                                     : robots::merged(made.joint, file, options.into, robot);
+    robot = std::move(written.text);
+    made.changes = std::move(written.changes);
+    made.left_out = made.joint.neglected;
+    made.left_out.insert(made.left_out.end(), written.unmapped.begin(), written.unmapped.end());
+    if (!axis.record.empty()) {
+      made.compared = comparison(options, axis, motor, program, warnings);
+    }
+    joints.push_back(std::move(made));
+  }
+  write_file_atomically(options.output, robot);
+  if (options.json) {
+    console.print(as_json(options, joints, diagram_name).dump(2) + "\n");
+  } else {
+    for (const ExportedJoint& one : joints) {
+      console.print(text_of(options, one, diagram_name));
+    }
+  }
   console.report(warnings);
   return exit_ok;
 }
@@ -182,7 +277,7 @@ int export_joint(const ExportOptions& options, Console& console) {
 Action add_export(CLI::App& app) {
   const auto options = std::make_shared<ExportOptions>();
   app.add_option("FILE", options->diagram.file, "The diagram of the axis.")->required()->option_text("AXIS.st");
-  app.add_option("--params", options->diagram.parameters, "Parameters, such as `tune` has fitted.")
+  app.add_option("--params", options->axes.parameters, "Parameters, such as `tune` has fitted.")
       ->option_text("TUNED.toml");
   app.add_option("--top", options->diagram.top, "The block to take, where the file has several that no other contains.")
       ->option_text("NAME");
@@ -193,7 +288,10 @@ Action add_export(CLI::App& app) {
       ->option_text("FORMAT");
   app.add_option("--into", options->into, "A robot that the joint is merged into; without it, a bench of one joint.")
       ->option_text("ROBOT.xml");
-  app.add_option("--joint", options->name, "The joint's name in the robot; axis by default.")->option_text("NAME");
+  app.add_option("--joint", options->axes.joints,
+                 "The joint's name in the robot, axis by default; of several, each with its own parameters.")
+      ->option_text("NAME[=TUNED.toml]")
+      ->allow_extra_args(false);
   app.add_option("--velocity", options->joint.velocity, "The signal that is the joint's velocity, where several are.")
       ->option_text("SPEED.XOUT");
   app.add_option("--input", options->joint.input, "The input that is the actuator, where several drive.")
@@ -202,16 +300,19 @@ Action add_export(CLI::App& app) {
                  "What the diagram moves, kg*m^2 or kg, where its units do not tell it.")
       ->check(number_above_zero())
       ->option_text("J");
-  app.add_option("--link-inertia", options->link_inertia, "What of it the bodies of the robot have already.")
-      ->check(number_from_zero())
-      ->option_text("J");
-  app.add_option("--gear", options->gear, "Turns of the diagram's motor for one of the joint; 1 by default.")
-      ->check(number_above_zero())
-      ->option_text("N");
-  app.add_option("--in", options->input_record, "A record to compare diagram and joint over.")->option_text("LOG.csv");
+  app.add_option("--link-inertia", options->axes.link_inertias, "What of it the bodies of the robot have already.")
+      ->option_text("[JOINT=]J")
+      ->allow_extra_args(false);
+  app.add_option("--gear", options->axes.gears, "Turns of the diagram's motor for one of the joint; 1 by default.")
+      ->option_text("[JOINT=]N")
+      ->allow_extra_args(false);
+  app.add_option("--in", options->axes.records, "A record to compare diagram and joint over.")
+      ->option_text("[JOINT=]LOG.csv")
+      ->allow_extra_args(false);
   add_record_options(app, options->record);
+  app.add_flag("--json", options->json, "Prints JSON.");
   app.footer(std::string(export_examples));
-  return [options](Console& console) { return export_joint(*options, console); };
+  return [options](Console& console) { return export_joints(*options, console); };
 }
 
 }  // namespace hysteron::tool

@@ -43,6 +43,22 @@ LOOP = """FUNCTION_BLOCK LOOP  (* @ts 10ms *)
   PLANT(XIN := P.XOUT);
 END_FUNCTION_BLOCK
 """
+AXIS = """FUNCTION_BLOCK AXIS  (* @ts 1ms *)
+  VAR_INPUT I : LREAL; (* @unit A *) END_VAR
+  VAR_OUTPUT OMEGA : LREAL; (* @unit rad/s *) END_VAR
+  VAR
+    TORQUE : LREAL;  (* @unit N*m *)
+    DRY : HY_COULOMB_FRICTION := (LEVEL := 0.002, PRESLIDE := 0.00002);
+    INERTIA : HY_GAIN := (K := 5000.0);
+    SPEED : HY_INTEGRAL_FORWARD;
+  END_VAR
+  TORQUE := 0.05 * I;
+  DRY(XIN := TORQUE, V := SPEED.XOUT);
+  INERTIA(XIN := DRY.XOUT);
+  OMEGA := SPEED.XOUT;
+  SPEED(XIN := INERTIA.XOUT);
+END_FUNCTION_BLOCK
+"""
 SETTINGS = """[fit.AMP]
 K = {}
 
@@ -185,6 +201,13 @@ class Schemas(unittest.TestCase):
         (self.folder / "late.csv").write_text("t,U,Y\n" + "".join(f"{t:.2f},{u},{y:.6f}\n" for t, u, y in rows[100:]))
         self.holds("relay", self.printed("relay", "relay.csv", "--u", "U", "--y", "Y", "--json"),
                    self.printed("relay", "late.csv", "--u", "U", "--y", "Y", "--json"))
+
+    def test_export(self):
+        (self.folder / "axis.st").write_text(AXIS, encoding="utf-8")
+        (self.folder / "current.csv").write_text("t,I\n" + "".join(f"{0.001 * k:.3f},{k % 7 - 3}\n" for k in range(500)))
+        (self.folder / "arm.xml").write_text('<mujoco><worldbody><body><joint name="j"/><geom size=".1"/></body></worldbody></mujoco>')
+        self.holds("export", self.printed("export", "axis.st", "--in", "current.csv", "--out", "bench.xml", "--json"),
+                   self.printed("export", "axis.st", "--into", "arm.xml", "--joint", "j", "--out", "new.xml", "--json"))
 
     def test_map(self):
         self.holds("map", self.printed("map", "plant.st", "--format", "json"))

@@ -1,6 +1,7 @@
 // hysteron export, as a user runs it.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/tool/workbench.hpp"
@@ -97,6 +98,59 @@ TEST(Export, ReadsARecordAsTheParameterFileSays) {
   const auto done = bench.shell("hysteron export axis.st --params tuned.toml --in log.csv --out bench.xml");
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.err, HasSubstr("was converted to A"));
+}
+
+/// Two axes of one kind, each with what was fitted to it, in one go: what two exports one behind the other would write.
+TEST(Export, WritesSeveralJointsIntoOneRobot) {
+  const ExportBench bench;
+  bench.write("two.xml",
+              "<mujoco>\n  <worldbody><body><joint name=\"elbow\"/><geom size=\".1\"/>\n"
+              "    <body><joint name=\"wrist\"/><geom size=\".1\"/></body></body></worldbody>\n</mujoco>\n");
+  bench.write("wrist.toml", "[parameters.DRY]\nLEVEL = 0.001\n");
+  const auto done = bench.shell(
+      "hysteron export axis.st --joint elbow=tuned.toml --joint wrist=wrist.toml --gear elbow=10 --link-inertia 0.0001 "
+      "--into two.xml --out both.xml && hysteron export axis.st --params tuned.toml --joint elbow --gear 10 "
+      "--link-inertia 0.0001 --into two.xml --out one.xml && hysteron export axis.st --params wrist.toml --joint wrist "
+      "--link-inertia 0.0001 --into one.xml --out then.xml");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(bench.read("both.xml"), bench.read("then.xml"));
+  EXPECT_THAT(bench.read("both.xml"), AllOf(HasSubstr("frictionloss=\"0.04\""), HasSubstr("frictionloss=\"0.001\"")));
+  EXPECT_THAT(done.out, AllOf(HasSubstr("joint elbow, from SPEED.XOUT of AXIS with tuned.toml"),
+                              HasSubstr("joint wrist, from SPEED.XOUT of AXIS with wrist.toml")));
+}
+
+TEST(Export, RefusesWhatIsOfNoJointOrOfTwo) {
+  const ExportBench bench;
+  for (const auto& [options, text] :
+       {std::pair("--joint elbow --joint wrist", "no robot that they belong to"),
+        {"--joint elbow --joint elbow --into arm.xml", "--joint elbow is stated twice"},
+        {"--joint elbow=tuned.toml --params tuned.toml --into arm.xml", "is of no joint"},
+        {"--joint elbow= --into arm.xml", "names no file"},
+        {"--joint elbow --gear wrist=5 --into arm.xml", "no --joint is called wrist"},
+        {"--joint elbow --gear 5 --gear 6 --into arm.xml", "--gear is stated twice"},
+        {"--joint elbow --gear elbow=5 --gear elbow=6 --into arm.xml", "--gear is stated twice for elbow"},
+        {"--joint elbow --gear elbow=0 --into arm.xml", "a number above 0 is needed, not 0"},
+        {"--link-inertia lots", "a number from 0 on is needed, not lots"}}) {
+    const auto refused = bench.shell(std::string("hysteron export axis.st --out none.xml ") + options);
+    EXPECT_EQ(refused.code, 2) << options;
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("HY730"), HasSubstr(text))) << options;
+    EXPECT_FALSE(bench.has("none.xml"));
+  }
+}
+
+TEST(Export, PrintsTheJointAsJson) {
+  const ExportBench bench;
+  const auto done = bench.shell("hysteron export axis.st --params tuned.toml --gear 10 --out bench.xml --json");
+  EXPECT_EQ(done.code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out);
+  const auto& joint = json.at("joints").at(0);
+  EXPECT_EQ(joint.at("name"), "axis");
+  EXPECT_DOUBLE_EQ(joint.at("inertia").get<double>(), 0.02);
+  EXPECT_DOUBLE_EQ(joint.at("friction").get<double>(), 0.04);
+  EXPECT_DOUBLE_EQ(joint.at("actuator").at("gain").get<double>(), 0.5);
+  EXPECT_TRUE(joint.at("position").at(0).is_null()) << "open";
+  EXPECT_THAT(joint.at("left_out").at(0).at("what").get<std::string>(), HasSubstr("DRY"));
+  EXPECT_TRUE(joint.at("compared").is_null());
 }
 
 TEST(Export, MergesIntoARobotAndNeverOverIt) {

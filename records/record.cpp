@@ -78,9 +78,14 @@ const Column& Record::column(std::string_view name) const {
     const bool is_sibling = other && equal_ignoring_case(other->vector, element->vector);
     near = flat != known.end() ? *flat : is_sibling ? std::string() : near;
   }
+  std::vector<std::string> shown = known;
+  if (!time_name_.empty()) {  // as the file calls it; a record of a stated rate has none
+    shown.insert(shown.begin(), time_name_);
+  }
   throw InputError(error::missing_column, header_,
-                   fmt::format("There is no column {}; the columns are {}.", name,
-                               known.empty() ? std::string("t alone") : fmt::format("t, {}", fmt::join(known, ", "))),
+                   fmt::format("There is no column {}; the {}.", name,
+                               shown.size() == 1 ? fmt::format("only column is {}", shown.front())
+                                                 : fmt::format("columns are {}", fmt::join(shown, ", "))),
                    near.empty()
                        ? fmt::format("record the signal, or say which column it is, as --column {}=NAME.", name)
                        : fmt::format("if {} is meant, say so: --column {}={}.", near, name,

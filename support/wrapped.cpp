@@ -16,7 +16,8 @@ namespace {
 /// Narrower than this nothing can be read, broken or not.
 constexpr std::size_t least_width = 20;
 constexpr std::size_t least_room = 12;  ///< behind an indent
-constexpr std::size_t below = 4;        ///< further in than a first column, a second one that stands below it
+constexpr std::size_t shallow_column = 2;
+constexpr std::size_t below = 4;  ///< further in than a first column, a second one that stands below it
 
 /// Without the escape sequences of colours.
 std::size_t shown_count(std::string_view text) {
@@ -98,17 +99,15 @@ void append_wrapped(std::string& result, std::string_view line, std::size_t widt
     append_broken(result, line, indent, hanging, width);
     return;
   }
-  if (first + below + least_room > width) {
-    result += line;
+  // What has no room so far in stands further out, the second column below the first.
+  const std::size_t shallow = std::min(first, shallow_column) + below;
+  if (*second == 0) {
+    append_broken(result, std::string(shallow, ' ') + std::string(line.substr(first)), shallow, shallow, width);
     return;
   }
-  const auto gap = *second == 0 ? line.size() : line.find_last_not_of(' ', *second - 1) + 1;
-  append_broken(result, line.substr(0, gap), first + below, first, width);
-  if (*second != 0) {
-    const std::string behind = std::string(first + below, ' ') + std::string(line.substr(*second));
-    result += '\n';
-    append_broken(result, behind, first + below, first + below, width);
-  }
+  append_broken(result, line.substr(0, line.find_last_not_of(' ', *second - 1) + 1), shallow, first, width);
+  result += '\n';
+  append_broken(result, std::string(shallow, ' ') + std::string(line.substr(*second)), shallow, shallow, width);
 }
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace hysteron {
 [[nodiscard]] std::size_t terminal_width(std::FILE* stream);
 
 /// The text with its long lines broken at blanks. What follows of a line stands below its first word; of a line of two
-/// columns, `  --out FILE   The result.`, below the second; where that leaves no room for words, the second column
-/// stands below the first. A table, which has more columns, a line of a source that an error shows, a command to be
-/// copied
-/// (`$ …`) and a word that is longer than the width stay as they are. Colours count no characters. 0 breaks nothing.
+/// columns, `  --out FILE   The result.`, below the second. Where that leaves no room for words, the second column
+/// stands below the first, and what is indented so far stands further out. A table, which has more columns, a line of a
+/// source that an error shows, a command to be copied (`$ …`) and a word that is longer than the width stay as they
+/// are. Colours count no characters. 0 breaks nothing.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
 }  // namespace hysteron

@@ -68,7 +68,7 @@ void set_each(const std::vector<std::string>& texts, std::vector<ExportedAxis>& 
   }
 }
 
-double number_of(const std::string& text, const char* option, bool zero_allowed) {
+double checked_number(const std::string& text, const char* option, bool zero_allowed) {
   const ParsedNumber number = parse_number(text);
   const bool fits = number.status == NumberStatus::Finite && (zero_allowed ? number.value >= 0.0 : number.value > 0.0);
   if (!fits) {
@@ -106,9 +106,9 @@ std::vector<ExportedAxis> exported_axes(const AxisTexts& texts) {
                   "leave --params out, or leave the file out of the joint that it is for.");
   }
   set_each(texts.gears, axes, "--gear", false,
-           [](ExportedAxis& axis, const std::string& text) { axis.gear = number_of(text, "--gear", false); });
+           [](ExportedAxis& axis, const std::string& text) { axis.gear = checked_number(text, "--gear", false); });
   set_each(texts.link_inertias, axes, "--link-inertia", false, [](ExportedAxis& axis, const std::string& text) {
-    axis.link_inertia = number_of(text, "--link-inertia", true);
+    axis.link_inertia = checked_number(text, "--link-inertia", true);
   });
   set_each(texts.records, axes, "--in", true, [](ExportedAxis& axis, const std::string& text) { axis.record = text; });
   return axes;

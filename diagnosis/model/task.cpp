@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "codegen/graph/units.hpp"
 #include "codegen/parameters/apply.hpp"
 #include "codegen/parameters/elements.hpp"
 #include "support/errors.hpp"
@@ -18,10 +19,11 @@ constexpr double prior_share = 0.3;
 /// A tuning that ran into a bound has bent the parameter to make up for something else: it says less of its value.
 constexpr double wider_at_bound = 5.0;
 
-Unknown known_of(const Parameter& parameter) {
+/// The unit is what the wires make of it: C1 of a slope between V and um is um/V.
+Unknown known_of(const Parameter& parameter, const std::string& unit) {
   const double value = parameter.value.front();
   Unknown unknown{.path = parameter.path,
-                  .unit = std::string(parameter.field.unit),
+                  .unit = unit,
                   .start = value,
                   .lower = parameter.field.minimum,
                   .upper = parameter.field.maximum,
@@ -57,13 +59,15 @@ Task task_of(const DiagnosisInput& input) {
   const parameters::ParameterFile file = parameters::by_element(input.file, graph);
   Task task{.file = {.file = file.file, .values = file.values, .initial = file.initial}, .records = input.records};
   parameters::apply(file, graph);
+  const std::vector<std::string> units = units::Solution(graph, input.program.schedule).parameters();
+  const auto known_at = [&](std::size_t parameter) { return known_of(graph.parameters[parameter], units[parameter]); };
   for (const parameters::FitSetting& setting : file.fits) {
     const std::int64_t found = find_parameter(graph, setting.path);
     if (found < 0 || graph.parameters[static_cast<std::size_t>(found)].field.type != Type::Real ||
         graph.parameters[static_cast<std::size_t>(found)].field.length > 1) {
       continue;  // output_error_problem reports the first; arrays stay as they are
     }
-    Unknown unknown = known_of(graph.parameters[static_cast<std::size_t>(found)]);
+    Unknown unknown = known_at(static_cast<std::size_t>(found));
     unknown.lower = setting.minimum ? std::max(unknown.lower, setting.minimum->value) : unknown.lower;
     unknown.upper = setting.maximum ? std::min(unknown.upper, setting.maximum->value) : unknown.upper;
     if (setting.scale) {
@@ -78,14 +82,15 @@ Task task_of(const DiagnosisInput& input) {
     }
     add_known(unknown, setting.by_record ? input.records.size() : 1, task.known);
   }
-  for (const Parameter& parameter : graph.parameters) {
+  for (std::size_t i = 0; i < graph.parameters.size(); ++i) {
+    const Parameter& parameter = graph.parameters[i];
     const bool number = parameter.field.type == Type::Real && parameter.field.length == 1;
     if (!task.known.empty() && !file.fits.empty()) {
       break;
     }
     if (number && parameter.value.front() != 0.0 && std::isfinite(parameter.value.front()) &&
         parameter.field.role != FieldRole::StartValue) {
-      task.known.push_back(known_of(parameter));
+      task.known.push_back(known_at(i));
     }
   }
   for (const parameters::PlacedText& state : input.file.tune.initial_states) {

@@ -7,12 +7,12 @@
 
 static int failures = 0;
 
-#define CHECK(condition)                                                \
-  do {                                                                  \
-    if (!(condition)) {                                                 \
+#define CHECK(condition)                                              \
+  do {                                                                \
+    if (!(condition)) {                                               \
       fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition); \
-      ++failures;                                                       \
-    }                                                                   \
+      ++failures;                                                     \
+    }                                                                 \
   } while (0)
 
 static const char plant_text[] =
@@ -139,6 +139,78 @@ static void errors_have_code_place_and_mend(void) {
   hysteron_diagram_free(diagram);
 }
 
+/* An integrator under a gain, TS = 10 ms: the loop that settles in 0.5 s as a first-order lag has K = (1 -
+ * 50^(-TS/0.5))/TS. */
+static const char loop_text[] =
+    "FUNCTION_BLOCK LOOP  (* @ts 10ms *)\n"
+    "  VAR_INPUT SP : LREAL; END_VAR\n"
+    "  VAR_OUTPUT Y : LREAL; END_VAR\n"
+    "  VAR P : HY_GAIN := (K := 2.0); PLANT : HY_INTEGRAL_FORWARD; END_VAR\n"
+    "  P(XIN := SP - PLANT.XOUT);\n"
+    "  Y := PLANT.XOUT;\n"
+    "  PLANT(XIN := P.XOUT);\n"
+    "END_FUNCTION_BLOCK\n";
+
+/* The diagram with a range of K and a goal. */
+static hysteron_diagram* loop_with_goal(const char* range, const char* goal) {
+  char file[512];
+  hysteron_diagram* diagram = hysteron_compile_text(loop_text, NULL, NULL);
+  hysteron_diagram* with_goal;
+  snprintf(
+      file, sizeof file,
+      "{\"params_text\": \"[fit.P]\\nK = {%s}\\n[goal]\\norder = 1\\nsettling_time = 0.5\\nloop = 'P.XOUT'\\n%s\"}",
+      range, goal);
+  with_goal = hysteron_with_parameters(diagram, file, NULL);
+  hysteron_diagram_free(diagram);
+  CHECK(with_goal != NULL);
+  return with_goal;
+}
+
+static int count_and_stop(void* user, double done, int iteration) {
+  CHECK(done >= 0.0 && done <= 1.0 && iteration >= 0);
+  return ++*(int*)user >= 2;
+}
+
+static double tuned_gain(const hysteron_fit* fit) {
+  const char* at = strstr(hysteron_fit_parameters(fit), "\nK = ");
+  CHECK(at != NULL);
+  return at != NULL ? atof(at + 5) : 0.0;
+}
+
+static void a_goal_is_tuned_without_a_record(void) {
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = loop_with_goal("min = 0.1, max = 50.0", "");
+  hysteron_fit* fit = hysteron_tune(diagram, NULL, 0, "{\"starts\": 2}", NULL, NULL, &messages);
+  int calls = 0;
+  double gain;
+  CHECK(fit != NULL && hysteron_messages_count(messages) == 0);
+  hysteron_messages_free(messages);
+  gain = tuned_gain(fit);
+  CHECK(gain > 7.50 && gain < 7.55);
+  CHECK(strstr(hysteron_fit_json(fit), "\"status\": \"tuned\"") != NULL);
+  hysteron_fit_free(fit);
+  fit = hysteron_tune(diagram, NULL, 0, NULL, count_and_stop, &calls, NULL);
+  CHECK(calls >= 2 && fit != NULL && strstr(hysteron_fit_json(fit), "\"status\": \"cancelled\"") != NULL);
+  hysteron_fit_free(fit);
+  CHECK(hysteron_tune(diagram, NULL, 0, "{\"toop\": 1}", NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  hysteron_diagram_free(diagram);
+}
+
+/* The effort of the first step is K: below the lower bound of K no limit on it is kept. */
+static void limits_that_cannot_be_kept_are_an_error_beside_the_result(void) {
+  hysteron_messages* messages = NULL;
+  hysteron_diagram* diagram = loop_with_goal("min = 4.0, max = 20.0, start = 8.0", "[goal.limits]\\neffort = 2.0\\n");
+  hysteron_fit* fit = hysteron_tune(diagram, NULL, 0, NULL, NULL, NULL, &messages);
+  CHECK(fit != NULL && strstr(hysteron_fit_json(fit), "\"status\": \"contradiction\"") != NULL);
+  CHECK(code_of(messages) == 533);
+  CHECK(tuned_gain(fit) == 4.0);
+  hysteron_fit_free(fit);
+  hysteron_diagram_free(diagram);
+  diagram = hysteron_compile_text(loop_text, NULL, NULL);
+  CHECK(hysteron_tune(diagram, NULL, 0, NULL, NULL, NULL, &messages) == NULL && code_of(messages) == 730);
+  hysteron_diagram_free(diagram);
+}
+
 static void null_is_refused_or_does_nothing(void) {
   hysteron_messages* messages = NULL;
   const double values[2] = {0.0, 1.0};
@@ -156,7 +228,8 @@ static void null_is_refused_or_does_nothing(void) {
   CHECK(hysteron_diagnose(NULL, NULL, 0, NULL, &messages) == NULL && code_of(messages) == 730);
   CHECK(hysteron_messages_count(NULL) == 0 && strcmp(hysteron_messages_text(NULL), "") == 0);
   CHECK(hysteron_message_code(NULL, 0) == 0 && strcmp(hysteron_message_mend(NULL, 3), "") == 0);
-  CHECK(hysteron_diagram_json(NULL) == NULL && hysteron_input_count(NULL) == 0 && hysteron_output_name(NULL, 0) == NULL);
+  CHECK(hysteron_diagram_json(NULL) == NULL && hysteron_input_count(NULL) == 0 &&
+        hysteron_output_name(NULL, 0) == NULL);
   CHECK(hysteron_record_rows(NULL) == 0 && hysteron_record_time(NULL) == NULL && hysteron_record_name(NULL, 0) == NULL);
   CHECK(hysteron_fit_json(NULL) == NULL && hysteron_fit_parameters(NULL) == NULL);
   CHECK(hysteron_diagnosis_verdict(NULL) == NULL && hysteron_diagnosis_file_name(NULL, 0) == NULL);
@@ -174,6 +247,8 @@ int main(void) {
   steps_and_runs_give_the_same();
   an_input_of_another_type_makes_no_step();
   errors_have_code_place_and_mend();
+  a_goal_is_tuned_without_a_record();
+  limits_that_cannot_be_kept_are_an_error_beside_the_result();
   null_is_refused_or_does_nothing();
   return failures == 0 ? 0 : 1;
 }

@@ -68,6 +68,24 @@ TEST(Record, AMissingColumnNamesThoseThereAre) {
   }
 }
 
+/// The time is listed as the file calls it, and not at all where a rate is stated instead.
+TEST(Record, AMissingColumnNamesTheTimeAsTheFileDoes) {
+  const auto cause = [](const Record& record) {
+    try {
+      (void)record.column("Q");
+      return std::string();
+    } catch (const InputError& refused) {
+      return refused.diagnostics().all().front().cause;
+    }
+  };
+  EXPECT_EQ(cause(parse_record("log.csv", "Zeit;U;Y\n0;1;2\n1;1;2\n")),
+            "There is no column Q; the columns are Zeit, U, Y.");
+  EXPECT_EQ(cause(parse_record("log.csv", "U,Y\n1,2\n1,2\n", {.rate = 100.0})),
+            "There is no column Q; the columns are U, Y.");
+  EXPECT_EQ(cause(parse_record("log.csv", "U\n1\n2\n", {.rate = 100.0})),
+            "There is no column Q; the only column is U.");
+}
+
 TEST(Record, KnowsWhereItsNumbersStand) {
   const auto at = [](const Record& record, std::string_view column, std::size_t row) {
     const Place place = record.place(column, row);

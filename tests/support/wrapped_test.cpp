@@ -29,6 +29,11 @@ TEST(Wrapped, PutsTheSecondColumnBelowWhereItHasNoRoom) {
             "  -p FILE, --params\n      FILE, --more FILE\n      Read.");
 }
 
+TEST(Wrapped, PutsFurtherOutWhatIsIndentedTooFar) {
+  EXPECT_EQ(wrapped("                    The result, and what is said of it.", 30),
+            "      The result, and what is\n      said of it.");
+}
+
 TEST(Wrapped, LeavesCommandsToBeCopied) {
   const char* const command = "      $ echo performance > /sys/devices/system/cpu/cpu3/cpufreq/scaling_governor";
   EXPECT_EQ(wrapped(command, 40), command);

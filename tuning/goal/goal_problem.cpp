@@ -27,6 +27,7 @@ using parameters::PlacedText;
 
 /// How many steps the loop rests before the test signal begins.
 constexpr std::size_t steps_at_rest = 10;
+constexpr double least_steps = 10.0;  ///< of a test
 constexpr double most_steps = 1e6;
 constexpr double settling_times = 3.0;
 
@@ -196,10 +197,13 @@ class GoalBuilder {
     const double watched = settling_times * problem_.model->settling;
     const double duration = value_or(goal_.duration, watched);
     const double whole = std::max(duration, watched);
-    if (whole / ts > most_steps || duration / ts < 10.0) {
+    const bool is_short = duration / ts < least_steps;
+    if (whole / ts > most_steps || is_short) {
       const Place place = goal_.duration ? goal_.duration->place : goal_.place;
+      const double told = is_short ? duration : whole;
       diagnostics_.error(error::contradicting_range, place,
-                         fmt::format("The test lasts {:.4g} s, {:.3g} steps of the diagram.", whole, whole / ts),
+                         fmt::format("The test lasts {:.4g} s, {:.3g} steps of the diagram{}.", told, told / ts,
+                                     told > duration ? ", since limits count over three settling times" : ""),
                          "choose a duration of 10 to 1000000 steps, or another wished response.");
       return;
     }

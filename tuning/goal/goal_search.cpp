@@ -34,8 +34,7 @@ constexpr double is_active = 0.01;
 constexpr double near_bound = 1e-2;
 constexpr double beside_bound = 1e-4;
 constexpr double hardly_worse = 1e-3;  ///< as a share of the cost, or of the excess of a broken limit
-constexpr double at_bound = 1e-6;
-constexpr double beside_slow = 0.02;  ///< as a share of the parameters: so near to loops that are too slow
+constexpr double beside_slow = 0.02;   ///< as a share of the parameters: so near to loops that are too slow
 
 struct Candidate {
   VectorXd x{};
@@ -399,7 +398,8 @@ class GoalSearch {
     result_.x = best.x;
     result_.status = best.excess > 0.0 && status != GoalStatus::Cancelled ? GoalStatus::Contradiction : status;
     for (Index j = 0; j < best.x.size(); ++j) {
-      const double near = at_bound * typical_[j];
+      // A bound on which the loop has no value, or breaks a limit, is held by a point beside it.
+      const double near = beside_bound * typical_[j];
       result_.at_bound.push_back(best.x[j] - lower_[j] <= near   ? AtBound::Lower
                                  : upper_[j] - best.x[j] <= near ? AtBound::Upper
                                                                  : AtBound::Free);

@@ -36,6 +36,25 @@ TEST(Task, AValueOnABoundOfItsFitIsRemarkedOn) {
   EXPECT_THAT(remarks_for("{min = 0.4999, max = 0.9}"), ElementsAre(HasSubstr("lower bound"))) << "nearly is enough";
 }
 
+/// A block knows its units as 'y/'x; a reader wants those of his wires.
+TEST(Task, UnitsAreThoseOfTheWires) {
+  constexpr std::string_view plant = R"(FUNCTION_BLOCK PLANT  (* @ts 5ms *)
+  VAR_INPUT U : LREAL; (* @unit V *) END_VAR
+  VAR_OUTPUT Y : LREAL; (* @unit um *) END_VAR
+  VAR AMP : HY_GAIN := (K := 2.0); END_VAR
+  AMP(XIN := U);
+  Y := AMP.XOUT;
+END_FUNCTION_BLOCK
+)";
+  const auto log =
+      test::measured(test::program_of(std::string(plant)), test::record_of("U", test::rich_force(400)), 0.001);
+  for (const std::string fit : {"", "[fit.AMP]\nK = {}\n"}) {
+    const Task task = task_of(test::input_of(std::string(plant), fit, {log}));
+    ASSERT_EQ(task.known.size(), 1U);
+    EXPECT_EQ(task.known.front().unit, "um/V") << fit;
+  }
+}
+
 /// Each record of an axis with a force of its own that nobody has logged.
 constexpr std::string_view biased = R"(FUNCTION_BLOCK AXIS  (* @ts 5ms *)
   VAR_INPUT

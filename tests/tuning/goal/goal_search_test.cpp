@@ -290,6 +290,32 @@ TEST(GoalSearch, SaysThatAParameterEndsOnItsBound) {
   }
 }
 
+/// On the bound itself the effort would be 5, which the limit forbids by a hair: the result stands beside it.
+TEST(GoalSearch, AParameterBesideABoundThatALimitForbidsIsAtItsBound) {
+  const GoalResult result = tune_for_goal(loops::problem_of(
+      loops::integrator(), settings_of_gain(1.0, "settling_time = 0.5\n[goal.limits]\neffort = 4.9999999\n",
+                                            "{min = 0.0, max = 5.0, scale = 10.0}")));
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message;
+  EXPECT_LT(result.x[0], 5.0);
+  EXPECT_GT(result.x[0], 4.999);
+  EXPECT_EQ(result.at_bound[0], AtBound::Upper);
+}
+
+/// The length that is wrong is the one that is told.
+TEST(GoalSearch, SaysWhichLengthATestCannotHave) {
+  const auto cause = [](const std::string& goal) {
+    try {
+      (void)loops::problem_of(loops::integrator(), settings_of_gain(1.0, goal));
+      return std::string();
+    } catch (const InputError& refused) {
+      return refused.diagnostics().all().front().cause;
+    }
+  };
+  EXPECT_EQ(cause("settling_time = 0.5\nduration = 0.05\n"), "The test lasts 0.05 s, 5 steps of the diagram.");
+  EXPECT_EQ(cause("settling_time = 20000.0\nduration = 20000.0\n"),
+            "The test lasts 6e+04 s, 6e+06 steps of the diagram, since limits count over three settling times.");
+}
+
 /// What a limit is held against does not depend on how long the error is watched.
 TEST(GoalSearch, AShortTestDoesNotHideALaterOvershoot) {
   const auto problem_of = [](const std::string& duration) {

@@ -11,6 +11,7 @@
 
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
+#include "tuning/goal/goal_message.hpp"
 
 namespace hysteron {
 

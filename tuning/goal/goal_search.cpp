@@ -12,6 +12,8 @@
 #include "support/errors.hpp"
 #include "support/numbers.hpp"
 #include "tuning/goal/constrained.hpp"
+#include "tuning/goal/goal_message.hpp"
+#include "tuning/goal/slowness.hpp"
 #include "tuning/spread_start.hpp"
 
 namespace hysteron {
@@ -35,6 +37,7 @@ constexpr double near_bound = 1e-2;
 constexpr double beside_bound = 1e-4;
 constexpr double hardly_worse = 1e-3;  ///< as a share of the cost, or of the excess of a broken limit
 constexpr double beside_slow = 0.02;   ///< as a share of the parameters: so near to loops that are too slow
+constexpr double on_slow = 1e-4;       ///< nearer than this, the direction from the result to such a loop says nothing
 
 struct Candidate {
   VectorXd x{};
@@ -187,13 +190,13 @@ class GoalSearch {
     add_places(near_limit);
     if (best_.excess > 0.0) {
       is_feasibility_ = true;
-      (void)descend(from);
+      (void)descend_along_slow(from);
       if (best_.excess > 0.0) {
         return GoalStatus::Contradiction;
       }
     }
     is_feasibility_ = false;
-    const FitStatus ended = descend(VectorXd(best_.x));
+    const FitStatus ended = descend_along_slow(VectorXd(best_.x));
     return ended == FitStatus::Converged || ended == FitStatus::NearlyConverged ? GoalStatus::Tuned
                                                                                 : GoalStatus::NotConverged;
   }
@@ -234,6 +237,19 @@ class GoalSearch {
     return any;
   }
 
+  /// A search that met loops that are too slow ends before them. It goes on with their bound as one that it knows,
+  /// along which it can slide.
+  FitStatus descend_along_slow(const VectorXd& from) {
+    FitStatus ended = descend(from);
+    const bool is_done = is_feasibility_ && best_.excess <= 0.0;
+    if (!is_done && !cancelled_ && is_held_by_test(best_)) {
+      keeps_settling_ = true;
+      ended = descend(VectorXd(best_.x));
+      keeps_settling_ = false;
+    }
+    return ended;
+  }
+
   /// Rounds of Ipopt, each with the places that the one before has brought up.
   FitStatus descend(VectorXd x) {
     for (int round = 0; round < most_exchanges && !cancelled_; ++round) {
@@ -267,7 +283,8 @@ class GoalSearch {
     const auto costs = has_bound_on_cost() ? std::ssize(problem_.plants) : Index{0};
     cost_unit_ = std::max(model_.cost(), 1e-300);
     ConstrainedProblem problem;
-    problem.constraint_count = costs + std::ssize(places_);
+    const Index settling = keeps_settling_ ? std::ssize(problem_.plants) : 0;
+    problem.constraint_count = costs + std::ssize(places_) + settling;
     problem.start = extended(x, bounded, is_feasibility_ ? model_.largest_excess() : 1.0);
     problem.lower = extended(lower_, bounded, -infinity);
     problem.upper = extended(upper_, bounded, infinity);
@@ -301,6 +318,11 @@ class GoalSearch {
         if (is_feasibility_) {
           point.jacobian(costs + i, n) = -1.0;
         }
+      }
+      for (Index plant = 0; plant < settling; ++plant) {
+        const Margin slow = slowness(model_.response(static_cast<std::size_t>(plant)), steps_watched(problem_.drive));
+        point.constraints[costs + std::ssize(places_) + plant] = slow.value;
+        point.jacobian.row(costs + std::ssize(places_) + plant).head(n) = slow.by;
       }
       return true;
     };
@@ -378,9 +400,11 @@ class GoalSearch {
 
   /// Whether loops that are too slow lie beside the result, and it gets worse away from them: a bound that nobody gave.
   bool is_held_by_test(const Candidate& best) {
-    const auto nearest =
-        std::ranges::min_element(slow_points_, {}, [&](const VectorXd& x) { return distance(best.x, x); });
-    if (nearest == slow_points_.end()) {
+    const auto nearest = std::ranges::min_element(slow_points_, {}, [&](const VectorXd& x) {
+      const double share = distance(best.x, x);
+      return share < on_slow ? infinity : share;
+    });
+    if (nearest == slow_points_.end() || distance(best.x, *nearest) < on_slow) {
       return false;
     }
     const VectorXd step = std::min(1.0, beside_slow / distance(best.x, *nearest)) * (*nearest - best.x);
@@ -430,30 +454,7 @@ class GoalSearch {
                                   .against = excess > 0.0 && share >= least_share ? share : 0.0});
       }
     }
-    result_.message = message();
-  }
-
-  [[nodiscard]] std::string message() const {
-    const std::string held = result_.is_held_by_test
-                                 ? fmt::format(" Beside it the loop {}, {}: let the test last longer.",
-                                               what_it_does(LoopState::TooSlow), length_of_test(problem_))
-                                 : "";
-    switch (result_.status) {
-      case GoalStatus::Tuned:
-        return (problem_.limits.empty() ? "The loop is tuned." : "The loop is tuned, and all limits are kept.") + held;
-      case GoalStatus::NotConverged:
-        return fmt::format("The search ended before it converged; the best point is kept{}.{}",
-                           problem_.limits.empty() ? "" : ", and all limits are kept", held);
-      case GoalStatus::Contradiction:
-        return result_.is_held_by_test
-                   ? "The limits were not kept together by a loop that settles within the test. Of these loops, the "
-                     "one that breaks them least is the result." +
-                         held
-                   : "The limits were not kept together; the point that breaks them least is the result.";
-      case GoalStatus::Cancelled:
-        return "The search was cancelled; the best point so far is kept.";
-    }
-    return {};
+    result_.message = message_of(problem_, result_);
   }
 
   const GoalProblem& problem_;
@@ -467,6 +468,7 @@ class GoalSearch {
   std::vector<LimitPlace> places_{};
   bool is_feasibility_ = false;
   bool cancelled_ = false;
+  bool keeps_settling_ = false;  ///< the bound of loops that are too slow is a constraint
   int start_number_ = 0;
   int points_tried_ = 0;                    ///< where a start does not settle
   bool too_slow_ = false;                   ///< some loop dies away, but not within the test
@@ -480,10 +482,6 @@ class GoalSearch {
 };
 
 }  // namespace
-
-std::string length_of_test(const GoalProblem& problem) {
-  return fmt::format("{:.4g} s", static_cast<double>(problem.drive.steps - problem.begin) * problem.drive.sample_time);
-}
 
 GoalResult tune_for_goal(const GoalProblem& problem, const GoalOptions& options) {
   return GoalSearch(problem, options).run();

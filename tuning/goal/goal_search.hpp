@@ -7,8 +7,9 @@
 // 3. From there the cost of goal_problem.hpp is minimised under the limits. Limits over time and frequency are kept at
 //    their local maxima; where these move, the new ones are added and the search goes on (an exchange method, J. W.
 //    Blankenship, J. E. Falk, J. Optim. Theory Appl. 19 (1976) 261).
-// A point whose loop does not settle has no value, so that the search stays among stable loops. The best point that was
-// ever seen counts, the start among them.
+// A point whose loop does not settle has no value, so that the search stays among stable loops. Where it met loops that
+// settle too slowly for the test, it goes on with their bound as a constraint (slowness.hpp), along which it slides.
+// The best point that was ever seen counts, the start among them.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,9 +82,6 @@ struct GoalResult {
 /// @throws InputError HY531 where nothing comes back of what is put into the loop, HY532 where no point was found at
 /// which the loop settles.
 [[nodiscard]] GoalResult tune_for_goal(const GoalProblem& problem, const GoalOptions& options = {});
-
-/// How long the test lasts from its step on, with its unit: 1.5 s.
-[[nodiscard]] std::string length_of_test(const GoalProblem& problem);
 
 /// The parameter file with the tuned values in it, and what stands at the top of it and beside its values.
 [[nodiscard]] parameters::ParameterFile tuned_file(parameters::ParameterFile file, const GoalProblem& problem,

@@ -17,10 +17,6 @@ using Eigen::VectorXd;
 
 /// Of the largest |v|: small against any curvature, large against rounding.
 constexpr double share_put_in = 1e-6;
-/// Of the peak of h, below which it has died away.
-constexpr double died_away = 1e-7;
-constexpr std::size_t longest_impulse = 20;  ///< test durations
-constexpr std::size_t shortest_limit = 2000;
 /// Of the peak in the third quarter: what has become less than this share of it in the last is dying away.
 constexpr double dying_away = 0.999;
 
@@ -86,7 +82,7 @@ LoopState LoopRun::take_impulse(Machine<S>& machine, std::span<const Index> colu
                                 LoopResponse& response) {
   constexpr std::size_t block = 256;
   const double put_in = share_put_in * (largest_ > 0.0 ? largest_ : 1.0);
-  const std::size_t most = steps > 0 ? steps : std::max(longest_impulse * drive_.steps, shortest_limit);
+  const std::size_t most = steps > 0 ? steps : steps_watched(drive_);
   std::array<std::vector<std::byte>, 2> states;  // of the run with +ε, of that with −ε
   for (std::vector<std::byte>& state : states) {
     state.resize(machine.saved_size());

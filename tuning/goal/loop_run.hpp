@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +16,13 @@
 #include "tuning/simulation.hpp"
 
 namespace hysteron {
+
+/// Of the peak of h, below which it has died away.
+inline constexpr double died_away = 1e-7;
+/// How long h is watched at the most: twenty times the test.
+[[nodiscard]] inline std::size_t steps_watched(const Drive& drive) {
+  return std::max<std::size_t>(20 * drive.steps, 2000);
+}
 
 /// A loop with one plant in it.
 struct LoopPlant {

@@ -10,6 +10,7 @@
 #include "tests/support/scratch_folder.hpp"
 #include "tests/tuning/goal/loops.hpp"
 #include "tuning/goal/contradiction.hpp"
+#include "tuning/goal/slowness.hpp"
 
 namespace hysteron {
 namespace {
@@ -189,6 +190,45 @@ TEST(GoalSearch, NamesATestThatIsTooShortForItsLimits) {
     const bool is_kept = limit != "effort = 0.01\n";
     EXPECT_EQ(longer.status, is_kept ? GoalStatus::Tuned : GoalStatus::Contradiction) << limit << longer.message;
     EXPECT_TRUE(is_kept || longer.x[0] == 0.1) << longer.x[0];
+  }
+}
+
+/// Both gains make the loop, and the first alone its effort: K of P below 0.06 settles within the test where K of BODY
+/// is above 7.4. The search has to slide along the loops that are too slow.
+TEST(GoalSearch, SlidesAlongLoopsThatAreTooSlow) {
+  const GoalProblem problem = loops::problem_of(
+      loops::integrator(),
+      settings_of_gain(1.0, "settling_time = 0.5\n[goal.limits]\neffort = 0.06\n", "{min = 0.001, max = 50.0}") +
+          "[fit.BODY]\nK = {min = 0.1, max = 10.0}\n");
+  const GoalResult result = tune_for_goal(problem);
+  EXPECT_EQ(result.status, GoalStatus::Tuned) << result.message << result.x.transpose();
+  EXPECT_TRUE(result.limits[0].is_kept);
+}
+
+/// A pole p: h = 1, p − 1, …, of size ∝ pᵏ, so that what is asked for is 0.75·N·ln p = ln(10⁻⁷) less a constant.
+TEST(Slowness, IsThatOfThePole) {
+  LoopResponse response;
+  const std::size_t watched = 4000;
+  for (const double pole : {0.985, 0.992}) {
+    response.impulse = {1.0};
+    for (std::size_t k = 1; k < 2048; ++k) {
+      response.impulse.push_back((pole - 1.0) * std::pow(pole, static_cast<double>(k - 1)));
+    }
+    // ∂h/∂p, of which the envelope takes the logarithm.
+    response.impulse_by = Eigen::MatrixXd::Zero(2048, 1);
+    for (Eigen::Index k = 1; k < 2048; ++k) {
+      const auto power = static_cast<double>(k - 1);
+      response.impulse_by(k, 0) = std::pow(pole, power) + (pole - 1.0) * power * std::pow(pole, power - 1.0);
+    }
+    const auto exact = [&](double p) {
+      return (std::log(1.0 - p) + (0.75 * static_cast<double>(watched) - 1.0) * std::log(p) - std::log(1e-7)) /
+             -std::log(1e-7);
+    };
+    const Margin found = slowness(response, watched);
+    EXPECT_NEAR(found.value, std::max(exact(pole) + 0.005, -1.0), 1e-9) << pole;
+    if (found.value > -1.0) {
+      EXPECT_NEAR(found.by[0], (exact(pole + 1e-6) - exact(pole - 1e-6)) / 2e-6, 1e-3 * std::fabs(found.by[0]));
+    }
   }
 }
 

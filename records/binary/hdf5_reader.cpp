@@ -183,8 +183,10 @@ class DataSets {
   ArrayList list_{};
 };
 
-/// The names of all data sets, in the order of their names.
-herr_t collect(hid_t /*root*/, const char* name, const H5O_info_t* info, void* names) {
+/// The names of all data sets, in the order of their names. What H5Ovisit2 tells of each is another type since
+/// HDF5 1.12.
+template <class Info>
+herr_t collect(hid_t /*root*/, const char* name, const Info* info, void* names) {
   if (info->type == H5O_TYPE_DATASET) {
     static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   }

@@ -198,7 +198,7 @@ class Variables {
 Table read_mat(const std::string& file, std::string bytes, const ReadOptions& options) {
   const std::lock_guard lock(one_binary_file_at_a_time());
   const NamedBytes named(bytes);
-  Mat_LogInitFunc("hysteron", [](int, char*) {});
+  Mat_LogInitFunc("hysteron", [](int, auto* /*text*/) {});  // the text is const in newer versions of matio
   const std::unique_ptr<mat_t, CloseMat> opened(Mat_Open(named.name().c_str(), MAT_ACC_RDONLY));
   if (opened == nullptr) {
     refuse_broken(file, "a MAT-file of MATLAB");

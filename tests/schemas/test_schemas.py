@@ -47,12 +47,14 @@ AXIS = """FUNCTION_BLOCK AXIS  (* @ts 1ms *)
   VAR_INPUT I : LREAL; (* @unit A *) END_VAR
   VAR_OUTPUT OMEGA : LREAL; (* @unit rad/s *) END_VAR
   VAR
+    KT : HY_GAIN := (K := 0.05);
     TORQUE : LREAL;  (* @unit N*m *)
     DRY : HY_COULOMB_FRICTION := (LEVEL := 0.002, PRESLIDE := 0.00002);
     INERTIA : HY_GAIN := (K := 5000.0);
     SPEED : HY_INTEGRAL_FORWARD;
   END_VAR
-  TORQUE := 0.05 * I;
+  KT(XIN := I);
+  TORQUE := KT.XOUT;
   DRY(XIN := TORQUE, V := SPEED.XOUT);
   INERTIA(XIN := DRY.XOUT);
   OMEGA := SPEED.XOUT;

@@ -11,7 +11,7 @@ namespace hysteron {
 
 struct FmuVariable {
   enum class Role : std::uint8_t { Input, Output, Parameter };
-  std::string name{};  ///< X, LAG.T1, of an element of an array TABLE.YS[1]
+  std::string name{};  ///< X, LAG.T1, of an element of an array TABLE.Y[1]
   Role role = Role::Input;
   Type type = Type::Real;
   std::string unit{};

@@ -205,7 +205,8 @@ TEST(Bodies, LoopsAndCallsHaveBounds) {
 TEST(Bodies, AForGoesFromAndToWhatItIsGiven) {
   const auto loop = [](const std::string& head) {
     return "FUNCTION_BLOCK F VAR_INPUT A : INT; B : INT; END_VAR VAR_OUTPUT S : DINT; LEFT : INT; END_VAR VAR I : INT; "
-           "END_VAR\nS := 0;\nIF A > 6 THEN A := 6; ELSIF A < -6 THEN A := -6; END_IF;\nIF NOT (B <= 5 AND B >= 0) THEN B "
+           "END_VAR\nS := 0;\nIF A > 6 THEN A := 6; ELSIF A < -6 THEN A := -6; END_IF;\nIF NOT (B <= 5 AND B >= 0) "
+           "THEN B "
            ":= 5; END_IF;\n" +
            head + " DO S := S * 10 + I; IF S > 7000 THEN EXIT; END_IF; END_FOR; LEFT := I; END_FUNCTION_BLOCK";
   };
@@ -221,7 +222,8 @@ TEST(Bodies, AForGoesFromAndToWhatItIsGiven) {
 
 TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
   const auto body = [](const std::string& statements) {
-    return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : LREAL; "
+    return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : "
+           "LREAL; "
            "END_VAR\nN := 0; Y := X; Z := R;\n" +
            statements + " END_FUNCTION_BLOCK";
   };
@@ -260,9 +262,11 @@ TEST(Bodies, TheTimeOfTheTaskIsReadInWholeMilliseconds) {
   const Faults untimed{"217:2", fmt::format("{}:2", error::missing_sample_time), "217:2"};
   EXPECT_EQ(faults_of(at("")), untimed);
   // A block within another one has the sample time of the outermost.
-  const std::string outer = "\nFUNCTION_BLOCK G (* {} @body *) VAR_OUTPUT MS : DINT; END_VAR VAR A : F; END_VAR A(); MS := A.MS; "
-                            "END_FUNCTION_BLOCK";
-  EXPECT_EQ(run_body(at("") + fmt::format(fmt::runtime(outer), "@ts 10ms"), six), (std::vector<double>{0, 10, 20, 30, 40, 50}));
+  const std::string outer =
+      "\nFUNCTION_BLOCK G (* {} @body *) VAR_OUTPUT MS : DINT; END_VAR VAR A : F; END_VAR A(); MS := A.MS; "
+      "END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(at("") + fmt::format(fmt::runtime(outer), "@ts 10ms"), six),
+            (std::vector<double>{0, 10, 20, 30, 40, 50}));
   EXPECT_EQ(faults_of(at("") + fmt::format(fmt::runtime(outer), "")), untimed);
   EXPECT_THROW((void)compile_text(at("") + fmt::format(fmt::runtime(outer), "@ts 10ms"), {.top = "F"}), InputError);
 }
@@ -270,8 +274,10 @@ TEST(Bodies, TheTimeOfTheTaskIsReadInWholeMilliseconds) {
 /// A timer that is called at two places, once in each step, is that of the library.
 TEST(Bodies, ATimerUnderAConditionRunsByTheTimeOfTheTask) {
   const auto body = [](const std::string& ts, const std::string& type, const std::string& call) {
-    return "FUNCTION_BLOCK F (* @ts " + ts + " @body *) VAR_INPUT X : BOOL; B : BOOL; P : INT; END_VAR VAR_OUTPUT Q : BOOL; ET : "
-           "TIME; END_VAR VAR T : " + type + "; END_VAR\n" + call + " Q := T.Q; ET := T.ET; END_FUNCTION_BLOCK";
+    return "FUNCTION_BLOCK F (* @ts " + ts +
+           " @body *) VAR_INPUT X : BOOL; B : BOOL; P : INT; END_VAR VAR_OUTPUT Q : BOOL; ET : "
+           "TIME; END_VAR VAR T : " +
+           type + "; END_VAR\n" + call + " Q := T.Q; ET := T.ET; END_FUNCTION_BLOCK";
   };
   const std::string plain = "T(IN := X, PT := T#50us * P);";
   std::mt19937_64 engine(7);

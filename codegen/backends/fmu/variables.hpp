@@ -25,8 +25,8 @@ struct FmuVariable {
 };
 
 /// Inputs, outputs, parameters. The value reference of one is its place, counted from 1; 0 is the time. An array is one
-/// variable in FMI 3.0, where the generated C has one, and a variable for each element in FMI 2.0, which knows none. With
-/// `float32` in the options numbers are those that a float holds.
+/// variable in FMI 3.0, where the generated C has one, and a variable for each element in FMI 2.0, which knows none.
+/// With `float32` in the options numbers are those that a float holds.
 std::vector<FmuVariable> fmu_variables(const Program& program, const FmuOptions& options);
 
 }  // namespace hysteron

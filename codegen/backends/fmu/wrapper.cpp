@@ -42,9 +42,9 @@ std::string table(std::span<const FmuVariable> variables) {
       "// By value reference, from 1 on: place, elements, kind, role, range, whether the minimum itself is out of it.\n"
       "static const fmu_variable fmu_variables[] = {\n";
   for (const FmuVariable& one : variables) {
-    append(text, fmt::format("    {{offsetof(fmu_values, {}), {}, {}, {}, {}, {}, {}}},\n", one.member, one.start.size(),
-                             kind_of(one.type), role_of(one.role), bound(one.minimum), bound(one.maximum),
-                             one.above_minimum));
+    append(text, fmt::format("    {{offsetof(fmu_values, {}), {}, {}, {}, {}, {}, {}}},\n", one.member,
+                             one.start.size(), kind_of(one.type), role_of(one.role), bound(one.minimum),
+                             bound(one.maximum), one.above_minimum));
   }
   return text + "    {0, 1, KIND_REAL, ROLE_OUTPUT, 0.0, 0.0, false}};\n\n";
 }

@@ -1,10 +1,10 @@
 // A sequential body as a graph: it is executed once with wires for values.
 //
 // An IF executes both sides and merges them by SEL; a CASE is a chain of them; a loop is unrolled, up to where the
-// ranges of its numbers end it; a RETURN, EXIT or CONTINUE under a condition merges what follows with what stood before. A variable that is read before it is written
-// in the step is a cell of memory: a HY_DELAY of its type that is wired to what the variable holds at the end. Blocks
-// and functions of one's own are executed in place. A block of the library is a node: it can be called once in a
-// step, and under no condition, since its memory moves on in every step.
+// ranges of its numbers end it; a RETURN, EXIT or CONTINUE under a condition merges what follows with what stood
+// before. A variable that is read before it is written in the step is a cell of memory: a HY_DELAY of its type that is
+// wired to what the variable holds at the end. Blocks and functions of one's own are executed in place. A block of the
+// library is a node: it can be called once in a step, and under no condition, since its memory moves on in every step.
 #pragma once
 
 #include <functional>
@@ -173,16 +173,16 @@ class Body {
   State state_{};
   int conditions_ = 0;    ///< under how many a statement stands
   int called_again_ = 0;  ///< within how many instances that are called more than once places are made
-  int level_ = 0;       ///< of calls in calls
+  int level_ = 0;         ///< of calls in calls
   std::size_t executed_ = 0;
   std::map<std::string, int> paths_{};
   std::set<std::string> node_paths_{};
   std::map<const language::body::Unit*, Written> written_{};
   std::vector<std::pair<std::uint32_t, language::Span>> open_pins_{};  ///< not given before their block was called
-  std::set<const language::body::Loop*> endless_{};                 ///< that were told
-  bool lacks_sample_time_ = false;                                  ///< which was told
-  std::optional<Value> clock_{};                                    ///< what TIME() gives in this step
-  std::optional<Value> steps_{};                                    ///< and CLOCK_STEPS()
+  std::set<const language::body::Loop*> endless_{};                    ///< that were told
+  bool lacks_sample_time_ = false;                                     ///< which was told
+  std::optional<Value> clock_{};                                       ///< what TIME() gives in this step
+  std::optional<Value> steps_{};                                       ///< and CLOCK_STEPS()
   std::optional<language::Span> standard_call_{};  ///< within a block of the standard: where it was called
 };
 

@@ -118,8 +118,8 @@ std::optional<Body::Counting> Body::counting(const syntax::For& node, language::
   if (count.by == 0.0 || most > most_rounds) {
     refuse(error::refused_in_body, span,
            count.by == 0.0 ? std::string("this FOR never ends")
-                           : fmt::format("this FOR {} {} rounds, more than {}", count.known() ? "has" : "may have", most,
-                                         most_rounds),
+                           : fmt::format("this FOR {} {} rounds, more than {}", count.known() ? "has" : "may have",
+                                         most, most_rounds),
            count.known() ? "A loop is unrolled: give it fewer rounds."
                          : "Bound it by what there can be: FOR I := 1 TO LIMIT(0, N, 32) DO.");
     return std::nullopt;
@@ -157,9 +157,10 @@ void Body::rounds(const Counting& count, double at) {
       return bound.known() ? computer_.truth(true) : computer_.binary(op, bound.value, here);
     };
     bool right = true;
-    choose(computer_.binary(Operator::And, reached(count.from, up ? Operator::LessEqual : Operator::GreaterEqual),
-                            reached(count.to, up ? Operator::GreaterEqual : Operator::LessEqual)),
-           [&] { right = round(count, at); }, [] {});
+    choose(
+        computer_.binary(Operator::And, reached(count.from, up ? Operator::LessEqual : Operator::GreaterEqual),
+                         reached(count.to, up ? Operator::GreaterEqual : Operator::LessEqual)),
+        [&] { right = round(count, at); }, [] {});
     const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
     if (!right || computer_.is_true(over) || executed_ > most_statements) {
       return;
@@ -222,7 +223,8 @@ void Body::again(const syntax::Loop& node, language::Span span, int turn) {
     state_.continued = computer_.truth(false);
     const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
     if (executed_ <= most_statements) {
-      choose(over, [] {}, [&] { again(node, span, turn + 1); });
+      choose(
+          over, [] {}, [&] { again(node, span, turn + 1); });
     }
   };
   if (turn == 0 && !node.tested_first) {
@@ -233,7 +235,8 @@ void Body::again(const syntax::Loop& node, language::Span span, int turn) {
   if (tested.valid() && node.tested_first) {
     choose(tested, body, [] {});
   } else if (tested.valid()) {
-    choose(tested, [] {}, body);
+    choose(
+        tested, [] {}, body);
   }
 }
 

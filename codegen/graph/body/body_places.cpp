@@ -220,8 +220,7 @@ bool Body::constant(language::ExpressionId id, double& number) {
   return result.valid() && computer_.constant(result, number);
 }
 
-std::pair<Value, std::uint32_t> Body::delay(Plain plain, double initial, const std::string& name,
-                                            language::Span span) {
+std::pair<Value, std::uint32_t> Body::delay(Plain plain, double initial, const std::string& name, language::Span span) {
   std::string path = fmt::format("{}{}_LAST", around_.path, name);
   for (int n = 2; !node_paths_.insert(path).second; ++n) {
     path = fmt::format("{}{}_LAST_{}", around_.path, name, n);

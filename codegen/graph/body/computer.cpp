@@ -145,9 +145,8 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
     }
     const bool reaches = value.loose
                              ? value.low >= std::min(lowest(type), -highest(type) - 1) && value.low <= highest(type)
-                         : value.untyped
-                             ? value.low >= lowest(type) && value.high <= highest(type)
-                             : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+                         : value.untyped ? value.low >= lowest(type) && value.high <= highest(type)
+                                         : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
   }
   if (is_number(value.type) && is_number(type) && (value.loose || value.untyped || type == Plain::Lreal)) {

@@ -159,8 +159,8 @@ Value Computer::divided(bool remainder, const Value& left, const Value& right, P
       return result;
     }
     // A division by 0 gives 0.
-    const std::int64_t high = remainder ? std::max<std::int64_t>(0, right.high - 1)
-                                        : left.high / std::max<std::int64_t>(1, right.low);
+    const std::int64_t high =
+        remainder ? std::max<std::int64_t>(0, right.high - 1) : left.high / std::max<std::int64_t>(1, right.low);
     return ranged(result.wire, type, 0, std::min(high, left.high));
   }
   // 32 bits without a sign: an LREAL holds both exactly, and the whole part of their quotient.

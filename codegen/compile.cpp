@@ -116,11 +116,39 @@ bool check_order(const Definitions& definitions, std::uint32_t index, const Grap
   return has_loops;
 }
 
+/// By definition, whether another one contains it.
+std::vector<bool> find_contained(const Definitions& definitions) {
+  std::vector<bool> contained(definitions.list.size(), false);
+  for (const Definition& definition : definitions.list) {
+    for (const Declared& declared : definition.variables) {
+      if (declared.kind == Declared::Kind::UserBlock) {
+        contained[declared.definition] = true;
+      }
+    }
+    for (const std::uint32_t inner : definition.in_place) {
+      contained[inner] = true;
+    }
+  }
+  return contained;
+}
+
+/// What is left to say of a block that another one contains: its sample time is that of the outermost.
+Diagnostics without_sample_time(const Diagnostics& found) {
+  Diagnostics rest;
+  for (const Diagnostic& one : found.all()) {
+    if (one.number != error::missing_sample_time) {
+      rest.add(one);
+    }
+  }
+  return rest;
+}
+
 Checked check_all(std::shared_ptr<const language::SourceFile> source, const CompileOptions& options,
                   Diagnostics& diagnostics) {
   Checked result{.definitions = define(std::move(source), diagnostics), .programs = {}};
   Definitions& definitions = result.definitions;
   result.programs.resize(definitions.list.size());
+  const std::vector<bool> contained = find_contained(definitions);
   bool blocked = false;  // a loop that is told as memory leaves no order of computation
   for (const std::uint32_t index : definitions.callees_first) {
     Definition& definition = definitions.list[index];
@@ -129,10 +157,14 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, const Comp
     if (definition.usable) {
       OuterPlaces places;
       ElaborateOptions elaboration{.keep_names = options.keep_names};
-      if (language::same_name(definition.block->name.text, options.top)) {
+      const bool named_top = language::same_name(definition.block->name.text, options.top);
+      if (named_top) {
         elaboration.noisy_outputs = options.noisy_outputs;
       }
       program.graph = elaborate(definitions, index, own, elaboration, &places);
+      if (contained[index] && !named_top) {
+        own = without_sample_time(own);
+      }
       blocked = blocked || blocks_work(diagnostics);
       if (!own.has_errors() && !blocked) {
         program.schedule = schedule(program.graph, places, own);
@@ -155,22 +187,6 @@ Checked check_all(std::shared_ptr<const language::SourceFile> source, const Comp
     diagnostics.add_all(own);
   }
   return result;
-}
-
-/// By definition, whether another one contains it.
-std::vector<bool> find_contained(const Definitions& definitions) {
-  std::vector<bool> contained(definitions.list.size(), false);
-  for (const Definition& definition : definitions.list) {
-    for (const Declared& declared : definition.variables) {
-      if (declared.kind == Declared::Kind::UserBlock) {
-        contained[declared.definition] = true;
-      }
-    }
-    for (const std::uint32_t inner : definition.in_place) {
-      contained[inner] = true;
-    }
-  }
-  return contained;
 }
 
 /// A top block meets records, in which t is the time.

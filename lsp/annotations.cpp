@@ -17,23 +17,6 @@ using nlohmann::json;
 constexpr int kind_unit = 11;
 constexpr int kind_property = 10;
 
-struct Key {
-  std::string_view name;
-  std::string_view meaning;
-};
-constexpr std::array keys{Key{"unit", "the unit, as @unit um or @unit N*m"},
-                          Key{"min", "the least value"},
-                          Key{"max", "the largest value"},
-                          Key{"param", "the input is a parameter"},
-                          Key{"doc", "what it means"},
-                          Key{"role", "what a parameter is for, where its unit does not tell"},
-                          Key{"ts", "the sample time of the block, as @ts 1ms"},
-                          Key{"every", "the instance runs in each n-th step alone"},
-                          Key{"phase", "the step in which it does"},
-                          Key{"effect", "the block is an effect of that name"},
-                          Key{"family", "the family of the effect"},
-                          Key{"neutral", "the setting at which the effect is none"}};
-
 /// Units that a diagram often has; any product of SI symbols is one.
 constexpr std::array<std::string_view, 34> usual{
     "m",   "mm",   "um", "nm",     "m/s", "mm/s", "m/s^2", "rad", "deg",   "rad/s", "rpm", "N",
@@ -53,7 +36,7 @@ json annotation_completion(std::string_view text, const language::SourceFile& tr
   const std::string_view typed = before.substr(at + 1);
   const auto blank = typed.find_first_of(" \t");
   if (blank == std::string_view::npos) {
-    for (const Key& key : keys) {
+    for (const language::AnnotationKey& key : language::annotation_keys()) {
       items.push_back({{"label", key.name}, {"kind", kind_property}, {"detail", key.meaning}});
     }
     return items;

@@ -166,24 +166,33 @@ std::string main_of_fmu(const Program& program, const FmuContents& contents, con
       two ? "  fmi2SetupExperiment(one, 0, 0.0, 0.0, 0, 0.0);\n  fmi2EnterInitializationMode(one);\n"
             "  fmi2ExitInitializationMode(one);\n"
           : "  fmi3EnterInitializationMode(one, false, 0.0, 0.0, false, 0.0);\n  fmi3ExitInitializationMode(one);\n");
-  const auto variables = fmu_variables(program, options.float32);
+  const auto variables = fmu_variables(program, options);
   std::size_t input = 0;
   std::size_t output = 0;
   std::string gets;
   for (std::size_t v = 0; v < variables.size(); ++v) {
     const FmuVariable& variable = variables[v];
     const std::string type = fmi_value_type(variable.type, options);
-    const std::string tail = two ? "" : ", 1";
+    const std::size_t elements = variable.start.size();
+    const std::string tail = two ? "" : fmt::format(", {}", elements);
     if (variable.role == FmuVariable::Role::Input) {
+      std::string values;
+      for (std::size_t k = 0; k < elements; ++k) {
+        values += fmt::format("{}({}){}", k == 0 ? "" : ", ", type, from_row(variable.type, input++));
+      }
       text += fmt::format(
-          "  {{\n    const unsigned int reference = {}u;\n    const {} value = ({}){};\n    "
-          "if ({}Set{}(one, &reference, 1, &value{}) != 0) exit(6);\n  }}\n",
-          v + 1, type, type, from_row(variable.type, input++), prefix, fmi_type_name(variable.type, options), tail);
+          "  {{\n    const unsigned int reference = {}u;\n    const {} values[] = {{{}}};\n    "
+          "if ({}Set{}(one, &reference, 1, values{}) != 0) exit(6);\n  }}\n",
+          v + 1, type, values, prefix, fmi_type_name(variable.type, options), tail);
     } else if (variable.role == FmuVariable::Role::Output) {
       gets += fmt::format(
-          "  {{\n    const unsigned int reference = {}u;\n    {} value;\n    "
-          "if ({}Get{}(one, &reference, 1, &value{}) != 0) exit(7);\n    results[{}] = (double)value;\n  }}\n",
-          v + 1, type, prefix, fmi_type_name(variable.type, options), tail, output++);
+          "  {{\n    const unsigned int reference = {}u;\n    {} values[{}];\n    "
+          "if ({}Get{}(one, &reference, 1, values{}) != 0) exit(7);\n",
+          v + 1, type, elements, prefix, fmi_type_name(variable.type, options), tail);
+      for (std::size_t k = 0; k < elements; ++k) {
+        gets += fmt::format("    results[{}] = (double)values[{}];\n", output++, k);
+      }
+      gets += "  }\n";
     }
   }
   text += two ? "  if (fmi2DoStep(one, (double)k * FMU_PERIOD, FMU_PERIOD, 1) != 0) exit(8);\n"

@@ -30,6 +30,7 @@ inline constexpr std::size_t access_count = 9;
 struct ChannelVariable {
   std::uint32_t reference = 0;
   Access access = Access::Float64;
+  bool goes_on = false;  ///< the next element of the array that the variable before belongs to
 };
 
 inline constexpr std::size_t longest_path = 4096;

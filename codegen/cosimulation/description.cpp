@@ -36,6 +36,9 @@ constexpr std::array types_of_fmi3{
     TypeOfFmi{"Boolean", Type::Bool, Access::Boolean},
 };
 
+/// Each element is a pin of a block.
+constexpr std::size_t most_elements = 256;
+
 std::optional<TypeOfFmi> type_of(std::uint32_t version, std::string_view name) {
   const std::span<const TypeOfFmi> all = version == 2 ? std::span<const TypeOfFmi>(types_of_fmi2) : types_of_fmi3;
   const auto found = std::ranges::find(all, name, &TypeOfFmi::name);
@@ -55,6 +58,33 @@ std::optional<double> number(std::string_view text) {
   }
   const ParsedNumber parsed = parse_number(text);
   return parsed.status == NumberStatus::Finite ? std::optional(parsed.value) : std::nullopt;
+}
+
+/// Numbers with spaces between them; none where one cannot be read.
+std::vector<double> numbers(std::string_view text) {
+  std::vector<double> list;
+  while (!text.empty()) {
+    const auto end = std::min(text.find_first_of(" \t\r\n"), text.size());
+    if (end > 0) {
+      const auto one = number(text.substr(0, end));
+      if (!one) {
+        return {};
+      }
+      list.push_back(*one);
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return list;
+}
+
+/// An element by its place in the row of all, the last index running fastest: [1], [2, 3]; of a single variable none.
+std::string element_text(std::span<const std::size_t> sizes, std::size_t at) {
+  std::string indexes;
+  for (std::size_t i = sizes.size(); i-- > 0;) {
+    indexes = fmt::format("{}{}{}", at % sizes[i] + 1, indexes.empty() ? "" : ",", indexes);
+    at /= sizes[i];
+  }
+  return indexes.empty() ? std::string() : "[" + indexes + "]";
 }
 
 class Reader {
@@ -151,8 +181,18 @@ class Reader {
       leave_out(fmt::format("its type is {}", typed.name()));
       return;
     }
-    if (node.child("Dimension")) {
-      leave_out("it is an array");
+    std::vector<std::size_t> sizes;
+    std::size_t elements = 1;
+    for (const pugi::xml_node dimension : node.children("Dimension")) {
+      sizes.push_back(dimension.attribute("start").as_ullong());
+      if (sizes.back() == 0) {
+        leave_out("a parameter of its own sets the size of this array");
+        return;
+      }
+      elements = std::min(elements * std::min(sizes.back(), most_elements + 1), most_elements + 1);
+    }
+    if (elements > most_elements) {
+      leave_out(fmt::format("it is an array of more than {} elements", most_elements));
       return;
     }
     one.type = type->type;
@@ -162,17 +202,27 @@ class Reader {
     one.unit = attribute(typed, "unit");
     one.minimum = number(attribute(typed, "min")).value_or(-infinity);
     one.maximum = number(attribute(typed, "max")).value_or(infinity);
-    const auto start = number(typed.attribute("start").value());
-    if (!start && causality == "parameter") {
+    const std::vector<double> starts = numbers(typed.attribute("start").value());
+    if (starts.empty() && causality == "parameter") {
       leave_out("it states no start value");
       return;
     }
-    one.start = start.value_or(0.0);
-    if (one.start < one.minimum || one.start > one.maximum) {  // the FMU means its start, whatever its bounds say
+    if (starts.size() > 1 && starts.size() != elements) {
+      leave_out(fmt::format("it has {} start values for {} elements", starts.size(), elements));
+      return;
+    }
+    // The FMU means its start values, whatever its bounds say.
+    if (!std::ranges::all_of(starts, [&](double start) { return !(start < one.minimum || start > one.maximum); })) {
       one.minimum = -infinity;
       one.maximum = infinity;
     }
-    list->push_back(std::move(one));
+    const std::string name = one.name;
+    for (std::size_t i = 0; i < elements; ++i) {
+      one.name = name + element_text(sizes, i);
+      one.start = starts.empty() ? 0.0 : starts[starts.size() == 1 ? 0 : i];
+      one.goes_on = i > 0;
+      list->push_back(one);
+    }
   }
 
   pugi::xml_document document_;

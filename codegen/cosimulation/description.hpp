@@ -14,12 +14,13 @@ namespace hysteron::cosimulation {
 
 /// An input, parameter or output of the FMU, of a type that the language has.
 struct ModelVariable {
-  std::string name{};     ///< as the FMU has it: motor.w, u[1]
+  std::string name{};     ///< as the FMU has it: motor.w, u[1]; so is an element of an array of FMI 3.0 named
   std::string unit{};     ///< as the FMU has it: N.m
   std::string meaning{};  ///< its description
   Type type = Type::Real;
   Access access = Access::Float64;
   std::uint32_t reference = 0;
+  bool goes_on = false;  ///< the next element of the array that the variable before belongs to
   double start = 0.0;
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();

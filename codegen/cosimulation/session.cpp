@@ -85,7 +85,7 @@ Session::Session(const Fmu& fmu, std::string instance, std::size_t most_lanes, d
   ChannelVariable* variable = view_.variables();
   for (const auto* const list : {&about.inputs, &about.parameters, &about.outputs}) {
     for (const ModelVariable& one : *list) {
-      *variable++ = {.reference = one.reference, .access = one.access};
+      *variable++ = {.reference = one.reference, .access = one.access, .goes_on = one.goes_on};
     }
   }
   spawn();

@@ -246,6 +246,7 @@ void Elaborator::elaborate_call(const Instance& instance, std::vector<Part>& par
     if (!pin.found) {
       continue;
     }
+    part.given.push_back(pin.field.name);
     double value = 0.0;
     Type type = Type::Real;
     const bool array = std::holds_alternative<language::ArrayLiteral>(source_.expressions[argument.value].node);

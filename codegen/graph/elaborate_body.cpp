@@ -39,7 +39,8 @@ void Elaborator::elaborate_body(const Instance& instance) {
                      .report = report,
                      .add_parameter = add_parameter,
                      .path = instance.path,
-                     .rate = instance.rate});
+                     .rate = instance.rate,
+                     .sample_time_ns = graph_.sample_time_ns * instance.rate.every});
   auto results = body.run(inputs);
   levels_.resize(graph_.nodes.size(), instance.level);
   for (std::size_t i = 0; i < definition.variables.size(); ++i) {

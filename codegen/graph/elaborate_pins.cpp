@@ -237,7 +237,7 @@ Wire Elaborator::unconnected(const std::string& path, const Declared& declared, 
                                 .span = declared.variable->name.span});
     return {Wire::From::Parameter, field.type, 0, static_cast<std::uint32_t>(open_parameters_.size() - 1)};
   }
-  if (field.required && part.called) {
+  if (field.required && part.called && std::ranges::find(part.given, field.name) == part.given.end()) {
     error(error::unconnected_input, part.call, fmt::format("{}.{} is not connected", declared.field.name, field.name),
           fmt::format("Connect it: {}({} := …). {}", declared.field.name, field.name, field.meaning));
   }

@@ -37,6 +37,7 @@ struct Part {
   std::uint32_t first_slot = 0;
   bool called = false;
   Span call{};
+  std::vector<std::string_view> given{};  ///< the pins that the call names, also where the value is refused
 };
 
 struct Pin {

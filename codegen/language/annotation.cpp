@@ -23,7 +23,26 @@ bool is_key_character(char c) {
   return is_key_letter(c) || (c >= '0' && c <= '9');
 }
 
+constexpr std::array keys{AnnotationKey{"unit", "the unit, as @unit um or @unit N*m"},
+                          AnnotationKey{"min", "the least value"},
+                          AnnotationKey{"max", "the largest value"},
+                          AnnotationKey{"param", "the input is a parameter"},
+                          AnnotationKey{"doc", "what it means"},
+                          AnnotationKey{"role", "what a parameter is for, where its unit does not tell"},
+                          AnnotationKey{"ts", "the sample time of the block, as @ts 1ms"},
+                          AnnotationKey{"body", "the statements of the block are executed in their order"},
+                          AnnotationKey{"every", "the instance runs in each n-th step alone"},
+                          AnnotationKey{"phase", "the step in which it does"},
+                          AnnotationKey{"file", "the FMU that the instance is", true},
+                          AnnotationKey{"effect", "the block is an effect of that name"},
+                          AnnotationKey{"family", "the family of the effect"},
+                          AnnotationKey{"neutral", "the setting at which the effect is none"}};
+
 }  // namespace
+
+std::span<const AnnotationKey> annotation_keys() {
+  return keys;
+}
 
 std::vector<Annotation> annotations_of(std::string_view text, Span comment) {
   std::vector<Annotation> found;
@@ -67,11 +86,10 @@ std::vector<Annotation> annotations_of(std::string_view text, Span comment) {
 }
 
 bool has_no_key_of_ours(std::string_view text, Span comment) {
-  static constexpr std::array<std::string_view, 13> keys{"body",    "doc",   "effect", "every", "family", "max", "min",
-                                                         "neutral", "param", "phase",  "role",  "ts",     "unit"};
   const auto found = annotations_of(text, comment);
   return std::none_of(found.begin(), found.end(), [](const Annotation& one) {
-    return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return same_name(key, one.key); });
+    return std::ranges::any_of(
+        keys, [&](const AnnotationKey& key) { return !key.of_diagrams && same_name(key.name, one.key); });
   });
 }
 

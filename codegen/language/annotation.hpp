@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,14 @@ struct Declaration {
   std::size_t variable_count = 0;
   bool is_head = false;
 };
+
+/// A key of ours, and what it says.
+struct AnnotationKey {
+  std::string_view name;
+  std::string_view meaning;
+  bool of_diagrams = false;  ///< it stands beside what a sequential body cannot have
+};
+std::span<const AnnotationKey> annotation_keys();
 
 /// The annotations of a comment. A value ends at the next key, at the end of its line, or of the comment.
 std::vector<Annotation> annotations_of(std::string_view text, Span comment);

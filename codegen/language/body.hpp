@@ -97,10 +97,16 @@ struct For {
   ExpressionId by = no_expression;
   Statements statements{};
 };
+/// WHILE, which is tested before each round, or REPEAT, which is tested behind it and ends where its condition holds.
+struct Loop {
+  ExpressionId condition = no_expression;
+  bool tested_first = true;
+  Statements statements{};
+};
 enum class Jump : std::uint8_t { Return, Exit, Continue };
 
 struct Statement {
-  std::variant<Assign, Invoke, If, Case, For, Jump> node{};
+  std::variant<Assign, Invoke, If, Case, For, Loop, Jump> node{};
   Span span{};
 };
 

@@ -198,9 +198,10 @@ void BodyParser::statement(Statements& list) {
     right = case_statement(one.node.emplace<body::Case>());
   } else if (accept("FOR")) {
     right = for_statement(one.node.emplace<body::For>());
-  } else if (is("WHILE") || is("REPEAT")) {
-    loop_without_bound();
-    return;
+  } else if (accept("WHILE")) {
+    right = while_statement(one.node.emplace<body::Loop>());
+  } else if (accept("REPEAT")) {
+    right = repeat_statement(one.node.emplace<body::Loop>());
   } else if (is("RETURN") || is("EXIT") || is("CONTINUE")) {
     one.node = is("RETURN") ? body::Jump::Return : (is("EXIT") ? body::Jump::Exit : body::Jump::Continue);
     advance();
@@ -249,12 +250,29 @@ void BodyParser::skip_to(std::string_view closing) {
   accept(Symbol::Semicolon);
 }
 
-void BodyParser::loop_without_bound() {
-  const bool repeat = is("REPEAT");
-  refuse(span_of(now()), fmt::format("{} has no bound that is known before it runs.", word(now())),
-         "Write FOR I := 1 TO 100 DO with the most rounds there can be, and EXIT where it may end.");
-  advance();
-  skip_to(repeat ? "END_REPEAT" : "END_WHILE");
+bool BodyParser::while_statement(body::Loop& node) {
+  node.condition = expression();
+  if (node.condition == no_expression || !expect("DO")) {
+    skip_to("END_WHILE");
+    return true;
+  }
+  statements(node.statements);
+  const bool ended = expect("END_WHILE");
+  accept(Symbol::Semicolon);  // which some leave out here
+  return ended;
+}
+
+bool BodyParser::repeat_statement(body::Loop& node) {
+  node.tested_first = false;
+  statements(node.statements);
+  if (!expect("UNTIL") || (node.condition = expression()) == no_expression) {
+    skip_to("END_REPEAT");
+    return true;
+  }
+  accept(Symbol::Semicolon);  // which some write here
+  const bool ended = expect("END_REPEAT");
+  accept(Symbol::Semicolon);
+  return ended;
 }
 
 bool BodyParser::if_statement(body::If& node) {

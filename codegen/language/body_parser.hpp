@@ -1,6 +1,6 @@
 // The parser of sequential bodies, with the types and functions beside them: recursive descent, its own tokens.
 //
-// What a body may not have (a pointer, a method, a string, a loop without a bound) is refused by name where it stands,
+// What a body may not have (a pointer, a method, a string) is refused by name where it stands,
 // and reading goes on behind it, so that every line that stands in the way is told, each once.
 #pragma once
 
@@ -49,7 +49,8 @@ class BodyParser {
   bool label(body::Label& one);
   bool starts_label() const;
   bool for_statement(body::For& node);
-  void loop_without_bound();
+  bool while_statement(body::Loop& node);
+  bool repeat_statement(body::Loop& node);
   bool named(body::Statement& statement);
   void skip_statement();
   void skip_to(std::string_view closing);

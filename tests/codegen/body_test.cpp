@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -177,7 +178,7 @@ TEST(Bodies, AnUnmarkedTextThatADiagramCanSayStaysOne) {
 TEST(Bodies, EveryLineThatStandsInTheWayIsToldOnce) {
   EXPECT_EQ(faults_of("FUNCTION_BLOCK F\nVAR_INPUT X : INT; END_VAR\nVAR P : POINTER TO INT; S : STRING; END_VAR\n"
                       "WHILE X > 1 DO\n  X := X - 1;\nEND_WHILE;\nP^ := 3;\nEND_FUNCTION_BLOCK"),
-            (Faults{"129:3", "129:3", "129:4", "129:7"}));
+            (Faults{"129:3", "129:3", "129:7"}));
   EXPECT_EQ(faults_of("FUNCTION_BLOCK F\nVAR_INPUT X : INT; END_VAR VAR_OUTPUT Y : INT; B : BOOL; END_VAR\n"
                       "IF X THEN Y := 1; END_IF;\nY := NOWHERE;\nB := X;\nY := X + B;\nEND_FUNCTION_BLOCK"),
             (Faults{"207:3", "203:4", "207:5", "207:6"}));
@@ -191,11 +192,129 @@ TEST(Bodies, LoopsAndCallsHaveBounds) {
   };
   EXPECT_EQ(faults_of(loop("10")), Faults{});
   EXPECT_EQ(faults_of(loop("X")), Faults{"129:2"});
+  EXPECT_EQ(faults_of(loop("MIN(X, 20)")), Faults{});
+  EXPECT_EQ(faults_of(loop("LIMIT(0, X, 20) - 1 BY X")), Faults{"129:2"});
+  EXPECT_EQ(faults_of(loop("20 BY 0")), Faults{"129:2"});
   EXPECT_EQ(faults_of(loop("30000")), Faults{"129:2"});
   EXPECT_FALSE(faults_of("FUNCTION A : INT VAR_INPUT X : INT; END_VAR A := A(X); END_FUNCTION\n"
                          "FUNCTION_BLOCK F VAR_OUTPUT Y : INT; END_VAR Y := A(1); END_FUNCTION_BLOCK")
                    .empty());
   EXPECT_FALSE(faults_of("FUNCTION_BLOCK F VAR X : F; N : INT; END_VAR X(); END_FUNCTION_BLOCK").empty());
+}
+
+TEST(Bodies, AForGoesFromAndToWhatItIsGiven) {
+  const auto loop = [](const std::string& head) {
+    return "FUNCTION_BLOCK F VAR_INPUT A : INT; B : INT; END_VAR VAR_OUTPUT S : DINT; LEFT : INT; END_VAR VAR I : INT; "
+           "END_VAR\nS := 0;\nIF A > 6 THEN A := 6; ELSIF A < -6 THEN A := -6; END_IF;\nIF NOT (B <= 5 AND B >= 0) "
+           "THEN B "
+           ":= 5; END_IF;\n" +
+           head + " DO S := S * 10 + I; IF S > 7000 THEN EXIT; END_IF; END_FOR; LEFT := I; END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(run_body(loop("FOR I := 1 TO B"), {{0, 3}, {0, 0}, {0, 5}, {0, 99}}),
+            (std::vector<double>{123, 4, 0, 1, 12345, 5, 12345, 5}));
+  EXPECT_EQ(run_body(loop("FOR I := A TO B"), {{2, 3}, {4, 3}, {2, 2}, {9, 5}}),
+            (std::vector<double>{23, 4, 0, 4, 2, 3, 0, 6}));
+  EXPECT_EQ(run_body(loop("FOR I := A TO B BY -1"), {{3, 1}, {1, 3}, {3, 3}}),
+            (std::vector<double>{321, 0, 0, 1, 3, 2}));
+  EXPECT_EQ(run_body(loop("FOR I := 0 TO B BY 2"), {{0, 5}, {0, 0}}), (std::vector<double>{24, 6, 0, 2}));
+  EXPECT_EQ(faults_of(loop("FOR I := A TO B BY 2")), Faults{"129:5"});
+}
+
+TEST(Bodies, AWhileThatItsNumbersEndIsUnrolled) {
+  const auto body = [](const std::string& statements) {
+    return "FUNCTION_BLOCK F VAR_INPUT X : INT; R : LREAL; END_VAR VAR_OUTPUT N : INT; END_VAR VAR_TEMP Y : INT; Z : "
+           "LREAL; "
+           "END_VAR\nN := 0; Y := X; Z := R;\n" +
+           statements + " END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(run_body(body("WHILE Y > 1 DO Y := Y / 2; N := N + 1; END_WHILE;"), {{1, 0}, {8, 0}, {-5, 0}, {32767, 0}}),
+            (std::vector<double>{0, 3, 0, 14}));
+  EXPECT_EQ(run_body(body("REPEAT N := N + 1; UNTIL N >= 7 OR N = X END_REPEAT;"), {{1, 0}, {5, 0}, {0, 0}}),
+            (std::vector<double>{1, 5, 7}));
+  EXPECT_EQ(run_body(body("WHILE N < 9 DO N := N + 1; IF N = X THEN EXIT; END_IF; END_WHILE;"), {{4, 0}, {0, 0}}),
+            (std::vector<double>{4, 9}));
+  EXPECT_EQ(faults_of(body("WHILE Z > 1.0 DO Z := Z / 2.0; END_WHILE;")), Faults{"129:3"});
+  EXPECT_EQ(faults_of(body("WHILE Y <> 0 DO Y := Y - 3; END_WHILE;")), Faults{"129:3"});
+  EXPECT_EQ(faults_of(body("REPEAT N := N + 1; UNTIL FALSE END_REPEAT;")), Faults{"129:3"});
+}
+
+TEST(Bodies, AChoiceOfLiteralsTakesTheTypeItIsAssignedTo) {
+  const auto body = [](const std::string& type, const std::string& value) {
+    return "FUNCTION_BLOCK F VAR_INPUT B : BOOL; X : INT; END_VAR VAR_OUTPUT Y : " + type + "; END_VAR\nY := " + value +
+           "; END_FUNCTION_BLOCK";
+  };
+  EXPECT_EQ(run_body(body("BYTE", "SEL(B, 0, 255)"), {{0, 0}, {1, 0}}), (std::vector<double>{0, 255}));
+  EXPECT_EQ(run_body(body("REAL", "SEL(B, 0.5, 0.1)"), {{0, 0}, {1, 0}}), (std::vector<double>{0.5, 0.1F}));
+  EXPECT_EQ(faults_of(body("BYTE", "SEL(B, 0, 256)")), Faults{fmt::format("{}:2", error::type_mismatch)});
+  EXPECT_EQ(faults_of(body("SINT", "SEL(B, 0, X)")), Faults{fmt::format("{}:2", error::type_mismatch)});
+}
+
+TEST(Bodies, TheTimeOfTheTaskIsReadInWholeMilliseconds) {
+  const auto at = [](const std::string& ts) {
+    return "FUNCTION_BLOCK F (* " + ts +
+           " *) VAR_OUTPUT MS : DINT; END_VAR VAR N : INT; END_VAR\nN := N + 1; IF N < 3 THEN MS := "
+           "TIME_TO_DINT(TIME()); ELSE MS := TIME_TO_DINT(TIME()); END_IF; END_FUNCTION_BLOCK";
+  };
+  const std::vector<std::vector<double>> six(6);
+  EXPECT_EQ(run_body(at("@ts 10ms"), six), (std::vector<double>{0, 10, 20, 30, 40, 50}));
+  EXPECT_EQ(run_body(at("@ts 400us"), six), (std::vector<double>{0, 0, 0, 1, 1, 2}));
+  EXPECT_EQ(run_body(at("@ts 2500us"), six), (std::vector<double>{0, 2, 5, 7, 10, 12}));
+  const Faults untimed{"217:2", fmt::format("{}:2", error::missing_sample_time), "217:2"};
+  EXPECT_EQ(faults_of(at("")), untimed);
+  // A block within another one has the sample time of the outermost.
+  const std::string outer =
+      "\nFUNCTION_BLOCK G (* {} @body *) VAR_OUTPUT MS : DINT; END_VAR VAR A : F; END_VAR A(); MS := A.MS; "
+      "END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(at("") + fmt::format(fmt::runtime(outer), "@ts 10ms"), six),
+            (std::vector<double>{0, 10, 20, 30, 40, 50}));
+  EXPECT_EQ(faults_of(at("") + fmt::format(fmt::runtime(outer), "")), untimed);
+  EXPECT_THROW((void)compile_text(at("") + fmt::format(fmt::runtime(outer), "@ts 10ms"), {.top = "F"}), InputError);
+}
+
+/// A timer that is called at two places, once in each step, is that of the library.
+TEST(Bodies, ATimerUnderAConditionRunsByTheTimeOfTheTask) {
+  const auto body = [](const std::string& ts, const std::string& type, const std::string& call) {
+    return "FUNCTION_BLOCK F (* @ts " + ts +
+           " @body *) VAR_INPUT X : BOOL; B : BOOL; P : INT; END_VAR VAR_OUTPUT Q : BOOL; ET : "
+           "TIME; END_VAR VAR T : " +
+           type + "; END_VAR\n" + call + " Q := T.Q; ET := T.ET; END_FUNCTION_BLOCK";
+  };
+  const std::string plain = "T(IN := X, PT := T#50us * P);";
+  std::mt19937_64 engine(7);
+  std::vector<std::vector<double>> rows;
+  std::vector<double> row{0, 0, 3};
+  for (int i = 0; i < 3000; ++i) {
+    row = {engine() % 5 == 0 ? 1 - row[0] : row[0], static_cast<double>(engine() % 2),
+           engine() % 40 == 0 ? static_cast<double>(engine() % 9) : row[2]};
+    rows.push_back(row);
+  }
+  for (const std::string type : {"TON", "TOF", "TP"}) {
+    for (const std::string ts : {"50us", "10ms", "70us"}) {
+      const auto once = compile_text(body(ts, type, plain));
+      const auto twice = compile_text(body(ts, type, "IF B THEN " + plain + " ELSE " + plain + " END_IF;"));
+      Machine<double> first(once);
+      Machine<double> second(twice);
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (std::size_t pin = 0; pin < 3; ++pin) {
+          first.set_input(pin, rows[k][pin]);
+          second.set_input(pin, rows[k][pin]);
+        }
+        first.step();
+        second.step();
+        ASSERT_EQ(first.output(0), second.output(0)) << type << " at " << ts << ", step " << k;
+        ASSERT_NEAR(first.output(1), second.output(1), 1e-12) << type << " at " << ts << ", step " << k;
+      }
+    }
+  }
+  // Called again after a pause, it has counted on.
+  const std::string paused =
+      "FUNCTION_BLOCK F (* @ts 10ms *) VAR_INPUT B : BOOL; END_VAR VAR_OUTPUT Q : BOOL; END_VAR VAR T : TON; END_VAR\n"
+      "IF B THEN T(IN := TRUE, PT := T#40ms); END_IF; Q := T.Q; END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(paused, {{0}, {1}, {0}, {0}, {0}, {1}, {0}}), (std::vector<double>{0, 0, 0, 0, 0, 1, 1}));
+  const std::string restarted =
+      "FUNCTION_BLOCK F (* @ts 10ms *) VAR_INPUT B : BOOL; END_VAR VAR_OUTPUT Q : BOOL; END_VAR VAR T : TON; END_VAR\n"
+      "IF B THEN T(IN := FALSE); END_IF; T(IN := TRUE, PT := T#20ms); Q := T.Q; END_FUNCTION_BLOCK";
+  EXPECT_EQ(run_body(restarted, {{0}, {0}, {0}, {1}, {0}, {0}, {0}}), (std::vector<double>{0, 0, 1, 0, 0, 1, 1}));
 }
 
 TEST(Bodies, ABlockOfTheLibraryIsCalledOnceAndUnderNoCondition) {

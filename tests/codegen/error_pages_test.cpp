@@ -73,10 +73,12 @@ std::vector<std::pair<int, Checker>> diagram_errors() {
     if (title.number < 500) {
       const bool is_run = title.number == error::missing_sample_time;
       const bool is_checked = title.number == error::other_meaning_elsewhere;
-      list.emplace_back(title.number, title.number < 200 ? Checker(parsed)
-                                      : is_run           ? Checker(run)
-                                      : is_checked       ? Checker(checked)
-                                                         : Checker(compiled));
+      // Of what a body cannot have some is seen when its graph is made.
+      const bool is_parsed = title.number < 200 && title.number != error::refused_in_body;
+      list.emplace_back(title.number, is_parsed    ? Checker(parsed)
+                                      : is_run     ? Checker(run)
+                                      : is_checked ? Checker(checked)
+                                                   : Checker(compiled));
     }
   }
   return list;

@@ -13,7 +13,9 @@ namespace hysteron::testing {
 
 class RandomBody {
  public:
-  RandomBody(std::uint64_t seed, const std::string& name, int statements) : engine_(seed) {
+  /// With `timers`, TON, TOF and TP are called under conditions too, and TIME() is read.
+  RandomBody(std::uint64_t seed, const std::string& name, int statements, bool timers = false)
+      : engine_(seed), timers_(timers) {
     text_ = fmt::format(R"(TYPE PAIR : STRUCT A : INT := 3; B : LREAL; END_STRUCT; END_TYPE
 FUNCTION CLAMP : INT
 VAR_INPUT V : INT; W : INT; END_VAR
@@ -33,10 +35,11 @@ VAR_INPUT X1 : LREAL; X2 : LREAL; X3 : LREAL; B1 : BOOL; B2 : BOOL; N1 : DINT; E
 VAR_OUTPUT Y0 : LREAL; Y1 : LREAL; Y2 : LREAL; Y3 : LREAL; Q : BOOL; N : DINT; END_VAR
 VAR L1 : LREAL := 0.5; L2 : LREAL; R1 : REAL := 1.25; R2 : REAL; I1 : INT := -7; I2 : INT; U1 : UINT; D1 : DINT;
   V1 : UDINT := 4000000000; K1 : BYTE; W1 : WORD; E1 : DWORD := 16#F0F0F0F0; C1 : BOOL; C2 : BOOL := TRUE; S : PAIR;
-  A : ARRAY[0..3] OF INT := [1, 2, 3, 4]; F : ARRAY[1..2] OF LREAL; T1 : COUNTER; T2 : COUNTER; J : INT; END_VAR
+  A : ARRAY[0..3] OF INT := [1, 2, 3, 4]; F : ARRAY[1..2] OF LREAL; T1 : COUNTER; T2 : COUNTER; J : INT;
+  G : USINT;{} END_VAR
 VAR_TEMP H : INT; END_VAR
 )",
-                        name);
+                        name, timers ? " LATE : TIME; D_ON : TON; D_OFF : TOF; D_PULSE : TP;" : "");
     for (int i = 0; i < statements; ++i) {
       text_ += statement(0, "  ");
     }
@@ -141,7 +144,17 @@ VAR_TEMP H : INT; END_VAR
                    fmt::format("SEL({}, {}, {})", truth(depth + 1), single(depth + 1), single(depth + 1))});
   }
 
+  std::string timer() {
+    return one_of({fmt::format("D_ON(IN := {}, PT := T#3ms, ET => LATE);", truth(1)),
+                   fmt::format("D_OFF(IN := {}, PT := LATE); C1 := D_OFF.Q;", truth(1)),
+                   fmt::format("D_PULSE(IN := {}, PT := T#2ms); Q := D_PULSE.Q;", truth(1)),
+                   "IF TIME() > T#20ms THEN LATE := TIME() - T#18ms; END_IF;"});
+  }
+
   std::string assignment() {
+    if (timers_ && pick(4) == 0) {
+      return timer();
+    }
     switch (pick(14)) {
       case 0:
         return fmt::format("{} := LIMIT(-1000.0, {}, 1000.0);",
@@ -176,6 +189,26 @@ VAR_TEMP H : INT; END_VAR
     }
   }
 
+  /// Of each kind: with constant bounds, with bounds in a range, and until something holds that is sure to come.
+  std::string loop(const std::string& indent, const std::string& inside) {
+    switch (pick(5)) {
+      case 0:
+        return fmt::format("{0}FOR J := {1} TO MIN(MAX({2}, -3), 4) DO\n{3}{0}END_FOR;\n", indent,
+                           one_of({"-1", "MAX(MIN(I1, 3), 0)"}), small(), inside);
+      case 1:
+        return fmt::format("{0}FOR J := MIN(MAX({1}, -2), 3) TO {2} BY -1 DO\n{3}{0}END_FOR;\n", indent, small(),
+                           one_of({"-1", "MAX(MIN(I2, 1), -2)"}), inside);
+      case 2:
+        return fmt::format("{0}G := DINT_TO_USINT({1}) / 16;\n{0}WHILE G > 0 DO\n{0}  G := G / 2;\n{2}{0}END_WHILE;\n",
+                           indent, integer(1), inside);
+      case 3:
+        return fmt::format("{0}G := 0;\n{0}REPEAT\n{0}  G := G + 1;\n{1}{0}UNTIL G >= 3 OR {2} END_REPEAT;\n", indent,
+                           inside, truth(1));
+      default:
+        return fmt::format("{0}FOR J := 3 TO -1 BY -2 DO\n{1}{0}END_FOR;\n", indent, inside);
+    }
+  }
+
   std::string statement(int depth, const std::string& indent) {
     const std::string deeper = indent + "  ";
     const auto some = [&] {
@@ -203,10 +236,10 @@ VAR_TEMP H : INT; END_VAR
           in_loop_ = true;
           const std::string inside = some();
           in_loop_ = false;
-          return fmt::format(
-              "{0}FOR J := {1} TO {2} BY {3} DO\n{4}{5}{0}END_FOR;\n", indent, 3, -1, -2, inside,
+          const std::string jump =
               pick(2) == 0 ? fmt::format("{}IF {} THEN {}; END_IF;\n", deeper, truth(0), one_of({"EXIT", "CONTINUE"}))
-                           : "");
+                           : "";
+          return loop(indent, inside + jump);
         }
       }
     }
@@ -217,6 +250,7 @@ VAR_TEMP H : INT; END_VAR
   }
 
   std::mt19937_64 engine_;
+  bool timers_ = false;
   bool in_loop_ = false;
   std::string name_{};
   std::string text_{};

@@ -164,6 +164,17 @@ class SequentialBody {
           return jump;
         }
       }
+    } else if (const auto* turns = std::get_if<tree::Loop>(&one.node)) {
+      const auto holds = [&] { return value(turns->condition, frame).value != 0.0; };
+      while (!turns->tested_first || holds()) {
+        const Jump jump = run(turns->statements, frame);
+        if (jump == Jump::Return) {
+          return jump;
+        }
+        if (jump == Jump::Exit || (!turns->tested_first && holds())) {
+          break;
+        }
+      }
     } else {
       const auto jump = std::get<tree::Jump>(one.node);
       return jump == tree::Jump::Return ? Jump::Return : (jump == tree::Jump::Exit ? Jump::Exit : Jump::Continue);

@@ -48,6 +48,44 @@ END_FUNCTION_BLOCK
   EXPECT_THAT(bench.read("out.csv"), HasSubstr("0.001,0.005\n"));
 }
 
+/// A vector of a diagram comes back from its FMU as elements: by one array of FMI 3.0, or one by one in FMI 2.0.
+TEST(FmuBlock, AnArrayHasAPinForEachElement) {
+  const Workbench bench;
+  bench.write("rack.st", R"(FUNCTION_BLOCK RACK  (* @ts 1ms *)
+  VAR_INPUT
+    X : ARRAY[0..2] OF LREAL;
+    B : BOOL;
+    K : ARRAY[0..2] OF LREAL := [1.0, 2.0, 3.0];  (* @param *)
+  END_VAR
+  VAR_OUTPUT
+    Y : ARRAY[0..2] OF LREAL;
+    SUM_OF : LREAL;
+    Q : ARRAY[0..1] OF BOOL;
+  END_VAR
+  Y := X * K;
+  SUM_OF := SUM(X);
+  Q[0] := B;
+  Q[1] := NOT B;
+END_FUNCTION_BLOCK
+)");
+  bench.write("log.csv", "t,A\n0.000,1.0\n0.001,2.0\n0.002,3.0\n");
+  for (const auto& [version, first] : {std::pair{"3", 1}, {"2", 0}}) {
+    ASSERT_EQ(bench.shell(fmt::format("hysteron generate rack.st --target fmu --fmi {} --out .", version)).code, 0);
+    const auto at = [&](const char* name, int i) { return fmt::format("{}_{}", name, first + i); };
+    bench.write(
+        "own.st",
+        fmt::format(
+            "FUNCTION_BLOCK OWN  (* @ts 1ms *)\n  VAR_INPUT A : LREAL; END_VAR\n  VAR_OUTPUT Y : LREAL; Z : LREAL; "
+            "S : LREAL; Q : BOOL; END_VAR\n  VAR R : HY_FMU := ({5} := 5.0);  (* @file rack.fmu *) END_VAR\n"
+            "  Y := R.{0};\n  Z := R.{1};\n  S := R.SUM_OF;\n  Q := R.{6};\n"
+            "  R({2} := A, {3} := 10.0 * A, {4} := 100.0 * A, B := A > 1.5);\nEND_FUNCTION_BLOCK\n",
+            at("Y", 0), at("Y", 2), at("X", 0), at("X", 1), at("X", 2), "K_2", at("Q", 0)));
+    const auto done = bench.shell("hysteron run own.st --in log.csv --out out.csv");
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(bench.read("out.csv"), "t,Y,Z,S,Q\n0,0,0,0,0\n0.001,1,500,111,0\n0.002,2,1000,222,1\n") << version;
+  }
+}
+
 TEST(FmuBlock, ALoopGoesThroughIt) {
   const MotorBench bench;
   bench.write("closed.st", R"(FUNCTION_BLOCK CLOSED  (* @ts 1ms *)

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -109,6 +110,7 @@ class FmuInstance {
   FmuInstance& operator=(const FmuInstance&) = delete;
 
   [[nodiscard]] bool there() const { return component_ != nullptr; }
+  [[nodiscard]] void* component() const { return component_; }
   int begin(double start = 0.0) {
     if (fmu_.three()) {
       return fmu_.function<int(void*, bool, double, double, bool, double)>("EnterInitializationMode")(
@@ -135,15 +137,18 @@ class FmuInstance {
     return event || terminate || early || (status == 0 && reached != time + size) ? -1 : status;
   }
 
-  int set(std::uint32_t reference, double value) { return access("Set", reference, value); }
-  int set(const std::string& name, double value) { return set(fmu_.reference(name), value); }
-  double get(std::uint32_t reference) {
-    double value = 0.0;
-    if (const int status = access("Get", reference, value); status != 0) {
+  int set(std::uint32_t reference, double value) { return set_array(reference, {value}); }
+  /// Of FMI 3.0: all elements by one call.
+  int set_array(std::uint32_t reference, std::vector<double> values) { return access("Set", reference, values); }
+  std::vector<double> get_array(std::uint32_t reference, std::size_t count) {
+    std::vector<double> values(count);
+    if (const int status = access("Get", reference, values); status != 0) {
       throw std::runtime_error("cannot be read");
     }
-    return value;
+    return values;
   }
+  int set(const std::string& name, double value) { return set(fmu_.reference(name), value); }
+  double get(std::uint32_t reference) { return get_array(reference, 1).front(); }
   double get(const std::string& name) { return get(fmu_.reference(name)); }
 
   int save(void** state) { return fmu_.function<int(void*, void**)>(state_name("Get", ""))(component_, state); }
@@ -168,31 +173,32 @@ class FmuInstance {
   }
 
   template <class Number>
-  int access_as(const std::string& name, std::uint32_t reference, double& value) {
-    auto number = static_cast<Number>(value);
+  int access_as(const std::string& name, std::uint32_t reference, std::vector<double>& values) {
+    const auto numbers = std::make_unique<Number[]>(values.size());
+    std::transform(values.begin(), values.end(), numbers.get(), [](double one) { return static_cast<Number>(one); });
     const int status = fmu_.three()
                            ? fmu_.function<int(void*, const std::uint32_t*, std::size_t, Number*, std::size_t)>(name)(
-                                 component_, &reference, 1, &number, 1)
+                                 component_, &reference, 1, numbers.get(), values.size())
                            : fmu_.function<int(void*, const std::uint32_t*, std::size_t, Number*)>(name)(
-                                 component_, &reference, 1, &number);
-    value = static_cast<double>(number);
+                                 component_, &reference, 1, numbers.get());
+    std::copy_n(numbers.get(), values.size(), values.begin());
     return status;
   }
-  int access(const std::string& verb, std::uint32_t reference, double& value) {
+  int access(const std::string& verb, std::uint32_t reference, std::vector<double>& values) {
     const std::string& type = fmu_.type(reference);
     if (type == "Float64" || type == "Real") {
-      return access_as<double>(verb + type, reference, value);
+      return access_as<double>(verb + type, reference, values);
     }
     if (type == "Float32") {
-      return access_as<float>(verb + type, reference, value);
+      return access_as<float>(verb + type, reference, values);
     }
     if (type == "UInt16") {
-      return access_as<std::uint16_t>(verb + type, reference, value);
+      return access_as<std::uint16_t>(verb + type, reference, values);
     }
     if (type == "Boolean" && fmu_.three()) {
-      return access_as<bool>(verb + type, reference, value);
+      return access_as<bool>(verb + type, reference, values);
     }
-    return access_as<std::int32_t>(verb + type, reference, value);
+    return access_as<std::int32_t>(verb + type, reference, values);
   }
 
   struct Callbacks {

@@ -2,6 +2,7 @@
 #include "tool/fmu.hpp"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -131,6 +132,82 @@ TEST(Fmu, VariablesAreAllThereAndNoReferenceIsTwice) {
     EXPECT_STREQ(variable("X").attribute("description").value(), "<where> & \"why\"");
     EXPECT_EQ(fmu.type(fmu.reference("STATUS")), fmu.three() ? "UInt16" : "Integer");
   }
+}
+
+TEST(Fmu, AVectorIsAnArrayOfFmi3AndItsElementsInFmi2) {
+  constexpr std::string_view rack = R"(FUNCTION_BLOCK RACK  (* @ts 1ms *)
+  VAR_INPUT
+    X : ARRAY[0..3] OF LREAL := [1.0, 2.0, 3.0, 4.0];  (* @unit um @min -10.0 @max 10.0 *)
+    ON_SET : ARRAY[0..1] OF BOOL;
+    K : LREAL := 2.0;  (* @param *)
+  END_VAR
+  VAR_OUTPUT
+    Y : ARRAY[0..3] OF LREAL;  (* @unit um *)
+    N : ARRAY[0..1] OF DINT;
+    LAST : LREAL;  (* @unit um *)
+  END_VAR
+  VAR
+    TABLE : HY_TABLE := (X := [0.0, 1.0, 2.0], Y := [0.0, 10.0, 15.0], COUNT := 3);
+  END_VAR
+
+  TABLE(XIN := K);
+  Y := X * K;
+  N[0] := BOOL_TO_DINT(ON_SET[1]);
+  N[1] := BOOL_TO_DINT(ON_SET[0]) * 7;
+  LAST := X[3];
+END_FUNCTION_BLOCK
+)";
+  const LoadedFmu three(packed(rack, FmiVersion::Three));
+  const auto variable = [&](const char* name) {
+    return three.root().child("ModelVariables").find_child_by_attribute("name", name);
+  };
+  const pugi::xml_node x = variable("X");
+  EXPECT_STREQ(x.name(), "Float64");
+  EXPECT_STREQ(x.child("Dimension").attribute("start").value(), "4");
+  EXPECT_STREQ(x.attribute("start").value(), "1 2 3 4");
+  EXPECT_STREQ(x.attribute("min").value(), "-10");
+  EXPECT_STREQ(variable("ON_SET").attribute("start").value(), "false false");
+  EXPECT_THAT(variable("TABLE.Y").attribute("start").value(), ::testing::StartsWith("0 10 15 "));
+  EXPECT_TRUE(variable("X[0]").empty() && variable("TABLE.Y[1]").empty());
+  EXPECT_TRUE(variable("LAST").child("Dimension").empty());
+
+  FmuInstance one(three);
+  ASSERT_EQ(one.start(), 0);
+  const auto reference = [&](const char* name) { return three.reference(name); };
+  EXPECT_EQ(one.get_array(reference("X"), 4), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(one.get_array(reference("Y"), 4), (std::vector<double>{2, 4, 6, 8}));
+  ASSERT_EQ(one.set_array(reference("X"), {5, 6, 7, 8}), 0);
+  ASSERT_EQ(one.set_array(reference("ON_SET"), {1, 0}), 0);
+  ASSERT_EQ(one.step(0.0, 0.001), 0);
+  EXPECT_EQ(one.get_array(reference("Y"), 4), (std::vector<double>{10, 12, 14, 16}));
+  EXPECT_EQ(one.get_array(reference("N"), 2), (std::vector<double>{0, 7}));
+  EXPECT_EQ(one.get("LAST"), 8.0);
+  // An array is given whole, and several variables one after the other.
+  EXPECT_EQ(one.set_array(reference("X"), {1, 2, 3}), 3);
+  EXPECT_EQ(one.set_array(reference("X"), {1, 2, 3, 4, 5}), 3);
+  EXPECT_THROW((void)one.get("Y"), std::runtime_error);
+  EXPECT_EQ(one.get_array(reference("X"), 4), (std::vector<double>{5, 6, 7, 8}));
+  const std::uint32_t both[] = {reference("LAST"), reference("Y")};
+  double values[5] = {};
+  const auto get = three.function<int(void*, const std::uint32_t*, std::size_t, double*, std::size_t)>("GetFloat64");
+  ASSERT_EQ(get(one.component(), both, 2, values, 5), 0);
+  EXPECT_EQ(std::vector<double>(values, values + 5), (std::vector<double>{8, 10, 12, 14, 16}));
+  void* state = nullptr;
+  ASSERT_EQ(one.save(&state), 0);
+  const std::vector<char> bytes = one.bytes_of(state);
+  ASSERT_EQ(one.set_array(reference("X"), {0, 0, 0, 0}) + one.step(0.001, 0.001), 0);
+  void* again = nullptr;
+  ASSERT_EQ(one.state_from(bytes, &again) + one.restore(again), 0);
+  EXPECT_EQ(one.get_array(reference("X"), 4), (std::vector<double>{5, 6, 7, 8}));
+  EXPECT_EQ(one.get_array(reference("Y"), 4), (std::vector<double>{10, 12, 14, 16}));
+  EXPECT_EQ(one.forget(&state) + one.forget(&again), 0);
+
+  const LoadedFmu two(packed(rack, FmiVersion::Two));
+  FmuInstance elements(two);
+  ASSERT_EQ(elements.start(), 0);
+  EXPECT_EQ(elements.get("X[3]"), 4.0);
+  ASSERT_EQ(elements.set("X[3]", 9.0) + elements.set("TABLE.Y[2]", 11.0) + elements.step(0.0, 0.001), 0);
+  EXPECT_EQ(elements.get("Y[3]"), 18.0);
 }
 
 TEST(Fmu, StructureNamesEachOutputAsOutputAndInitialUnknown) {

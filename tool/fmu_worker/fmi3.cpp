@@ -68,7 +68,7 @@ class Fmi3 final : public Instance {
     if (known[place] == nullptr) {
       known[place] = library_.function<Accessor>(name());
     }
-    if (const int status = known[place](instance_, row.references, row.count, row.numbers, row.count); status > 1) {
+    if (const int status = known[place](instance_, row.references, row.count, row.numbers, row.elements); status > 1) {
       require(status, name().c_str());
     }
   }

@@ -25,10 +25,12 @@ class AccessRow {
  public:
   AccessRow(std::uint32_t version, Access access) : version_(version), access_(access) {}
 
-  void add(std::uint32_t reference, std::size_t place) {
-    references_.push_back(reference);
+  void add(const ChannelVariable& variable, std::size_t place) {
+    if (!variable.goes_on) {
+      references_.push_back(variable.reference);
+    }
     places_.push_back(place);
-    numbers_.resize(references_.size());
+    numbers_.resize(places_.size());
   }
   [[nodiscard]] bool empty() const { return references_.empty(); }
 
@@ -51,8 +53,11 @@ class AccessRow {
 
  private:
   [[nodiscard]] Row row() {
-    return {
-        .access = access_, .references = references_.data(), .count = references_.size(), .numbers = numbers_.data()};
+    return {.access = access_,
+            .references = references_.data(),
+            .count = references_.size(),
+            .numbers = numbers_.data(),
+            .elements = numbers_.size()};
   }
   template <class Visit>
   void visit(const Visit& visit) {
@@ -94,7 +99,7 @@ class Group {
       AccessRow row(version, static_cast<Access>(access));
       for (std::size_t i = 0; i < count; ++i) {
         if (variables[i].access == static_cast<Access>(access)) {
-          row.add(variables[i].reference, i);
+          row.add(variables[i], i);
         }
       }
       if (!row.empty()) {

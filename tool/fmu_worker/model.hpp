@@ -40,7 +40,8 @@ struct Row {
   cosimulation::Access access = cosimulation::Access::Float64;
   const std::uint32_t* references = nullptr;
   std::size_t count = 0;
-  void* numbers = nullptr;  ///< of the type of the access, aligned
+  void* numbers = nullptr;   ///< of the type of the access, aligned
+  std::size_t elements = 0;  ///< numbers: an array of FMI 3.0 has more than one
 };
 
 class Instance {

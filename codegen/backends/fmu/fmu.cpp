@@ -13,7 +13,7 @@ namespace hysteron {
 FmuContents generate_fmu(const Program& program, const FmuOptions& options) {
   const auto step = generate_c(program, {.float32 = options.float32});
   const bool three = options.version == FmiVersion::Three;
-  const auto variables = fmu_variables(program, options.float32);
+  const auto variables = fmu_variables(program, options);
   FmuModel model{
       .name = program.graph.name,
       .identifier = namespace_identifier(program.graph.name),

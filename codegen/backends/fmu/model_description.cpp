@@ -97,13 +97,19 @@ void add_units(pugi::xml_node root, std::span<const FmuVariable> variables) {
   }
 }
 
+/// Of an array, its elements one after the other.
 std::string start_text(const FmuVariable& one, const FmuOptions& options) {
-  if (one.type == Type::Bool) {
-    return one.start != 0.0 ? "true" : "false";
+  std::string text;
+  for (const double start : one.start) {
+    text += text.empty() ? "" : " ";
+    if (one.type == Type::Bool) {
+      text += start != 0.0 ? "true" : "false";
+    } else {
+      const bool single = one.type == Type::Real && options.float32 && start - start == 0.0;
+      text += single ? number_text(static_cast<float>(start)) : number(start);
+    }
   }
-  return one.type == Type::Real && options.float32 && one.start - one.start == 0.0
-             ? number_text(static_cast<float>(one.start))
-             : number(one.start);
+  return text;
 }
 
 void add_type_attributes(pugi::xml_node node, const FmuVariable& one, const FmuOptions& options) {
@@ -167,6 +173,9 @@ void add_variables(pugi::xml_node root, std::span<const FmuVariable> variables, 
     set(node, "valueReference", std::to_string(i + 1));
     add_role(node, one);
     add_type_attributes(three ? node : node.append_child(fmi_type_name(one.type, options)), one, options);
+    if (one.array) {
+      set(node.append_child("Dimension"), "start", std::to_string(one.start.size()));
+    }
   }
 }
 

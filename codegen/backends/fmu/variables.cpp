@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <string_view>
+#include <utility>
+
 #include "codegen/backends/c/dialect.hpp"
 #include "codegen/backends/c_family/names.hpp"
 #include "codegen/graph/units.hpp"
@@ -15,7 +19,7 @@ FmuVariable of_port(const Port& port, FmuVariable::Role role, std::string_view g
           .type = port.type,
           .unit = port.unit,
           .meaning = port.meaning,
-          .start = port.preset,
+          .start = {port.preset},
           .minimum = port.minimum,
           .maximum = port.maximum,
           .member = fmt::format("{}.{}", group, member)};
@@ -25,9 +29,40 @@ double as_float(double value) {
   return static_cast<double>(static_cast<float>(value));
 }
 
+/// The array that an element belongs to, in.x of in.x[3], and its place in it; an empty name where it is none.
+std::pair<std::string_view, std::size_t> array_of(std::string_view member) {
+  const auto bracket = member.ends_with(']') ? member.rfind('[') : std::string_view::npos;
+  std::size_t place = 0;
+  if (bracket == std::string_view::npos ||
+      std::from_chars(member.data() + bracket + 1, member.data() + member.size() - 1, place).ec != std::errc()) {
+    return {};
+  }
+  return {member.substr(0, bracket), place};
+}
+
+/// The elements of an array as one variable: they differ in their start values alone.
+std::vector<FmuVariable> joined(const std::vector<FmuVariable>& elements) {
+  std::vector<FmuVariable> list;
+  for (const FmuVariable& one : elements) {
+    const auto [array, place] = array_of(one.member);
+    FmuVariable* const last = list.empty() ? nullptr : &list.back();
+    if (!array.empty() && place > 0 && last != nullptr && last->array && array_of(last->member).first == array &&
+        last->start.size() == place) {
+      last->start.push_back(one.start.front());
+      continue;
+    }
+    list.push_back(one);
+    if (!array.empty() && place == 0) {
+      list.back().array = true;
+      list.back().name.resize(one.name.rfind('['));
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
-std::vector<FmuVariable> fmu_variables(const Program& program, bool float32) {
+std::vector<FmuVariable> fmu_variables(const Program& program, const FmuOptions& options) {
   const Graph& graph = program.graph;
   const Routine routine = make_routine(program);
   const StructLayout layout(graph, routine, c_words());
@@ -50,7 +85,7 @@ std::vector<FmuVariable> fmu_variables(const Program& program, bool float32) {
                       .type = parameter.field.type,
                       .unit = units[i],
                       .meaning = std::string(parameter.field.meaning),
-                      .start = parameter.value[k],
+                      .start = {parameter.value[k]},
                       .minimum = parameter.field.minimum,
                       .maximum = parameter.field.maximum,
                       .above_minimum = parameter.field.above_minimum,
@@ -59,13 +94,13 @@ std::vector<FmuVariable> fmu_variables(const Program& program, bool float32) {
     }
   }
   for (FmuVariable& one : list) {
-    if (float32 && one.type == Type::Real) {
-      one.start = as_float(one.start);
+    if (options.float32 && one.type == Type::Real) {
+      one.start.front() = as_float(one.start.front());
       one.minimum = as_float(one.minimum);
       one.maximum = as_float(one.maximum);
     }
   }
-  return list;
+  return options.version == FmiVersion::Three ? joined(list) : list;
 }
 
 }  // namespace hysteron

@@ -39,13 +39,14 @@ std::string bound(double value) {
 /// A row more than there are variables: C has no empty array.
 std::string table(std::span<const FmuVariable> variables) {
   std::string text =
-      "// By value reference, from 1 on: place, kind, role, range, whether the minimum itself is out of range.\n"
+      "// By value reference, from 1 on: place, elements, kind, role, range, whether the minimum itself is out of it.\n"
       "static const fmu_variable fmu_variables[] = {\n";
   for (const FmuVariable& one : variables) {
-    append(text, fmt::format("    {{offsetof(fmu_values, {}), {}, {}, {}, {}, {}}},\n", one.member, kind_of(one.type),
-                             role_of(one.role), bound(one.minimum), bound(one.maximum), one.above_minimum));
+    append(text, fmt::format("    {{offsetof(fmu_values, {}), {}, {}, {}, {}, {}, {}}},\n", one.member,
+                             one.start.size(), kind_of(one.type), role_of(one.role), bound(one.minimum),
+                             bound(one.maximum), one.above_minimum));
   }
-  return text + "    {0, KIND_REAL, ROLE_OUTPUT, 0.0, 0.0, false}};\n\n";
+  return text + "    {0, 1, KIND_REAL, ROLE_OUTPUT, 0.0, 0.0, false}};\n\n";
 }
 
 constexpr std::string_view wrapper_head =

@@ -36,6 +36,7 @@ typedef struct {
 
 typedef struct {
   size_t place;
+  size_t elements;
   int kind;
   int role;
   double minimum;
@@ -89,8 +90,21 @@ static void fmu_preview(fmu_values *values) {
   FMU_STEP(&values->params, &state, &values->in, &values->out);
 }
 
-static double fmu_number(const fmu_values *values, const fmu_variable *variable) {
-  const void *place = (const char *)values + variable->place;
+static size_t fmu_size(const fmu_variable *variable) {
+  switch (variable->kind) {
+    case KIND_REAL:
+      return sizeof(fmu_real_type);
+    case KIND_INT:
+      return sizeof(int32_t);
+    case KIND_BOOL:
+      return sizeof(bool);
+    default:
+      return sizeof(uint16_t);
+  }
+}
+
+static double fmu_number(const fmu_values *values, const fmu_variable *variable, size_t element) {
+  const void *place = (const char *)values + variable->place + element * fmu_size(variable);
   switch (variable->kind) {
     case KIND_REAL:
       return (double)*(const fmu_real_type *)place;
@@ -103,7 +117,18 @@ static double fmu_number(const fmu_values *values, const fmu_variable *variable)
   }
 }
 
-static int fmu_get(fmu_instance *instance, uint32_t reference, int kinds, double *value) {
+// How many numbers the variables are together: an array is as many as it has elements.
+static size_t fmu_elements(const uint32_t references[], size_t count) {
+  size_t elements = 0;
+  size_t i;
+  for (i = 0; i < count; ++i) {
+    const uint32_t reference = references[i];
+    elements += reference < 1u || reference > FMU_VARIABLES ? 1u : fmu_variables[reference - 1u].elements;
+  }
+  return elements;
+}
+
+static int fmu_get(fmu_instance *instance, uint32_t reference, size_t element, int kinds, double *value) {
   const fmu_variable *variable;
   if (reference == 0u && (kinds & KIND_TIME) != 0) {
     *value = instance->values.reached;
@@ -116,11 +141,11 @@ static int fmu_get(fmu_instance *instance, uint32_t reference, int kinds, double
   if (variable->role == ROLE_OUTPUT && instance->values.samples == 0) {
     fmu_preview(&instance->values);
   }
-  *value = fmu_number(&instance->values, variable);
+  *value = fmu_number(&instance->values, variable, element);
   return FMU_OK;
 }
 
-static int fmu_set(fmu_instance *instance, uint32_t reference, int kinds, double value) {
+static int fmu_set(fmu_instance *instance, uint32_t reference, size_t element, int kinds, double value) {
   const fmu_variable *variable;
   double held = value;
   void *place;
@@ -144,7 +169,7 @@ static int fmu_set(fmu_instance *instance, uint32_t reference, int kinds, double
       !(held <= variable->maximum && (variable->above_minimum ? held > variable->minimum : held >= variable->minimum))) {
     return fmu_refuse(instance, FMU_DISCARD, "the parameter's value is out of its range");
   }
-  place = (char *)&instance->values + variable->place;
+  place = (char *)&instance->values + variable->place + element * fmu_size(variable);
   switch (variable->kind) {
     case KIND_REAL:
       *(fmu_real_type *)place = (fmu_real_type)value;

@@ -162,7 +162,7 @@ FMU_EXPORT fmi2Status FMI(DeSerializeFMUstate)(fmi2Component instance, const cha
     }                                                                                                             \
     for (i = 0; i < count && worst == fmi2OK; ++i) {                                                              \
       double value = 0.0;                                                                                         \
-      worst = (fmi2Status)fmu_get((fmu_instance *)instance, references[i], kinds, &value);                        \
+      worst = (fmi2Status)fmu_get((fmu_instance *)instance, references[i], 0, kinds, &value);                        \
       if (worst == fmi2OK) {                                                                                      \
         values[i] = (Number)value;                                                                                \
       }                                                                                                           \
@@ -179,7 +179,7 @@ FMU_EXPORT fmi2Status FMI(DeSerializeFMUstate)(fmi2Component instance, const cha
     }                                                                                                             \
     for (i = 0; i < count; ++i) {                                                                                 \
       const fmi2Status status =                                                                                   \
-          (fmi2Status)fmu_set((fmu_instance *)instance, references[i], kinds, (double)values[i]);                 \
+          (fmi2Status)fmu_set((fmu_instance *)instance, references[i], 0, kinds, (double)values[i]);                 \
       worst = status > worst ? status : worst;                                                                    \
     }                                                                                                             \
     return worst;                                                                                                 \

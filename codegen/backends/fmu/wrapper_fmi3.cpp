@@ -166,34 +166,46 @@ FMU_EXPORT fmi3Status FMI(DeserializeFMUState)(fmi3Instance instance, const uint
 // --- variables of the types that the model has; of others there is none, which the table tells ---
 
 #define FMU_ACCESS(Name, Number, kinds)                                                                           \
-  FMU_EXPORT fmi3Status FMI(Get##Name)(fmi3Instance instance, const fmi3ValueReference references[], size_t count, \
+  FMU_EXPORT fmi3Status FMI(Get##Name)(fmi3Instance instance, const fmi3ValueReference references[], size_t count,\
                                        Number values[], size_t value_count) {                                     \
     fmi3Status worst = fmi3OK;                                                                                    \
+    size_t at = 0;                                                                                                \
     size_t i;                                                                                                     \
-    if (instance == NULL || count != value_count || (count > 0 && (references == NULL || values == NULL))) {      \
+    size_t k;                                                                                                     \
+    if (instance == NULL || (count > 0 && (references == NULL || values == NULL)) ||                              \
+        fmu_elements(references, count) != value_count) {                                                         \
       return fmi3Error;                                                                                           \
     }                                                                                                             \
-    for (i = 0; i < count && worst == fmi3OK; ++i) {                                                              \
-      double value = 0.0;                                                                                         \
-      worst = (fmi3Status)fmu_get((fmu_instance *)instance, references[i], kinds, &value);                        \
-      if (worst == fmi3OK) {                                                                                      \
-        values[i] = (Number)value;                                                                                \
+    for (i = 0; i < count; ++i) {                                                                                 \
+      const size_t elements = fmu_elements(&references[i], 1);                                                    \
+      for (k = 0; k < elements && worst == fmi3OK; ++k) {                                                         \
+        double value = 0.0;                                                                                       \
+        worst = (fmi3Status)fmu_get((fmu_instance *)instance, references[i], k, kinds, &value);                   \
+        if (worst == fmi3OK) {                                                                                    \
+          values[at++] = (Number)value;                                                                           \
+        }                                                                                                         \
       }                                                                                                           \
     }                                                                                                             \
     return worst;                                                                                                 \
   }                                                                                                               \
                                                                                                                   \
-  FMU_EXPORT fmi3Status FMI(Set##Name)(fmi3Instance instance, const fmi3ValueReference references[], size_t count, \
+  FMU_EXPORT fmi3Status FMI(Set##Name)(fmi3Instance instance, const fmi3ValueReference references[], size_t count,\
                                        const Number values[], size_t value_count) {                               \
     fmi3Status worst = fmi3OK;                                                                                    \
+    size_t at = 0;                                                                                                \
     size_t i;                                                                                                     \
-    if (instance == NULL || count != value_count || (count > 0 && (references == NULL || values == NULL))) {      \
+    size_t k;                                                                                                     \
+    if (instance == NULL || (count > 0 && (references == NULL || values == NULL)) ||                              \
+        fmu_elements(references, count) != value_count) {                                                         \
       return fmi3Error;                                                                                           \
     }                                                                                                             \
     for (i = 0; i < count; ++i) {                                                                                 \
-      const fmi3Status status = (fmi3Status)fmu_set((fmu_instance *)instance, references[i], kinds,               \
-                                                    (double)values[i]);                                           \
-      worst = status > worst ? status : worst;                                                                    \
+      const size_t elements = fmu_elements(&references[i], 1);                                                    \
+      for (k = 0; k < elements; ++k) {                                                                            \
+        const fmi3Status status = (fmi3Status)fmu_set((fmu_instance *)instance, references[i], k, kinds,          \
+                                                      (double)values[at++]);                                      \
+        worst = status > worst ? status : worst;                                                                  \
+      }                                                                                                           \
     }                                                                                                             \
     return worst;                                                                                                 \
   }

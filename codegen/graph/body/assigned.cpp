@@ -1,5 +1,8 @@
 #include "codegen/graph/body/assigned.hpp"
 
+#include <map>
+#include <utility>
+
 namespace hysteron::bodies {
 
 namespace syntax = language::body;
@@ -18,6 +21,8 @@ class Walk {
         expression(assign->value);
       } else if (const auto* call = std::get_if<syntax::Invoke>(&one.node)) {
         names.insert(upper(call->instance.name.text));
+        const bool again = loops_ > 0 || calls.contains(upper(call->instance.name.text));
+        calls[upper(call->instance.name.text)] = again;
         arguments(call->arguments);
       } else if (const auto* choice = std::get_if<syntax::If>(&one.node)) {
         for (const syntax::Branch& branch : choice->branches) {
@@ -33,14 +38,27 @@ class Walk {
         statements(cases->otherwise);
       } else if (const auto* loop = std::get_if<syntax::For>(&one.node)) {
         names.insert(upper(loop->variable.text));
-        statements(loop->statements);
+        expression(loop->from);
+        expression(loop->to);
+        expression(loop->by);
+        round(loop->statements);
+      } else if (const auto* turns = std::get_if<syntax::Loop>(&one.node)) {
+        expression(turns->condition);
+        round(turns->statements);
       }
     }
   }
 
   std::set<std::string> names{};
+  std::map<std::string, bool> calls{};  ///< of what is called, whether at a second place or in a loop
 
  private:
+  void round(const syntax::Statements& list) {
+    ++loops_;
+    statements(list);
+    --loops_;
+  }
+
   void arguments(const std::vector<syntax::Argument>& list) {
     for (const syntax::Argument& one : list) {
       if (const auto* access = std::get_if<syntax::Access>(&library_.expressions[one.value].node)) {
@@ -51,6 +69,9 @@ class Walk {
   }
 
   void expression(language::ExpressionId id) {
+    if (id == language::no_expression) {
+      return;
+    }
     const auto& node = library_.expressions[id].node;
     if (const auto* unary = std::get_if<syntax::Unary>(&node)) {
       expression(unary->operand);
@@ -63,14 +84,21 @@ class Walk {
   }
 
   const syntax::Library& library_;
+  int loops_ = 0;
 };
 
 }  // namespace
 
-std::set<std::string> assigned_names(const Source& source) {
+Written written_by(const Source& source) {
   Walk walk(*source.library);
   walk.statements(source.unit->statements);
-  return std::move(walk.names);
+  Written result{.names = std::move(walk.names)};
+  for (const auto& [name, again] : walk.calls) {
+    if (again) {
+      result.called_again.insert(name);
+    }
+  }
+  return result;
 }
 
 }  // namespace hysteron::bodies

@@ -1,4 +1,4 @@
-// Which variables the statements of a unit may write.
+// Which variables the statements of a unit may write, and what they call more than once.
 #pragma once
 
 #include <set>
@@ -8,7 +8,11 @@
 
 namespace hysteron::bodies {
 
-/// The first names, in upper case, of all that is assigned, counted, taken from an output, or handed to a call.
-std::set<std::string> assigned_names(const Source& source);
+/// Names in upper case, of `A[1].B` the A.
+struct Written {
+  std::set<std::string> names{};         ///< all that is assigned, counted, taken from an output, or handed to a call
+  std::set<std::string> called_again{};  ///< called at two places or more, or in a loop
+};
+Written written_by(const Source& source);
 
 }  // namespace hysteron::bodies

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "codegen/graph/body/assigned.hpp"
 #include "codegen/graph/vectors.hpp"
 #include "support/errors.hpp"
 
@@ -42,10 +41,10 @@ std::string Body::path_for(std::string_view name) {
   return count == 1 ? path : fmt::format("{}_{}", path, count);
 }
 
-const std::set<std::string>& Body::assigned(const Source& source) {
-  auto found = assigned_.find(source.unit);
-  if (found == assigned_.end()) {
-    found = assigned_.emplace(source.unit, assigned_names(source)).first;
+const Written& Body::written(const Source& source) {
+  auto found = written_.find(source.unit);
+  if (found == written_.end()) {
+    found = written_.emplace(source.unit, written_by(source)).first;
   }
   return found->second;
 }
@@ -98,7 +97,7 @@ BorderPort Body::port(std::size_t declaration, const BodyType& type, std::string
           .initial = type.plain == Plain::Time ? initial / 1000.0 : initial,
           .written = one.name,
           .declaration = declaration,
-          .assigned = assigned(source_).contains(upper(one.name.text))};
+          .assigned = written(source_).names.contains(upper(one.name.text))};
 }
 
 /// A vector at the border: a port for each element.

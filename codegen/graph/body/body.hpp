@@ -1,10 +1,10 @@
 // A sequential body as a graph: it is executed once with wires for values.
 //
-// An IF executes both sides and merges them by SEL; a CASE is a chain of them; a FOR is unrolled; a RETURN, EXIT or
-// CONTINUE under a condition merges what follows with what stood before. A variable that is read before it is written
-// in the step is a cell of memory: a HY_DELAY of its type that is wired to what the variable holds at the end. Blocks
-// and functions of one's own are executed in place. A block of the library is a node: it can be called once in a
-// step, and under no condition, since its memory moves on in every step.
+// An IF executes both sides and merges them by SEL; a CASE is a chain of them; a loop is unrolled, up to where the
+// ranges of its numbers end it; a RETURN, EXIT or CONTINUE under a condition merges what follows with what stood
+// before. A variable that is read before it is written in the step is a cell of memory: a HY_DELAY of its type that is
+// wired to what the variable holds at the end. Blocks and functions of one's own are executed in place. A block of the
+// library is a node: it can be called once in a step, and under no condition, since its memory moves on in every step.
 #pragma once
 
 #include <functional>
@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codegen/graph/body/assigned.hpp"
 #include "codegen/graph/body/computer.hpp"
 #include "codegen/graph/body/place.hpp"
 
@@ -28,7 +29,7 @@ struct Surroundings {
   std::function<Wire(Parameter)> add_parameter;  ///< one that may be set from outside
   std::string path{};                            ///< of the instance: "" or ending in a dot
   Rate rate{};
-  double sample_time = 0.0;  ///< 0: not stated
+  std::int64_t sample_time_ns = 0;  ///< of one of its steps; 0: not stated
 };
 
 /// A plain variable at the border of a block.
@@ -53,6 +54,9 @@ class Body {
   std::map<std::string, Wire> run(const std::map<std::string, Wire>& inputs);
 
  private:
+  /// Loops unrolled, calls executed in place: so many statements are a program, not a block.
+  static constexpr std::size_t most_statements = 200'000;
+
   BorderPort port(std::size_t declaration, const BodyType& type, std::string name, const Place& place);
   void add_elements(std::vector<BorderPort>& list, std::size_t declaration, const BodyType& type);
   /// The variable of a border by its name in upper case, of a vector an element.
@@ -86,6 +90,8 @@ class Body {
   std::uint32_t make_leaf(Plain type, double initial, const std::string& path, language::Span span, bool memory);
   void set_initial(Place& place, const language::body::Initial& initial);
   bool constant(language::ExpressionId id, double& value);
+  /// A delay of one step, and the number of its node, whose first input is not wired yet.
+  std::pair<Value, std::uint32_t> delay(Plain type, double initial, const std::string& name, language::Span span);
   /// What a leaf held at the end of the step before.
   Value cell(std::uint32_t leaf);
   Value read(std::uint32_t leaf) { return state_.values[leaf] ? *state_.values[leaf] : cell(leaf); }
@@ -109,10 +115,27 @@ class Body {
                 const language::body::Statements& otherwise);
   void arms(const language::body::Case& node, const Value& selector, std::size_t at);
   Value selected(const language::body::Arm& arm, const Value& selector);
-  void loop(const language::body::For& node, language::Span span);
-  void rounds(const language::body::For& node, std::uint32_t leaf, double at, double to, double by);
   State merged(const Value& condition, State yes, State no);
   Value stopped();
+
+  // Loops: body_loops.cpp.
+  struct Counting;
+  void loop(const language::body::For& node, language::Span span);
+  std::optional<Counting> counting(const language::body::For& node, language::Span span);
+  void rounds(const Counting& count, double at);
+  bool round(const Counting& count, double at);
+  void loop(const language::body::Loop& node, language::Span span);
+  void again(const language::body::Loop& node, language::Span span, int turn);
+  void narrow(language::ExpressionId condition, bool holds);
+  [[nodiscard]] bool is_plain(language::ExpressionId id) const;
+
+  // TIME(), and the timers by it: body_clock.cpp.
+  std::optional<Value> of_time(const std::string& function, language::Span span);
+  std::int64_t sample_time(language::Span span);
+  Value clock(language::Span span);
+  Value steps();
+  bool runs_by_clock(Place& place);
+  void invoke_by_clock(Place& place, language::Span span);
 
   // Expressions: body_values.cpp.
   Value value(language::ExpressionId id);
@@ -133,7 +156,7 @@ class Body {
   std::optional<Value> of_number(const std::string& name, const std::vector<Value>& values);
   std::optional<Value> chosen(const std::string& name, std::vector<Value>& values);
 
-  const std::set<std::string>& assigned(const Source& source);
+  const Written& written(const Source& source);
   Value refuse(int number, language::Span span, std::string cause, std::string mend);
   [[nodiscard]] const language::body::Expression& expression(language::ExpressionId id) const {
     return source_.library->expressions[id];
@@ -148,13 +171,18 @@ class Body {
   Place* scope_ = nullptr;
   std::vector<Leaf> leaves_{};
   State state_{};
-  int conditions_ = 0;  ///< under how many a statement stands
-  int level_ = 0;       ///< of calls in calls
+  int conditions_ = 0;    ///< under how many a statement stands
+  int called_again_ = 0;  ///< within how many instances that are called more than once places are made
+  int level_ = 0;         ///< of calls in calls
   std::size_t executed_ = 0;
   std::map<std::string, int> paths_{};
   std::set<std::string> node_paths_{};
-  std::map<const language::body::Unit*, std::set<std::string>> assigned_{};  ///< what each writes, in upper case
+  std::map<const language::body::Unit*, Written> written_{};
   std::vector<std::pair<std::uint32_t, language::Span>> open_pins_{};  ///< not given before their block was called
+  std::set<const language::body::Loop*> endless_{};                    ///< that were told
+  bool lacks_sample_time_ = false;                                     ///< which was told
+  std::optional<Value> clock_{};                                       ///< what TIME() gives in this step
+  std::optional<Value> steps_{};                                       ///< and CLOCK_STEPS()
   std::optional<language::Span> standard_call_{};  ///< within a block of the standard: where it was called
 };
 

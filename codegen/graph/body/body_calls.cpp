@@ -33,7 +33,11 @@ void Body::invoke(const syntax::Invoke& node, language::Span span) {
     invoke_unit(*place, node);
   } else if (place->type != nullptr && place->type->kind == BodyType::Kind::Library) {
     hand_over(*place, node.arguments);
-    invoke_library(*place, node.instance.span);
+    if (runs_by_clock(*place)) {
+      invoke_by_clock(*place, node.instance.span);
+    } else {
+      invoke_library(*place, node.instance.span);
+    }
     hand_back(*place, node.arguments);
   } else {
     refuse(error::type_mismatch, node.instance.span,

@@ -82,6 +82,11 @@ Value Body::call(const syntax::Call& call, language::Span span) {
     }
   }
   computer_.at(place_of(span));
+  if (values.empty()) {
+    if (const auto time = of_time(name, span)) {
+      return *time;
+    }
+  }
   for (const auto& found :
        {conversion(name, values), of_number(name, values), chosen(name, values), function(name, values)}) {
     if (found) {
@@ -160,54 +165,47 @@ std::optional<Value> Body::of_number(const std::string& name, const std::vector<
 }
 
 std::optional<Value> Body::chosen(const std::string& name, std::vector<Value>& values) {
-  const auto compare = [&](Operator op, const Value& a, const Value& b) { return computer_.binary(op, a, b); };
-  const auto meet_all = [&](std::size_t first) {
-    for (std::size_t round = 0; round < 2; ++round) {
-      for (std::size_t i = first + 1; i < values.size(); ++i) {
-        if (!computer_.meet(values[first], values[i], name)) {
-          return false;
-        }
+  const bool extreme = (name == "MIN" || name == "MAX") && values.size() >= 2;
+  const bool limit = name == "LIMIT" && values.size() == 3;
+  const bool choice = name == "SEL" && values.size() == 3;
+  const bool multiple = name == "MUX" && values.size() >= 3 && is_integer(values[0].type);
+  if (!extreme && !limit && !choice && !multiple) {
+    return std::nullopt;
+  }
+  const std::size_t first = choice || multiple ? 1 : 0;
+  // Of literals alone, as SEL(G, 0, 255): it takes the type that it is assigned to.
+  const bool untyped = std::all_of(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
+                                   [](const Value& one) { return one.loose || one.untyped; });
+  for (std::size_t round = 0; round < 2; ++round) {
+    for (std::size_t i = first + 1; i < values.size(); ++i) {
+      if (!computer_.meet(values[first], values[i], name)) {
+        return Value{};
       }
     }
-    std::for_each(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
-                  [&](Value& one) { one = computer_.fit(one, one.type); });
-    return true;
-  };
-  if ((name == "MIN" || name == "MAX") && values.size() >= 2) {
-    if (!meet_all(0)) {
-      return Value{};
-    }
-    Value best = values[0];
+  }
+  std::for_each(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
+                [&](Value& one) { one = computer_.fit(one, one.type); });
+  Value result;
+  if (extreme) {
+    result = values[0];
     for (std::size_t i = 1; i < values.size(); ++i) {
-      best = computer_.select(compare(name == "MIN" ? Operator::Less : Operator::Greater, values[i], best), values[i],
-                              best);
+      result = computer_.extreme(result, values[i], name == "MAX");
     }
-    return best;
-  }
-  if (name == "LIMIT" && values.size() == 3) {
-    if (!meet_all(0)) {
-      return Value{};
-    }
-    const Value above = computer_.select(compare(Operator::Greater, values[0], values[1]), values[0], values[1]);
-    return computer_.select(compare(Operator::Less, values[2], above), values[2], above);
-  }
-  if (name == "SEL" && values.size() == 3) {
-    const Value choice = computer_.assignable(values[0], Plain::Bool, "G of SEL");
-    return choice.valid() && meet_all(1) ? computer_.select(choice, values[2], values[1]) : Value{};
-  }
-  if (name == "MUX" && values.size() >= 3 && is_integer(values[0].type)) {
-    if (!meet_all(1)) {
-      return Value{};
-    }
-    Value result = values.back();
+  } else if (limit) {
+    result = computer_.extreme(computer_.extreme(values[1], values[0], true), values[2], false);
+  } else if (choice) {
+    const Value which = computer_.assignable(values[0], Plain::Bool, "G of SEL");
+    result = which.valid() ? computer_.select(which, values[2], values[1]) : Value{};
+  } else {
+    result = values.back();
     for (std::size_t i = values.size() - 1; i-- > 1;) {
-      const Value here =
-          compare(Operator::LessEqual, values[0], computer_.literal(Plain::Dint, static_cast<double>(i - 1), true));
+      const Value here = computer_.binary(Operator::LessEqual, values[0],
+                                          computer_.literal(Plain::Dint, static_cast<double>(i - 1), true));
       result = computer_.select(here, values[i], result);
     }
-    return result;
   }
-  return std::nullopt;
+  result.untyped = untyped;
+  return result;
 }
 
 std::optional<Value> Body::function(const std::string& name, std::vector<Value>& values) {

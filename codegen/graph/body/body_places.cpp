@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "codegen/graph/body/body.hpp"
 #include "support/errors.hpp"
@@ -75,6 +76,10 @@ void Body::make_pins(Place& place, const std::string& path, language::Span span)
     add(field);
   }
   place.aliases.resize(place.parts.size(), nullptr);
+  if (place.type->by_clock) {
+    place.by_clock = make(place.type->by_clock, path, span, true);
+    place.clocked = called_again_ > 0;
+  }
 }
 
 std::unique_ptr<Place> Body::make(const TypeRef& type, const std::string& path, language::Span span, bool memory) {
@@ -115,9 +120,12 @@ void Body::make_members(Place& place, const std::vector<Member>& members, bool m
   for (const Member& member : members) {
     const bool fixed = member.role == syntax::Role::Constant || member.role == syntax::Role::Temporary ||
                        (unit && member.role == syntax::Role::Local && member.type->kind != BodyType::Kind::Block &&
-                        member.type->kind != BodyType::Kind::Library && !assigned(source_).contains(member.name));
+                        member.type->kind != BodyType::Kind::Library && !written(source_).names.contains(member.name));
     const std::string path = place.path.empty() ? member.name : place.path + (unit ? "." : "_") + member.name;
+    const bool again = unit && written(source_).called_again.contains(member.name);
+    called_again_ += again ? 1 : 0;
     auto part = make(member.type, path, place_of(member.written.span), memory && !fixed);
+    called_again_ -= again ? 1 : 0;
     if (member.initial != nullptr && member.initial->given()) {
       set_initial(*part, *member.initial);
     }
@@ -212,27 +220,29 @@ bool Body::constant(language::ExpressionId id, double& number) {
   return result.valid() && computer_.constant(result, number);
 }
 
-Value Body::cell(std::uint32_t leaf) {
-  Leaf& one = leaves_[leaf];
-  if (one.cell) {
-    return *one.cell;
-  }
-  std::string path = around_.path + one.path + "_LAST";
+std::pair<Value, std::uint32_t> Body::delay(Plain plain, double initial, const std::string& name, language::Span span) {
+  std::string path = fmt::format("{}{}_LAST", around_.path, name);
   for (int n = 2; !node_paths_.insert(path).second; ++n) {
-    path = fmt::format("{}{}_LAST_{}", around_.path, one.path, n);
+    path = fmt::format("{}{}_LAST_{}", around_.path, name, n);
   }
-  const BlockType* const type = find_block_type(delay_of(one.type));
-  one.node = around_.builder.block(*type, path, around_.rate, one.span);
-  const Node& node = around_.builder.graph().nodes[one.node];
-  const Value initial = computer_.literal(one.type, one.initial);
+  const BlockType* const type = find_block_type(delay_of(plain));
+  const std::uint32_t number = around_.builder.block(*type, path, around_.rate, span);
+  const Node& node = around_.builder.graph().nodes[number];
   auto& wires = around_.builder.graph().wires;
   wires[node.first_wire + 1] = around_.builder.literal(Type::Bool, 0.0);
-  wires[node.first_wire + 2] = initial.wire;
-  const Wire wire{Wire::From::Node, type->outputs[0].type, 0, one.node};
-  one.cell = Value{.wire = wire, .type = one.type, .low = 0, .high = 0};
-  if (is_integer(one.type)) {
-    one.cell->low = info(one.type).width == 32 ? lowest(Plain::Dint) : lowest(one.type);
-    one.cell->high = std::min(highest(one.type), highest(Plain::Dint));
+  wires[node.first_wire + 2] = computer_.literal(plain, initial).wire;
+  Value last{.wire = {Wire::From::Node, type->outputs[0].type, 0, number}, .type = plain};
+  if (is_integer(plain)) {
+    last.low = info(plain).width == 32 ? lowest(Plain::Dint) : lowest(plain);
+    last.high = std::min(highest(plain), highest(Plain::Dint));
+  }
+  return {last, number};
+}
+
+Value Body::cell(std::uint32_t leaf) {
+  Leaf& one = leaves_[leaf];
+  if (!one.cell) {
+    std::tie(one.cell, one.node) = delay(one.type, one.initial, one.path, one.span);
   }
   return *one.cell;
 }

@@ -11,14 +11,6 @@ namespace hysteron::bodies {
 namespace syntax = language::body;
 using language::Operator;
 
-namespace {
-
-/// Loops unrolled, calls executed in place: so many statements are a program, not a block.
-constexpr std::size_t most_statements = 200'000;
-constexpr double most_rounds = 10'000.0;
-
-}  // namespace
-
 Value Body::stopped() {
   const Value jumped = computer_.binary(Operator::Or, state_.exited, state_.continued);
   return computer_.binary(Operator::Or, state_.returned, jumped);
@@ -59,6 +51,8 @@ Body::State Body::merged(const Value& condition, State yes, State no) {
     auto& a = yes.values[leaf];
     auto& b = no.values[leaf];
     if (a && b && a->wire == b->wire) {
+      a->low = std::min(a->low, b->low);  // a condition may have narrowed either
+      a->high = std::max(a->high, b->high);
       result.values[leaf] = std::move(a);
       continue;
     }
@@ -102,8 +96,14 @@ void Body::branches(const std::vector<syntax::Branch>& list, std::size_t at, con
     return;
   }
   computer_.at(path_for("CONDITION"), place_of(expression(list[at].condition).span));
-  choose(
-      condition(list[at].condition), [&] { execute(list[at].statements); }, [&] { branches(list, at + 1, otherwise); });
+  const auto side = [&](bool holds, const std::function<void()>& statements) {
+    return [this, holds, statements, id = list[at].condition] {
+      narrow(id, holds);
+      statements();
+    };
+  };
+  choose(condition(list[at].condition), side(true, [&] { execute(list[at].statements); }),
+         side(false, [&] { branches(list, at + 1, otherwise); }));
 }
 
 Value Body::selected(const syntax::Arm& arm, const Value& selector) {
@@ -129,75 +129,6 @@ void Body::arms(const syntax::Case& node, const Value& selector, std::size_t at)
   choose(
       selected(node.arms[at], selector), [&] { execute(node.arms[at].statements); },
       [&] { arms(node, selector, at + 1); });
-}
-
-void Body::rounds(const syntax::For& node, std::uint32_t leaf, double at, double to, double by) {
-  for (; by > 0.0 ? at <= to : at >= to; at += by) {
-    write(leaf, computer_.literal(leaves_[leaf].type, at));
-    execute(node.statements);
-    double counted = 0.0;
-    if (!state_.values[leaf] || !computer_.constant(*state_.values[leaf], counted) || counted != at) {
-      refuse(error::refused_in_body, node.variable.span,
-             fmt::format("'{}' counts this FOR, and is assigned inside of it", node.variable.text),
-             "Leave the loop by EXIT, or assign another variable.");
-      return;
-    }
-    state_.continued = computer_.truth(false);
-    const Value over = computer_.binary(Operator::Or, state_.exited, state_.returned);
-    if (computer_.is_true(over) || executed_ > most_statements) {
-      return;
-    }
-    if (!computer_.is_false(over)) {  // the rounds that follow hold where none ended it
-      State before = state_;
-      ++conditions_;
-      rounds(node, leaf, at + by, to, by);
-      --conditions_;
-      state_ = merged(over, std::move(before), std::move(state_));
-      return;
-    }
-  }
-  write(leaf, computer_.fit(computer_.literal(Plain::Dint, at), leaves_[leaf].type));
-}
-
-void Body::loop(const syntax::For& node, language::Span span) {
-  const syntax::Access counter{.name = node.variable, .span = node.variable.span};
-  Place* const place = find(counter);
-  if (place == nullptr || place->leaf == Place::no_leaf || !is_integer(leaves_[place->leaf].type)) {
-    if (place != nullptr) {
-      refuse(error::type_mismatch, node.variable.span, fmt::format("'{}' cannot count", node.variable.text),
-             "Declare it as INT or DINT.");
-    }
-    return;
-  }
-  double from = 0.0;
-  double to = 0.0;
-  double by = 1.0;
-  for (const auto& [id, bound] : {std::pair{node.from, &from}, {node.to, &to}, {node.by, &by}}) {
-    if (id == language::no_expression) {
-      continue;
-    }
-    const Value given = value(id);
-    if (!given.valid()) {
-      return;
-    }
-    if (!computer_.constant(given, *bound)) {
-      refuse(error::refused_in_body, expression(id).span, "the bound of this FOR is not known before it runs",
-             "Write the largest bound there can be, and IF … THEN EXIT; END_IF; in the loop.");
-      return;
-    }
-  }
-  if (by == 0.0 || (to - from) / by > most_rounds) {
-    refuse(
-        error::refused_in_body, span,
-        by == 0.0 ? std::string("this FOR never ends") : fmt::format("this FOR has more than {} rounds", most_rounds),
-        "A loop is unrolled: give it fewer rounds.");
-    return;
-  }
-  const Value outer_exit = std::exchange(state_.exited, computer_.truth(false));
-  const Value outer_continue = std::exchange(state_.continued, computer_.truth(false));
-  rounds(node, place->leaf, from, to, by);
-  state_.exited = outer_exit;
-  state_.continued = outer_continue;
 }
 
 void Body::execute(const syntax::Statement& statement) {
@@ -228,6 +159,8 @@ void Body::execute(const syntax::Statement& statement) {
     }
   } else if (const auto* for_node = std::get_if<syntax::For>(&statement.node)) {
     loop(*for_node, statement.span);
+  } else if (const auto* loop_node = std::get_if<syntax::Loop>(&statement.node)) {
+    loop(*loop_node, statement.span);
   } else {
     const auto jump = std::get<syntax::Jump>(statement.node);
     (jump == syntax::Jump::Return ? state_.returned

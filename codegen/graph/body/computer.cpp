@@ -93,6 +93,7 @@ Value Computer::fit(const Value& value, Plain type) {
   Value result = value;
   result.type = type;
   result.loose = false;
+  result.untyped = false;
   if (type == Plain::Real && (value.wide || value.type != Plain::Real)) {
     result.wire = apply(Op::ToSingle, {value.wire});
     result.wide = false;
@@ -144,10 +145,11 @@ Value Computer::assignable(const Value& value, Plain type, const std::string& ta
     }
     const bool reaches = value.loose
                              ? value.low >= std::min(lowest(type), -highest(type) - 1) && value.low <= highest(type)
-                             : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
+                         : value.untyped ? value.low >= lowest(type) && value.high <= highest(type)
+                                         : lowest(value.type) >= lowest(type) && highest(value.type) <= highest(type);
     return reaches ? fit(value, type) : mismatch(value.loose ? "Write a number within its range." : conversion);
   }
-  if (is_number(value.type) && is_number(type) && (value.loose || type == Plain::Lreal)) {
+  if (is_number(value.type) && is_number(type) && (value.loose || value.untyped || type == Plain::Lreal)) {
     return fit(value, type);
   }
   if (value.loose && to.family == Family::Truth && (value.low == 0 || value.low == 1)) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,8 +18,9 @@ namespace hysteron::bodies {
 struct Value {
   Wire wire{};
   Plain type = Plain::Bool;
-  bool loose = false;  ///< a literal without a type: it takes that of its neighbour
-  bool wide = false;   ///< a REAL that was not yet rounded to 32 bits
+  bool loose = false;    ///< a literal without a type: it takes that of its neighbour
+  bool untyped = false;  ///< chosen among such literals: it takes any type that holds them all
+  bool wide = false;     ///< a REAL that was not yet rounded to 32 bits
   std::int64_t low = 0;
   std::int64_t high = 0;  ///< integers: what it may be, between these
   [[nodiscard]] bool valid() const { return wire.from != Wire::From::Nothing; }
@@ -59,6 +61,8 @@ class Computer {
   Value inverse(const Value& value);
   Value binary(language::Operator op, Value left, Value right);
   Value select(const Value& condition, const Value& yes, const Value& no);
+  /// The lesser of two numbers of one type, or the greater; the first where they are equal.
+  Value extreme(const Value& first, const Value& second, bool greater);
   Value shifted(const Value& value, const Value& places, bool left);
   Value rotated(const Value& value, const Value& places, bool left);
   /// Both as the type that the two have in common; false, and an error, where there is none.
@@ -72,6 +76,7 @@ class Computer {
   Wire real_of(const Value& value);
   Value whole_of(Wire real, Plain type, bool round);
   Value integer(Op op, const Value& left, const Value& right, Plain type);
+  static std::optional<bool> decided(language::Operator op, const Value& left, const Value& right);
   Value compared(language::Operator op, const Value& left, const Value& right);
   Value bits(language::Operator op, const Value& left, const Value& right, Plain type);
   Value divided(bool remainder, const Value& left, const Value& right, Plain type);

@@ -76,7 +76,8 @@ bool Computer::meet(Value& left, Value& right, std::string_view what) {
     value = is_integer(value.type) ? Value{.wire = real_of(value), .type = type, .loose = value.loose} : value;
   };
   if (is_number(left.type) && is_number(right.type)) {  // a literal and a REAL, or an LREAL: wide
-    const bool single = (left.type == Plain::Real || left.loose) && (right.type == Plain::Real || right.loose);
+    const auto fits_single = [](const Value& one) { return one.type == Plain::Real || one.loose || one.untyped; };
+    const bool single = fits_single(left) && fits_single(right);
     left.wide = right.wide = true;
     left.type = right.type = single ? Plain::Real : Plain::Lreal;
     return true;
@@ -97,6 +98,14 @@ bool Computer::meet(Value& left, Value& right, std::string_view what) {
       const Plain type = left.loose ? right.type : left.type;
       literal_side = literal(type, static_cast<double>(literal_side.low));
       return true;
+    }
+    if (left.untyped != right.untyped) {
+      Value& chosen = left.untyped ? left : right;
+      const Plain type = left.untyped ? right.type : left.type;
+      if (chosen.low >= lowest(type) && chosen.high <= highest(type)) {
+        chosen = fit(chosen, type);
+        return true;
+      }
     }
     const auto holds = [](Plain wide, Plain narrow) {
       return lowest(narrow) >= lowest(wide) && highest(narrow) <= highest(wide);
@@ -146,9 +155,13 @@ Value Computer::integer(Op op, const Value& left, const Value& right, Plain type
 Value Computer::divided(bool remainder, const Value& left, const Value& right, Plain type) {
   if (!is_unsigned_32(type) || (left.low >= 0 && right.low >= 0)) {
     const Value result = integer(remainder ? Op::IntModulo : Op::IntDivide, left, right, type);
-    const bool positive = left.low >= 0 && right.low >= 0;
-    return positive ? ranged(result.wire, type, 0, remainder ? std::max<std::int64_t>(0, right.high) : left.high)
-                    : result;
+    if (left.low < 0 || right.low < 0) {
+      return result;
+    }
+    // A division by 0 gives 0.
+    const std::int64_t high =
+        remainder ? std::max<std::int64_t>(0, right.high - 1) : left.high / std::max<std::int64_t>(1, right.low);
+    return ranged(result.wire, type, 0, std::min(high, left.high));
   }
   // 32 bits without a sign: an LREAL holds both exactly, and the whole part of their quotient.
   const Wire divisor = real_of(right);
@@ -162,6 +175,28 @@ Value Computer::divided(bool remainder, const Value& left, const Value& right, P
     result.wire = apply(Op::SelectInt, {none, whole(0), rest});
   }
   return result;
+}
+
+/// What a comparison of two integers gives, where their ranges tell.
+std::optional<bool> Computer::decided(Operator op, const Value& left, const Value& right) {
+  if (is_unsigned_32(left.type) && (left.low < 0 || right.low < 0)) {
+    return std::nullopt;
+  }
+  const bool below = left.high < right.low;
+  const bool above = left.low > right.high;
+  switch (op) {
+    case Operator::Equal:
+    case Operator::NotEqual:
+      return below || above ? std::optional(op == Operator::NotEqual) : std::nullopt;
+    case Operator::Less:
+      return below ? std::optional(true) : left.low >= right.high ? std::optional(false) : std::nullopt;
+    case Operator::LessEqual:
+      return left.high <= right.low ? std::optional(true) : above ? std::optional(false) : std::nullopt;
+    case Operator::Greater:
+      return decided(Operator::Less, right, left);
+    default:
+      return decided(Operator::LessEqual, right, left);
+  }
 }
 
 Value Computer::compared(Operator op, const Value& left, const Value& right) {
@@ -181,6 +216,9 @@ Value Computer::compared(Operator op, const Value& left, const Value& right) {
     return {.wire = op == Operator::Equal ? apply(Op::Not, {differs}) : differs, .type = Plain::Bool};
   }
   const bool integers = is_integer(left.type);
+  if (const auto known = integers ? decided(op, left, right) : std::nullopt) {
+    return truth(*known);
+  }
   if (integers && is_unsigned_32(left.type) && !equality && (left.low < 0 || right.low < 0)) {
     a = apply(Op::IntXor, {a, whole(lowest_whole)});  // in the order of numbers without a sign
     b = apply(Op::IntXor, {b, whole(lowest_whole)});
@@ -289,17 +327,31 @@ Value Computer::select(const Value& condition, const Value& yes, const Value& no
       yes.wire == no.wire || (GraphBuilder::is_literal(yes.wire) && GraphBuilder::is_literal(no.wire) &&
                               yes.wire.type == no.wire.type && builder_.value(yes.wire) == builder_.value(no.wire) &&
                               std::signbit(builder_.value(yes.wire)) == std::signbit(builder_.value(no.wire)));
-  if (same) {
-    return yes;
-  }
   Value result = yes;
+  if (same) {
+    result.low = std::min(yes.low, no.low);
+    result.high = std::max(yes.high, no.high);
+    return result;
+  }
   result.loose = false;
+  result.untyped = false;
   result.wide = yes.wide || no.wide;
   result.low = std::min(yes.low, no.low);
   result.high = std::max(yes.high, no.high);
   const Op op =
       yes.wire.type == Type::Bool ? Op::SelectBool : (yes.wire.type == Type::Int ? Op::SelectInt : Op::Select);
   result.wire = apply(op, {condition.wire, yes.wire, no.wire});
+  return result;
+}
+
+Value Computer::extreme(const Value& first, const Value& second, bool greater) {
+  Value result = select(compared(greater ? Operator::Greater : Operator::Less, second, first), second, first);
+  const bool hidden = is_unsigned_32(first.type) && (first.low < 0 || second.low < 0);
+  if (is_integer(first.type) && !hidden) {
+    const auto bound = [&](std::int64_t a, std::int64_t b) { return greater ? std::max(a, b) : std::min(a, b); };
+    result.low = bound(first.low, second.low);
+    result.high = bound(first.high, second.high);
+  }
   return result;
 }
 
@@ -322,8 +374,9 @@ Value Computer::shifted(const Value& value, const Value& places, bool left) {
   result.low = lowest_whole;
   result.high = highest_whole;
   if (!left && value.low >= 0) {
+    const bool fixed = constant(places, known) && known >= 0.0 && known <= 31.0;
     result.low = 0;
-    result.high = result.high < value.high ? result.high : value.high;
+    result.high = fixed ? value.high >> static_cast<int>(known) : value.high;
   }
   return fit(result, value.type);
 }

@@ -20,6 +20,8 @@ struct Place {
   std::vector<Member> members{};                ///< beside parts; of an array empty
   std::vector<Place*> aliases{};                ///< beside parts: what a VAR_IN_OUT stands for in this call
   bool called = false;                          ///< a library block, in this step
+  std::unique_ptr<Place> by_clock{};            ///< of a timer: the variables of its text, where it runs by TIME()
+  bool clocked = false;                         ///< it does
   language::Span call{};
 
   /// The part of a name in upper case; null where there is none.

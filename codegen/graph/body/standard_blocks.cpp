@@ -8,7 +8,7 @@
 namespace hysteron::bodies {
 namespace {
 
-constexpr const char* text = R"(
+constexpr const char* without_time = R"(
 FUNCTION_BLOCK R_TRIG (* @body *)
 VAR_INPUT CLK : BOOL; END_VAR
 VAR_OUTPUT Q : BOOL; END_VAR
@@ -71,13 +71,85 @@ QD := CV <= 0;
 END_FUNCTION_BLOCK
 )";
 
+constexpr const char* by_clock = R"(
+FUNCTION_BLOCK TON
+VAR_INPUT IN : BOOL; PT : TIME; END_VAR
+VAR_OUTPUT Q : BOOL; ET : TIME; END_VAR
+VAR RUNS : BOOL; SINCE : UDINT; END_VAR
+IF IN THEN
+  IF NOT RUNS THEN
+    RUNS := TRUE;
+    SINCE := CLOCK_STEPS();
+  END_IF;
+  IF NOT Q THEN
+    ET := STEP_TIME() * UDINT_TO_LREAL(CLOCK_STEPS() - SINCE);
+    Q := ET + STEP_TIME() * 0.0625 >= PT;
+  END_IF;
+  IF Q THEN ET := MAX(PT, T#0s); END_IF;
+ELSE
+  RUNS := FALSE;
+  Q := FALSE;
+  ET := T#0s;
+END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK TOF
+VAR_INPUT IN : BOOL; PT : TIME; END_VAR
+VAR_OUTPUT Q : BOOL; ET : TIME; END_VAR
+VAR RUNS : BOOL; SINCE : UDINT; END_VAR
+IF IN THEN
+  RUNS := FALSE;
+  Q := TRUE;
+  ET := T#0s;
+ELSE
+  IF Q AND NOT RUNS THEN
+    RUNS := TRUE;
+    SINCE := CLOCK_STEPS();
+  END_IF;
+  IF Q THEN
+    ET := STEP_TIME() * UDINT_TO_LREAL(CLOCK_STEPS() - SINCE);
+    Q := ET + STEP_TIME() * 0.0625 < PT;
+  END_IF;
+  IF RUNS AND NOT Q THEN ET := MAX(PT, T#0s); END_IF;
+END_IF;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK TP
+VAR_INPUT IN : BOOL; PT : TIME; END_VAR
+VAR_OUTPUT Q : BOOL; ET : TIME; END_VAR
+VAR RUNS : BOOL; OVER : BOOL; SINCE : UDINT; END_VAR
+IF IN AND NOT RUNS THEN
+  RUNS := TRUE;
+  OVER := FALSE;
+  SINCE := CLOCK_STEPS();
+END_IF;
+IF RUNS THEN
+  IF NOT OVER THEN
+    ET := STEP_TIME() * UDINT_TO_LREAL(CLOCK_STEPS() - SINCE);
+    OVER := ET + STEP_TIME() * 0.0625 >= PT;
+  END_IF;
+  IF OVER THEN ET := MAX(PT, T#0s); END_IF;
+  Q := NOT OVER;
+  IF OVER AND NOT IN THEN
+    RUNS := FALSE;
+    ET := T#0s;
+  END_IF;
+END_IF;
+END_FUNCTION_BLOCK
+)";
+
+language::SourceFile parsed(const char* text) {
+  Diagnostics none;
+  return language::parse("the blocks of the standard", text, none);
+}
+
 }  // namespace
 
 const language::body::Library& standard_blocks() {
-  static const language::SourceFile source = [] {
-    Diagnostics none;
-    return language::parse("the blocks of the standard", text, none);
-  }();
+  static const language::SourceFile source = parsed(without_time);
+  return *source.bodies;
+}
+
+const language::body::Library& timers_by_clock() {
+  static const language::SourceFile source = parsed(by_clock);
   return *source.bodies;
 }
 

@@ -33,6 +33,15 @@ constexpr int deepest_type = 20;
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> timers{
     {{"TON", "HY_TON"}, {"TOF", "HY_TOF"}, {"TP", "HY_TP"}}};
 
+Source unit_of(const syntax::Library& library, std::string_view name, bool function) {
+  for (const syntax::Unit& unit : library.units) {
+    if (unit.function == function && same_name(unit.name.text, name)) {
+      return {&library, &unit};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 const PlainInfo& info(Plain type) {
@@ -59,14 +68,8 @@ Types::Types(const syntax::Library& library, Report report, Constant constant)
     : library_(library), report_(std::move(report)), constant_(std::move(constant)) {}
 
 Source Types::find_unit(std::string_view name, bool function) const {
-  for (const auto* library : {&library_, &standard_blocks()}) {
-    for (const syntax::Unit& unit : library->units) {
-      if (unit.function == function && same_name(unit.name.text, name)) {
-        return {library, &unit};
-      }
-    }
-  }
-  return {};
+  const Source own = unit_of(library_, name, function);
+  return own.unit != nullptr ? own : unit_of(standard_blocks(), name, function);
 }
 
 TypeRef Types::named(const language::Name& name) {
@@ -101,6 +104,11 @@ TypeRef Types::named(const language::Name& name) {
     }
     made.block = find_block_type(wanted);
     made.timer = wanted != name.text;
+    if (made.timer) {
+      BodyType text{.kind = BodyType::Kind::Block, .source = unit_of(timers_by_clock(), name.text, false)};
+      text.members = members(text.source.unit->declarations);
+      made.by_clock = std::make_shared<BodyType>(std::move(text));
+    }
     made.kind = BodyType::Kind::Library;
     if (same_name(name.text, fmu_type_name)) {
       report_(error::refused_in_body, name.span, "an FMU cannot stand in a sequential body",

@@ -75,6 +75,7 @@ struct BodyType {
   Source source{};                                   ///< of a block of one's own
   const hysteron::BlockType* block = nullptr;        ///< of the library
   bool timer = false;                                ///< named as in the standard: its numbers are TIMEs
+  TypeRef by_clock{};                                ///< of such a timer: the block of its text
   double start = 0.0;                                ///< of an enumeration: its first value
   const language::body::Initial* initial = nullptr;  ///< of a TYPE with a value of its own
 };

@@ -59,7 +59,7 @@ EveryDiagram every_diagram(std::uint64_t seed, std::size_t number) {
   const std::size_t kind = number / 2;  // one of each kind for C, and one for C++
   EveryDiagram made{.seed = seed, .number = number, .float32 = kind % 4 == 1, .extremes = static_cast<int>(kind % 3)};
   if (kind % 8 == 7) {
-    const RandomBody body(seed, made.name(), 6);
+    const RandomBody body(seed, made.name(), 6, true);
     made.text = body.text();
     made.program = body.program();
   } else {
@@ -308,9 +308,9 @@ std::string every_fmu(const EveryDiagram& diagram, const test::ScratchFolder& fo
       three ? "status |= FMI(EnterInitializationMode)(one, false, 0.0, 0.0, false, 0.0);"
             : "status |= FMI(SetupExperiment)(one, 0, 0.0, 0.0, 0, 0.0) | FMI(EnterInitializationMode)(one);";
   const std::string begin = start + " status |= FMI(ExitInitializationMode)(one); first = k;";
-  const auto access = [&](std::string_view verb, Type type, std::size_t reference) {
-    return fmt::format("{{ const unsigned r = {}u; status |= FMI({}{})(one, &r, 1, &v{}); }}", reference, verb,
-                       fmi_type_name(type, options), three ? ", 1" : "");
+  const auto access = [&](std::string_view verb, const FmuVariable& variable, std::size_t reference) {
+    return fmt::format("{{ const unsigned r = {}u; status |= FMI({}{})(one, &r, 1, v{}); }}", reference, verb,
+                       fmi_type_name(variable.type, options), three ? fmt::format(", {}", variable.start.size()) : "");
   };
   const auto c_type = [&](Type type) -> std::string {
     if (!three) {
@@ -322,21 +322,28 @@ std::string every_fmu(const EveryDiagram& diagram, const test::ScratchFolder& fo
                                 : "uint16_t";
   };
   const std::vector<std::string> values = every_values(diagram);
-  const std::vector<Port>& inputs = diagram.program.graph.inputs;
-  const std::vector<Port>& outputs = diagram.program.graph.outputs;
+  const std::vector<FmuVariable> variables = fmu_variables(diagram.program, options);
   std::string step;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    step += fmt::format("    {{ const {} v = {}; {} }}\n", c_type(inputs[i].type), values.at(i),
-                        access("Set", inputs[i].type, i + 1));
+  std::string results;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const FmuVariable& one = variables[i];
+    if (one.role == FmuVariable::Role::Input) {
+      std::string given;
+      for (std::size_t k = 0; k < one.start.size(); ++k) {
+        given += (k == 0 ? "" : ", ") + values.at(next++);
+      }
+      step += fmt::format("    {{ const {} v[] = {{{}}}; {} }}\n", c_type(one.type), given, access("Set", one, i + 1));
+    } else if (one.role == FmuVariable::Role::Output) {
+      results += fmt::format("    {{ {0} v[{1}]; int j; {2} for (j = 0; j < {1}; ++j) mix(&hash, (double)v[j]); }}\n",
+                             c_type(one.type), one.start.size(), access("Get", one, i + 1));
+    }
   }
   step += three
               ? "    { bool e, t, y; double at; status |= FMI(DoStep)(one, (k - first) * FMU_PERIOD, FMU_PERIOD, true, "
                 "&e, &t, &y, &at); }\n"
               : "    status |= FMI(DoStep)(one, (k - first) * FMU_PERIOD, FMU_PERIOD, 1);\n";
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    step += fmt::format("    {{ {} v = 0; {} mix(&hash, (double)v); }}\n", c_type(outputs[i].type),
-                        access("Get", outputs[i].type, inputs.size() + i + 1));
-  }
+  step += results;
   step += "    if (status != 0) { hash = 0; }\n";
   const std::string instantiate =
       three ? "FMI(InstantiateCoSimulation)(\"one\", FMU_TOKEN, \"\", 0, 0, 0, 0, 0, 0, 0, 0, 0)"

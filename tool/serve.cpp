@@ -76,11 +76,17 @@ int serve(const ServeOptions& options, Console& console) {
   LoadedVersion version = first_version(options.diagram, warnings);
   const Program& diagram = version.diagram;
   const Engine engine = engine_of(options.engine);
-  const auto web = web_options(options);
+  auto web = web_options(options);
   const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
-  auto program = step_program(diagram, engine, options.diagram.float32, inner);
+  const std::string picture = web ? live_diagram(diagram.graph, inner) : "";
+  auto program = step_program(diagram, engine, options.diagram.float32, inner, picture);
   const std::string run_text = read_text_file(options.config);
   auto config = runtime::parse_run_config(options.config, run_text, program->shape());
+  if (config.web && web) {
+    web->access.rights = config.web->rights;
+  } else if (config.web) {
+    runtime::tell("Run file", "[web] has no effect here: the live page is started by --web ADDRESS:PORT.");
+  }
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
   inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
@@ -92,7 +98,6 @@ int serve(const ServeOptions& options, Console& console) {
   const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
     const runtime::web::Subject subject{.name = diagram.graph.name,
                                         .period = diagram.graph.sample_time_ns,
-                                        .diagram = live_diagram(diagram.graph, inner),
                                         .history = history.file,
                                         .history_points = history.points};
     auto server = std::make_shared<runtime::web::Server>(door, subject, *web);

@@ -140,8 +140,9 @@ Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
 }  // namespace
 
 std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32,
-                                                   const std::vector<InnerSignal>& inner) {
+                                                   const std::vector<InnerSignal>& inner, const std::string& picture) {
   auto shape = shape_of(program, engine, float32);
+  shape.picture = picture;
   for (const InnerSignal& signal : inner) {
     shape.inner.push_back({.name = signal.name, .unit = signal.unit, .type = point_type(signal.type)});
   }

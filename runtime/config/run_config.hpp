@@ -122,6 +122,11 @@ struct ModbusConfig {
   Place place{};
 };
 
+struct WebConfig {
+  PageRights rights{};
+  Place place{};
+};
+
 struct RunConfig {
   TaskSettings task{};  ///< inputs and outputs in the order of the diagram
   SchedulingRequest scheduling{};
@@ -136,6 +141,7 @@ struct RunConfig {
   std::optional<HistoryConfig> history{};
   std::optional<MqttConfig> mqtt{};
   std::optional<ModbusConfig> modbus{};
+  std::optional<WebConfig> web{};  ///< of the live page
   std::vector<modbus::DeviceOptions> devices{};
   std::vector<DeviceInput> device_inputs{};
   std::vector<DeviceOutput> device_outputs{};

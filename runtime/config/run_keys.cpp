@@ -391,6 +391,12 @@ constexpr std::array role_keys{
            "`parameters`, `reset` the task; else the answer is exception 01"},
 };
 
+constexpr std::array web_keys{
+    RunKey{
+        "rights", texts, "[\"parameters\", \"reset\"]",
+        "what the page may do for who has its token: stage and commit `parameters`, `reset` the task, `force` inputs"},
+};
+
 constexpr std::array address_keys{
     RunKey{"NAME", text, "(by the map and the lock file)",
            "where the point NAME lies, as `hysteron map` lists it: `\"%QX0.3\"`, `\"%IW7\"`, `\"%ML2\"` with OpenPLC's "
@@ -410,7 +416,7 @@ constexpr std::array file_keys{RunKey{"task"},          RunKey{"watchdog"}, RunK
                                RunKey{"devices"},       RunKey{"retain"},   RunKey{"trace"},      RunKey{"history"},
                                RunKey{"online_change"}, RunKey{"mqtt"},     RunKey{"dead_bands"}, RunKey{"modbus"},
                                RunKey{"tls"},           RunKey{"roles"},    RunKey{"addresses"},  RunKey{"registers"},
-                               RunKey{"modbus_rtu"}};
+                               RunKey{"modbus_rtu"},    RunKey{"web"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -430,6 +436,7 @@ constexpr std::array tables{
     RunTable{"[mqtt]", "Chosen points, published to an MQTT broker; without the table, none.", mqtt_keys},
     RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",
              dead_band_keys},
+    RunTable{"[web]", "The live page, which is started by `--web`.", web_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
     RunTable{"[modbus_rtu]", "The map of `[modbus]` on a serial line as well, by Modbus RTU; without the table, not.",
              rtu_keys},

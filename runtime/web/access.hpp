@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/point.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::web {
@@ -31,6 +32,7 @@ struct Access {
   bool is_loopback = true;
   std::string token{};       ///< empty: nobody may change anything
   std::string read_token{};  ///< of who may only look, as a scraper of /metrics; empty: there is none
+  PageRights rights{};       ///< of who has the token
 
   [[nodiscard]] bool can_write() const { return !token.empty(); }
   /// Beyond the loopback nothing is shown to strangers.

@@ -18,6 +18,11 @@ namespace hysteron::tool {
                                                                  const std::vector<InnerSignal>& inner = {},
                                                                  const std::string& picture = {});
 
+/// The program with its inner signals as further outputs, by names that no diagram can have.
+[[nodiscard]] Program with_inner_outputs(Program program, const std::vector<InnerSignal>& inner);
+/// The inner signals as a shape has them.
+[[nodiscard]] std::vector<runtime::ProgramSignal> inner_of_shape(const std::vector<InnerSignal>& inner);
+
 /// Compiled where there is a compiler.
 [[nodiscard]] Engine best_engine();
 /// Of the option --engine; empty: the best.

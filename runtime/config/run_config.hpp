@@ -123,6 +123,9 @@ struct ModbusConfig {
 };
 
 struct WebConfig {
+  std::string listen{};  ///< ADDRESS:PORT; empty: where the command line says
+  std::string token_file{};
+  std::string read_token_file{};
   PageRights rights{};
   Place place{};
 };

@@ -392,6 +392,13 @@ constexpr std::array role_keys{
 };
 
 constexpr std::array web_keys{
+    RunKey{"listen", text, "(none: no page, but for `--web`)",
+           "address and port of the page, `\"127.0.0.1:8080\"`; a host that is generated with it has the page"},
+    RunKey{"token_file", text, "(none: nobody changes anything)",
+           "a file with the token of who may write, its owner's alone; `--web-token-file` counts before it"},
+    RunKey{"read_token_file", text, "(none)",
+           "a file with another token, of who may only read beyond the loopback; `--web-read-token-file` counts before "
+           "it"},
     RunKey{
         "rights", texts, "[\"parameters\", \"reset\"]",
         "what the page may do for who has its token: stage and commit `parameters`, `reset` the task, `force` inputs"},
@@ -436,7 +443,7 @@ constexpr std::array tables{
     RunTable{"[mqtt]", "Chosen points, published to an MQTT broker; without the table, none.", mqtt_keys},
     RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",
              dead_band_keys},
-    RunTable{"[web]", "The live page, which is started by `--web`.", web_keys},
+    RunTable{"[web]", "The live page.", web_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
     RunTable{"[modbus_rtu]", "The map of `[modbus]` on a serial line as well, by Modbus RTU; without the table, not.",
              rtu_keys},

@@ -8,7 +8,11 @@
 namespace hysteron::runtime {
 
 WebConfig read_web(TomlReader table, Diagnostics& found) {
-  WebConfig web{.rights = {}, .place = table.place()};
+  WebConfig web;
+  web.place = table.place("listen");
+  table.read("listen", web.listen);
+  table.read("token_file", web.token_file);
+  table.read("read_token_file", web.read_token_file);
   if (!table.has("rights")) {
     return web;
   }

@@ -1,4 +1,4 @@
-// The table [web] of a run file: what the live page may do for who has its token.
+// The table [web] of a run file: where the live page is, and what it may do for who has its token.
 #pragma once
 
 #include "runtime/config/run_config.hpp"

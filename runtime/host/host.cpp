@@ -263,6 +263,11 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       inputs.push_back({.file = file, .named_by = "[mqtt]"});
     }
   }
+  if (config.web) {
+    for (const std::string& file : {config.web->token_file, config.web->read_token_file}) {
+      inputs.push_back({.file = file, .named_by = "[web]"});
+    }
+  }
   const std::string mend = "name another file in the run file.";
   if (config.online_change) {
     refuse_to_overwrite({.file = config.online_change->socket, .mend = mend, .place = config.online_change->place},

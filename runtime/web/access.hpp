@@ -25,6 +25,10 @@ struct Endpoint {
 /// Throws InputError HY844, which never quotes it.
 [[nodiscard]] std::string read_token(const std::string& file);
 
+/// The names under which a service manager hands the token files over.
+inline constexpr const char* token_credential = "web-token";
+inline constexpr const char* read_token_credential = "web-read-token";
+
 /// ADDRESS:PORT as a link has it, with the port that was taken.
 [[nodiscard]] std::string text_of(const Endpoint& endpoint, std::uint16_t port);
 

@@ -141,6 +141,9 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   if (config.history) {
     add(std::filesystem::path(config.history->file).parent_path());
   }
+  if (config.mqtt) {
+    add(std::filesystem::path(config.mqtt->file).parent_path());
+  }
   if (config.modbus) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }

@@ -96,6 +96,7 @@ struct MqttConfig {
   std::vector<double> dead_bands{};  ///< on change, by point
   std::int64_t keep = std::int64_t{86'400'000'000'000};
   std::uint64_t bytes = 64'000'000;
+  std::string file{};  ///< of the rows that wait; empty: they are in memory alone
   Place place{};
 };
 

@@ -306,8 +306,11 @@ constexpr std::array mqtt_keys{
            86400.0 * s,
            {},
            "`every` at the least"},
+    RunKey{"file", text, "(none: in memory alone)",
+           "the file, of SQLite, of rows that have waited for a second: they outlive a power cut"},
     RunKey{"keep", time, "\"1d\"", "rows that wait for the broker for longer are lost", s, 1000.0 * 86400.0 * s},
-    RunKey{"megabytes", whole, "64", "memory for rows that wait, at most: the oldest give way", 1.0, 1e5},
+    RunKey{"megabytes", whole, "64",
+           "memory for rows that wait, at most, and with `file` about as much disk: the oldest give way", 1.0, 1e5},
 };
 constexpr std::array dead_band_keys{
     RunKey{

@@ -295,6 +295,13 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       inputs.push_back({.file = file, .named_by = "[history] file"});
     }
   }
+  if (config.mqtt && !config.mqtt->file.empty()) {
+    for (const char* const ending : {"", "-wal", "-shm"}) {
+      const std::string file = config.mqtt->file + ending;
+      refuse_to_overwrite({.file = file, .mend = mend, .place = config.mqtt->place}, inputs);
+      inputs.push_back({.file = file, .named_by = "[mqtt] file"});
+    }
+  }
   if (config.trace) {
     // What stands there is moved to the next name.
     for (std::size_t number = 0; number < config.trace->files; ++number) {

@@ -72,7 +72,7 @@ class AbsenceNotices {
   std::vector<std::string> told_{};
 };
 
-/// Inputs that are forced, a line a second at the most: a value that no device and no client gave is never without one.
+/// Inputs that are forced: a line where that changed, one a second at the most.
 class ForceNotices {
  public:
   using Clock = std::chrono::steady_clock;

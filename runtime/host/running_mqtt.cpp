@@ -127,6 +127,7 @@ RunningMqtt::RunningMqtt(const RunConfig& config, const ProgramShape& shape, Tas
   settings_.period = shape.period;
   settings_.bytes = mqtt.bytes;
   settings_.keep = mqtt.keep;
+  settings_.file = mqtt.file;
   if (mqtt.payload == MqttPayload::Json) {
     dialect_ = std::make_unique<JsonDialect>(mqtt.topic, mqtt.qos, settings_.rows.points);
   } else {

@@ -286,9 +286,15 @@ std::vector<std::optional<double>> TaskDoor::forces_now() const {
 }
 
 std::vector<std::string> TaskDoor::forced() {
+  std::vector<std::string> texts;
+  {
+    const std::lock_guard lock(servers_);
+    if (wanted_.forcing == 0) {
+      return texts;  // as most tasks for ever, and this is asked all the time
+    }
+  }
   LiveValues now;
   read_live(now);
-  std::vector<std::string> texts;
   for (const std::size_t input : now.forced) {
     texts.push_back(points_[input].name + " = " + number_text(now.values[input]));
   }

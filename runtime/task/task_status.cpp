@@ -52,7 +52,7 @@ constexpr std::array statuses{
     Status{"task.mqtt_queued", PointType::uint64, "1", "rows that the MQTT broker has not confirmed"},
     count_of("task.mqtt_lost", "rows for MQTT that are lost"),
     Status{"task.mqtt_fault", PointType::uint16, "1",
-           "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost"},
+           "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost, 5 the file of waiting rows"},
     Status{"task.tls_fault", PointType::uint16, "1",
            "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
     Status{"task.version", PointType::uint64, "1",

@@ -168,6 +168,7 @@ function buildInputs() {
     return { forced, end };
   });
   place("inputs-section").hidden = inputs.length === 0 || !may("force");
+  place("force").disabled = !may("force");
 }
 
 // What whoever has the token may do, in a word for each right.
@@ -249,7 +250,7 @@ function showForced(values, forced) {
   }
   for (const { element, of, at } of live) element.classList.toggle("forced", of === "values" && isForced.has(at));
   trends.forced = new Set(forced.map(at => "values:" + description.points[at].name));
-  place("release").disabled = forced.length === 0;
+  place("release").disabled = forced.length === 0 || !may("force");
 }
 
 function showParameters(values, staged) {

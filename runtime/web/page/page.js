@@ -177,7 +177,7 @@ function buildAccess() {
   place("token-section").hidden = !description.writable || description.token_to_read;
   place("access").textContent = !description.writable ? "Read-only: started without --web-token-file."
     : description.rights.length === 0 ? "Read-only: the run file gives the page no rights."
-    : "With the token " + description.rights.map(right => words[right]).join(", ") + ".";
+    : "With the token, " + description.rights.map(right => words[right]).join(", ") + ".";
 }
 
 function buildCycles() {

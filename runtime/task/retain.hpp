@@ -73,7 +73,8 @@ class RetainFolder final : public RetainFiles {
   RetainFolder(const RetainFolder&) = delete;
   RetainFolder& operator=(const RetainFolder&) = delete;
   ~RetainFolder() override;
-  /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Throws
+  /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Where the disk
+  /// has no room for it, it is made and held by the first state that finds some. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task
   /// holds it.
   void open();

@@ -247,6 +247,7 @@ void Task::count_writes() noexcept {
     status_.commits = attachments_.retainer->saved_commits();
     status_.retained = attachments_.retainer->written();
     status_.write_failures += attachments_.retainer->failures();
+    status_.retain_fails = attachments_.retainer->is_failing();
   }
   if (attachments_.trace != nullptr) {
     status_.dropped = attachments_.trace->dropped();

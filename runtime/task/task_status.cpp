@@ -60,7 +60,8 @@ constexpr std::array statuses{
     Status{"task.online_change", PointType::uint16, "1", "0 none, 1 changed, 2 refused, 3 changed back"},
     Status{"task.shortages", PointType::uint16, "1",
            "what is tried again while the control goes on, by bits: 1 Modbus has no address yet, 2 nor has the page, "
-           "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace",
+           "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace, 256 "
+           "retained values",
            false, true},
     Status{"task.forced", PointType::uint16, "1", "inputs that the live page forces", false, true},
 };
@@ -81,6 +82,7 @@ std::uint16_t shortages_of(const TaskStatus& status, std::uint16_t told) noexcep
   add(Shortage::mqtt, status.mqtt.fault != 0);
   add(Shortage::history, status.history.fault != 0);
   add(Shortage::trace, status.trace_is_cut);
+  add(Shortage::retain, status.retain_fails);
   return static_cast<std::uint16_t>(bits);
 }
 

@@ -32,6 +32,7 @@ struct TaskStatus {
   std::uint8_t tls_fault = 0;
   std::size_t absent = 0;  ///< devices
   bool trace_is_cut = false;
+  bool retain_fails = false;
   std::uint64_t version = 1;     ///< of the diagram, since the start
   std::uint8_t last_change = 0;  ///< online, as task.online_change says it
   std::size_t forced = 0;        ///< inputs

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "runtime/task/task.hpp"
 #include "tests/runtime/task/accumulator.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/soon.hpp"
 
 namespace hysteron::runtime {
 namespace {
@@ -203,6 +205,26 @@ TEST(ForcedInput, IsNotRetained) {
     }
   }
   EXPECT_GT(kept, 0U);
+}
+
+TEST(TaskDoor, SaysForAsLongAsWhatIsRetainedCannotBeWritten) {
+  const hysteron::test::ScratchFolder folder;
+  const auto in_the_way = folder.path() / "kept/retain_a.new";
+  std::filesystem::create_directories(in_the_way);
+  RetainFolder files(folder.path() / "kept");
+  files.open();
+  ForceBench bench({.inputs = {{}}, .outputs = {{.value = -1.0}, {}}, .retain_every = 1});
+  Retainer retainer(files, bench.program, Recovery{}, state_of(bench.program));
+  bench.task.attach({.retainer = &retainer});
+  const auto shortages_are = [&](double bits) {
+    return hysteron::test::soon([&] {
+      (void)bench.run(1);
+      return test::value(bench.task.door(), "task.shortages") == bits;
+    });
+  };
+  EXPECT_TRUE(shortages_are(256.0));
+  std::filesystem::remove(in_the_way);
+  EXPECT_TRUE(shortages_are(0.0));
 }
 
 TEST(ForcedInput, EndsWithAReset) {

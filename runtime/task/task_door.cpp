@@ -43,6 +43,17 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
           .right = kind == PointKind::input ? WriteRight::inputs : WriteRight::parameters};
 }
 
+/// Parameters of a version that the first one has not, by their places in it: in the order of all.
+std::vector<std::size_t> further_parameters(const RunningVersion& version, std::size_t first_count) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = first_count; i < version.places.size(); ++i) {
+    if (version.places[i]) {
+      own.push_back(*version.places[i]);
+    }
+  }
+  return own;
+}
+
 }  // namespace
 
 TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>& inputs,
@@ -313,21 +324,6 @@ void TaskDoor::hold_commits(bool held) {
   const std::lock_guard lock(servers_);
   commits_are_held_ = held;
 }
-
-namespace {
-
-/// Parameters of a version that the first one has not, by their places in it: in the order of all.
-std::vector<std::size_t> further_parameters(const RunningVersion& version, std::size_t first_count) {
-  std::vector<std::size_t> own;
-  for (std::size_t i = first_count; i < version.places.size(); ++i) {
-    if (version.places[i]) {
-      own.push_back(*version.places[i]);
-    }
-  }
-  return own;
-}
-
-}  // namespace
 
 std::shared_ptr<LiveRow> TaskDoor::live_row(const RunningVersion& version) const {
   return std::make_shared<LiveRow>(points_.size() + inputs_, version.program.shape().inner.size(),

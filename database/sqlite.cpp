@@ -56,6 +56,27 @@ void Database::Closed::operator()(sqlite3* file) const {
   sqlite3_close_v2(file);
 }
 
+std::string put_aside(const std::filesystem::path& path) {
+  const auto beside = [](const std::filesystem::path& name, const std::string& ending) {
+    return std::filesystem::path(name).concat(ending);
+  };
+  std::error_code problem;
+  for (int number = 1;; ++number) {
+    const auto aside = beside(path, fmt::format(".aside{}", number));
+    if (std::filesystem::exists(aside, problem)) {
+      continue;
+    }
+    for (const char* const ending : {"-wal", "-shm", ""}) {
+      std::filesystem::rename(beside(path, ending), beside(aside, ending), problem);
+    }
+    if (problem) {  // of the file itself, the last
+      throw DatabaseError(fmt::format("{}: cannot be put aside: {}", path.string(), problem.message()),
+                          Trouble::Unreachable);
+    }
+    return aside.string();
+  }
+}
+
 Database::Database(const std::filesystem::path& path, Mode mode) : name_(path.string()) {
   open(name_, mode == Mode::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   if (mode == Mode::Write) {

@@ -37,6 +37,9 @@ class DatabaseError : public std::runtime_error {
 
 class Statement;
 
+/// Renames a file with its log, to the first name that is free, NAME.aside1, and gives that. Throws DatabaseError.
+[[nodiscard]] std::string put_aside(const std::filesystem::path& path);
+
 /// An open file. One thread at a time uses it; several processes may open the same file.
 class Database {
  public:

@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hysteron::runtime {
@@ -30,6 +33,7 @@ enum class Shortage : std::uint16_t {
   mqtt = 32,     ///< task.mqtt_fault is not 0
   history = 64,  ///< task.history_fault is not 0
   trace = 128,   ///< the trace is written to no file
+  retain = 256,  ///< the newest state is not on the disk
 };
 
 enum class PointType { boolean, int16, uint16, int32, uint32, int64, uint64, real32, real64 };
@@ -62,8 +66,21 @@ struct Point {
 };
 
 struct PointWrite {
-  std::size_t point = 0;  ///< index into points()
+  std::size_t point = 0;  ///< index into points(); of the live page, a place of its view
   double value = 0.0;
+};
+
+/// An input that has a value of the live page's, whatever gives it else.
+struct Force {
+  std::size_t point = 0;          ///< index into points()
+  std::optional<double> value{};  ///< none: no longer
+};
+
+/// What the live page may do for who has its token.
+struct PageRights {
+  bool parameters = true;  ///< to stage, commit and discard them
+  bool reset = true;
+  bool force = false;  ///< inputs
 };
 
 /// All values of one cycle. A value is a double whatever its type; integers are exact to 2^53.
@@ -72,12 +89,25 @@ struct Snapshot {
   std::vector<double> values;  ///< as points()
 };
 
+/// What the live page sees: the version of the diagram that runs. An online change begins another.
+struct LiveView {
+  std::uint64_t version = 1;  ///< of the diagram, as task.version counts
+  std::vector<Point> points{};
+  /// By point: where it is written. First as points() of the door; parameters that came with a change follow. A place
+  /// is never another point's.
+  std::vector<std::size_t> places{};
+  std::vector<Point> inner{};  ///< signals within the diagram, to be looked at
+  std::string picture{};       ///< SVG of the diagram, with places for the values; empty where there is none
+};
+
 /// What can be seen of one cycle beyond a snapshot: the values within the diagram, and parameters twice.
 struct LiveValues {
+  std::uint64_t version = 1;  ///< of the view that the values are of
   std::uint64_t cycle = 0;
-  std::vector<double> values{};      ///< as points(); parameters as they count in the program
-  std::vector<double> inner{};       ///< as inner()
-  std::vector<PointWrite> staged{};  ///< parameters that wait for a commit
+  std::vector<double> values{};       ///< as its points; parameters as they count in the program
+  std::vector<double> inner{};        ///< as its inner signals
+  std::vector<PointWrite> staged{};   ///< parameters that wait for a commit of the live page; indices into its points
+  std::vector<std::size_t> forced{};  ///< inputs that are forced in this cycle; indices into its points
 };
 
 /// What a server may do with the running task. Every function may be called from a server's thread and returns at once;
@@ -91,17 +121,39 @@ class PointDoor {
 
   /// The same for the life of the door.
   [[nodiscard]] virtual std::span<const Point> points() const = 0;
-  /// The values of the newest whole cycle; of one cycle, never of two. Parameters read as staged while any are staged.
+  /// The values of the newest whole cycle; of one cycle, never of two. Parameters read as staged by write() while any
+  /// are.
   virtual void read(Snapshot& into) = 0;
-  /// Signals within the diagram, to be looked at. They are no points: a diagram may change within, its points stay.
-  [[nodiscard]] virtual std::span<const Point> inner() const = 0;
-  /// The newest whole cycle, and what is staged.
-  virtual void read_live(LiveValues& into) = 0;
   /// All of the writes or none. Empty where taken; otherwise the reason, as a sentence that names the point.
   /// The caller has checked that each is writable, finite and within its limits.
   virtual std::string write(std::span<const PointWrite> writes) = 0;
+  /// Whether one of those who use write() owns the writes: who uses the door otherwise changes nothing meanwhile, and
+  /// nothing is forced.
+  virtual void writes_are_owned(bool /*are_owned*/) {}
+
+  // For the live page, which stages a set of its own:
+  /// What it sees now; what is returned stays as it is.
+  [[nodiscard]] virtual std::shared_ptr<const LiveView> view() const;
+  /// The newest whole cycle, and what is staged by write_from_page().
+  virtual void read_live(LiveValues& into) = 0;
+  /// As write(), with a staged set of its own, and places of the view.
+  virtual std::string write_from_page(std::span<const PointWrite> writes) { return write(writes); }
+  /// All of them or none; inputs that are not named stay as they are. Empty where taken, else the reason.
+  virtual std::string force(std::span<const Force> /*inputs*/) { return "No input can be forced here."; }
+  /// No input is forced any more.
+  virtual void end_forces() {}
+
   /// What the server cannot have now, or has again.
   virtual void shortage(Shortage /*what*/, bool /*is_there*/) noexcept {}
 };
+
+inline std::shared_ptr<const LiveView> PointDoor::view() const {
+  LiveView all;
+  all.points.assign(points().begin(), points().end());
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    all.places.push_back(i);
+  }
+  return std::make_shared<const LiveView>(std::move(all));
+}
 
 }  // namespace hysteron::runtime

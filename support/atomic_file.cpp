@@ -16,6 +16,11 @@
 #include "support/errors.hpp"
 
 namespace hysteron {
+
+bool is_want_of_room(int reason) {
+  return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,12 +31,12 @@ namespace fs = std::filesystem;
     mend = "give the name of a file, or remove the folder of that name.";
   } else if (reason == ENAMETOOLONG) {
     mend = "give it a shorter name; a generated file is named after its block.";
-  } else if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) {
+  } else if (is_want_of_room(reason)) {
     mend = "make room on the disk, or choose another one.";
   }
   const Place place{.file = path.string()};
   const auto cause = fmt::format("The file {} cannot be written: {}.", path.string(), std::strerror(reason));
-  if (reason == ENOSPC || reason == EDQUOT) {
+  if (is_want_of_room(reason)) {
     throw DiskFullError(error::unwritable_file, place, cause, mend);
   }
   throw InputError(error::unwritable_file, place, cause, mend);

@@ -13,7 +13,11 @@
 
 namespace hysteron {
 
-/// HY700 of a disk that is full, or of a user whose part of it is: what passes by itself.
+/// Whether a write failed for a reason, as errno says it, that goes where somebody makes room: the disk, the user's
+/// part of it, or the largest size of a file.
+[[nodiscard]] bool is_want_of_room(int reason);
+
+/// HY700 for want of room: what passes by itself.
 class DiskFullError : public InputError {
  public:
   using InputError::InputError;

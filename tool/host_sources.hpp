@@ -13,5 +13,7 @@ struct EmbeddedSource {
 
 /// By path. What they are, embed_sources.cmake derives from the sources of the runtime at build time.
 [[nodiscard]] std::span<const EmbeddedSource> host_sources();
+/// What a host with the live page needs besides; without the page's own files, which are runtime::web::assets().
+[[nodiscard]] std::span<const EmbeddedSource> page_sources();
 
 }  // namespace hysteron::tool

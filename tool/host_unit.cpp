@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/web/access.hpp"
+
 namespace hysteron::tool {
 namespace {
 
@@ -98,6 +100,11 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   }
   if (config.modbus && !config.modbus->listen.empty() && config.modbus->port > 0 && config.modbus->port < 1024) {
     capabilities.emplace_back("CAP_NET_BIND_SERVICE");
+  } else if (config.web && !config.web->listen.empty()) {
+    const std::uint16_t port = runtime::web::parse_endpoint(config.web->listen).port;
+    if (port > 0 && port < 1024) {
+      capabilities.emplace_back("CAP_NET_BIND_SERVICE");
+    }
   }
   rights += fmt::format("CapabilityBoundingSet={0}\nAmbientCapabilities={0}\n", fmt::join(capabilities, " "));
 
@@ -134,6 +141,9 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
   if (config.history) {
     add(std::filesystem::path(config.history->file).parent_path());
   }
+  if (config.mqtt) {
+    add(std::filesystem::path(config.mqtt->file).parent_path());
+  }
   if (config.modbus) {
     add(std::filesystem::path(config.modbus->lock_file).parent_path());
   }
@@ -154,6 +164,14 @@ std::string rights_of(const runtime::RunConfig& config, const std::string& unit)
                                      {runtime::modbus::mqtt_certificate_credential, mqtt.certificate},
                                      {runtime::modbus::mqtt_key_credential, mqtt.key},
                                      {runtime::modbus::mqtt_password_credential, mqtt.password_file}}) {
+      if (std::filesystem::path(path).is_absolute()) {
+        rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
+      }
+    }
+  }
+  if (config.web) {
+    for (const auto& [name, path] : {std::pair(runtime::web::token_credential, config.web->token_file),
+                                     {runtime::web::read_token_credential, config.web->read_token_file}}) {
       if (std::filesystem::path(path).is_absolute()) {
         rights += fmt::format("LoadCredential={}\n", word(fmt::format("{}:{}", name, path)));
       }

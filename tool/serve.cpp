@@ -13,7 +13,7 @@
 #include "runtime/host/host.hpp"
 #include "runtime/host/notices.hpp"
 #include "runtime/task/changeable_program.hpp"
-#include "runtime/web/server.hpp"
+#include "runtime/web/serve_page.hpp"
 #include "support/text_file.hpp"
 #include "tool/change_channel.hpp"
 #include "tool/commands.hpp"
@@ -21,13 +21,12 @@
 #include "tool/inner_signals.hpp"
 #include "tool/live_diagram.hpp"
 #include "tool/option_values.hpp"
+#include "tool/program_shape.hpp"
 #include "tool/serve_program.hpp"
 #include "tool/served_versions.hpp"
 
 namespace hysteron::tool {
 namespace {
-
-using BesideTask = decltype(runtime::HostOptions::beside);
 
 constexpr std::string_view serve_examples = R"(Examples:
   hysteron serve feedforward.st --params tuned.toml --config RUN.toml
@@ -48,57 +47,31 @@ struct ServeOptions {
   std::string engine;
   std::uint64_t cycles = 0;
   bool virtual_time = false;
-  std::string web;
-  std::string token_file;
-  std::string read_token_file;
+  runtime::web::PageOptions page;
 };
-
-/// Checked before anything runs.
-std::optional<runtime::web::ServerOptions> web_options(const ServeOptions& options) {
-  if (options.web.empty()) {
-    return {};
-  }
-  runtime::web::ServerOptions web{.endpoint = runtime::web::parse_endpoint(options.web),
-                                  .tell = [](const std::string& line) { runtime::tell("Live page", line); }};
-  web.access.is_loopback = web.endpoint.is_loopback;
-  if (!options.token_file.empty()) {
-    web.access.token = runtime::web::read_token(options.token_file);
-  }
-  if (!options.read_token_file.empty()) {
-    web.access.read_token = runtime::web::read_token(options.read_token_file);
-  }
-  runtime::web::check_access(web.endpoint, web.access);
-  return web;
-}
 
 int serve(const ServeOptions& options, Console& console) {
   Diagnostics warnings;
   LoadedVersion version = first_version(options.diagram, warnings);
   const Program& diagram = version.diagram;
   const Engine engine = engine_of(options.engine);
-  const auto web = web_options(options);
-  const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
-  auto program = step_program(diagram, engine, options.diagram.float32, inner);
   const std::string run_text = read_text_file(options.config);
-  auto config = runtime::parse_run_config(options.config, run_text, program->shape());
+  auto config = runtime::parse_run_config(options.config, run_text, shape_of(diagram, engine, options.diagram.float32));
+  const auto web = runtime::web::page_server_options(config, options.page);
+  if (config.web && !web) {
+    runtime::tell("Run file", "[web] has no effect here: the live page is started by listen there, or by --web.");
+  }
+  const auto inner = web ? inner_signals(diagram) : std::vector<InnerSignal>();
+  const std::string picture = web ? live_diagram(diagram.graph, inner) : "";
+  auto program = step_program(diagram, engine, options.diagram.float32, inner, picture);
   std::vector<InputFile> inputs = inputs_of(options.diagram);
   inputs.push_back({.file = options.config, .named_by = "--config"});
-  inputs.push_back({.file = options.token_file, .named_by = "--web-token-file"});
-  inputs.push_back({.file = options.read_token_file, .named_by = "--web-read-token-file"});
+  inputs.push_back({.file = options.page.token_file, .named_by = "--web-token-file"});
+  inputs.push_back({.file = options.page.read_token_file, .named_by = "--web-read-token-file"});
   runtime::refuse_to_overwrite_inputs(config, inputs);
   warnings.add_all(config.warnings);
   console.report(warnings);
-  const auto history = config.history.value_or(runtime::HistoryConfig{});
-  const auto serve_page = [&](runtime::PointDoor& door, std::string& where) -> std::shared_ptr<void> {
-    const runtime::web::Subject subject{.name = diagram.graph.name,
-                                        .period = diagram.graph.sample_time_ns,
-                                        .diagram = live_diagram(diagram.graph, inner),
-                                        .history = history.file,
-                                        .history_points = history.points};
-    auto server = std::make_shared<runtime::web::Server>(door, subject, *web);
-    where += fmt::format("; live page on http://{}/", runtime::web::text_of(web->endpoint, server->port()));
-    return server;
-  };
+  const auto page = web ? runtime::web::page_beside(*web, config, program->shape()) : runtime::web::PageBeside();
   std::unique_ptr<runtime::ChangeableProgram> changeable;
   if (config.online_change) {
     changeable = std::make_unique<runtime::ChangeableProgram>(std::move(program));
@@ -119,7 +92,7 @@ int serve(const ServeOptions& options, Console& console) {
                                       {.how = engine == Engine::compiled ? "compiled" : "interpreted",
                                        .cycles = options.cycles,
                                        .virtual_time = options.virtual_time,
-                                       .beside = web ? BesideTask(serve_page) : BesideTask(),
+                                       .beside = page,
                                        .changeable = changeable.get(),
                                        .take_changes = take_changes},
                                       [&](std::string_view text) {
@@ -146,14 +119,12 @@ Action add_serve(CLI::App& app) {
       ->check(whole_number_from(1))
       ->option_text("N");
   app.add_flag("--virtual", options->virtual_time, "Runs as fast as it can, on a clock of its own.");
-  auto* const web =
-      app.add_option("--web", options->web, "Serves the live page there: 127.0.0.1:8080.")->option_text("ADDRESS:PORT");
-  app.add_option("--web-token-file", options->token_file, "Who has its token may change parameters on the page.")
-      ->needs(web)
+  app.add_option("--web", options->page.listen, "Serves the live page there: 127.0.0.1:8080.")
+      ->option_text("ADDRESS:PORT");
+  app.add_option("--web-token-file", options->page.token_file, "Who has its token may change parameters on the page.")
       ->option_text("FILE");
-  app.add_option("--web-read-token-file", options->read_token_file,
+  app.add_option("--web-read-token-file", options->page.read_token_file,
                  "Who has its token may read beyond the loopback, as a scraper, and change nothing.")
-      ->needs(web)
       ->option_text("FILE");
   app.footer(std::string(serve_examples));
   return [options](Console& console) { return serve(*options, console); };

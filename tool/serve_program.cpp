@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using runtime::ProgramShape;
+using runtime::ProgramSignal;
 
 template <class S>
 class InterpretedProgram final : public runtime::StepProgram {
@@ -128,8 +129,9 @@ std::unique_ptr<runtime::StepProgram> compiled_program(const Program& program, P
       opened);
 }
 
-/// The program with its inner signals as further outputs, by names that no diagram can have.
-Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
+}  // namespace
+
+Program with_inner_outputs(Program program, const std::vector<InnerSignal>& inner) {
   for (std::size_t i = 0; i < inner.size(); ++i) {
     program.graph.outputs.push_back(
         {.name = fmt::format("inner__{}", i), .type = inner[i].type, .wire = inner[i].wire});
@@ -137,16 +139,21 @@ Program with_outputs(Program program, const std::vector<InnerSignal>& inner) {
   return program;
 }
 
-}  // namespace
+std::vector<ProgramSignal> inner_of_shape(const std::vector<InnerSignal>& inner) {
+  std::vector<ProgramSignal> signals;
+  for (const InnerSignal& signal : inner) {
+    signals.push_back({.name = signal.name, .unit = signal.unit, .type = point_type(signal.type)});
+  }
+  return signals;
+}
 
 std::unique_ptr<runtime::StepProgram> step_program(const Program& program, Engine engine, bool float32,
-                                                   const std::vector<InnerSignal>& inner) {
+                                                   const std::vector<InnerSignal>& inner, const std::string& picture) {
   auto shape = shape_of(program, engine, float32);
-  for (const InnerSignal& signal : inner) {
-    shape.inner.push_back({.name = signal.name, .unit = signal.unit, .type = point_type(signal.type)});
-  }
+  shape.picture = picture;
+  shape.inner = inner_of_shape(inner);
   if (engine == Engine::compiled) {
-    return compiled_program(with_outputs(program, inner), std::move(shape), float32);
+    return compiled_program(with_inner_outputs(program, inner), std::move(shape), float32);
   }
   if (float32) {
     return std::make_unique<InterpretedProgram<float>>(program, std::move(shape), inner);

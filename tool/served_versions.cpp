@@ -21,6 +21,7 @@
 #include "support/text_file.hpp"
 #include "tool/change_messages.hpp"
 #include "tool/inner_signals.hpp"
+#include "tool/live_diagram.hpp"
 #include "tool/serve_program.hpp"
 
 namespace hysteron::tool {
@@ -96,12 +97,13 @@ ServedVersions::NextVersion ServedVersions::next_version(const runtime::OnlineCh
     LoadedVersion loaded = load_version(options_, warnings);
     const auto inner = shows_inner_ ? inner_signals(loaded.diagram) : std::vector<InnerSignal>();
     // Interpreted, it is there at once: what is refused anyway does not wait for a compiler.
-    auto program = step_program(loaded.diagram, Engine::interpreter, options_.float32, inner);
+    const std::string picture = shows_inner_ ? live_diagram(loaded.diagram.graph, inner) : "";
+    auto program = step_program(loaded.diagram, Engine::interpreter, options_.float32, inner, picture);
     change.require_sound(program->shape(), wish);
     require_next_start(*program);
     if (engine_ == Engine::compiled) {
       progress("compiles the new version");
-      program = step_program(loaded.diagram, engine_, options_.float32, inner);
+      program = step_program(loaded.diagram, engine_, options_.float32, inner, picture);
     }
     progress("steps the new version beside the running one");
     return {.program = std::move(program), .files = std::move(loaded.files)};

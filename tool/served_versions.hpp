@@ -43,7 +43,7 @@ class ServedVersions {
   /// What is being done that takes long, as the end of a sentence that begins with "the task".
   using Progress = std::function<void(std::string_view)>;
 
-  /// `shows_inner`: programs are made with their inner signals, for the live page.
+  /// `shows_inner`: programs are made with their inner signals and their picture, for the live page.
   ServedVersions(DiagramOptions options, Engine engine, bool shows_inner, StartFiles start,
                  std::vector<OutputFile> first)
       : options_(std::move(options)),

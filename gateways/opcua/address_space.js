@@ -58,7 +58,7 @@ export class TaskSpace {
   #points = []; // of the newest description, with `of` and `at`: where the value is
   #time = new SourceTime(0);
   #task = { name: "", period: 0, layout: "" };
-  #seen = { cycle: -1, at: 0, values: [], inner: [], staged: [], time: new Date(0), state: "", fault: "" };
+  #seen = { cycle: -1, at: 0, values: [], inner: [], staged: [], forced: [], time: new Date(0), state: "", fault: "" };
   #isLinked = false;
   #lastRefusal = "";
 
@@ -122,7 +122,7 @@ export class TaskSpace {
     };
     const text = ({ value, meaning }) => enumeration(meaning)?.[value] ?? "";
     this.#seen = {
-      ...snapshot, at: snapshot.cycle === this.#seen.cycle ? this.#seen.at : performance.now(),
+      ...snapshot, forced: snapshot.forced ?? [], at: snapshot.cycle === this.#seen.cycle ? this.#seen.at : performance.now(),
       time: this.#time.of(of("task.elapsed").value), state: text(of("task.state")), fault: text(of("task.fault")),
     };
     this.#isLinked = true;
@@ -258,8 +258,9 @@ export class TaskSpace {
 
   #valueOf(point, dataType) {
     const value = this.#seen[point.of][point.at] ?? null;
+    const isForced = point.of === "values" && this.#seen.forced.includes(point.at);
     return new DataValue({
-      value: variantOf(dataType, value), statusCode: StatusCodes[statusOf(this.#stateOfTask(), point, value)],
+      value: variantOf(dataType, value), statusCode: StatusCodes[statusOf(this.#stateOfTask(), { ...point, isForced }, value)],
       sourceTimestamp: this.#seen.time, serverTimestamp: new Date(),
     });
   }

@@ -13,7 +13,7 @@ export function enumeration(meaning) {
 /**
  * What a snapshot says of itself.
  * @param {{isLinked: boolean, isStalled: boolean, state: string, fault: string}} task
- * @param {{kind: string, low: number | null, high: number | null}} point
+ * @param {{kind: string, low: number | null, high: number | null, isForced?: boolean}} point
  * @param {number | null} value null: not finite
  * @returns {string} the name of a StatusCode
  */
@@ -28,6 +28,7 @@ export function statusOf(task, point, value) {
     if (point.kind === "output") return "UncertainSubstituteValue";
     return task.fault === "stale input" || task.fault === "lost link" ? "UncertainLastUsableValue" : "UncertainSubNormal";
   }
+  if (point.isForced) return "GoodLocalOverride";
   if ((point.low ?? -Infinity) > value || value > (point.high ?? Infinity)) return "UncertainEngineeringUnitsExceeded";
   return "Good";
 }

@@ -36,6 +36,7 @@ export class TaskLink extends EventEmitter {
   #agent = new http.Agent({ keepAlive: true, maxSockets: 1 });
   #stop = new AbortController();
   #isKnown = false;
+  #version = 0; // of the diagram that was described; an online change begins another
   #looking = Promise.resolve();
 
   /** @param {{task: URL, token: string, interval: number}} options the interval in ms */
@@ -95,7 +96,7 @@ export class TaskLink extends EventEmitter {
     return look;
   }
 
-  /** Of a task that is known, its values; the description before them where the connection is another one. */
+  /** Of a task that is known, its values; the description before them where the connection or the version is another. */
   async #lookNow() {
     for (let isSecondTry = false; ; isSecondTry = true) {
       try {
@@ -114,13 +115,14 @@ export class TaskLink extends EventEmitter {
       const { body } = await this.#ask("GET", "/api/description");
       const description = parsed(body);
       this.#isKnown = true;
+      this.#version = description.version;
       this.emit("described", description, layoutOf(description));
     }
     const { body, isSameConnection } = await this.#ask("GET", "/api/values");
-    if (isSameConnection) {
-      this.emit("values", parsed(body));
-    }
-    return isSameConnection;
+    const values = isSameConnection ? parsed(body) : null;
+    if (values === null || values.version !== this.#version) return false;
+    this.emit("values", values);
+    return true;
   }
 
   /** @param {number} ms */

@@ -147,6 +147,7 @@ void MqttReader::read_rows(TomlReader& table, MqttConfig& mqtt) {
   if (!mqtt.on_change) {
     useless(table, "refresh", "every row is published whole", "write on_change = true, or remove the key.");
   }
+  table.read("file", mqtt.file);
   table.read_duration("keep", mqtt.keep);
   std::uint64_t megabytes = mqtt.bytes / 1'000'000;
   table.read_whole("megabytes", megabytes);

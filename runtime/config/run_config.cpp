@@ -14,6 +14,7 @@
 #include "runtime/config/mqtt_reader.hpp"
 #include "runtime/config/tls_reader.hpp"
 #include "runtime/config/toml_reader.hpp"
+#include "runtime/config/web_reader.hpp"
 #include "runtime/modbus/value_bits.hpp"
 #include "support/element_name.hpp"
 #include "support/errors.hpp"
@@ -102,6 +103,9 @@ class Reader {
     TlsReader(file_, config_, found_).read(table_at(root_, "tls"), table_at(root_, "roles"));
     modbus.read_line_of(table_at(root_, "modbus_rtu"));
     modbus.read_points(table_at(root_, "addresses"), table_at(root_, "registers"));
+    if (const auto* const table = table_at(root_, "web")) {
+      config_.web = read_web({file_, "[web]", *table, run_table("web").keys, found_}, found_);
+    }
     for (std::size_t i = 0; i < has_safe_value_.size(); ++i) {
       if (!has_safe_value_[i]) {
         const std::string& name = shape_.outputs[i].name;

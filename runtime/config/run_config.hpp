@@ -96,6 +96,7 @@ struct MqttConfig {
   std::vector<double> dead_bands{};  ///< on change, by point
   std::int64_t keep = std::int64_t{86'400'000'000'000};
   std::uint64_t bytes = 64'000'000;
+  std::string file{};  ///< of the rows that wait; empty: they are in memory alone
   Place place{};
 };
 
@@ -122,6 +123,14 @@ struct ModbusConfig {
   Place place{};
 };
 
+struct WebConfig {
+  std::string listen{};  ///< ADDRESS:PORT; empty: where the command line says
+  std::string token_file{};
+  std::string read_token_file{};
+  PageRights rights{};
+  Place place{};
+};
+
 struct RunConfig {
   TaskSettings task{};  ///< inputs and outputs in the order of the diagram
   SchedulingRequest scheduling{};
@@ -136,6 +145,7 @@ struct RunConfig {
   std::optional<HistoryConfig> history{};
   std::optional<MqttConfig> mqtt{};
   std::optional<ModbusConfig> modbus{};
+  std::optional<WebConfig> web{};  ///< of the live page
   std::vector<modbus::DeviceOptions> devices{};
   std::vector<DeviceInput> device_inputs{};
   std::vector<DeviceOutput> device_outputs{};

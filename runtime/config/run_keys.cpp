@@ -306,8 +306,11 @@ constexpr std::array mqtt_keys{
            86400.0 * s,
            {},
            "`every` at the least"},
+    RunKey{"file", text, "(none: in memory alone)",
+           "the file, of SQLite, of rows that have waited for a second: they outlive a power cut"},
     RunKey{"keep", time, "\"1d\"", "rows that wait for the broker for longer are lost", s, 1000.0 * 86400.0 * s},
-    RunKey{"megabytes", whole, "64", "memory for rows that wait, at most: the oldest give way", 1.0, 1e5},
+    RunKey{"megabytes", whole, "64",
+           "memory for rows that wait, at most, and with `file` about as much disk: the oldest give way", 1.0, 1e5},
 };
 constexpr std::array dead_band_keys{
     RunKey{
@@ -391,6 +394,19 @@ constexpr std::array role_keys{
            "`parameters`, `reset` the task; else the answer is exception 01"},
 };
 
+constexpr std::array web_keys{
+    RunKey{"listen", text, "(none: no page, but for `--web`)",
+           "address and port of the page, `\"127.0.0.1:8080\"`; a host that is generated with it has the page"},
+    RunKey{"token_file", text, "(none: nobody changes anything)",
+           "a file with the token of who may write, its owner's alone; `--web-token-file` counts before it"},
+    RunKey{"read_token_file", text, "(none)",
+           "a file with another token, of who may only read beyond the loopback; `--web-read-token-file` counts before "
+           "it"},
+    RunKey{
+        "rights", texts, "[\"parameters\", \"reset\"]",
+        "what the page may do for who has its token: stage and commit `parameters`, `reset` the task, `force` inputs"},
+};
+
 constexpr std::array address_keys{
     RunKey{"NAME", text, "(by the map and the lock file)",
            "where the point NAME lies, as `hysteron map` lists it: `\"%QX0.3\"`, `\"%IW7\"`, `\"%ML2\"` with OpenPLC's "
@@ -410,7 +426,7 @@ constexpr std::array file_keys{RunKey{"task"},          RunKey{"watchdog"}, RunK
                                RunKey{"devices"},       RunKey{"retain"},   RunKey{"trace"},      RunKey{"history"},
                                RunKey{"online_change"}, RunKey{"mqtt"},     RunKey{"dead_bands"}, RunKey{"modbus"},
                                RunKey{"tls"},           RunKey{"roles"},    RunKey{"addresses"},  RunKey{"registers"},
-                               RunKey{"modbus_rtu"}};
+                               RunKey{"modbus_rtu"},    RunKey{"web"}};
 
 constexpr std::array tables{
     RunTable{"[task]", "How the cycle runs.", task_keys},
@@ -430,6 +446,7 @@ constexpr std::array tables{
     RunTable{"[mqtt]", "Chosen points, published to an MQTT broker; without the table, none.", mqtt_keys},
     RunTable{"[dead_bands]", "A line for each point of `[mqtt]` whose small changes are not published.",
              dead_band_keys},
+    RunTable{"[web]", "The live page.", web_keys},
     RunTable{"[modbus]", "The Modbus server; without the table, none.", modbus_keys},
     RunTable{"[modbus_rtu]", "The map of `[modbus]` on a serial line as well, by Modbus RTU; without the table, not.",
              rtu_keys},

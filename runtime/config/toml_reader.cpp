@@ -104,6 +104,9 @@ void TomlReader::read(std::string_view key, double& into) {
     return;
   }
   const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (node->is_boolean()) {
+    return wrong_type(key, "a number, of a BOOL 0 or 1", node->as_boolean()->get() ? "1" : "0");
+  }
   if (!value) {
     return wrong_type(key, "a number", "1.5");
   }

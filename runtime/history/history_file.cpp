@@ -41,25 +41,6 @@ std::uint64_t inode_of(const std::filesystem::path& path) {
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
-/// Renames a file with its log, to the first name that is free.
-std::string put_aside(const std::filesystem::path& path) {
-  std::error_code problem;
-  for (int number = 1;; ++number) {
-    const auto aside = beside(path, fmt::format(".aside{}", number).c_str());
-    if (std::filesystem::exists(aside, problem)) {
-      continue;
-    }
-    for (const char* const ending : {"-wal", "-shm", ""}) {
-      std::filesystem::rename(beside(path, ending), beside(aside, ending), problem);
-    }
-    if (problem) {  // of the file itself, the last
-      throw DatabaseError(fmt::format("{}: cannot be put aside: {}", path.string(), problem.message()),
-                          Trouble::Unreachable);
-    }
-    return aside.string();
-  }
-}
-
 std::int64_t number_of(Database& database, const char* question) {
   Statement asked = database.prepared(question);
   return asked.step() ? asked.integer(0) : 0;
@@ -87,7 +68,7 @@ HistoryFile::HistoryFile(const HistoryPlan& plan, bool anew) : path_(plan.file),
     throw DatabaseError(path_.string() + ": is no history, and is left alone", Trouble::Damaged);
   }
   if (kind == HistoryKind::Damaged || kind == HistoryKind::Other || (anew && kind == HistoryKind::Fits)) {
-    aside_ = put_aside(path_);
+    aside_ = database::put_aside(path_);
     kind = HistoryKind::None;
   }
   database_.emplace(path_, Database::Mode::Write);

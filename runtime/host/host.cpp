@@ -263,6 +263,11 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       inputs.push_back({.file = file, .named_by = "[mqtt]"});
     }
   }
+  if (config.web) {
+    for (const std::string& file : {config.web->token_file, config.web->read_token_file}) {
+      inputs.push_back({.file = file, .named_by = "[web]"});
+    }
+  }
   const std::string mend = "name another file in the run file.";
   if (config.online_change) {
     refuse_to_overwrite({.file = config.online_change->socket, .mend = mend, .place = config.online_change->place},
@@ -288,6 +293,13 @@ void refuse_to_overwrite_inputs(const RunConfig& config, std::vector<InputFile> 
       const std::string file = config.history->file + ending;
       refuse_to_overwrite({.file = file, .mend = mend, .place = config.history->place}, inputs);
       inputs.push_back({.file = file, .named_by = "[history] file"});
+    }
+  }
+  if (config.mqtt && !config.mqtt->file.empty()) {
+    for (const char* const ending : {"", "-wal", "-shm"}) {
+      const std::string file = config.mqtt->file + ending;
+      refuse_to_overwrite({.file = file, .mend = mend, .place = config.mqtt->place}, inputs);
+      inputs.push_back({.file = file, .named_by = "[mqtt] file"});
     }
   }
   if (config.trace) {

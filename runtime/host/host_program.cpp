@@ -13,6 +13,7 @@
 
 #include "runtime/config/run_config.hpp"
 #include "runtime/host/host.hpp"
+#include "runtime/host/notices.hpp"
 #include "runtime/host/served_map.hpp"
 #include "runtime/modbus/map_text.hpp"
 #include "support/errors.hpp"
@@ -108,8 +109,13 @@ int run(StepProgram& program, const HostProgram& host, std::span<const char* con
     return 0;
   }
   say(config.warnings);
-  const bool well = run_host(program, std::move(config),
-                             {.how = "generated", .cycles = line.cycles, .virtual_time = line.virtual_time}, print);
+  if (config.web && !host.page) {
+    tell("Run file", "[web] has no effect here: this host has no live page. Generate it anew with listen under [web].");
+  }
+  auto page = host.page ? host.page(config, program.shape()) : nullptr;
+  const bool well = run_host(
+      program, std::move(config),
+      {.how = "generated", .cycles = line.cycles, .virtual_time = line.virtual_time, .beside = std::move(page)}, print);
   return well ? 0 : 1;
 }
 

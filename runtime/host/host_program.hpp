@@ -1,8 +1,12 @@
 // The main function of a generated host: its command line, its errors, and the run itself.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 
+#include "runtime/config/run_config.hpp"
+#include "runtime/point.hpp"
 #include "runtime/task/step_program.hpp"
 
 namespace hysteron::runtime {
@@ -11,6 +15,10 @@ struct HostProgram {
   std::string name{};  ///< of the program, for its help
   /// Where the run file names a lock file that is not there yet, the addresses are those of this one.
   std::string addresses{};
+  /// Gives HostOptions::beside: what serves the live page. None where the host was generated without one.
+  std::function<std::function<std::shared_ptr<void>(PointDoor& door, std::string& where)>(const RunConfig& config,
+                                                                                          const ProgramShape& shape)>
+      page{};
 };
 
 /// Gives the exit code: 0 it ran and ended as asked; 1 a fault ended it or was there at its end; 2 an error in the

@@ -133,9 +133,10 @@ void tell_of_unused_devices(const RunConfig& config) {
   }
 }
 
-RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task,
+RunNotices::RunNotices(const RunConfig& config, const ProgramShape& shape, Task& task,
                        const TaskAttachments& attachments, std::map<std::string, Remarks*> beside)
     : task_(&task),
+      may_force_(config.web && config.web->rights.force),
       guard_(attachments.guard),
       field_(attachments.field),
       beside_(std::move(beside)),
@@ -164,8 +165,24 @@ std::vector<std::string> AbsenceNotices::lines(const std::vector<std::string>& a
   return lines;
 }
 
+std::string ForceNotices::line(const std::vector<std::string>& forced, Clock::time_point now) {
+  if (forced == told_ || now < next_) {
+    return {};
+  }
+  next_ = now + pace;
+  told_ = forced;
+  return forced.empty()
+             ? "no input is forced any more."
+             : fmt::format("{} from the live page, until that page is closed or ends it.", fmt::join(forced, ", "));
+}
+
 void RunNotices::look() {
   writes_.look();
+  if (may_force_) {
+    if (const std::string line = forces_.line(task_->door().forced(), ForceNotices::Clock::now()); !line.empty()) {
+      tell("Forced", line);
+    }
+  }
   if (field_ != nullptr) {
     for (const std::string& line : absences_.lines(field_->absent_devices(), AbsenceNotices::Clock::now())) {
       tell("Device", line);

@@ -72,6 +72,20 @@ class AbsenceNotices {
   std::vector<std::string> told_{};
 };
 
+/// Inputs that are forced: a line where that changed, one a second at the most.
+class ForceNotices {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// What is to be said; `forced`: as TaskDoor::forced gives them. Empty where nothing changed, or the second is not
+  /// over.
+  [[nodiscard]] std::string line(const std::vector<std::string>& forced, Clock::time_point now);
+
+ private:
+  std::vector<std::string> told_{};
+  Clock::time_point next_{};
+};
+
 /// A line for each device that no input and no output of the task lies on.
 void tell_of_unused_devices(const RunConfig& config);
 
@@ -82,7 +96,7 @@ void tell_of_what_is_left(const std::vector<std::string>& left);
 class RunNotices {
  public:
   /// `beside`: what else has something to say, by the name that its lines begin with.
-  RunNotices(const RunConfig& config, const ProgramShape& shape, const Task& task, const TaskAttachments& attachments,
+  RunNotices(const RunConfig& config, const ProgramShape& shape, Task& task, const TaskAttachments& attachments,
              std::map<std::string, Remarks*> beside);
 
   /// To be called as time goes by, from a thread that is not the task's.
@@ -96,13 +110,15 @@ class RunNotices {
  private:
   [[nodiscard]] std::string not_written() const;
 
-  const Task* task_;
+  Task* task_;
+  bool may_force_;
   const Guard* guard_;
   const FieldIo* field_;
   AbsenceNotices absences_{AbsenceNotices::Clock::now()};
   std::map<std::string, Remarks*> beside_;
   WriteNotices writes_;
   FaultNotices faults_;
+  ForceNotices forces_{};
 };
 
 }  // namespace hysteron::runtime

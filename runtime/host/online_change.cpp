@@ -171,8 +171,8 @@ void OnlineChange::plan(Plan& plan, const ChangeWish& wish) const {
                                                 one.unit.empty() ? "" : " " + one.unit, number_text(plan.given[i]),
                                                 plan.own_state ? "before the change" : "in the files"));
     }
-    const bool is_reached = std::ranges::any_of(plan.next.parameters(), [&](const auto& place) { return place == i; });
-    if (!is_reached) {
+    const auto reached = plan.next.parameters().first(program_->shape().parameters.size());
+    if (std::ranges::find(reached, std::optional(i)) == reached.end()) {
       report.without_register.push_back(one.name);
     }
   }
@@ -352,6 +352,15 @@ void OnlineChange::tell_changed(ChangeReport& report, ChangeOutcome outcome) {
                    report.parameters_carried, report.parameters, report.states_carried, report.states));
 }
 
+void OnlineChange::tell_door() {
+  const ProgramVersion& version = program_->version();
+  task_->door().version_changed({.program = version.program(),
+                                 .places = version.parameters(),
+                                 .parameters = program_->parameters(),
+                                 .live = version.live,
+                                 .number = program_->version_number()});
+}
+
 void OnlineChange::require_sound(const ProgramShape& next, const ChangeWish& wish) const {
   require_same_interface(program_->shape(), next);
   (void)as_named(wish, next);
@@ -362,7 +371,8 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     const auto lock = one_at_a_time();
     require_same_interface(program_->shape(), program->shape());
     const ChangeWish wish = as_named(asked, program->shape());
-    auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape());
+    auto next = std::make_unique<ProgramVersion>(std::move(program), program_->shape(), program_->parameters());
+    next->live = task_->door().live_row({.program = next->program(), .places = next->parameters()});
     auto held = wish.only_check ? nullptr : held_commits(task_->door());
     ChangeReport report = carry_out({.next = *next, .given = parameters_of(next->program())}, wish);
     if (wish.only_check) {
@@ -370,7 +380,7 @@ ChangeReport OnlineChange::change_to(std::unique_ptr<StepProgram> program, const
     }
     const auto gone = program_->keep(std::move(next));
     keep_as_given(wish.as_given);
-    task_->door().version_changed(program_->version().program(), program_->version().parameters());
+    tell_door();
     held.reset();
     tell_changed(report, ChangeOutcome::changed);
     if (retainer_ != nullptr) {
@@ -415,7 +425,7 @@ ChangeReport OnlineChange::change_back(const ChangeWish& asked) {
       }
       program_->keep_former();
       keep_as_given(wish.as_given);
-      task_->door().version_changed(program, former->parameters());
+      tell_door();
       held.reset();
       tell_changed(report, ChangeOutcome::back);
       return report;

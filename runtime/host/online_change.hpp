@@ -87,6 +87,8 @@ class OnlineChange {
   [[nodiscard]] ChangeVerdict propose(Plan& plan);
   /// Remembers parameters that were not carried over.
   void keep_as_given(const std::vector<std::string>& names);
+  /// Servers judge and show the version that runs now.
+  void tell_door();
   /// Tells of the version that runs now, once its values are on the disk.
   void tell_changed(ChangeReport& report, ChangeOutcome outcome);
   /// Begins a change; throws where it cannot be now.

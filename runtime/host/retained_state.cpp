@@ -82,7 +82,7 @@ void RetainedState::take(StepProgram& program, std::span<const double> given) {
   std::vector<std::string> others;
   for (std::size_t i = 0; i < given.size(); ++i) {
     program.set_parameter(i, recovery_.values->parameters[i]);
-    if (program.parameter(i) != given[i]) {
+    if (!is_same_value(program.parameter(i), given[i])) {
       others.push_back(program.shape().parameters[i].name);
     }
   }

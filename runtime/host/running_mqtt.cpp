@@ -120,10 +120,14 @@ RunningMqtt::RunningMqtt(const RunConfig& config, const ProgramShape& shape, Tas
     settings_.rows.points.push_back(std::move(published));
   }
   settings_.rows.fault_column = column_of("task.fault");
+  if (config.web && config.web->rights.force) {
+    settings_.rows.forced_column = column_of("task.forced");
+  }
   settings_.link = link_of(mqtt);
   settings_.period = shape.period;
   settings_.bytes = mqtt.bytes;
   settings_.keep = mqtt.keep;
+  settings_.file = mqtt.file;
   if (mqtt.payload == MqttPayload::Json) {
     dialect_ = std::make_unique<JsonDialect>(mqtt.topic, mqtt.qos, settings_.rows.points);
   } else {

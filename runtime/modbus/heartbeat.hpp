@@ -56,6 +56,7 @@ class Heartbeat {
     return lost_;
   }
 
+  [[nodiscard]] bool writes_are_owned() const { return owner_.has_value(); }
   [[nodiscard]] bool owns_writes(std::uint64_t client) const { return owner_ == client; }
   [[nodiscard]] bool other_owns_writes(std::uint64_t client) const { return owner_.value_or(client) != client; }
   [[nodiscard]] std::optional<Instant> next_deadline() const {

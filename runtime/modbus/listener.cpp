@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -28,12 +29,20 @@ Listener::Listener(std::string address, std::uint16_t port, const Place& place, 
     refuse_to_listen(first.problem, address_, port, place);
   }
   next_ = std::chrono::steady_clock::now() + wait_;
-  if (tell_) {
-    tell_(
-        fmt::format("{} port {} cannot be listened on yet: {}. It is tried again, every 2 s at last; the control "
-                    "goes on. See that the network is up and has this address.",
-                    address_, port, std::system_category().message(first.problem)));
+  tell_why(first.problem);
+}
+
+void Listener::tell_why(int problem) {
+  if (std::exchange(told_, problem) == problem || !tell_) {
+    return;
   }
+  tell_(
+      fmt::format("{} port {} cannot be listened on yet: {}. It is tried again, every 2 s at last; the control goes "
+                  "on. {}",
+                  address_, port(), std::system_category().message(problem),
+                  problem == EADDRNOTAVAIL || problem == ENETDOWN ? "See that the network is up and has this address."
+                  : problem == EADDRINUSE                         ? "See which other program listens there."
+                                                                  : "See to that; no restart is needed."));
 }
 
 std::optional<Listener::Instant> Listener::next_try() const {
@@ -44,8 +53,10 @@ bool Listener::try_again(Instant now) {
   if (is_open() || now < next_) {
     return false;
   }
-  socket_ = try_to_listen(address_, port()).socket;
+  Listening again = try_to_listen(address_, port());
+  socket_ = std::move(again.socket);
   if (!is_open()) {
+    tell_why(again.problem);
     wait_ = std::min(2 * wait_, longest_pause);
     next_ = now + wait_;
     return false;

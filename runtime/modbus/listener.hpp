@@ -34,11 +34,15 @@ class Listener {
   bool try_again(Instant now);
 
  private:
+  /// Where it is another reason than the one that was told last.
+  void tell_why(int problem);
+
   std::string address_;
   std::atomic<std::uint16_t> port_;
   Tell tell_;
   Descriptor socket_{};
   std::chrono::milliseconds wait_;
+  int told_ = 0;  ///< the errno
   Instant next_{};
 };
 

@@ -22,6 +22,7 @@
 #include "runtime/modbus/descriptor.hpp"
 #include "runtime/modbus/listen.hpp"
 #include "runtime/modbus/listener.hpp"
+#include "runtime/modbus/server_counters.hpp"
 #include "runtime/modbus/transport.hpp"
 
 namespace hysteron::runtime::modbus {
@@ -33,19 +34,6 @@ constexpr std::uint64_t line_mark = 2;
 constexpr std::uint64_t first_client = 3;
 constexpr int accepted_a_turn = 16;  // so that a storm of connections leaves time for those that are served
 constexpr milliseconds accept_pause{100};
-
-/// Written by the server's thread alone.
-struct Counters {
-  using Count = std::atomic<std::uint64_t>;
-  Count open{0}, accepted{0}, refused_full{0}, refused_share{0}, refused_address{0}, requests{0}, exceptions{0},
-      writes{0}, closed_by_client{0}, client_lost{0}, evicted{0}, saturated{0};
-  Count line_frames{0}, line_broken{0}, line_broadcasts{0}, line_echo_lost{0};
-  std::array<Count, endings> ended{};
-};
-
-void add(std::atomic<std::uint64_t>& count, std::uint64_t more = 1) {
-  count.store(count.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
-}
 
 }  // namespace
 
@@ -85,7 +73,7 @@ class Server::Loop {
   void renew(std::shared_ptr<const TlsContext> tls) { tls_.store(std::move(tls)); }
   [[nodiscard]] std::uint16_t port() const { return listener_ ? listener_->port() : std::uint16_t{0}; }
   [[nodiscard]] const RegisterMap& map() const { return map_; }
-  [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] const ServerCounters& counters() const { return counters_; }
 
  private:
   struct Client {
@@ -362,10 +350,18 @@ class Server::Loop {
       add(counters_.exceptions, served.exceptions);
       add(counters_.writes, served.writes);
       heartbeat_.telegram(mark, served.writes > 0, now);
+      tell_of_owner();
     }
   }
 
-  void forget(Clients::iterator place, Counters::Count& why) {
+  /// Who writes by another way has to know, and before the client has the answer to the write that made it the owner.
+  void tell_of_owner() {
+    if (std::exchange(told_owned_, heartbeat_.writes_are_owned()) != heartbeat_.writes_are_owned()) {
+      door_.writes_are_owned(told_owned_);
+    }
+  }
+
+  void forget(Clients::iterator place, ServerCounters::Count& why) {
     add(why);
     heartbeat_.gone(place->first);
     std::erase(shaking_, place->first);
@@ -420,6 +416,7 @@ class Server::Loop {
 
   void follow_heartbeat(Instant now) {
     const bool lost = heartbeat_.is_lost(now);
+    tell_of_owner();
     if (lost != (counters_.client_lost.load(std::memory_order_relaxed) != 0)) {
       counters_.client_lost.store(lost ? 1 : 0, std::memory_order_relaxed);
       if (options_.client_lost) {
@@ -435,7 +432,8 @@ class Server::Loop {
   Responder responder_;
   const std::vector<Network> allow_;
   Heartbeat heartbeat_;
-  Counters counters_;
+  bool told_owned_ = false;
+  ServerCounters counters_;
   std::optional<Listener> listener_{};
   Descriptor stop_;
   Descriptor epoll_;
@@ -469,31 +467,7 @@ const RegisterMap& Server::map() const {
 }
 
 ServerStatus Server::status() const {
-  const Counters& now = loop_->counters();
-  const auto ended = [&](Ending why) { return now.ended.at(static_cast<std::size_t>(why)).load(); };
-  return {.open = now.open,
-          .accepted = now.accepted,
-          .refused_full = now.refused_full,
-          .refused_share = now.refused_share,
-          .refused_address = now.refused_address,
-          .requests = now.requests,
-          .exceptions = now.exceptions,
-          .writes = now.writes,
-          .closed_by_client = now.closed_by_client,
-          .frame_late = ended(Ending::frame_late),
-          .idle = ended(Ending::idle),
-          .unread = ended(Ending::unread),
-          .wrong_protocol = ended(Ending::wrong_protocol),
-          .wrong_length = ended(Ending::wrong_length),
-          .handshake_late = ended(Ending::handshake_late),
-          .tls_failed = ended(Ending::tls_failed),
-          .evicted = now.evicted,
-          .saturated = now.saturated,
-          .line = {.frames = now.line_frames,
-                   .broken = now.line_broken,
-                   .broadcasts = now.line_broadcasts,
-                   .echo_lost = now.line_echo_lost},
-          .client_lost = now.client_lost != 0};
+  return status_of(loop_->counters());
 }
 
 }  // namespace hysteron::runtime::modbus

@@ -17,7 +17,7 @@
 namespace hysteron::runtime {
 
 /// As point task.mqtt_fault says it.
-enum class MqttFault : std::uint16_t { None, Unreachable, Refused, Tls, Lost };
+enum class MqttFault : std::uint16_t { None, Unreachable, Refused, Tls, Lost, File };
 
 class MqttError : public std::runtime_error {
  public:

@@ -28,6 +28,8 @@ constexpr int sender_niceness = 10;            ///< whatever runs the machine go
 constexpr milliseconds longest_wait{100};
 constexpr milliseconds longest_end{2000};
 constexpr milliseconds farewell_time{500};
+constexpr std::int64_t keep_pace = a_second;        ///< a row that waits for longer is on the disk
+constexpr std::int64_t file_retry = 10 * a_second;  ///< for a file that could not be written
 
 /// So that machines that lost one broker do not all come back at once.
 std::int64_t spread(std::int64_t pause) {
@@ -48,17 +50,97 @@ MqttSender::MqttSender(MqttSettings settings, std::unique_ptr<MqttDialect> diale
       maker_(settings_.rows),
       outbox_(settings_.bytes, settings_.keep) {}
 
+/// What an earlier run left waits before all that comes.
+void MqttSender::open_file() {
+  keep_at_ = time_.steady() + file_retry;
+  std::vector<std::string> names;
+  for (const MqttPoint& point : settings_.rows.points) {
+    names.push_back(point.name);
+  }
+  try {
+    auto file = std::make_unique<OutboxFile>(settings_.file, names);
+    if (!file->aside().empty()) {
+      remarks_.say(fmt::format("{} was damaged: what it held is in {}, and is not sent.", settings_.file.string(),
+                               file->aside()));
+    }
+    // Those that came meanwhile follow those of the file.
+    Outbox all(settings_.bytes, settings_.keep, file->first());
+    const std::int64_t now = time_.steady();
+    std::uint64_t lost = 0;
+    for (const MqttRow& row : file->rows()) {
+      const std::int64_t age = std::max<std::int64_t>(0, time_.now_ms() - row.utc_ms);
+      lost += all.add(row, now - std::min(age, settings_.keep / 1'000'000 + 1) * 1'000'000);
+    }
+    if (!file->rows().empty()) {
+      remarks_.say(fmt::format("{} rows of before wait for {}.", file->rows().size(), broker()));
+    }
+    file->forget_rows();
+    outbox_.call_back();
+    for (const MqttRow* const row : outbox_.rows_from(outbox_.first(), now)) {
+      lost += all.add(*row, now);
+    }
+    outbox_ = std::move(all);
+    rows_on_the_way_.clear();
+    fences_.clear();
+    first_live_ = outbox_.first() + outbox_.size();
+    file_ = std::move(file);
+    keep_at_ = now + keep_pace;
+    lose(lost);
+  } catch (const database::DatabaseError& problem) {
+    file_failed(problem.what());
+  }
+}
+
+void MqttSender::keep(std::int64_t before) {
+  try {
+    file_->follow(outbox_.first(), outbox_.rows_from(std::max(file_->end(), outbox_.first()), before));
+    keep_at_ = time_.steady() + keep_pace;
+    if (std::exchange(is_file_told_, false)) {
+      remarks_.say("rows that wait are on the disk again.");
+    }
+  } catch (const database::DatabaseError& problem) {
+    file_failed(problem.what());
+    if (!problem.is_passing()) {
+      file_.reset();  // it is opened anew, and put aside
+    }
+  }
+}
+
+void MqttSender::file_failed(const std::string& problem) {
+  keep_at_ = time_.steady() + file_retry;
+  if (!std::exchange(is_file_told_, true)) {
+    remarks_.say(fmt::format(
+        "rows that wait are in memory alone: {}. Clear what is in the way there; it is tried again every 10 s.",
+        problem));
+  }
+}
+
+/// A fault of the file is told where the connection has none.
+void MqttSender::set_fault(MqttFault fault) {
+  link_fault_ = fault;
+  counter_->set_fault(static_cast<std::uint16_t>(fault == MqttFault::None && is_file_told_ ? MqttFault::File : fault));
+}
+
 std::string MqttSender::broker() const {
   return fmt::format("{}:{}", settings_.link.broker, settings_.link.port);
 }
 
 void MqttSender::turn(milliseconds wait, int wake) {
   take();
+  // Its rows come first: so it is opened where none is on the way.
+  if (!settings_.file.empty() && file_ == nullptr && time_.steady() >= keep_at_ &&
+      (client_ == nullptr || outbox_.size() == 0)) {
+    open_file();
+  }
   try {
     serve(wait, wake);
   } catch (const MqttError& problem) {
     failed(problem);
   }
+  if (file_ != nullptr && time_.steady() >= keep_at_) {
+    keep(time_.steady() - keep_pace);
+  }
+  set_fault(link_fault_);
   counter_->set_waiting(outbox_.size());
 }
 
@@ -113,7 +195,7 @@ void MqttSender::serve(milliseconds wait, int wake) {
   confirm();
   if (client_->is_late()) {
     // The system still tries to connect; that is not given up, only said.
-    counter_->set_fault(static_cast<std::uint16_t>(MqttFault::Unreachable));
+    set_fault(MqttFault::Unreachable);
     remarks_.failed("it does not answer",
                     fmt::format("{} does not answer. Rows wait meanwhile. The task goes on.", broker()));
   }
@@ -134,7 +216,7 @@ void MqttSender::greet() {
   first_live_ = outbox_.next_number() + outbox_.size();
   maker_.forget();
   counter_->set_connected(true);
-  counter_->set_fault(static_cast<std::uint16_t>(MqttFault::None));
+  set_fault(MqttFault::None);
   remarks_.is_well(fmt::format("connected to {}; {} rows wait, {} are lost since the start.", broker(), outbox_.size(),
                                counter_->read().lost));
 }
@@ -216,7 +298,7 @@ void MqttSender::failed(const MqttError& problem) {
   pause_ = std::clamp(2 * pause_, a_second, longest_retry);
   retry_at_ = now + spread(pause_);
   counter_->set_connected(false);
-  counter_->set_fault(static_cast<std::uint16_t>(problem.fault()));
+  set_fault(problem.fault());
   remarks_.failed(problem.what(), fmt::format("nothing reaches {}: {}. Rows wait meanwhile; it is tried again, at last "
                                               "once a minute. The task goes on.",
                                               broker(), problem.what()));
@@ -247,11 +329,19 @@ void MqttSender::finish(milliseconds longest) {
   }
   client_.reset();
   counter_->set_connected(false);
-  counter_->add_lost(outbox_.size());
-  counter_->set_waiting(0);
+  if (file_ != nullptr) {
+    outbox_.call_back();
+    keep(time_.steady());
+  }
+  const bool is_kept = file_ != nullptr && !is_file_told_;
+  if (is_kept && outbox_.size() > 0) {
+    remarks_.say(fmt::format("{} rows wait in {} for the next start.", outbox_.size(), settings_.file.string()));
+  }
+  counter_->add_lost(is_kept ? 0 : outbox_.size());
+  counter_->set_waiting(is_kept ? outbox_.size() : 0);
   const std::uint64_t lost = counter_->read().lost;
   if (lost == 0) {
-    remarks_.is_well("no row waits at the end, and none is lost.");
+    remarks_.is_well("no row is lost at the end.");
     return;
   }
   const std::string known = remarks_.problem();

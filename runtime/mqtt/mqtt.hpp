@@ -2,12 +2,14 @@
 // and goes on, whatever becomes of the broker, and nothing that a broker says reaches the task.
 //
 // A row waits until the broker has confirmed it, in order, within bounds of age and memory; what goes beyond them is
-// counted as lost. After a break, all that was not confirmed is sent again: a row arrives once at the least. A broker
-// that cannot be reached is tried again after 1 s at first, and after a minute at last.
+// counted as lost. Where a file is named, what waits for longer than a second is on the disk, and outlives the process.
+// After a break, all that was not confirmed is sent again: a row arrives once at the least. A broker that cannot be
+// reached is tried again after 1 s at first, and after a minute at last.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +21,7 @@
 #include "runtime/mqtt/client.hpp"
 #include "runtime/mqtt/dialect.hpp"
 #include "runtime/mqtt/outbox.hpp"
+#include "runtime/mqtt/outbox_file.hpp"
 #include "runtime/mqtt/row_maker.hpp"
 #include "runtime/task/remarks.hpp"
 #include "runtime/task/sample_tap.hpp"
@@ -29,9 +32,10 @@ namespace hysteron::runtime {
 struct MqttSettings {
   MqttLink link{};
   RowPlan rows{};
-  std::int64_t period = 0;  ///< of a cycle, in ns
-  std::uint64_t bytes = 0;  ///< of memory for rows that wait
-  std::int64_t keep = 0;    ///< ns
+  std::int64_t period = 0;       ///< of a cycle, in ns
+  std::uint64_t bytes = 0;       ///< of memory for rows that wait
+  std::int64_t keep = 0;         ///< ns
+  std::filesystem::path file{};  ///< of the rows that wait; empty: they are in memory alone
 };
 
 /// What the thread does, a turn after the other; it may be called from one thread at a time.
@@ -49,6 +53,11 @@ class MqttSender {
 
  private:
   void take();
+  void open_file();
+  /// `before`: rows that were added until then.
+  void keep(std::int64_t before);
+  void file_failed(const std::string& problem);
+  void set_fault(MqttFault fault);
   void lose(std::uint64_t rows);
   void serve(std::chrono::milliseconds wait, int wake);
   void greet();
@@ -66,6 +75,10 @@ class MqttSender {
   TaskTime time_;
   RowMaker maker_;
   Outbox outbox_;
+  std::unique_ptr<OutboxFile> file_{};
+  std::int64_t keep_at_ = 0;   ///< when the file is followed, or opened, again
+  bool is_file_told_ = false;  ///< that rows are in memory alone
+  MqttFault link_fault_ = MqttFault::None;
   std::vector<Sample> taken_{};
   std::optional<Sample> newest_{};
 

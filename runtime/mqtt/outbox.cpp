@@ -45,6 +45,14 @@ const MqttRow* Outbox::next() const {
   return on_the_way_ < rows_.size() ? &rows_[on_the_way_].row : nullptr;
 }
 
+std::vector<const MqttRow*> Outbox::rows_from(std::uint64_t number, std::int64_t before) const {
+  std::vector<const MqttRow*> rows;
+  for (std::size_t i = number > first_ ? number - first_ : 0; i < rows_.size() && rows_[i].since <= before; ++i) {
+    rows.push_back(&rows_[i].row);
+  }
+  return rows;
+}
+
 void Outbox::send() {
   ++on_the_way_;
 }

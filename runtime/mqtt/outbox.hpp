@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <vector>
 
 #include "runtime/mqtt/row.hpp"
 
@@ -12,8 +13,9 @@ namespace hysteron::runtime {
 
 class Outbox {
  public:
-  /// `bytes` of memory at the most, and no row older than `keep`, in ns.
-  Outbox(std::uint64_t bytes, std::int64_t keep) : bytes_(bytes), keep_(keep) {}
+  /// `bytes` of memory at the most, and no row older than `keep`, in ns. `first`: the number of the row that is added
+  /// first.
+  Outbox(std::uint64_t bytes, std::int64_t keep, std::uint64_t first = 0) : bytes_(bytes), keep_(keep), first_(first) {}
 
   /// Behind all others; `now`, in ns, on a clock that is never set. Gives how many old rows had to go for it.
   std::size_t add(MqttRow row, std::int64_t now);
@@ -34,6 +36,10 @@ class Outbox {
   /// The connection broke: what is not confirmed is to be sent again.
   void call_back();
 
+  /// The number of the oldest.
+  [[nodiscard]] std::uint64_t first() const { return first_; }
+  /// Rows from a number on that were added before a time, oldest first.
+  [[nodiscard]] std::vector<const MqttRow*> rows_from(std::uint64_t number, std::int64_t before) const;
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t on_the_way() const { return on_the_way_; }
   /// Of memory, in bytes.
@@ -52,7 +58,7 @@ class Outbox {
   std::uint64_t bytes_;
   std::int64_t keep_;
   std::deque<Waiting> rows_{};
-  std::uint64_t first_ = 0;     ///< the number of the oldest
+  std::uint64_t first_;         ///< the number of the oldest
   std::size_t on_the_way_ = 0;  ///< of the oldest
   std::uint64_t used_ = 0;
 };

@@ -14,7 +14,7 @@ namespace hysteron::runtime {
 /// Of a value, in OPC's three grades.
 enum class ValueQuality : std::uint8_t {
   Good,
-  Uncertain,  ///< a fault holds in the task, or the value of a device is old
+  Uncertain,  ///< a fault holds in the task, an input is forced, or the value of a device is old
   Bad,        ///< no number, or none that a device gave
 };
 

@@ -30,7 +30,9 @@ ValueQuality RowMaker::quality_of(const MqttPoint& point, const Sample& sample, 
       return told;
     }
   }
-  return point.is_port && sample.values[plan_.fault_column] != 0.0 ? ValueQuality::Uncertain : ValueQuality::Good;
+  const bool is_doubtful =
+      sample.values[plan_.fault_column] != 0.0 || (plan_.forced_column && sample.values[*plan_.forced_column] != 0.0);
+  return point.is_port && is_doubtful ? ValueQuality::Uncertain : ValueQuality::Good;
 }
 
 MqttRow RowMaker::whole(const Sample& sample, std::int64_t utc_ms) const {

@@ -12,8 +12,9 @@
 namespace hysteron::runtime {
 
 struct RowPlan {
-  std::vector<MqttPoint> points{};  ///< the first columns of a sample, in this order
-  std::size_t fault_column = 0;     ///< the column of task.fault
+  std::vector<MqttPoint> points{};             ///< the first columns of a sample, in this order
+  std::size_t fault_column = 0;                ///< the column of task.fault
+  std::optional<std::size_t> forced_column{};  ///< the column of task.forced; nothing where no input can be
   bool on_change = false;
   std::uint64_t refresh = 1;  ///< on change: periods after which a point is published without one
 };

@@ -8,11 +8,11 @@
 namespace hysteron::runtime {
 namespace {
 
-/// By signal of the first version: the place of the same one, by name, type and unit.
-std::vector<std::optional<std::size_t>> places_of(const std::vector<ProgramSignal>& first,
+/// By known signal: the place of the same one, by name, type and unit.
+std::vector<std::optional<std::size_t>> places_of(std::span<const ProgramSignal> known,
                                                   const std::vector<ProgramSignal>& own) {
   std::vector<std::optional<std::size_t>> places;
-  for (const ProgramSignal& signal : first) {
+  for (const ProgramSignal& signal : known) {
     const auto found = std::ranges::find_if(own, [&](const ProgramSignal& one) {
       return one.name == signal.name && one.type == signal.type && one.unit == signal.unit;
     });
@@ -21,11 +21,24 @@ std::vector<std::optional<std::size_t>> places_of(const std::vector<ProgramSigna
   return places;
 }
 
+/// The same, and then those that are new, in their own order.
+std::vector<std::optional<std::size_t>> all_places_of(std::span<const ProgramSignal> known,
+                                                      const std::vector<ProgramSignal>& own) {
+  auto places = places_of(known, own);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (std::ranges::find(places, std::optional(i)) == places.end()) {
+      places.emplace_back(i);
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
-ProgramVersion::ProgramVersion(std::unique_ptr<StepProgram> program, const ProgramShape& first)
+ProgramVersion::ProgramVersion(std::unique_ptr<StepProgram> program, const ProgramShape& first,
+                               std::span<const ProgramSignal> parameters)
     : program_(std::move(program)),
-      parameters_(places_of(first.parameters, program_->shape().parameters)),
+      parameters_(all_places_of(parameters, program_->shape().parameters)),
       inner_(places_of(first.inner, program_->shape().inner)),
       inner_values_(program_->shape().inner.size()) {}
 
@@ -40,8 +53,8 @@ Bump bump_of(double before, double after, const BumpLimit& limit) noexcept {
 }
 
 ChangeableProgram::ChangeableProgram(std::unique_ptr<StepProgram> first)
-    : shape_(first->shape()), values_(parameters_of(*first)) {
-  owned_.push_back(std::make_unique<ProgramVersion>(std::move(first), shape_));
+    : shape_(first->shape()), parameters_(shape_.parameters), values_(parameters_of(*first)) {
+  owned_.push_back(std::make_unique<ProgramVersion>(std::move(first), shape_, parameters_));
   running_ = owned_.front().get();
 }
 
@@ -123,8 +136,9 @@ void ChangeableProgram::inner_values(std::span<double> into) const noexcept {
 }
 
 void ChangeableProgram::set_parameter(std::size_t parameter, double value) noexcept {
-  if (const auto place = running_->parameters()[parameter]) {
-    running_->program().set_parameter(*place, value);
+  const auto places = running_->parameters();
+  if (parameter < places.size() && places[parameter]) {
+    running_->program().set_parameter(*places[parameter], value);
   }
 }
 
@@ -160,6 +174,10 @@ bool ChangeableProgram::withdraw() noexcept {
 
 std::unique_ptr<ProgramVersion> ChangeableProgram::keep(std::unique_ptr<ProgramVersion> taken) {
   std::unique_ptr<ProgramVersion> gone;
+  const auto places = taken->parameters();
+  for (std::size_t i = parameters_.size(); i < places.size(); ++i) {
+    parameters_.push_back(taken->program().shape().parameters[places[i].value()]);
+  }
   owned_.insert(owned_.begin(), std::move(taken));
   if (owned_.size() > 2) {
     gone = std::move(owned_.back());

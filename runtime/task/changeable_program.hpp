@@ -6,8 +6,9 @@
 // gave is what the task writes; else the old one goes on, as if nothing had been. That costs the cycle one more step
 // and the copy of a state; nothing is allocated.
 //
-// Inputs, outputs, the parameters that servers reach, and the inner signals keep their places: those of the first
-// version. A parameter that a later version has not keeps its value here and does nothing.
+// Inputs, outputs, parameters and the inner signals keep their places: those of the first version. Parameters that come
+// with a later one get further places, which no other parameter is given. A parameter that the running version has not
+// does nothing.
 #pragma once
 
 #include <atomic>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "runtime/task/carry.hpp"
+#include "runtime/task/live_row.hpp"
 #include "runtime/task/retain.hpp"
 #include "runtime/task/step_program.hpp"
 #include "runtime/task/trace.hpp"
@@ -31,11 +33,13 @@ namespace hysteron::runtime {
 class ProgramVersion {
  public:
   /// The program as it is to begin. `first`: the shape of the first version; its own, where this is the first.
-  ProgramVersion(std::unique_ptr<StepProgram> program, const ProgramShape& first);
+  /// `parameters`: those that any version before had.
+  ProgramVersion(std::unique_ptr<StepProgram> program, const ProgramShape& first,
+                 std::span<const ProgramSignal> parameters);
 
   [[nodiscard]] StepProgram& program() noexcept { return *program_; }
   [[nodiscard]] const StepProgram& program() const noexcept { return *program_; }
-  /// By parameter of the first version: its place here.
+  /// By parameter that this version or any before it had: its place here.
   [[nodiscard]] std::span<const std::optional<std::size_t>> parameters() const noexcept { return parameters_; }
   [[nodiscard]] std::span<const std::optional<std::size_t>> inner() const noexcept { return inner_; }
   /// The inner signals of the newest step.
@@ -46,6 +50,8 @@ class ProgramVersion {
   /// Where its states are retained and its trace is begun. Made when it takes over for the first time.
   std::unique_ptr<RetainImage> retained{};
   std::unique_ptr<TraceProgram> traced{};
+  /// Where the live page sees it; null of the first version.
+  std::shared_ptr<LiveRow> live{};
 
  private:
   std::unique_ptr<StepProgram> program_;
@@ -125,10 +131,13 @@ class ChangeableProgram final : public StepProgram {
   void conclude() noexcept { change_.store(Ask::done, std::memory_order_release); }
   /// The version that runs.
   [[nodiscard]] ProgramVersion& running() noexcept { return *running_; }
+  [[nodiscard]] LiveVersion live() const noexcept { return {running_->live.get(), &running_->program()}; }
 
   // For one thread beside it:
   /// The version that runs, as far as this thread has brought it about.
   [[nodiscard]] ProgramVersion& version() noexcept { return *owned_.front(); }
+  /// The parameters that any version had, by their places.
+  [[nodiscard]] std::span<const ProgramSignal> parameters() const noexcept { return parameters_; }
   /// That before it; null where there is none.
   [[nodiscard]] ProgramVersion* former() noexcept { return owned_.size() > 1 ? owned_.back().get() : nullptr; }
   /// Asks for an image of the next step; into buffers of the right sizes.
@@ -162,6 +171,7 @@ class ChangeableProgram final : public StepProgram {
   void plain_step(std::span<const double> inputs, std::span<double> outputs) noexcept;
 
   ProgramShape shape_;
+  std::vector<ProgramSignal> parameters_;                 ///< of the thread beside
   std::vector<std::unique_ptr<ProgramVersion>> owned_{};  ///< of the thread beside: the running one, the former
   ProgramVersion* running_;                               ///< of the cyclic thread
   std::vector<double> values_;                            ///< of parameters, as they were last set or read

@@ -287,6 +287,7 @@ void Retainer::write_newest() {
     failures_.fetch_add(1, std::memory_order_relaxed);
   }
   const std::scoped_lock lock(mutex_);
+  is_failing_.store(!problem.empty(), std::memory_order_relaxed);
   problem_ = std::move(problem);
 }
 

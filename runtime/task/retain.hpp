@@ -73,7 +73,8 @@ class RetainFolder final : public RetainFiles {
   RetainFolder(const RetainFolder&) = delete;
   RetainFolder& operator=(const RetainFolder&) = delete;
   ~RetainFolder() override;
-  /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Throws
+  /// Makes the folder where it is missing, and holds it against a second task for as long as this lives. Where the disk
+  /// has no room for it, it is made and held by the first state that finds some. Throws
   /// std::system_error where it cannot be written to; std::errc::resource_unavailable_try_again where another task
   /// holds it.
   void open();
@@ -165,6 +166,8 @@ class Retainer {
   /// The sets of parameters, of those applied in this run, that are on the disk.
   [[nodiscard]] std::uint64_t saved_commits() const noexcept { return saved_commits_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_.load(std::memory_order_relaxed); }
+  /// Whether the newest state is not on the disk, because writing it failed.
+  [[nodiscard]] bool is_failing() const noexcept { return is_failing_.load(std::memory_order_relaxed); }
   /// Why the newest state is not on the disk; empty where it is, or none was offered. From any thread.
   [[nodiscard]] std::string problem() const;
   /// Writes what was offered last, and ends.
@@ -183,6 +186,7 @@ class Retainer {
   std::uint64_t sequence_;
   std::atomic<std::uint64_t> written_;
   std::atomic<std::uint64_t> failures_{0};
+  std::atomic<bool> is_failing_{false};
   std::atomic<std::uint64_t> saved_commits_{0};
   mutable std::mutex mutex_;  ///< never taken by the cyclic thread
   std::string problem_{};

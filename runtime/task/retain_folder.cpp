@@ -75,8 +75,11 @@ RetainFolder::~RetainFolder() {
 }
 
 void RetainFolder::open() {
-  std::error_code unknown;  // the next call says what is wrong
-  std::filesystem::create_directories(folder_, unknown);
+  std::error_code problem;  // the next call says what is wrong
+  std::filesystem::create_directories(folder_, problem);
+  if (is_want_of_room(problem.value())) {
+    return;  // nothing can have been retained there; each state that is written tries again
+  }
   held_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (held_ < 0 || faccessat(AT_FDCWD, folder_.c_str(), W_OK | X_OK, AT_EACCESS) != 0 ||
       flock(held_, LOCK_EX | LOCK_NB) != 0) {
@@ -110,6 +113,13 @@ std::optional<std::vector<std::byte>> RetainFolder::read(std::size_t slot) {
 std::string RetainFolder::write(std::size_t slot, std::span<const std::byte> bytes) {
   std::error_code unknown;
   std::filesystem::create_directories(folder_, unknown);
+  if (held_ < 0) {
+    try {
+      open();
+    } catch (const std::system_error& refused) {
+      return refused.what();
+    }
+  }
   const auto path = path_of(slot);
   const auto fresh = std::filesystem::path(path).concat(".new");
   {

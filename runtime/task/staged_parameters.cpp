@@ -101,6 +101,13 @@ void StagedParameters::discard() {
   staged_ = committed_;
 }
 
+void StagedParameters::follow(const std::vector<double>& committed) {
+  for (std::size_t i = 0; i < staged_.size(); ++i) {
+    staged_[i] = is_staged(i) ? staged_[i] : committed[i];
+  }
+  committed_ = committed;
+}
+
 std::string StagedParameters::commit() {
   auto refusal = refusal_of(*shape_, staged_, committed_);
   if (refusal.empty()) {

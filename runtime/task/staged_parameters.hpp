@@ -25,6 +25,8 @@ class StagedParameters {
   /// Nothing is checked but that the number is one: a set may be out of range while it is being entered.
   void stage(std::size_t parameter, double value);
   void discard();
+  /// Another set counts, which did not come from here. What waits for a commit goes on waiting.
+  void follow(const std::vector<double>& committed);
   /// The set becomes what counts, whole; or, where anything is refused, nothing changes and the reason is given. What
   /// was staged stays staged then, to be mended. What stays as it is in the program is not judged.
   [[nodiscard]] std::string commit();

@@ -60,6 +60,7 @@ struct ProgramShape {
   std::vector<ProgramRelation> relations{};  ///< among the parameters
   std::vector<ProgramSignal> inner{};        ///< signals within the diagram that can be looked at; often none
   std::vector<StateField> state{};           ///< all that lives from step to step
+  std::string picture{};                     ///< SVG of the diagram for the live page; empty where there is none
   /// Two programs whose layouts are the same text understand each other's state: same diagram, whatever its parameters.
   std::string layout{};
 };

@@ -25,6 +25,7 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
       safe_(settings.outputs, static_cast<double>(program.shape().period) * 1e-9),
       watchdog_(settings.watchdog),
       field_counts_(settings.field_points.size()),
+      forces_(program.shape().inputs.size()),
       computed_(program.shape().outputs.size()),
       writes_seen_(program.shape().inputs.size(), 0),
       ages_(program.shape().inputs.size(), 0) {
@@ -32,6 +33,7 @@ Task::Task(StepProgram& program, const TaskSettings& settings, TaskAttachments a
   status_.field = field_counts_;
   for (std::size_t i = 0; i < program.shape().inputs.size(); ++i) {
     const double start = settings_.inputs[i].start.value_or(program.shape().inputs[i].preset);
+    given_.push_back(start);
     inputs_.push_back(start);
     last_good_.push_back(start);
   }
@@ -115,12 +117,16 @@ void Task::take_orders() noexcept {
   if (orders == nullptr) {
     return;
   }
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+  for (std::size_t i = 0; i < given_.size(); ++i) {
     if (orders->input_writes[i] != writes_seen_[i]) {
       writes_seen_[i] = orders->input_writes[i];
-      inputs_[i] = orders->inputs[i];
+      given_[i] = orders->inputs[i];
       ages_[i] = 0;
     }
+  }
+  if (orders->forcing != forcing_seen_) {
+    forcing_seen_ = orders->forcing;
+    std::ranges::copy(orders->forces, forces_.begin());
   }
   if (orders->commits != applied_commits_) {
     applied_commits_ = orders->commits;
@@ -134,16 +140,25 @@ void Task::take_orders() noexcept {
     tripped_ = false;
     client_was_lost_.store(false, std::memory_order_relaxed);
     watchdog_ = Watchdog(settings_.watchdog);
+    end_forces();
     program_->reset();
     if (attachments_.trace != nullptr) {
       attachments_.trace->was_reset();
     }
   }
+  if (tripped_) {
+    end_forces();
+  }
   status_.heartbeat = orders->heartbeat;
 }
 
+void Task::end_forces() noexcept {
+  std::ranges::fill(forces_, std::nullopt);
+  door_.forces_ended(forcing_seen_);
+}
+
 Fault Task::read_inputs() noexcept {
-  Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(inputs_);
+  Fault fault = attachments_.field == nullptr ? Fault::none : attachments_.field->read(given_);
   faulty_port_ = fault == Fault::none ? no_port : attachments_.field->faulty_port();
   is_awaited_ = fault != Fault::none && attachments_.field->is_awaited();
   const auto is_free = [&] { return fault == Fault::none || is_awaited_; };
@@ -156,15 +171,19 @@ Fault Task::read_inputs() noexcept {
       (client_is_lost_.load(std::memory_order_relaxed) || client_was_lost_.load(std::memory_order_relaxed))) {
     found(Fault::lost_client, no_port);
   }
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+  status_.forced = 0;
+  for (std::size_t i = 0; i < given_.size(); ++i) {
     const bool stale = settings_.inputs[i].longest_age > 0 && ages_[i] > settings_.inputs[i].longest_age;
-    const bool is_number = std::isfinite(inputs_[i]);
+    const bool is_number = std::isfinite(given_[i]);
     if ((stale || !is_number) && is_free()) {
       found(Fault::stale_input, i);
     }
     // A number that is none would stay in the program's state for ever.
-    inputs_[i] = is_number ? inputs_[i] : last_good_[i];
-    last_good_[i] = inputs_[i];
+    given_[i] = is_number ? given_[i] : last_good_[i];
+    last_good_[i] = given_[i];
+    // A forced value hides no fault of what gives the input.
+    inputs_[i] = forces_[i].value_or(given_[i]);
+    status_.forced += forces_[i] ? 1 : 0;
   }
   return fault;
 }
@@ -189,6 +208,8 @@ bool Task::write_outputs() noexcept {
 bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Verdict /*verdict*/) noexcept {
   if (!tripped_ && watchdog_.finished(duration)) {
     tripped_ = true;
+    end_forces();
+    status_.forced = 0;
     status_.state = TaskState::faulted;
     status_.fault = Fault::hang;
     faults_.note(Fault::hang);
@@ -196,7 +217,7 @@ bool Task::finished(const LoopStatistics& statistics, std::int64_t duration, Ver
   if (attachments_.retainer != nullptr) {
     const bool is_due = settings_.retain_every > 0 && statistics.run % settings_.retain_every == 0;
     if ((is_due || applied_commits_ != offered_commits_ || has_changed_) && !tripped_) {
-      attachments_.retainer->offer(running(), applied_commits_, inputs_);
+      attachments_.retainer->offer(running(), applied_commits_, given_);
       offered_commits_ = applied_commits_;
       has_changed_ = false;
     }
@@ -214,7 +235,9 @@ void Task::publish(const LoopStatistics& statistics) noexcept {
     attachments_.field->count(field_counts_);
     status_.absent = attachments_.field->absent();
   }
-  door_.publish(*program_, inputs_, safe_.values(), status_, statistics);
+  const ChangeableProgram* const changes = attachments_.changes;
+  door_.publish(*program_, inputs_, safe_.values(), status_, statistics, forces_,
+                changes == nullptr ? LiveVersion{} : changes->live());
 }
 
 void Task::count_writes() noexcept {
@@ -224,6 +247,7 @@ void Task::count_writes() noexcept {
     status_.commits = attachments_.retainer->saved_commits();
     status_.retained = attachments_.retainer->written();
     status_.write_failures += attachments_.retainer->failures();
+    status_.retain_fails = attachments_.retainer->is_failing();
   }
   if (attachments_.trace != nullptr) {
     status_.dropped = attachments_.trace->dropped();
@@ -268,7 +292,7 @@ void Task::settle(Clock& clock, Fault fault) {
     clock.sleep_until(due);
   }
   if (attachments_.retainer != nullptr && !tripped_) {
-    attachments_.retainer->offer(running(), applied_commits_, inputs_);
+    attachments_.retainer->offer(running(), applied_commits_, given_);
   }
   if (!guard_took_over_) {
     status_.state = tripped_ ? TaskState::faulted : TaskState::stopped;

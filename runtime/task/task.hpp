@@ -1,11 +1,13 @@
 // A cyclic task: a program, its outputs made safe, and all that watches, keeps and records it.
 //
-// One cycle: take what servers ordered; read devices; step; limit the outputs; tell the guard; write devices; trace,
-// retain, publish. The thread allocates nothing, takes no lock and calls nothing of the system but sleep and clock.
+// One cycle: take what servers ordered; read devices; put forced inputs in their place; step; limit the outputs; tell
+// the guard; write devices; trace, retain, publish. The thread allocates nothing, takes no lock and calls nothing of
+// the system but sleep and clock.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/task/changeable_program.hpp"
@@ -93,6 +95,8 @@ class Task final : private CycleBody {
     return attachments_.changes == nullptr ? *program_ : attachments_.changes->running().program();
   }
   void settle(Clock& clock, Fault fault);
+  /// Until the live page forces anew.
+  void end_forces() noexcept;
 
   StepProgram* program_;
   TaskSettings settings_;
@@ -109,7 +113,10 @@ class Task final : private CycleBody {
   std::size_t faulty_port_ = no_port;  ///< of what read_inputs() found
   bool is_awaited_ = false;            ///< what it found: no fault yet, for the first exchange still has time
   std::vector<double> field_counts_;
-  std::vector<double> inputs_;
+  std::vector<double> given_;   ///< inputs as servers and devices give them
+  std::vector<double> inputs_;  ///< as the program takes them: with those that are forced
+  std::vector<std::optional<double>> forces_;
+  std::uint64_t forcing_seen_ = 0;
   std::vector<double> last_good_;
   std::vector<double> computed_;
   std::vector<std::uint64_t> writes_seen_;

@@ -4,80 +4,19 @@
 #include <array>
 #include <utility>
 
+#include "support/numbers.hpp"
+
 namespace hysteron::runtime {
 namespace {
 
 constexpr std::size_t command_count = 4;
+constexpr const char* owned =
+    "Another client owns the writes, as own_writes under [modbus] has it; wait until it is gone.";
 constexpr std::uint64_t percentile_every = 1024;  ///< cycles: looking through the histogram takes some microseconds
 
-struct Status {
-  const char* name;
-  PointType type;
-  const char* unit;
-  const char* meaning;
-  bool counts = false;
-  bool comes_last = false;
-};
-
-constexpr Status count_of(const char* name, const char* meaning) {
-  return {name, PointType::uint64, "1", meaning, true};
-}
-
-constexpr const char* faults =
-    "0 none, 1 hang, 2 crash, 3 not finite, 4 stale input, 5 lost link, 6 missed cycle, 7 stop, 8 lost client, "
-    "9 not safe, 10 lost guard";
-
-/// In the order in which publish() gives their values.
-constexpr std::array statuses{
-    Status{"task.state", PointType::uint16, "1", "0 starting, 1 running, 2 faulted, 3 stopped"},
-    Status{"task.fault", PointType::uint16, "1", faults},
-    count_of("task.cycles", "cycles that were run"),
-    count_of("task.skipped", "periods that passed without a cycle"),
-    count_of("task.elapsed", "periods by the clock: cycles + skipped"),
-    count_of("task.late_wake", "late cycles: the thread was woken late"),
-    count_of("task.late_cpu", "late cycles: the cycle computed for too long"),
-    count_of("task.late_preempted", "late cycles: the thread was not run"),
-    count_of("task.late_steal", "late cycles: the hypervisor had the processor"),
-    Status{"task.lateness_p9999", PointType::int64, "ns", "99.99 % of the cycles started no later"},
-    Status{"task.lateness_worst", PointType::int64, "ns", "the latest start"},
-    Status{"task.worst_cycle", PointType::uint64, "1", "the cycle of the latest start"},
-    count_of("task.commits", "sets of parameters applied, and on the disk where they are retained"),
-    Status{"task.retained", PointType::uint64, "1", "sequence number of the newest retained state"},
-    count_of("task.trace_dropped", "steps that the trace had no room for"),
-    count_of("task.write_failures", "writes of the trace or of retained values that failed"),
-    count_of("task.not_taken", "values of devices beyond the limits of their input, or none"),
-    count_of("task.faults", "faults that began"),
-    Status{"task.last_fault", PointType::uint16, "1", faults},
-    count_of("task.history_rows", "rows of the history that are on the disk"),
-    count_of("task.history_lost", "rows of the history that are lost"),
-    Status{"task.history_fault", PointType::uint16, "1",
-           "0 none, 1 disk full, 2 cannot be reached, 3 damaged, 4 held by another program"},
-    Status{"task.mqtt_connected", PointType::uint16, "1", "0 no, 1 the MQTT broker takes rows"},
-    count_of("task.mqtt_rows", "rows that the MQTT broker has confirmed"),
-    Status{"task.mqtt_queued", PointType::uint64, "1", "rows that the MQTT broker has not confirmed"},
-    count_of("task.mqtt_lost", "rows for MQTT that are lost"),
-    Status{"task.mqtt_fault", PointType::uint16, "1",
-           "0 none, 1 cannot be reached, 2 refused, 3 TLS failed, 4 connection lost"},
-    Status{"task.tls_fault", PointType::uint16, "1",
-           "0 none, 1 the certificate ended, 2 it does not count yet, 3 nobody counts who signs those of clients"},
-    Status{"task.version", PointType::uint64, "1",
-           "the version of the diagram: 1, and one more with each online change"},
-    Status{"task.online_change", PointType::uint16, "1", "0 none, 1 changed, 2 refused, 3 changed back"},
-    Status{"task.shortages", PointType::uint16, "1",
-           "what is tried again while the control goes on, by bits: 1 Modbus has no address yet, 2 nor has the page, "
-           "4 the serial line of the server, 8 a device never answered, 16 TLS, 32 MQTT, 64 history, 128 trace",
-           false, true},
-};
-constexpr std::size_t status_count = statuses.size();
-
-constexpr auto names_of_statuses = [] {
-  std::array<const char*, status_count> names{};
-  std::ranges::transform(statuses, names.begin(), &Status::name);
-  return names;
-}();
-
+/// Points, a number for each input that says whether it is forced, inner signals.
 std::size_t width_of(const ProgramShape& shape, std::size_t field_points) {
-  return shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + field_points +
+  return 2 * shape.inputs.size() + shape.outputs.size() + shape.parameters.size() + status_count + field_points +
          command_count + shape.inner.size();
 }
 
@@ -88,6 +27,7 @@ TaskOrders first_orders(const StepProgram& program, const std::vector<InputSetti
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     orders.inputs.push_back(settings[i].start.value_or(inputs[i].preset));
   }
+  orders.forces.resize(inputs.size());
   return orders;
 }
 
@@ -103,23 +43,34 @@ Point point_of(const ProgramSignal& signal, PointKind kind, bool writable) {
           .right = kind == PointKind::input ? WriteRight::inputs : WriteRight::parameters};
 }
 
-}  // namespace
-
-std::span<const char* const> status_names() {
-  return names_of_statuses;
+/// Parameters of a version that the first one has not, by their places in it: in the order of all.
+std::vector<std::size_t> further_parameters(const RunningVersion& version, std::size_t first_count) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = first_count; i < version.places.size(); ++i) {
+    if (version.places[i]) {
+      own.push_back(*version.places[i]);
+    }
+  }
+  return own;
 }
+
+}  // namespace
 
 TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>& inputs,
                    const std::vector<OutputSafety>& safety, const std::vector<Point>& field_points)
     : snapshots_(width_of(program.shape(), field_points.size())),
       published_(width_of(program.shape(), field_points.size())),
-      judged_by_({.parameters = program.shape().parameters, .relations = program.shape().relations}),
+      judged_by_({.inputs = program.shape().inputs,
+                  .parameters = program.shape().parameters,
+                  .relations = program.shape().relations}),
       gone_(program.shape().parameters.size(), false),
-      parameters_(judged_by_, parameters_of(program)),
+      plant_(judged_by_, parameters_of(program)),
+      page_(judged_by_, parameters_of(program)),
       wanted_(first_orders(program, inputs)),
       orders_(wanted_) {
   const ProgramShape& shape = program.shape();
-  for (std::size_t i = 0; i < shape.inputs.size(); ++i) {
+  inputs_ = shape.inputs.size();
+  for (std::size_t i = 0; i < inputs_; ++i) {
     Point point = point_of(shape.inputs[i], PointKind::input, !inputs[i].from_device);
     point.is_retained = inputs[i].is_retained;
     add(std::move(point));
@@ -134,14 +85,9 @@ TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>&
   for (const ProgramSignal& parameter : shape.parameters) {
     add(point_of(parameter, PointKind::parameter, true));
   }
-  for (const Status& status : statuses) {
-    add({.name = status.name,
-         .kind = PointKind::status,
-         .type = status.type,
-         .unit = status.unit,
-         .meaning = status.meaning,
-         .counts = status.counts,
-         .comes_last = status.comes_last});
+  first_status_ = points_.size();
+  for (Point& point : status_points()) {
+    add(std::move(point));
   }
   for (const Point& point : field_points) {
     add(point);
@@ -153,9 +99,8 @@ TaskDoor::TaskDoor(const StepProgram& program, const std::vector<InputSettings>&
   add_command("task.reset", WriteRight::reset,
               "any number but 0: every state as after a start, and a fault is forgotten");
   add_command("task.heartbeat", WriteRight::inputs, "any number: the client lives");
-  for (const ProgramSignal& signal : shape.inner) {
-    inner_.push_back(point_of(signal, PointKind::output, false));
-  }
+  parameter_count_ = shape.parameters.size();
+  make_view({.program = program, .places = {}, .parameters = shape.parameters, .live = {}, .number = 1});
 }
 
 void TaskDoor::add_command(const char* name, WriteRight right, const char* meaning) {
@@ -178,38 +123,84 @@ void TaskDoor::read(Snapshot& into) {
     std::ranges::fill(into.values, 0.0);
     std::ranges::copy(wanted_.inputs, into.values.begin());
   }
-  if (!any || parameters_.any_staged()) {
-    std::ranges::copy(parameters_.staged(), into.values.begin() + static_cast<std::ptrdiff_t>(first_parameter_));
-  }
-}
-
-void TaskDoor::read_live(LiveValues& into) {
-  into.values.resize(points_.size() + inner_.size());
-  const bool any = snapshots_.read(into.cycle, into.values);
-  into.inner.assign(into.values.begin() + static_cast<std::ptrdiff_t>(points_.size()), into.values.end());
-  into.values.resize(points_.size());
-  into.staged.clear();
-  const std::lock_guard lock(servers_);
-  if (!any) {
-    std::ranges::fill(into.values, 0.0);
-    std::ranges::fill(into.inner, 0.0);
-    std::ranges::copy(wanted_.inputs, into.values.begin());
-    std::ranges::copy(parameters_.committed(), into.values.begin() + static_cast<std::ptrdiff_t>(first_parameter_));
-  }
-  const std::vector<double>& staged = parameters_.staged();
-  for (std::size_t i = 0; i < staged.size(); ++i) {
-    if (parameters_.is_staged(i)) {
-      into.staged.push_back({.point = first_parameter_ + i, .value = staged[i]});
+  for (std::size_t i = 0; i < parameter_count_; ++i) {
+    if (!any || plant_.is_staged(i)) {
+      into.values[first_parameter_ + i] = plant_.staged()[i];
     }
   }
 }
 
+std::shared_ptr<const LiveView> TaskDoor::view() const {
+  const std::lock_guard lock(servers_);
+  return view_;
+}
+
+void TaskDoor::read_live(LiveValues& into) {
+  const std::lock_guard lock(servers_);
+  row_.resize(live_ ? live_->width() : points_.size() + inputs_ + view_->inner.size());
+  const bool any = live_ ? live_->read(into.cycle, row_) : snapshots_.read(into.cycle, row_);
+  if (!any) {
+    std::ranges::fill(row_, 0.0);
+    std::ranges::copy(wanted_.inputs, row_.begin());
+  }
+  into.version = view_->version;
+  into.values.resize(view_->points.size());
+  into.staged.clear();
+  into.forced.clear();
+  for (std::size_t i = 0; i < into.values.size(); ++i) {
+    into.values[i] = row_[columns_[i]];
+    const auto parameter = parameter_at(view_->places[i]);
+    if (parameter && !any) {
+      into.values[i] = page_.committed()[*parameter];
+    }
+    if (parameter && page_.is_staged(*parameter)) {
+      into.staged.push_back({.point = i, .value = page_.staged()[*parameter]});
+    }
+    if (i < inputs_ && row_[points_.size() + i] != 0.0) {
+      into.forced.push_back(i);
+    }
+  }
+  const auto inner = row_.begin() + static_cast<std::ptrdiff_t>(points_.size() + inputs_);
+  into.inner.assign(inner, inner + static_cast<std::ptrdiff_t>(view_->inner.size()));
+}
+
+/// The parameter that is written at a place, by all that any version had.
+std::optional<std::size_t> TaskDoor::parameter_at(std::size_t place) const {
+  if (place >= points_.size()) {
+    return parameter_count_ + place - points_.size();
+  }
+  return place >= first_parameter_ && place < first_parameter_ + parameter_count_
+             ? std::optional(place - first_parameter_)
+             : std::nullopt;
+}
+
+std::size_t TaskDoor::place_of(std::size_t parameter) const {
+  return parameter < parameter_count_ ? first_parameter_ + parameter : points_.size() + parameter - parameter_count_;
+}
+
 std::string TaskDoor::write(std::span<const PointWrite> writes) {
   const std::lock_guard lock(servers_);
+  return carry_out(writes, plant_, page_);
+}
+
+std::string TaskDoor::write_from_page(std::span<const PointWrite> writes) {
+  const std::lock_guard lock(servers_);
+  return writes_are_owned_ ? owned : carry_out(writes, page_, plant_);
+}
+
+std::string TaskDoor::carry_out(std::span<const PointWrite> writes, StagedParameters& own, StagedParameters& others) {
   // On copies, which take the place of the originals where nothing was refused.
-  StagedParameters parameters = parameters_;
+  StagedParameters parameters = own;
   TaskOrders wanted = wanted_;
   for (const PointWrite& one : writes) {
+    if (const auto parameter = parameter_at(one.point)) {
+      if (gone_.at(*parameter)) {
+        return judged_by_.parameters[*parameter].name +
+               " is not in the version of the diagram that runs since an online change.";
+      }
+      parameters.stage(*parameter, one.value);
+      continue;
+    }
     const Point& point = points_[one.point];
     if (point.kind == PointKind::input) {
       if (!point.writable) {
@@ -217,18 +208,13 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
       }
       wanted.inputs[one.point] = one.value;
       ++wanted.input_writes[one.point];
-    } else if (point.kind == PointKind::parameter) {
-      if (gone_[one.point - first_parameter_]) {
-        return point.name + " is not in the version of the diagram that runs since an online change.";
-      }
-      parameters.stage(one.point - first_parameter_, one.value);
     } else if (point.kind != PointKind::command) {
       return point.name + " can only be read.";
     }
   }
   // Commands after values, whatever their order in the request: a commit counts for what came with it.
   for (const PointWrite& one : writes) {
-    if (points_[one.point].kind != PointKind::command) {
+    if (parameter_at(one.point) || points_[one.point].kind != PointKind::command) {
       continue;
     }
     const auto command = static_cast<Command>(one.point - first_command_);
@@ -250,11 +236,88 @@ std::string TaskDoor::write(std::span<const PointWrite> writes) {
       ++wanted.commits;
     }
   }
-  parameters_ = std::move(parameters);
+  own = std::move(parameters);
+  if (wanted.commits != wanted_.commits) {
+    others.follow(own.committed());
+  }
   wanted_ = std::move(wanted);
+  order();
+  return {};
+}
+
+void TaskDoor::order() {
   orders_.filling() = wanted_;
   orders_.publish();
+}
+
+std::string TaskDoor::force(std::span<const Force> inputs) {
+  const std::lock_guard lock(servers_);
+  if (writes_are_owned_) {
+    return owned;
+  }
+  row_.resize(points_.size());
+  std::uint64_t cycle = 0;
+  if (snapshots_.read(cycle, row_) && row_[first_status_ + 1] == static_cast<double>(Fault::hang)) {
+    return "The watchdog has stopped the task: reset it first.";
+  }
+  auto forces = forces_now();
+  for (const Force& one : inputs) {
+    if (one.point >= inputs_) {
+      return "Inputs alone can be forced.";
+    }
+    if (one.value) {
+      if (auto refusal = refusal_of(judged_by_.inputs[one.point], *one.value); !refusal.empty()) {
+        return refusal;
+      }
+    }
+    forces[one.point] = one.value;
+  }
+  order_forces(std::move(forces));
   return {};
+}
+
+void TaskDoor::end_forces() {
+  const std::lock_guard lock(servers_);
+  order_forces(std::vector<std::optional<double>>(inputs_));
+}
+
+void TaskDoor::order_forces(std::vector<std::optional<double>> forces) {
+  if (forces == wanted_.forces && ended_forcing_.load(std::memory_order_relaxed) != wanted_.forcing) {
+    return;
+  }
+  wanted_.forces = std::move(forces);
+  ++wanted_.forcing;
+  order();
+}
+
+/// Those that were ordered last, where the task has not ended them since.
+std::vector<std::optional<double>> TaskDoor::forces_now() const {
+  return ended_forcing_.load(std::memory_order_relaxed) == wanted_.forcing ? std::vector<std::optional<double>>(inputs_)
+                                                                           : wanted_.forces;
+}
+
+std::vector<std::string> TaskDoor::forced() {
+  std::vector<std::string> texts;
+  {
+    const std::lock_guard lock(servers_);
+    if (wanted_.forcing == 0) {
+      return texts;  // as most tasks for ever, and this is asked all the time
+    }
+  }
+  LiveValues now;
+  read_live(now);
+  for (const std::size_t input : now.forced) {
+    texts.push_back(points_[input].name + " = " + number_text(now.values[input]));
+  }
+  return texts;
+}
+
+void TaskDoor::writes_are_owned(bool are_owned) {
+  const std::lock_guard lock(servers_);
+  if (are_owned && !writes_are_owned_) {
+    order_forces(std::vector<std::optional<double>>(inputs_));
+  }
+  writes_are_owned_ = are_owned;
 }
 
 void TaskDoor::hold_commits(bool held) {
@@ -262,25 +325,66 @@ void TaskDoor::hold_commits(bool held) {
   commits_are_held_ = held;
 }
 
-void TaskDoor::version_changed(const StepProgram& version, std::span<const std::optional<std::size_t>> places) {
-  const ProgramShape& shape = version.shape();
+std::shared_ptr<LiveRow> TaskDoor::live_row(const RunningVersion& version) const {
+  return std::make_shared<LiveRow>(points_.size() + inputs_, version.program.shape().inner.size(),
+                                   further_parameters(version, parameter_count_));
+}
+
+/// `version.places` is empty for the first.
+void TaskDoor::make_view(const RunningVersion& version) {
+  const ProgramShape& shape = version.program.shape();
+  auto view = std::make_shared<LiveView>();
+  view->version = version.number;
+  view->picture = shape.picture;
+  columns_.clear();
+  const auto show = [&](Point point, std::size_t place, std::size_t column) {
+    view->points.push_back(std::move(point));
+    view->places.push_back(place);
+    columns_.push_back(column);
+  };
+  std::size_t further = points_.size() + inputs_ + shape.inner.size();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto parameter = parameter_at(i);
+    if (!parameter) {
+      show(points_[i], i, i);
+    } else if (!gone_[*parameter]) {
+      show(point_of(judged_by_.parameters[*parameter], PointKind::parameter, true), i, i);
+    }
+    if (i + 1 == first_parameter_ + parameter_count_) {
+      for (std::size_t own = parameter_count_; own < gone_.size(); ++own) {
+        if (!gone_[own]) {
+          show(point_of(judged_by_.parameters[own], PointKind::parameter, true), place_of(own), further++);
+        }
+      }
+    }
+  }
+  for (const ProgramSignal& signal : shape.inner) {
+    view->inner.push_back(point_of(signal, PointKind::output, false));
+  }
+  view_ = std::move(view);
+  live_ = version.live;
+}
+
+void TaskDoor::version_changed(const RunningVersion& version) {
+  const ProgramShape& shape = version.program.shape();
   const std::lock_guard lock(servers_);
-  std::vector<std::optional<std::size_t>> backwards(shape.parameters.size());
-  std::vector<double> values = parameters_.committed();
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    gone_[i] = !places[i];
-    if (places[i]) {
-      backwards[*places[i]] = i;
-      judged_by_.parameters[i] = shape.parameters[*places[i]];
-      values[i] = version.parameter(*places[i]);
+  std::vector<double> values = plant_.committed();
+  values.resize(version.parameters.size());
+  gone_.assign(version.parameters.size(), true);
+  judged_by_.parameters.assign(version.parameters.begin(), version.parameters.end());
+  std::vector<std::size_t> backwards(shape.parameters.size());
+  for (std::size_t i = 0; i < version.places.size(); ++i) {
+    if (const auto own = version.places[i]) {
+      gone_[i] = false;
+      backwards[*own] = i;
+      judged_by_.parameters[i] = shape.parameters[*own];
+      values[i] = version.program.parameter(*own);
     }
   }
   judged_by_.relations = shape.relations;
   const auto translate = [&](RelatedNumber& one) {
     if (one.parameter) {
-      const std::size_t own = *one.parameter;
-      one = backwards[own] ? RelatedNumber{.parameter = backwards[own]}
-                           : RelatedNumber{.constant = version.parameter(own)};  // no server reaches it
+      one.parameter = backwards[*one.parameter];
     }
   };
   for (ProgramRelation& relation : judged_by_.relations) {
@@ -289,13 +393,18 @@ void TaskDoor::version_changed(const StepProgram& version, std::span<const std::
       translate(*relation.count);
     }
   }
-  const StagedParameters before = parameters_;
-  parameters_ = StagedParameters(judged_by_, values);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] && before.is_staged(i)) {
-      parameters_.stage(i, before.staged()[i]);
+  const auto moved = [&](const StagedParameters& before) {
+    StagedParameters after(judged_by_, values);
+    for (std::size_t i = 0; i < before.staged().size(); ++i) {
+      if (!gone_[i] && before.is_staged(i)) {
+        after.stage(i, before.staged()[i]);
+      }
     }
-  }
+    return after;
+  };
+  plant_ = moved(plant_);
+  page_ = moved(page_);
+  make_view(version);
 }
 
 void TaskDoor::shortage(Shortage what, bool is_there) noexcept {
@@ -307,69 +416,31 @@ void TaskDoor::shortage(Shortage what, bool is_there) noexcept {
   }
 }
 
-/// Those that servers tell, and those that other status values say already.
-std::uint16_t TaskDoor::shortages_of(const TaskStatus& status) const noexcept {
-  unsigned bits = shortages_.load(std::memory_order_relaxed);
-  const auto add = [&](Shortage what, bool is_there) { bits |= is_there ? static_cast<unsigned>(what) : 0U; };
-  add(Shortage::device, status.absent > 0);
-  add(Shortage::tls, status.tls_fault != 0);
-  add(Shortage::mqtt, status.mqtt.fault != 0);
-  add(Shortage::history, status.history.fault != 0);
-  add(Shortage::trace, status.trace_is_cut);
-  return static_cast<std::uint16_t>(bits);
-}
-
 void TaskDoor::publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
-                       const TaskStatus& status, const LoopStatistics& statistics) noexcept {
+                       const TaskStatus& status, const LoopStatistics& statistics,
+                       std::span<const std::optional<double>> forces, const LiveVersion& live) noexcept {
   auto at = std::ranges::copy(inputs, published_.begin()).out;
   at = std::ranges::copy(outputs, at).out;
-  const std::size_t parameters = program.shape().parameters.size();
-  for (std::size_t i = 0; i < parameters; ++i) {
+  for (std::size_t i = 0; i < parameter_count_; ++i) {
     *at++ = program.parameter(i);
   }
   if (statistics.run % percentile_every == 0) {
     high_lateness_ = statistics.lateness.percentile(0.9999);
   }
-  const auto events = [&](Cause cause) { return statistics.events[static_cast<std::size_t>(cause)]; };
-  const std::array<double, status_count> values{
-      static_cast<double>(status.state),
-      static_cast<double>(status.fault),
-      static_cast<double>(statistics.run),
-      static_cast<double>(statistics.skipped),
-      static_cast<double>(statistics.elapsed),
-      static_cast<double>(events(Cause::late_wake)),
-      static_cast<double>(events(Cause::own_cpu)),
-      static_cast<double>(events(Cause::preempted)),
-      static_cast<double>(events(Cause::host_steal)),
-      static_cast<double>(high_lateness_),
-      static_cast<double>(statistics.lateness.worst()),
-      static_cast<double>(statistics.lateness.worst_cycle()),
-      static_cast<double>(status.commits),
-      static_cast<double>(status.retained),
-      static_cast<double>(status.dropped),
-      static_cast<double>(status.write_failures),
-      static_cast<double>(status.not_taken),
-      static_cast<double>(status.faults),
-      static_cast<double>(status.last_fault),
-      static_cast<double>(status.history.done),
-      static_cast<double>(status.history.lost),
-      static_cast<double>(status.history.fault),
-      status.mqtt.is_connected ? 1.0 : 0.0,
-      static_cast<double>(status.mqtt.done),
-      static_cast<double>(status.mqtt.waiting),
-      static_cast<double>(status.mqtt.lost),
-      static_cast<double>(status.mqtt.fault),
-      static_cast<double>(status.tls_fault),
-      static_cast<double>(status.version),
-      static_cast<double>(status.last_change),
-      static_cast<double>(shortages_of(status)),
-  };
-  at = std::ranges::copy(values, at).out;
+  at = std::ranges::copy(status_values(status, statistics, high_lateness_, shortages_.load(std::memory_order_relaxed)),
+                         at)
+           .out;
   at = std::ranges::copy(status.field, at).out;
   at = std::fill_n(at, 3, 0.0);
   *at++ = status.heartbeat;
+  for (std::size_t i = 0; i < inputs_; ++i) {
+    *at++ = i < forces.size() && forces[i] ? 1.0 : 0.0;
+  }
   program.inner_values(std::span(at, published_.end()));
   snapshots_.publish(statistics.run, published_);
+  if (live.row != nullptr) {
+    live.row->publish(statistics.run, published_, *live.program);
+  }
   for (SampleTap* const tap : taps_) {
     tap->offer(statistics.run, statistics.elapsed, published_);
   }

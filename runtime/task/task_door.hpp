@@ -1,7 +1,9 @@
 // The points of a task, and what servers ask of it, on its way into the cyclic thread.
 //
-// Inputs that no device gives are written here; parameters are staged and committed; commands are counted. What the
-// cyclic thread takes is always one whole set of orders, the newest, between two steps.
+// Inputs that no device gives are written here; parameters are staged and committed; commands are counted; inputs are
+// forced. What the cyclic thread takes is always one whole set of orders, the newest, between two steps.
+//
+// The clients of Modbus and the live page have a staged set each. A commit of one leaves what the other has staged.
 #pragma once
 
 #include <atomic>
@@ -17,10 +19,12 @@
 #include "runtime/point.hpp"
 #include "runtime/task/exchange.hpp"
 #include "runtime/task/lateness.hpp"
+#include "runtime/task/live_row.hpp"
 #include "runtime/task/safe_outputs.hpp"
 #include "runtime/task/sample_tap.hpp"
 #include "runtime/task/staged_parameters.hpp"
 #include "runtime/task/step_program.hpp"
+#include "runtime/task/task_status.hpp"
 
 namespace hysteron::runtime {
 
@@ -32,30 +36,8 @@ struct TaskOrders {
   std::uint64_t commits = 0;
   std::uint64_t resets = 0;
   double heartbeat = 0.0;
-};
-
-enum class TaskState : std::uint8_t { starting, running, faulted, stopped };
-
-/// What a task says of itself once a cycle.
-struct TaskStatus {
-  TaskState state = TaskState::starting;
-  Fault fault = Fault::none;
-  std::uint64_t commits = 0;  ///< sets of parameters applied, and on the disk where they are retained
-  std::uint64_t retained = 0;
-  std::uint64_t dropped = 0;
-  std::uint64_t write_failures = 0;  ///< of the trace and of retained values
-  std::uint64_t not_taken = 0;       ///< values of devices
-  std::uint64_t faults = 0;          ///< that began
-  Fault last_fault = Fault::none;    ///< the newest, over or not
-  KeptCount history{};
-  KeptCount mqtt{};
-  std::uint8_t tls_fault = 0;
-  std::size_t absent = 0;  ///< devices
-  bool trace_is_cut = false;
-  std::uint64_t version = 1;     ///< of the diagram, since the start
-  std::uint8_t last_change = 0;  ///< online, as task.online_change says it
-  double heartbeat = 0.0;
-  std::span<const double> field{};  ///< as the points of the field
+  std::vector<std::optional<double>> forces{};  ///< by input
+  std::uint64_t forcing = 0;                    ///< sets of forces ordered, the empty one too
 };
 
 struct InputSettings {
@@ -64,9 +46,6 @@ struct InputSettings {
   bool is_retained = false;       ///< what servers write is kept through a restart
   std::optional<double> start{};  ///< what it begins with; else the diagram's
 };
-
-/// The names of what a task says of itself: task.state, …
-[[nodiscard]] std::span<const char* const> status_names();
 
 class TaskDoor final : public PointDoor {
  public:
@@ -78,35 +57,57 @@ class TaskDoor final : public PointDoor {
   [[nodiscard]] std::span<const Point> points() const override { return points_; }
   void read(Snapshot& into) override;
   std::string write(std::span<const PointWrite> writes) override;
-  [[nodiscard]] std::span<const Point> inner() const override { return inner_; }
+  void writes_are_owned(bool are_owned) override;
+  [[nodiscard]] std::shared_ptr<const LiveView> view() const override;
   void read_live(LiveValues& into) override;
+  std::string write_from_page(std::span<const PointWrite> writes) override;
+  std::string force(std::span<const Force> inputs) override;
+  void end_forces() override;
   void shortage(Shortage what, bool is_there) noexcept override;
+
+  /// The names of the inputs that are forced, with their values: X = 1.5.
+  [[nodiscard]] std::vector<std::string> forced();
 
   // For an online change, from a thread beside the cyclic one:
   /// While it is under way no set of parameters is committed, which would be judged by the version that goes.
   void hold_commits(bool held);
-  /// Another version counts. Sets are judged by it from now on; `places`: by parameter of the first version, that of
-  /// this one. What was staged stays so; a parameter that is no more takes no value.
-  void version_changed(const StepProgram& version, std::span<const std::optional<std::size_t>> places);
+  /// A row for the values of a version of the diagram, which publish() fills while it runs.
+  [[nodiscard]] std::shared_ptr<LiveRow> live_row(const RunningVersion& version) const;
+  /// Another version counts. Sets are judged by it from now on, and the live page sees it. What was staged stays so; a
+  /// parameter that is no more takes no value.
+  void version_changed(const RunningVersion& version);
 
   /// Before the task runs: every cycle published goes to these as well. They must outlive the run.
   void attach(std::vector<SampleTap*> taps) { taps_ = std::move(taps); }
 
   // For the cyclic thread alone.
   [[nodiscard]] const TaskOrders* take_orders() noexcept { return orders_.take(); }
+  /// All forces up to those that were ordered as so manieth are ended by the task itself.
+  void forces_ended(std::uint64_t through) noexcept { ended_forcing_.store(through, std::memory_order_relaxed); }
+  /// `forces`, by input; `live`: where the version that runs is not the first.
   void publish(const StepProgram& program, std::span<const double> inputs, std::span<const double> outputs,
-               const TaskStatus& status, const LoopStatistics& statistics) noexcept;
+               const TaskStatus& status, const LoopStatistics& statistics,
+               std::span<const std::optional<double>> forces = {}, const LiveVersion& live = {}) noexcept;
 
  private:
   enum class Command : std::uint8_t { commit, discard, reset, heartbeat };
 
   void add(Point point) { points_.push_back(std::move(point)); }
-  [[nodiscard]] std::uint16_t shortages_of(const TaskStatus& status) const noexcept;
   void add_command(const char* name, WriteRight right, const char* meaning);
+  [[nodiscard]] std::string carry_out(std::span<const PointWrite> writes, StagedParameters& own,
+                                      StagedParameters& others);
+  [[nodiscard]] std::optional<std::size_t> parameter_at(std::size_t place) const;
+  [[nodiscard]] std::size_t place_of(std::size_t parameter) const;
+  void make_view(const RunningVersion& version);
+  [[nodiscard]] std::vector<std::optional<double>> forces_now() const;
+  void order_forces(std::vector<std::optional<double>> forces);
+  void order();
 
   std::vector<Point> points_;
-  std::vector<Point> inner_;
+  std::size_t inputs_ = 0;
   std::size_t first_parameter_ = 0;
+  std::size_t parameter_count_ = 0;  ///< of the first version
+  std::size_t first_status_ = 0;
   std::size_t first_command_ = 0;
   SnapshotRing snapshots_;
   std::vector<double> published_;  ///< of the cyclic thread
@@ -114,11 +115,19 @@ class TaskDoor final : public PointDoor {
   std::int64_t high_lateness_ = 0;
   std::atomic<std::uint16_t> shortages_{0};
 
-  std::mutex servers_;      ///< between servers; the cyclic thread never takes it
-  ProgramShape judged_by_;  ///< the parameters of the first version, as that judges them which runs
-  std::vector<bool> gone_;  ///< by parameter: not in the version that runs
+  std::atomic<std::uint64_t> ended_forcing_{0};
+
+  mutable std::mutex servers_;  ///< between servers; the cyclic thread never takes it
+  ProgramShape judged_by_;      ///< the parameters by place, as the version judges them which runs
+  std::vector<bool> gone_;      ///< by place of a parameter: not in the version that runs
   bool commits_are_held_ = false;
-  StagedParameters parameters_;
+  bool writes_are_owned_ = false;
+  StagedParameters plant_;  ///< staged by write()
+  StagedParameters page_;
+  std::shared_ptr<const LiveView> view_;
+  std::vector<std::size_t> columns_;  ///< by point of the view: of a published row
+  std::shared_ptr<LiveRow> live_{};   ///< of the version that runs; none of the first
+  std::vector<double> row_;           ///< read by the live page
   TaskOrders wanted_;
   Latest<TaskOrders> orders_;
 };

@@ -8,6 +8,8 @@
 #include <limits>
 #include <system_error>
 
+#include "support/atomic_file.hpp"
+
 namespace hysteron::runtime {
 namespace {
 

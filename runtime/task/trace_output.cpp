@@ -93,10 +93,6 @@ bool shift(const std::filesystem::path& file, std::size_t kept) {
 
 }  // namespace
 
-bool is_want_of_room(int reason) {
-  return reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
-}
-
 std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number) {
   return std::filesystem::path(file).concat("." + std::to_string(number));
 }

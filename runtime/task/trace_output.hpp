@@ -14,10 +14,6 @@ namespace hysteron::runtime {
 /// Where the trace before is kept: FILE.1; those before it are FILE.2, …
 [[nodiscard]] std::filesystem::path previous_trace(const std::filesystem::path& file, std::size_t number = 1);
 
-/// Whether a write failed for a reason, as errno says it, that goes where somebody makes room: the disk, the user's
-/// part of it, or the largest size of a file.
-[[nodiscard]] bool is_want_of_room(int reason);
-
 class TraceOutput {
  public:
   /// What stands there is moved to previous_trace(file), where it has any bytes, and the others on by one: the one

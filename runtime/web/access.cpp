@@ -115,8 +115,8 @@ void check_access(const Endpoint& endpoint, const Access& access) {
   if (!endpoint.is_loopback && !access.can_write() && access.read_token.empty()) {
     throw InputError(error::open_web_page, {},
                      fmt::format("On {} the live page would show every value to whoever reaches it.", endpoint.address),
-                     "listen on 127.0.0.1 and reach it through a tunnel, or give it a token: --web-token-file FILE, or "
-                     "--web-read-token-file FILE.");
+                     "listen on 127.0.0.1 and reach it through a tunnel, or give it a token: --web-token-file FILE or "
+                     "--web-read-token-file FILE, in the run file token_file or read_token_file under [web].");
   }
 }
 

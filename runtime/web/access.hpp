@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/point.hpp"
 #include "support/diagnostic.hpp"
 
 namespace hysteron::runtime::web {
@@ -24,6 +25,10 @@ struct Endpoint {
 /// Throws InputError HY844, which never quotes it.
 [[nodiscard]] std::string read_token(const std::string& file);
 
+/// The names under which a service manager hands the token files over.
+inline constexpr const char* token_credential = "web-token";
+inline constexpr const char* read_token_credential = "web-read-token";
+
 /// ADDRESS:PORT as a link has it, with the port that was taken.
 [[nodiscard]] std::string text_of(const Endpoint& endpoint, std::uint16_t port);
 
@@ -31,6 +36,7 @@ struct Access {
   bool is_loopback = true;
   std::string token{};       ///< empty: nobody may change anything
   std::string read_token{};  ///< of who may only look, as a scraper of /metrics; empty: there is none
+  PageRights rights{};       ///< of who has the token
 
   [[nodiscard]] bool can_write() const { return !token.empty(); }
   /// Beyond the loopback nothing is shown to strangers.

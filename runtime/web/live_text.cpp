@@ -60,9 +60,9 @@ void add_list(std::string& text, std::span<const double> values) {
 
 }  // namespace
 
-std::string description_text(const Subject& subject, const PointDoor& door, bool writable, bool token_to_read) {
+std::string description_text(const Subject& subject, const LiveView& view, const Access& access) {
   json points = json::array();
-  for (const Point& point : door.points()) {
+  for (const Point& point : view.points) {
     points.push_back({{"name", point.name},
                       {"kind", name_of(point.kind)},
                       {"type", name_of(point.type)},
@@ -73,24 +73,35 @@ std::string description_text(const Subject& subject, const PointDoor& door, bool
                       {"meaning", point.meaning}});
   }
   json inner = json::array();
-  for (const Point& signal : door.inner()) {
+  for (const Point& signal : view.inner) {
     inner.push_back({{"name", signal.name},
                      {"type", name_of(signal.type)},
                      {"data_type", modbus::name_of(signal.type)},
                      {"unit", signal.unit}});
   }
+  json rights = json::array();
+  const auto add_right = [&](const char* name, bool is_given) {
+    if (access.can_write() && is_given) {
+      rights.push_back(name);
+    }
+  };
+  add_right("parameters", access.rights.parameters);
+  add_right("reset", access.rights.reset);
+  add_right("force", access.rights.force);
   return text_of({{"name", subject.name},
                   {"period", static_cast<double>(subject.period) * 1e-9},
-                  {"diagram", subject.diagram},
+                  {"version", view.version},
+                  {"diagram", view.picture},
                   {"points", std::move(points)},
                   {"inner", std::move(inner)},
                   {"history", subject.history_points},
-                  {"writable", writable},
-                  {"token_to_read", token_to_read}});
+                  {"writable", access.can_write()},
+                  {"rights", std::move(rights)},
+                  {"token_to_read", access.reading_needs_token()}});
 }
 
 std::string values_text(const LiveValues& live) {
-  std::string text = fmt::format("{{\"cycle\":{},\"values\":", live.cycle);
+  std::string text = fmt::format("{{\"version\":{},\"cycle\":{},\"values\":", live.version, live.cycle);
   add_list(text, live.values);
   text += ",\"inner\":";
   add_list(text, live.inner);
@@ -100,7 +111,7 @@ std::string values_text(const LiveValues& live) {
     add_number(text, live.staged[i].value);
     text += ']';
   }
-  return text + "]}";
+  return text + fmt::format("],\"forced\":[{}]}}", fmt::join(live.forced, ","));
 }
 
 std::string trend_text(const Trend& trend) {

@@ -100,6 +100,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       is_waiting_ = false;
       is_stream_ = false;
       lowest().close();
+      host_.responder().session_ends(session_);
       host_.ended(number_);
     }
   }
@@ -163,7 +164,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (refused.status == 200 && !host_.has_room_for_a_stream()) {
       refused = {.status = 503, .body = refusal_text("As many pages are open as may be; close one.")};
     }
-    return refused.status == 200 ? become_stream() : answer(std::move(refused), false);
+    if (refused.status != 200) {
+      return answer(std::move(refused), false);
+    }
+    become_stream(session_of(request.target));
   }
 
   void look_up(HistoryQuestion question, bool keep_alive) {
@@ -207,7 +211,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   // --- the stream ---
 
-  void become_stream() {
+  void become_stream(std::string_view session) {
+    session_ = session;
+    host_.responder().session_begins(session_);
     websocket_.emplace(std::move(*stream_));
     lowest().expires_never();
     const Limits& limits = host_.limits();
@@ -281,6 +287,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer message_{longest_message};
   Clock::time_point since_{};
   Clock::time_point write_began_{};
+  std::string session_{};  ///< empty: it is none
   bool is_waiting_ = false;
   bool is_stream_ = false;
   bool is_writing_ = false;

@@ -69,6 +69,16 @@ test("a snapshot's time follows from the periods of the task", async () => {
   }
 });
 
+test("a forced input is a local override, but where the task says worse", async () => {
+  const { statusOf } = await part("quality.js");
+  const task = { isLinked: true, isStalled: false, state: "running", fault: "none" };
+  const point = { kind: "input", low: -1, high: 1, isForced: true };
+  assert.equal(statusOf(task, point, 0.5), "GoodLocalOverride");
+  assert.equal(statusOf(task, { ...point, isForced: false }, 0.5), "Good");
+  assert.equal(statusOf({ ...task, state: "faulted", fault: "lost link" }, point, 0.5), "UncertainLastUsableValue");
+  assert.equal(statusOf({ ...task, isLinked: false }, point, 0.5), "BadNoCommunication");
+});
+
 test("an enumeration is what a meaning lists from 0 on", async () => {
   const { enumeration } = await part("quality.js");
   assert.deepEqual(enumeration("0 starting, 1 running, 2 faulted"), ["starting", "running", "faulted"]);

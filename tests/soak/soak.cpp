@@ -12,6 +12,7 @@
 #include "tests/runtime/host/many_changes.hpp"
 #include "tests/runtime/modbus/bad_device.hpp"
 #include "tests/runtime/modbus/exact_answers.hpp"
+#include "tests/runtime/mqtt/outbox_kill.hpp"
 #include "tests/runtime/task/dying_task.hpp"
 #include "tests/runtime/task/linked_sets.hpp"
 #include "tests/runtime/task/retain_kill.hpp"
@@ -126,6 +127,22 @@ Counted history_kills(std::uint64_t count) {
   return {count, fmt::format("{} with a loss or a gap; {} rows written", broken, rows), broken == 0};
 }
 
+Counted outbox_kills(std::uint64_t count) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("hysteron-soak-mqtt-{}", getpid());
+  std::filesystem::create_directories(folder);
+  std::mt19937_64 random(13);
+  std::uint64_t broken = 0;
+  std::uint64_t rows = 0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const auto result = rt::test::kill_outbox(folder / "rows.sqlite", 1 + static_cast<int>(random() % 8),
+                                              static_cast<useconds_t>(random() % 5000));
+    broken += result.is_whole ? 0 : 1;
+    rows = result.end;
+  }
+  std::filesystem::remove_all(folder);
+  return {count, fmt::format("{} with a loss or a gap; {} rows written", broken, rows), broken == 0};
+}
+
 Counted retain_damage(std::uint64_t /*all*/) {
   rt::RetainedValues values{.sequence = 7, .layout = "9f3c", .parameters = {1.5, -0.0, 1e-300}};
   values.state.assign(2000, std::byte{0x5A});
@@ -233,6 +250,7 @@ std::vector<Row> rows() {
   list.insert(list.end(),
               {{"retain_kills", "SIGKILL while retaining", 1000, retain_kills},
                {"history_kills", "SIGKILL while a history is written", 1000, history_kills},
+               {"outbox_kills", "SIGKILL while rows for MQTT wait on the disk", 1000, outbox_kills},
                {"retain_damage", "every truncation and single-bit flip of a slot", 1, retain_damage},
                {"linked_sets", "linked parameter sets against a running loop", 1'000'000, linked_sets},
                {"online_changes", "online changes there and back against a client that commits", 1000, online_changes},

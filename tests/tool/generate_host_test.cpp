@@ -15,6 +15,7 @@
 #include "tests/runtime/modbus/client_socket.hpp"
 #include "tests/support/exit_code.hpp"
 #include "tests/tool/workbench.hpp"
+#include "tests/web/web_client.hpp"
 #include "tool/host_sources.hpp"
 
 namespace hysteron {
@@ -118,9 +119,9 @@ std::string registers_of(std::uint16_t port) {
   return all;
 }
 
-std::uint16_t port_in(const std::string& line) {
+std::uint16_t port_in(const std::string& line, const std::string& of) {
   std::smatch match;
-  EXPECT_TRUE(std::regex_search(line, match, std::regex("Modbus on 127\\.0\\.0\\.1:([0-9]+)"))) << line;
+  EXPECT_TRUE(std::regex_search(line, match, std::regex(of + "127\\.0\\.0\\.1:([0-9]+)"))) << line;
   return match.empty() ? std::uint16_t{1} : static_cast<std::uint16_t>(std::stoi(match[1]));
 }
 
@@ -149,6 +150,8 @@ TEST(GenerateHost, TheFolderHasTheStepTheSourcesTheUnitAndAReadme) {
                     "[0-9]+\\}\\}\\}\\},\n"))
       << "a commit is judged there as by serve";
   EXPECT_LE(std::ranges::count(bench.read("made/here/README.md"), '\n'), 22);
+  EXPECT_THAT(bench.read("made/here/CMakeLists.txt"), Not(HasSubstr("Boost"))) << "who has no page needs none";
+  EXPECT_THAT(bench.read("made/here/README.md"), Not(HasSubstr("libboost-dev")));
   const auto again = bench.shell("hysteron generate plant.st --host --config RUN.toml --out made/here --float32");
   EXPECT_EQ(again.code, 0) << "what was generated before is replaced: " << again.err;
 }
@@ -228,6 +231,34 @@ TEST(GenerateHost, NothingIsWrittenWhereSomethingIsWrong) {
   EXPECT_EQ(bench.shell("hysteron generate plant.st --host --config run.toml --out .").code, 2) << "HY709";
 }
 
+TEST(GenerateHost, WhereTheRunFileNamesAnAddressItHasTheLivePage) {
+  const test::Workbench bench;
+  bench.write("plant.st", hosted_plant);
+  bench.write("RUN.toml", std::string(safe) +
+                              "[web]\nlisten = \"127.0.0.1:80\"\ntoken_file = \"/etc/stage/token\"\n"
+                              "read_token_file = \"read-token\"\nrights = [\"parameters\", \"force\"]\n");
+  const auto outcome = bench.shell("hysteron generate plant.st --host --config RUN.toml --out host");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const tool::EmbeddedSource& source : tool::page_sources()) {
+    const auto original = test::contents_of(std::string(HYSTERON_SOURCE_DIR) + "/" + std::string(source.path));
+    EXPECT_EQ(source.text, original) << source.path;
+    EXPECT_TRUE(bench.read("host/hysteron/" + std::string(source.path)).ends_with(original)) << source.path;
+  }
+  EXPECT_THAT(bench.read("host/CMakeLists.txt"),
+              AllOf(HasSubstr("find_package(Boost 1.74 REQUIRED)\n"), HasSubstr(" Boost::headers)"),
+                    HasSubstr("\n  hysteron/runtime/web/assets.cpp")));
+  EXPECT_THAT(bench.read("host/README.md"), HasSubstr(" libboost-dev\n"));
+  EXPECT_THAT(bench.read("host/main.cpp"), AllOf(HasSubstr("page_of_run_file"), HasSubstr(".picture = \"<svg "),
+                                                 HasSubstr("\"HYST.XOUT\"")));
+  EXPECT_THAT(bench.read("host/hysteron/runtime/web/assets.cpp"),
+              AllOf(HasSubstr("<!DOCTYPE html>"), HasSubstr("Asset{\"/dygraph.js\"")));
+  EXPECT_THAT(bench.read("host/hysteron-plant.service.in"),
+              AllOf(HasSubstr("\nAmbientCapabilities=CAP_NET_BIND_SERVICE\n"),
+                    HasSubstr("\nLoadCredential=web-token:/etc/stage/token\n"), Not(HasSubstr("web-read-token"))));
+  bench.write("RUN.toml", std::string(safe) + "[web]\nlisten = \"everywhere\"\n");
+  EXPECT_THAT(bench.shell("hysteron generate plant.st --host --config RUN.toml --out other").err, HasSubstr("HY842"));
+}
+
 /// Built once, for all that follows: that takes a minute.
 TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   const test::Workbench bench;
@@ -236,7 +267,7 @@ TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   bench.write("RUN.toml", std::string(safe) +
                               "[task]\nscheduling = \"other\"\nlock_memory = false\n[modbus]\nport = 0\n"
                               "lock_file = \"registers.lock\"\n[retain]\nfolder = \"kept\"\nevery = 100\n"
-                              "[trace]\nfile = \"run.trace\"\n");
+                              "[trace]\nfile = \"run.trace\"\n[web]\nlisten = \"127.0.0.1:0\"\n");
   bench.write("registers.lock", "holding 40 real64 X\nholding 60 real64 OF_A_PARAMETER_THAT_IS_GONE\n");
   const std::string diagram = "plant.st --params p.toml --config RUN.toml";
   ASSERT_EQ(bench.shell("hysteron generate " + diagram + " --host --out host").code, 0);
@@ -255,7 +286,7 @@ TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
     const auto outcome = bench.shell("mkdir -p " + folder + " && cp plant.st p.toml RUN.toml registers.lock " + folder +
                                      " && cd " + folder + " && " + program + " --virtual --cycles 20000");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return std::regex_replace(outcome.out, std::regex("late: .* in cycle [0-9]+|:[0-9]+;"), "");
+    return std::regex_replace(outcome.out, std::regex("late: .* in cycle [0-9]+|:[0-9]+[;/]"), "");
   };
   const auto served = run("serve", "hysteron serve " + diagram + " --engine compiled");
   const auto hosted = run("hosted", "../stage/bin/plant_host RUN.toml");
@@ -275,14 +306,23 @@ TEST(GenerateHost, BuiltItHasTheBitsTheRegistersAndTheRetainedValuesOfServe) {
   // Over Modbus, in real time; and without the lock file, as on a new machine.
   EXPECT_EQ(bench.shell("rm hosted/registers.lock").code, 0);
   std::map<std::string, std::string> seen;
+  std::map<std::string, std::string> shown;
   for (const std::string program : {"env -C serve hysteron serve plant.st --params p.toml --config RUN.toml",
                                     "env -C hosted ../stage/bin/plant_host RUN.toml"}) {
     Beside beside(bench, program);
-    seen[program] = registers_of(port_in(beside.next_line()));
+    const std::string line = beside.next_line();
+    seen[program] = registers_of(port_in(line, "Modbus on "));
     EXPECT_GT(seen[program].size(), 1000U);
+    const test::WebClient page(port_in(line, "live page on http://"));
+    shown[program] = page.ask("GET", "/api/description").body;
+    EXPECT_THAT(shown[program], AllOf(HasSubstr("HYST.XOUT"), HasSubstr("<svg ")));
+    for (const char* const file : {"/", "/page.js", "/dygraph.js"}) {
+      EXPECT_GT(page.ask("GET", file).body.size(), 1000U) << file;
+    }
     EXPECT_EQ(beside.end(), 0) << program;
   }
   EXPECT_TRUE(seen.begin()->second == seen.rbegin()->second);
+  EXPECT_EQ(shown.begin()->second, shown.rbegin()->second) << "the same page";
 
   // The unit, its paths filled in.
   const auto unit = bench.read("stage/lib/systemd/system/hysteron-plant.service");

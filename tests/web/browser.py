@@ -1,5 +1,6 @@
 """Chromium without a window, driven over its debugging pipe; no library but Python's own."""
 import base64
+import fcntl
 import json
 import os
 import select
@@ -27,13 +28,21 @@ class Browser:
     def is_there():
         return shutil.which("chromium") is not None
 
+    @staticmethod
+    def _beyond(end):
+        moved = fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 10)
+        os.close(end)
+        return moved
+
     def __enter__(self):
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_read, self._to = os.pipe()
         self._from, to_write = os.pipe()
+        # Beyond those that Chromium takes them by, whatever else this process has open.
+        to_read, to_write = (self._beyond(end) for end in (to_read, to_write))
         width, height = self._size
         self._process = subprocess.Popen(
-            ["/bin/sh", "-c", f'exec "$@" 3<&{to_read} 4>&{to_write}', "sh", "chromium", "--headless", "--no-sandbox",
+            ["/bin/bash", "-c", f'exec "$@" 3<&{to_read} 4>&{to_write}', "bash", "chromium", "--headless", "--no-sandbox",
              "--disable-gpu", "--remote-debugging-pipe", "--force-color-profile=srgb", f"--window-size={width},{height}",
              f"--user-data-dir={self._profile.name}"], pass_fds=(to_read, to_write), stderr=subprocess.DEVNULL)
         os.close(to_read)

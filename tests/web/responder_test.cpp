@@ -178,9 +178,9 @@ TEST(WebResponder, ARefusalSaysWhyAndChangesNothing) {
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": -2e9})"),
             "G.A must be at least -1000000000 mm; -2000000000 was given.");
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.C": 1})"), "There is no parameter G.C.");
-  EXPECT_EQ(bench.refusal("/api/stage", R"({"X": 1})"), "X is no parameter; the live page changes parameters alone.");
+  EXPECT_EQ(bench.refusal("/api/stage", R"({"X": 1})"), "X is no parameter; parameters alone are staged.");
   EXPECT_EQ(bench.refusal("/api/stage", R"({"task.reset": 1})"),
-            "task.reset is no parameter; the live page changes parameters alone.");
+            "task.reset is no parameter; parameters alone are staged.");
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": "1"})"), "G.A is not given a number.");
   EXPECT_EQ(bench.refusal("/api/stage", R"({"G.A": null})"), "G.A is not given a number.");
   EXPECT_TRUE(bench.staged().empty()) << "all or none";

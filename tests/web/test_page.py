@@ -12,7 +12,7 @@ from tests.web.served import Served
 TOKEN = "a-token-of-this-test-0123456789"
 DIAGRAM = """FUNCTION_BLOCK STAGE  (* @ts 10ms *)
   VAR_INPUT
-    SCALE : LREAL := 1.0;
+    SCALE : LREAL := 1.0;  (* @min 0 @max 2 *)
     RESET : BOOL;
   END_VAR
   VAR_OUTPUT
@@ -52,6 +52,7 @@ safe = 0.0
 [outputs.UP]
 safe = 0
 """
+FORCING = RUN_FILE + '[web]\nrights = ["parameters", "reset", "force"]\n'
 LIVE = "Number(document.body?.dataset.frames) > 20"
 
 
@@ -207,6 +208,74 @@ class LivePage(unittest.TestCase):
         browser.wait_for("document.getElementById('notice').textContent.startsWith('Reset: every state')")
         self.assertEqual(browser.text("#reset"), "Reset the task")
 
+    def test_an_input_is_forced_and_marked_and_free_when_its_page_is_gone(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token", run_file=FORCING)
+        watcher = self.open(task.web_port)
+        watcher.wait_for(LIVE)
+        notice = "document.getElementById('notice').textContent"
+        scale = "document.querySelector('#diagram [data-point=SCALE]')"
+        with Browser(f"http://127.0.0.1:{task.web_port}/") as browser:
+            browser.wait_for(LIVE)
+            self.assertTrue(browser.evaluate("document.getElementById('forced').hidden"))
+            browser.type("#token", TOKEN)
+            field = '#inputs input[data-name="SCALE"]'
+            browser.type(field, "3")
+            browser.click("#force")
+            browser.wait_for(f"{notice}.startsWith('Refused: SCALE must be at most 2')")
+            self.assertTrue(browser.evaluate(f"document.querySelector('{field}').classList.contains('refused')"))
+            browser.type(field, "0,5")
+            browser.click("#force")
+            for page in (browser, watcher):
+                page.wait_for("document.getElementById('forced').textContent === 'Forced: SCALE = 0.5'")
+                page.wait_for(f"{scale}.textContent === '0.5000' && {scale}.classList.contains('forced')")
+                self.assertIn("(forced)", page.text("#trends"))
+            self.assertEqual(values_of(task.web_port)["values"][0], 0.5)
+            browser.type(field, "")
+            browser.click("tr.is-forced button")
+            browser.wait_for("document.getElementById('forced').hidden")
+            self.assertEqual(values_of(task.web_port)["values"][0], 1.0)
+            browser.type(field, "2")
+            browser.click("#force")
+            watcher.wait_for("document.getElementById('forced').textContent === 'Forced: SCALE = 2'")
+        watcher.wait_for("document.getElementById('forced').hidden")
+        self.assertEqual(values_of(task.web_port)["values"][0], 1.0)
+        printed, _ = task.stop()
+        self.assertIn("Forced: SCALE = 0.5 from the live page", printed)
+        self.assertIn("Forced: no input is forced any more.", printed)
+
+    def test_without_the_right_no_input_is_offered_to_be_forced(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token")
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        self.assertTrue(browser.evaluate("document.getElementById('inputs-section').hidden"))
+        self.assertIn("With the token, parameters are changed, the task is reset.", browser.text("#access"))
+
+    def test_the_page_follows_an_online_change(self):
+        task = self.start("--web", "127.0.0.1:0", "--web-token-file", "token",
+                          run_file=RUN_FILE + '[online_change]\nsocket = "change.socket"\n')
+        browser = self.open(task.web_port)
+        browser.wait_for(LIVE)
+        browser.type("#token", TOKEN)
+        rows = browser.evaluate("trends.rows.length")
+        self.assertNotIn("EXTRA", browser.text("#diagram"))
+        task.write("diagram.st", DIAGRAM.replace("LAG : HY_LAG", "EXTRA : HY_GAIN := (K := 1.0);\n    LAG : HY_LAG")
+                   .replace("Y := LAG.XOUT;", "EXTRA(XIN := LAG.XOUT);\n  Y := EXTRA.XOUT;"))
+        # without the unit of EXTRA, which nothing tells, some states begin anew
+        changed = subprocess.run([os.environ["HYSTERON_TOOL"], "online-change", "RUN.toml", "--bump", "Y=1000", "--bump",
+                                  "REST=1000"], cwd=task.path, capture_output=True, text=True)
+        self.assertEqual(changed.returncode, 0, changed.stdout + changed.stderr)
+        browser.wait_for("document.getElementById('diagram').textContent.includes('EXTRA')")
+        self.assertIn("version 2", browser.evaluate("document.getElementById('notice').textContent"))
+        self.assertGreaterEqual(browser.evaluate("trends.rows.length"), rows, "the curves go on")
+        places = "[...document.querySelectorAll('#diagram .value')].map(e => e.textContent)"
+        browser.wait_for(f"!{places}.includes('–')")
+        browser.type('input[data-name="EXTRA.K"]', "2")
+        browser.click("#stage")
+        browser.wait_for("document.querySelector('[data-staged=\"EXTRA.K\"]').textContent === '2'")
+        browser.click("#commit")
+        browser.wait_for("document.querySelector('[data-value=\"EXTRA.K\"]').textContent === '2'")
+        self.assertEqual(browser.faults[:5], [])
+
     def test_one_signal_is_drawn_over_another(self):
         port = self.start("--web", "127.0.0.1:0").web_port
         browser = self.open(port)
@@ -239,7 +308,7 @@ class LivePage(unittest.TestCase):
         self.assertEqual(browser.evaluate(f"{value}.getAttribute('aria-pressed')"), "true")
 
     def test_a_narrow_screen_shows_all_without_sliding_sideways(self):
-        port = self.start("--web", "127.0.0.1:0").web_port
+        port = self.start("--web", "127.0.0.1:0", "--web-token-file", "token", run_file=FORCING).web_port
         browser = self.enterContext(Browser(f"http://127.0.0.1:{port}/", width=420, height=900))
         browser.wait_for(LIVE)
         self.assertLessEqual(browser.evaluate("document.documentElement.scrollWidth"), 420)

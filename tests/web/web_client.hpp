@@ -74,8 +74,8 @@ class WebClient {
   }
 
   /// Asks for the stream; the status of the answer, 101 where it is open.
-  [[nodiscard]] int open_stream(const std::string& lines = {}) const {
-    return ask("GET", "/api/stream",
+  [[nodiscard]] int open_stream(const std::string& lines = {}, std::string_view target = "/api/stream") const {
+    return ask("GET", target,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
                    lines)

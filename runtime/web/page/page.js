@@ -10,10 +10,13 @@ let index = new Map();   // of points, by name
 let trends = null;
 let historyView = null;
 let xyView = null;
-let parameters = [];  // {point, now, staged, input}
-let live = [];        // {element, of: "values" or "inner", at, type, unit}
+let parameters = [];  // {point, at, now, staged, input}
+let inputs = [];      // {point, at, now, forced, input, end}
+let live = [];        // {element, key, of: "values" or "inner", at, type, unit}
 let statusRows = [];  // {cell, at}
 let readToken = "";
+let session = "";     // of the stream that is open; what is forced ends with it
+let isFollowing = false;  // the description of another version is asked for
 let heard = 0, frames = 0;
 
 function add(parent, name, properties) {
@@ -66,19 +69,20 @@ function limits({ low, high, type }) {
 }
 
 function buildDiagram() {
+  place("diagram-section").hidden = description.diagram === "";
   if (description.diagram === "") return;
   const picture = new DOMParser().parseFromString(description.diagram, "image/svg+xml").documentElement;
   place("diagram").replaceChildren(document.importNode(picture, true));
-  place("diagram-section").hidden = false;
   for (const element of place("diagram").querySelectorAll(".value")) {
     const { point, inner } = element.dataset;
     const of = inner === undefined ? "values" : "inner";
     const at = inner === undefined ? index.get(point) : Number(inner);
     const signal = of === "values" ? description.points[at] : description.inner[at];
     if (signal === undefined) continue;
-    live.push({ element, of, at, type: signal.type, unit: signal.unit === "1" ? "" : " " + signal.unit });
+    const key = of + ":" + signal.name;
+    live.push({ element, key, of, at, type: signal.type, unit: signal.unit === "1" ? "" : " " + signal.unit });
     const toggle = () => {
-      trends.toggle(of + at);
+      trends.toggle(key);
       markPlotted();
     };
     element.setAttribute("tabindex", "0");
@@ -94,51 +98,86 @@ function buildDiagram() {
 }
 
 function markPlotted() {
-  for (const { element, of, at } of live) {
-    element.classList.toggle("plotted", trends.chosen.has(of + at));
-    element.setAttribute("aria-pressed", trends.chosen.has(of + at));
+  for (const { element, key } of live) {
+    element.classList.toggle("plotted", trends.chosen.has(key));
+    element.setAttribute("aria-pressed", trends.chosen.has(key));
   }
 }
 
 function buildTrends() {
-  const own = description.points.map((point, at) => ({ ...point, key: "values" + at }))
+  const own = description.points.map((point, at) => ({ ...point, key: "values:" + point.name, of: "values", at }))
     .filter(point => point.kind === "input" || point.kind === "output")
     .sort((a, b) => (a.type === "boolean") - (b.type === "boolean") || (a.kind === "input") - (b.kind === "input"));
-  const inner = description.inner.map((signal, at) => ({ ...signal, key: "inner" + at }));
-  trends = new Trends(place("trends"), [...own, ...inner]);
-  trends.choose(own.slice(0, 8).map(signal => signal.key));
+  const inner = description.inner.map((signal, at) => ({ ...signal, key: "inner:" + signal.name, of: "inner", at }));
+  if (trends === null) {
+    trends = new Trends(place("trends"), [...own, ...inner]);
+    trends.choose(own.slice(0, 8).map(signal => signal.key));
+  } else {
+    trends.change([...own, ...inner]);
+  }
   markPlotted();
   if (xyView === null) xyView = new XyView();
   xyView.build(trends);
 }
 
-function buildParameters() {
-  const body = place("parameters").tBodies[0];
+// A row for each point of a kind, with a place for a new value; what was typed before stays.
+function buildTable(table, kind, before, cells) {
+  const body = place(table).tBodies[0];
+  const typed = new Map(before.map(({ point, input }) => [point.name, input.value]));
+  const rows = [];
   body.textContent = "";
-  parameters = [];
   description.points.forEach((point, at) => {
-    if (point.kind !== "parameter") return;
+    if (point.kind !== kind) return;
     const row = add(body, "tr", {});
     add(row, "th", { textContent: point.name, scope: "row" });
     const now = add(row, "td", { className: "number value" });
     now.dataset.value = point.name;
-    const staged = add(row, "td", { className: "number staged" });
-    staged.dataset.staged = point.name;
+    const own = cells(row, point);
     const input = add(add(row, "td", {}), "input", { type: "text", inputMode: "decimal", spellcheck: false });
     input.setAttribute("aria-label", "New value of " + point.name);
     input.dataset.name = point.name;
-    input.disabled = !description.writable;
+    input.value = typed.get(point.name) || "";
     add(row, "td", { textContent: point.unit === "1" ? "" : point.unit });
     add(row, "td", { textContent: limits(point) });
     add(row, "td", { textContent: point.meaning });
-    parameters.push({ point, at, now, staged, input });
+    rows.push({ point, at, now, input, ...own });
   });
+  return rows;
+}
+
+const may = right => description.rights.includes(right);
+
+function buildParameters() {
+  parameters = buildTable("parameters", "parameter", parameters, (row, point) => {
+    const staged = add(row, "td", { className: "number staged" });
+    staged.dataset.staged = point.name;
+    return { staged };
+  });
+  for (const { input } of parameters) input.disabled = !may("parameters");
   place("parameters-section").hidden = parameters.length === 0;
-  place("reset").disabled = !description.writable;
-  place("token-label").hidden = !description.writable || description.token_to_read;
-  place("stage").disabled = !description.writable;
-  place("access").textContent = description.writable ? "Parameters can be changed by whoever has the token."
-                                                     : "Read-only: started without --web-token-file.";
+  place("reset").disabled = !may("reset");
+  place("stage").disabled = !may("parameters");
+}
+
+function buildInputs() {
+  inputs = buildTable("inputs", "input", inputs, (row, point) => {
+    const forced = add(row, "td", { className: "forced" });
+    const end = add(forced, "button", { type: "button", textContent: "End", hidden: true });
+    end.setAttribute("aria-label", "End the force of " + point.name);
+    end.addEventListener("click", () => force({ [point.name]: null }, `${point.name} is not forced any more.`));
+    return { forced, end };
+  });
+  place("inputs-section").hidden = inputs.length === 0 || !may("force");
+  place("force").disabled = !may("force");
+}
+
+// What whoever has the token may do, in a word for each right.
+function buildAccess() {
+  const words = { parameters: "parameters are changed", reset: "the task is reset", force: "inputs are forced" };
+  place("token-section").hidden = !description.writable || description.token_to_read;
+  place("access").textContent = !description.writable ? "Read-only: started without --web-token-file."
+    : description.rights.length === 0 ? "Read-only: the run file gives the page no rights."
+    : "With the token, " + description.rights.map(right => words[right]).join(", ") + ".";
 }
 
 function buildCycles() {
@@ -164,6 +203,8 @@ function build() {
   live = [];
   buildDiagram();
   buildTrends();
+  buildAccess();
+  buildInputs();
   buildParameters();
   buildCycles();
   if (historyView === null) historyView = new HistoryView(target => get(target, readToken));
@@ -191,27 +232,67 @@ function showStatus(values) {
   }
 }
 
+function valueText(point, value) {
+  return point.type === "boolean" ? shown(value, "boolean") : String(value);
+}
+
+// What is forced is said wherever its value stands.
+function showForced(values, forced) {
+  const isForced = new Set(forced);
+  const texts = forced.map(at => `${description.points[at].name} = ${valueText(description.points[at], values[at])}`);
+  const badge = place("forced");
+  badge.hidden = forced.length === 0;
+  badge.textContent = "Forced: " + texts.slice(0, 3).join(", ") + (texts.length > 3 ? ` and ${texts.length - 3} more` : "");
+  for (const { point, at, now, forced: cell, end } of inputs) {
+    now.textContent = valueText(point, values[at]);
+    cell.parentElement.classList.toggle("is-forced", isForced.has(at));
+    end.hidden = !isForced.has(at);
+  }
+  for (const { element, of, at } of live) element.classList.toggle("forced", of === "values" && isForced.has(at));
+  trends.forced = new Set(forced.map(at => "values:" + description.points[at].name));
+  place("release").disabled = forced.length === 0 || !may("force");
+}
+
 function showParameters(values, staged) {
   const waiting = new Map(staged);
   for (const parameter of parameters) {
-    parameter.now.textContent = parameter.point.type === "boolean" ? shown(values[parameter.at], "boolean")
-                                                                   : String(values[parameter.at]);
+    parameter.now.textContent = valueText(parameter.point, values[parameter.at]);
     const value = waiting.get(parameter.at);
     parameter.staged.textContent = value === undefined ? "" : String(value);
   }
   const count = waiting.size;
   place("waiting").textContent = count === 0 ? "" : `${count} staged, not yet in effect`;
-  place("commit").disabled = place("discard").disabled = !description.writable || count === 0;
+  place("commit").disabled = place("discard").disabled = !may("parameters") || count === 0;
+}
+
+// An online change came: other points, and another picture.
+async function followVersion() {
+  if (isFollowing) return;
+  isFollowing = true;
+  try {
+    const answer = await get("/api/description", readToken);
+    if (answer.ok) {
+      description = await answer.json();
+      build();
+      say(`The diagram was changed while it runs: this is version ${description.version}.`, "good");
+    }
+  } catch {
+    // The stream ends as well, and begins anew.
+  } finally {
+    isFollowing = false;
+  }
 }
 
 function show(frame) {
   heard = performance.now();
+  if (frame.version !== description.version) return followVersion();
   for (const { element, of, at, type, unit } of live) element.textContent = shown(frame[of][at], type) + unit;
   showState(frame.values);
   showStatus(frame.values);
+  showForced(frame.values, frame.forced);
   showParameters(frame.values, frame.staged);
-  trends.add(frame.values[index.get("task.elapsed")] * description.period, trends.signals.map(({ key }) =>
-    key.startsWith("inner") ? frame.inner[Number(key.slice(5))] : frame.values[Number(key.slice(6))]));
+  trends.add(frame.values[index.get("task.elapsed")] * description.period,
+             trends.signals.map(({ of, at }) => frame[of][at]));
   document.body.classList.remove("stale");
   document.body.dataset.frames = ++frames;
 }
@@ -222,11 +303,12 @@ function showStale() {
   badge(heard === 0 ? "Connecting" : "No connection: what is shown is old", heard === 0 ? "" : "bad");
 }
 
-// --- changing parameters ---
+// --- changing parameters, forcing inputs ---
 
-function typed() {
+// The values that were typed into the rows of a table, by name.
+function typed(rows) {
   const values = {};
-  for (const { point, input } of parameters) {
+  for (const { point, input } of rows) {
     const text = input.value.trim();
     input.classList.remove("refused");
     if (text === "") continue;
@@ -246,11 +328,39 @@ function typed() {
   return values;
 }
 
+// A refusal begins with the name that it is about.
+function markRefused(rows, refusal) {
+  for (const { point, input } of rows) {
+    input.classList.toggle("refused", input.value !== "" && refusal.startsWith(point.name + " "));
+  }
+}
+
+async function force(values, done) {
+  const refusal = await post("/api/force", JSON.stringify({ session, inputs: values }));
+  if (refusal !== "") {
+    markRefused(inputs, refusal);
+    return say(`Refused: ${refusal} Nothing was changed.`, "bad");
+  }
+  for (const { point, input } of inputs) if (point.name in values) input.value = "";
+  say(done, "good");
+}
+
+async function forceTyped(event) {
+  event.preventDefault();
+  try {
+    const values = typed(inputs);
+    if (Object.keys(values).length === 0) return say("Type a new value beside an input first.", "bad");
+    await force(values, `Forced: ${Object.keys(values).join(", ")}. It is so until this page is closed, or it is ended.`);
+  } catch (problem) {
+    say(problem.message + " Nothing was forced.", "bad");
+  }
+}
+
 async function stage(event) {
   event.preventDefault();
   let values;
   try {
-    values = typed();
+    values = typed(parameters);
   } catch (problem) {
     return say(problem.message + " Nothing was staged.", "bad");
   }
@@ -258,9 +368,7 @@ async function stage(event) {
   if (count === 0) return say("Type a new value beside a parameter first.", "bad");
   const refusal = await post("/api/stage", JSON.stringify(values));
   if (refusal !== "") {
-    for (const { point, input } of parameters) {
-      input.classList.toggle("refused", input.value !== "" && refusal.startsWith(point.name + " "));
-    }
+    markRefused(parameters, refusal);
     return say(`Refused: ${refusal} Nothing was staged.`, "bad");
   }
   for (const { input } of parameters) input.value = "";
@@ -272,6 +380,10 @@ async function give(target, done, kept) {
   say(refusal === "" ? done : `Refused: ${refusal} ${kept}`, refusal === "" ? "good" : "bad");
 }
 
+place("token-form").addEventListener("submit", event => event.preventDefault());
+place("inputs-form").addEventListener("submit", forceTyped);
+place("release").addEventListener("click", () =>
+  give("/api/release", "No input is forced any more.", "What is forced stays so."));
 place("parameters-form").addEventListener("submit", stage);
 place("commit").addEventListener("click", () =>
   give("/api/commit", "Committed: the set counts from the next step on.", "Nothing was changed; what is staged stays staged."));
@@ -312,7 +424,8 @@ place("save").addEventListener("click", save);
 
 function listen() {
   const scheme = location.protocol === "https:" ? "wss://" : "ws://";
-  const socket = new WebSocket(scheme + location.host + "/api/stream");
+  session = [...crypto.getRandomValues(new Uint8Array(16))].map(byte => byte.toString(16).padStart(2, "0")).join("");
+  const socket = new WebSocket(scheme + location.host + "/api/stream?session=" + session);
   socket.addEventListener("open", () => {
     if (description.token_to_read) socket.send(readToken);
   });

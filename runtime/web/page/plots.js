@@ -36,6 +36,7 @@ class Trends {
     this.signals = signals;
     this.rows = [];
     this.chosen = new Set();
+    this.forced = new Set();  // keys
     this.plots = [];
     this.window = null;  // what was zoomed to; null: the newest values
     this.pointed = null;
@@ -50,6 +51,16 @@ class Trends {
     this.rows.push([time, ...values]);
     if (this.rows.length > mostRows) this.rows.splice(0, this.rows.length - mostRows);
     this.write();
+  }
+
+  // Other signals, as after an online change: those that stay keep their curves.
+  change(signals) {
+    const places = signals.map(({ key }) => this.signals.findIndex(signal => signal.key === key));
+    this.rows = this.rows.map(row => [row[0], ...places.map(place => place < 0 ? null : row[1 + place])]);
+    this.signals = signals;
+    const known = new Set(signals.map(({ key }) => key));
+    this.chosen = new Set([...this.chosen].filter(key => known.has(key)));
+    this.layOut();
   }
 
   choose(keys) {
@@ -130,7 +141,8 @@ class Trends {
     const at = this.pointed === null ? newest : this.rows.find(row => row[0] >= this.pointed) || newest;
     for (const { members, values } of this.plots) {
       members.forEach(([index], k) => {
-        values[k].textContent = shown(at[1 + index], this.signals[index].type);
+        values[k].textContent = shown(at[1 + index], this.signals[index].type) +
+          (this.forced.has(this.signals[index].key) ? " (forced)" : "");
       });
     }
   }

@@ -177,6 +177,10 @@ TEST(RunConfig, WhatIsWrongIsWhatIsNamed) {
   EXPECT_EQ(errors_of(y + "high = -20\n"), "805@3:8 ") << "the diagram's low is -10";
   EXPECT_EQ(error_of("[outputs.Y]\nsafe = nan\n"),
             "805@2:8 safe must be a finite number. | choose a value in that range.");
+  EXPECT_EQ(error_of("[outputs.Y]\nsafe = false\n"),
+            "804@2:8 safe must be a number, of a BOOL 0 or 1. | write it as in safe = 0.");
+  EXPECT_EQ(error_of(y + "[web]\nrights = [\"force\", \"write\"]\n"),
+            "804@4:10 The live page has no right \"write\". | use some of: parameters, reset, force.");
   EXPECT_EQ(error_of(y + "[online_change]\nsocket = \"a\"\nload = 2\n"),
             "805@5:8 load must be from 0.001 to 1. | choose a value in that range, or leave the key out.");
   EXPECT_EQ(error_of(y + "[modbus]\nlisten = \"\"\n"),

@@ -114,6 +114,23 @@ TEST(RunDays, AnAddressThatIsNoneIsToldFromOneThatIsNotThereYet) {
   EXPECT_THAT(mend_of(safe_y + "[modbus]\nlisten = \"localhost\"\n"), HasSubstr("127.0.0.1 for this machine alone"));
 }
 
+TEST(RunDays, TheLivePageForcesNothingUnlessItIsSaid) {
+  const auto web = [](const std::string& rest) { return parse_run_config("RUN.toml", safe_y + rest, plant()).web; };
+  EXPECT_FALSE(web(""));
+  const auto plain = web("[web]\nlisten = \"127.0.0.1:8080\"\ntoken_file = \"t\"\nread_token_file = \"r\"\n");
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->listen, "127.0.0.1:8080");
+  EXPECT_EQ(plain->token_file, "t");
+  EXPECT_EQ(plain->read_token_file, "r");
+  EXPECT_TRUE(plain->rights.parameters && plain->rights.reset && !plain->rights.force);
+  const auto forcing = web("[web]\nrights = [\"force\"]\n");
+  ASSERT_TRUE(forcing);
+  EXPECT_TRUE(!forcing->rights.parameters && !forcing->rights.reset && forcing->rights.force);
+  const auto nothing = web("[web]\nrights = []\n");
+  ASSERT_TRUE(nothing);
+  EXPECT_TRUE(!nothing->rights.parameters && !nothing->rights.reset && !nothing->rights.force);
+}
+
 /// What a place on a device does not hold is said of inputs and outputs, and none where the run file limits it.
 TEST(RunDays, ADeclaredRangeThatADeviceDoesNotHoldIsAWarning) {
   const auto warnings = [](const std::string& rest) {

@@ -75,5 +75,18 @@ TEST(AbsenceNotices, AreSaidOnceAndWhenTheDeviceAnswers) {
   EXPECT_TRUE(notices.lines({}, start + seconds(8)).empty());
 }
 
+TEST(ForceNotices, AreALineWhereTheSetChangedAndOneASecondAtTheMost) {
+  ForceNotices notices;
+  const ForceNotices::Clock::time_point start{};
+  const auto at = [&](int milliseconds) { return start + std::chrono::milliseconds(milliseconds); };
+  EXPECT_EQ(notices.line({}, at(0)), "") << "nothing is forced, and nothing was";
+  EXPECT_EQ(notices.line({"X = 1.5", "ON = 1"}, at(1)),
+            "X = 1.5, ON = 1 from the live page, until that page is closed or ends it.");
+  EXPECT_EQ(notices.line({"X = 1.5", "ON = 1"}, at(5000)), "") << "it is said once";
+  EXPECT_EQ(notices.line({"X = 2"}, at(5001)), "X = 2 from the live page, until that page is closed or ends it.");
+  EXPECT_EQ(notices.line({}, at(5002)), "");
+  EXPECT_EQ(notices.line({}, at(6002)), "no input is forced any more.");
+}
+
 }  // namespace
 }  // namespace hysteron::runtime

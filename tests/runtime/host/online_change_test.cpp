@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "runtime/task/staged_parameters.hpp"
 #include "support/errors.hpp"
@@ -288,8 +289,111 @@ TEST(OnlineChange, ParametersThatDoNotGoTogetherInTheNewVersionRefuseIt) {
                         "be at least LOW.K = 3."));
   EXPECT_EQ(refusal_by([&] { return plant.change().change_to(next(), {.as_given = {"HIGH.K"}}); }), "");
   // NEW has no register: beside it, HIGH is judged all the same.
-  EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.0}, {"task.commit", 1.0}}), "HIGH.K = 2 must be at least 2.5.");
+  EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.0}, {"task.commit", 1.0}}),
+            "HIGH.K = 2 must be at least NEW.K = 2.5.");
   EXPECT_EQ(plant.write({{"LOW.K", 1.0}, {"HIGH.K", 2.75}, {"task.commit", 1.0}}), "");
+}
+
+/// By the names that the live page shows.
+std::map<std::string, double> values_of_page(TaskDoor& door) {
+  LiveValues live;
+  door.read_live(live);
+  const auto view = door.view();
+  EXPECT_EQ(view->version, live.version);
+  std::map<std::string, double> values;
+  for (std::size_t i = 0; i < live.values.size(); ++i) {
+    values[view->points[i].name] = live.values[i];
+  }
+  for (std::size_t i = 0; i < live.inner.size(); ++i) {
+    values["inner " + view->inner[i].name] = live.inner[i];
+  }
+  return values;
+}
+
+std::string write_from_page(TaskDoor& door, const std::string& name, double value) {
+  const auto view = door.view();
+  for (std::size_t i = 0; i < view->points.size(); ++i) {
+    if (view->points[i].name == name) {
+      return door.write_from_page(std::vector<PointWrite>{{view->places[i], value}});
+    }
+  }
+  return "not shown";
+}
+
+/// Picture, points and inner signals are those of the version that runs; registers stay.
+TEST(OnlineChange, TheLivePageSeesTheVersionThatRunsAndReachesItsNewParameters) {
+  const auto drawn = [](std::vector<Integrator> parts, const char* picture) {
+    auto program = integrators(std::move(parts));
+    program->mutable_shape().picture = picture;
+    return program;
+  };
+  Plant plant(drawn({{"A", 0.5}, {"GONE", 0.0}}, "first"), 1e9);
+  plant.start();
+  TaskDoor& door = plant.door();
+  const std::size_t registers = door.points().size();
+  ASSERT_EQ(plant.write({{"X", 0.0}}), "");
+  EXPECT_EQ(door.view()->picture, "first");
+  (void)plant.change().change_to(drawn({{"NEW", 3.0}, {"A", 9.0}}, "second"), {});
+  plant.run(5);
+  EXPECT_EQ(door.view()->picture, "second");
+  EXPECT_EQ(door.view()->version, 2U);
+  auto values = values_of_page(door);
+  EXPECT_EQ(values.at("A.K"), 0.5);
+  EXPECT_EQ(values.at("NEW.K"), 3.0);
+  EXPECT_EQ(values.at("task.version"), 2.0);
+  EXPECT_FALSE(values.contains("GONE.K"));
+  EXPECT_EQ(values.at("inner A.Y"), values.at("Y"));
+  EXPECT_EQ(values.at("inner NEW.Y"), 0.0);
+  EXPECT_FALSE(values.contains("inner GONE.Y"));
+  EXPECT_EQ(door.points().size(), registers);
+
+  EXPECT_EQ(write_from_page(door, "NEW.K", 500.0), "") << "a set may be out of range while it is being entered";
+  EXPECT_EQ(write_from_page(door, "task.commit", 1.0), "NEW.K must be at most 100.");
+  EXPECT_EQ(write_from_page(door, "NEW.K", 2.0), "");
+  LiveValues live;
+  door.read_live(live);
+  ASSERT_EQ(live.staged.size(), 1U);
+  EXPECT_EQ(door.view()->points[live.staged[0].point].name, "NEW.K");
+  EXPECT_EQ(plant.write({{"A.K", 0.25}, {"task.commit", 1.0}}), "") << "Modbus commits its own";
+  EXPECT_TRUE(soon([&] { return values_of_page(door).at("A.K") == 0.25; }));
+  EXPECT_EQ(values_of_page(door).at("NEW.K"), 3.0);
+  EXPECT_EQ(write_from_page(door, "task.commit", 1.0), "");
+  EXPECT_TRUE(soon([&] { return values_of_page(door).at("NEW.K") == 2.0; }));
+  EXPECT_EQ(values_of_page(door).at("A.K"), 0.25);
+
+  // A third version: NEW keeps its place, and OTHER gets one that nobody had.
+  (void)plant.change().change_to(drawn({{"OTHER", -1.0}, {"NEW", 9.0}}, "third"), {});
+  plant.run(5);
+  values = values_of_page(door);
+  EXPECT_EQ(values.at("NEW.K"), 2.0);
+  EXPECT_EQ(values.at("OTHER.K"), -1.0);
+  EXPECT_FALSE(values.contains("A.K"));
+  EXPECT_EQ(write_from_page(door, "OTHER.K", 4.0), "");
+  EXPECT_EQ(write_from_page(door, "task.commit", 1.0), "");
+  EXPECT_TRUE(soon([&] { return values_of_page(door).at("OTHER.K") == 4.0; }));
+  EXPECT_EQ(values_of_page(door).at("NEW.K"), 2.0);
+
+  (void)plant.change().change_back({});
+  plant.run(5);
+  EXPECT_EQ(door.view()->picture, "second");
+  values = values_of_page(door);
+  EXPECT_EQ(values.at("NEW.K"), 2.0);
+  EXPECT_EQ(values.at("A.K"), 0.25);
+  EXPECT_FALSE(values.contains("OTHER.K"));
+}
+
+TEST(OnlineChange, AForcedInputStaysSoThroughIt) {
+  Plant plant(integrators(parts_before));
+  plant.start();
+  ASSERT_EQ(plant.door().force(std::vector<Force>{{.point = 0, .value = 0.0}}), "");
+  plant.run(5);
+  EXPECT_TRUE(plant.change().change_to(integrators(parts_after), {}).is_done);
+  plant.run(5);
+  LiveValues live;
+  plant.door().read_live(live);
+  EXPECT_EQ(live.version, 2U);
+  EXPECT_THAT(live.forced, ElementsAre(0U));
+  EXPECT_EQ(live.values[0], 0.0);
 }
 
 TEST(OnlineChange, NobodyCommitsWhileItIsUnderWay) {

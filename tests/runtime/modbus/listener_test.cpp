@@ -2,6 +2,7 @@
 #include "runtime/modbus/listener.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -38,6 +39,26 @@ TEST(Listener, AnAddressThatIsNotThereYetIsTriedAgainWithGrowingPauses) {
   EXPECT_EQ(pauses.back(), milliseconds(2000));
   EXPECT_TRUE(std::is_sorted(pauses.begin(), pauses.end()));
   EXPECT_EQ(told.size(), 1U) << "it is said once";
+}
+
+/// The network came up, and something else is in the way: the first reason would lead astray.
+TEST(Listener, AnotherReasonIsSaidWhenItComes) {
+  std::vector<std::string> told;
+  Listener listener("192.0.2.1", 1502, {}, [&](const std::string& line) { told.push_back(line); });
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  rlimit none = limit;
+  none.rlim_cur = 0;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  (void)listener.try_again(*listener.next_try());
+  (void)listener.try_again(*listener.next_try());
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+  ASSERT_EQ(told.size(), 2U) << "once";
+  EXPECT_NE(told[1].find("192.0.2.1 port 1502 cannot be listened on yet: Too many open files."), std::string::npos)
+      << told[1];
+  (void)listener.try_again(*listener.next_try());
+  EXPECT_EQ(told.size(), 3U);
+  EXPECT_EQ(told[2], told[0]);
 }
 
 TEST(Listener, WhatDoesNotPassIsRefused) {

@@ -1,6 +1,7 @@
 // A door to values in memory, for tests of servers: counts what it is asked, refuses on request.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <span>
@@ -35,12 +36,14 @@ class MemoryDoor : public runtime::PointDoor {
     return "";
   }
 
-  [[nodiscard]] std::span<const runtime::Point> inner() const override { return {}; }
   void read_live(runtime::LiveValues& into) override {
     runtime::Snapshot snapshot;
     read(snapshot);
     into = {.cycle = snapshot.cycle, .values = std::move(snapshot.values)};
   }
+
+  void writes_are_owned(bool are_owned) override { is_owned_ = are_owned; }
+  [[nodiscard]] bool is_owned() const { return is_owned_; }
 
   void set(std::size_t point, double value) {
     const std::scoped_lock lock(mutex_);
@@ -72,6 +75,7 @@ class MemoryDoor : public runtime::PointDoor {
   std::string refusal_;
   std::uint64_t reads_ = 0;
   std::uint64_t writes_ = 0;
+  std::atomic<bool> is_owned_{false};
 };
 
 /// A point of every type, to be read and to be written.

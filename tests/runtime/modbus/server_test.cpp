@@ -253,6 +253,31 @@ TEST(Server, OneClientOwnsTheWrites) {
   EXPECT_EQ(ask(guest, write_one), write_one);
 }
 
+/// Before the answer to the write that makes it so: who writes by another way is refused from then on.
+TEST(Server, WhetherAClientOwnsTheWritesIsTold) {
+  ServerBench bench(
+      {.heartbeat = {.mode = HeartbeatMode::write_telegram, .time = milliseconds(100), .own_writes = true}});
+  {
+    const ClientSocket reader(bench.server.port());
+    EXPECT_EQ(ask(reader, test::read_one).size(), 11U);
+    EXPECT_FALSE(bench.door.is_owned());
+  }
+  const ClientSocket owner(bench.server.port());
+  EXPECT_EQ(ask(owner, write_one), write_one);
+  EXPECT_TRUE(bench.door.is_owned());
+  EXPECT_TRUE(test::soon([&] { return !bench.door.is_owned(); })) << "it is lost";
+  {
+    const ClientSocket next(bench.server.port());
+    EXPECT_EQ(ask(next, write_one), write_one);
+    EXPECT_TRUE(bench.door.is_owned());
+  }
+  EXPECT_TRUE(test::soon([&] { return !bench.door.is_owned(); })) << "it is gone";
+  ServerBench free;
+  const ClientSocket writer(free.server.port());
+  EXPECT_EQ(ask(writer, write_one), write_one);
+  EXPECT_FALSE(free.door.is_owned());
+}
+
 TEST(Server, ALostClientIsTold) {
   std::atomic<int> lost{0};
   std::atomic<int> back{0};

@@ -116,6 +116,85 @@ TEST_F(Publishing, AStoredRowKeepsItsPlaceAndItsTime) {
   EXPECT_EQ(json::parse(rows[50]).at("timestamp"), MqttBench::noon_ms + 500) << "what waited for a minute";
 }
 
+/// A power cut while the broker is away: what had waited for a second is there, before all that comes, in order.
+TEST_F(Publishing, WhatWaitsOnTheDiskOutlivesTheProcess) {
+  const hysteron::test::ScratchFolder folder;
+  Broker broker;
+  MqttBench bench(broker.port());
+  bench.settings.file = folder / "rows.sqlite";
+  bench.start();
+  bench.turn();
+  bench.run(500);
+  ASSERT_TRUE(bench.until([&] { return bench.count().fault != 0; }));
+  bench.run(2000);
+  bench.turn();
+  bench.pass(1100 * MqttBench::ms);
+  bench.turn();
+  bench.run(300);
+  bench.turn();  // these are too young, and die with the process
+  bench.stop();
+  bench.start();
+  bench.turn();
+  EXPECT_THAT(bench.said(), HasSubstr(" rows of before wait for 127.0.0.1:"));
+  bench.run(400);
+  ASSERT_TRUE(broker.start());
+  const Subscriber subscriber(broker);
+  bench.pass(60'000 * MqttBench::ms);
+  ASSERT_TRUE(bench.until_confirmed());
+  ASSERT_TRUE(soon([&] {
+    const auto rows = numbers_in(subscriber.on("plant/data"));
+    return !rows.empty() && rows.back() == 3200;
+  }));
+  const auto heard = without_repetitions(numbers_in(subscriber.on("plant/data")));
+  auto expected = grid(3200);
+  std::erase_if(expected, [](std::int64_t one) { return one > 2500 && one <= 2800; });
+  EXPECT_EQ(heard, expected);
+  bench.pass(1100 * MqttBench::ms);
+  bench.turn();
+  bench.stop();
+  EXPECT_TRUE(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().empty()) << "the broker has them";
+}
+
+/// An end in order keeps all that waits, and loses nothing.
+TEST_F(Publishing, WhatWaitsAtTheEndIsKeptForTheNextStart) {
+  const hysteron::test::ScratchFolder folder;
+  const Broker broker;
+  MqttBench bench(broker.port());
+  bench.settings.file = folder / "rows.sqlite";
+  bench.start();
+  bench.turn();
+  bench.run(100);
+  bench.turn();
+  bench.finish();
+  EXPECT_EQ(bench.count().lost, 0U);
+  EXPECT_EQ(bench.count().waiting, 11U);
+  EXPECT_THAT(bench.said(), HasSubstr("11 rows wait in "));
+  bench.stop();
+  EXPECT_EQ(OutboxFile(folder / "rows.sqlite", {"U", "Y"}).rows().size(), 11U);
+}
+
+TEST_F(Publishing, AFileThatCannotBeWrittenIsSaidAndRowsGoByMemory) {
+  const hysteron::test::ScratchFolder folder;
+  folder.write("in_the_way", "");
+  Broker broker;
+  ASSERT_TRUE(broker.start());
+  MqttBench bench(broker.port());
+  bench.settings.file = folder / "in_the_way/rows.sqlite";
+  bench.start();
+  bench.run(100);
+  ASSERT_TRUE(bench.until_confirmed());
+  EXPECT_EQ(bench.count().fault, static_cast<std::uint16_t>(MqttFault::File));
+  EXPECT_THAT(bench.said(), HasSubstr("rows that wait are in memory alone: "));
+  std::filesystem::remove(folder / "in_the_way");
+  bench.pass(10'100 * MqttBench::ms);
+  bench.turn();
+  bench.pass(1100 * MqttBench::ms);
+  bench.turn();
+  EXPECT_EQ(bench.count().fault, 0U);
+  EXPECT_THAT(bench.said(), HasSubstr("rows that wait are on the disk again."));
+  bench.finish();
+}
+
 /// The broker dies as rows are on their way, again and again.
 TEST_F(Publishing, AKilledBrokerLosesNothingThatWasConfirmedAndReordersNothing) {
   Broker broker;

@@ -44,6 +44,18 @@ std::string changed(const std::optional<MqttRow>& row) {
   return text;
 }
 
+/// What follows from an input that nobody measured is no measurement either.
+TEST(Rows, ArePortsInDoubtWhileAnInputIsForced) {
+  RowPlan plan = row_plan();
+  plan.forced_column = 5;
+  const RowMaker maker(plan);
+  Sample sample = sample_at(7, 1.5, -2.0, 3.0);
+  sample.values.push_back(0.0);
+  EXPECT_EQ(qualities(maker.whole(sample, 0)), "ggg");
+  sample.values.back() = 1.0;
+  EXPECT_EQ(qualities(maker.whole(sample, 0)), "uug");
+}
+
 TEST(Rows, HaveTheirValuesTimesAndQualities) {
   const RowMaker maker(row_plan());
   const MqttRow row = maker.whole(sample_at(7, 1.5, -2.0, 3.0), 1234);

@@ -54,7 +54,7 @@ struct Change {
   std::vector<std::string> left{};
 
   Change(ChangeableProgram& program, std::unique_ptr<StepProgram> next, double most = 1e300) {
-    version = std::make_unique<ProgramVersion>(std::move(next), program.shape());
+    version = std::make_unique<ProgramVersion>(std::move(next), program.shape(), program.parameters());
     plan(program, *version, most);
   }
   Change(ChangeableProgram& program, ProgramVersion& former, double most = 1e300) { plan(program, former, most); }

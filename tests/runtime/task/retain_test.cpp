@@ -2,11 +2,17 @@
 #include "runtime/task/retain.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <map>
 #include <random>
+#include <system_error>
 
 #include "tests/runtime/task/retain_kill.hpp"
+#include "tests/support/exit_code.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace hysteron::runtime {
@@ -227,6 +233,50 @@ TEST(Retain, KilledAtAnyMomentNothingConfirmedIsLost) {
     last = result.recovered;
   }
   EXPECT_GT(last, 0U);
+}
+
+/// On a disk of its own without a file to spare, in another process: 0 where all went as it should, 77 where this
+/// machine lets nobody have one.
+int retain_on_a_full_disk(const std::string& disk) {
+  if (::unshare(CLONE_NEWNS) != 0 && ::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) {
+    return 77;
+  }
+  (void)::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr);
+  if (::mount("none", disk.c_str(), "tmpfs", 0, "nr_inodes=1") != 0) {
+    return 77;
+  }
+  RetainFolder files(disk + "/retain");
+  files.open();
+  if (files.read(0) || files.write(0, encode_slot(some_values(1))).find("retain") == std::string::npos) {
+    return 1;
+  }
+  if (::mount("none", disk.c_str(), "tmpfs", MS_REMOUNT, "nr_inodes=100") != 0) {
+    return 77;
+  }
+  if (!files.write(0, encode_slot(some_values(2))).empty() || !files.read(0)) {
+    return 2;
+  }
+  try {
+    RetainFolder second(disk + "/retain");
+    second.open();
+    return 3;  // it is held by now
+  } catch (const std::system_error&) {
+    return 0;
+  }
+}
+
+TEST(Retain, AFullDiskKeepsNoFolderFromBeingThereLater) {
+  const hysteron::test::ScratchFolder scratch;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::_exit(retain_on_a_full_disk(scratch.path()));
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (hysteron::test::exit_code(status) == 77) {
+    GTEST_SKIP() << "no disk of its own for a process";
+  }
+  EXPECT_EQ(hysteron::test::exit_code(status), 0);
 }
 
 TEST(Retain, FilesPutAsideAreNeverOverwritten) {

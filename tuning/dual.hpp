@@ -42,9 +42,10 @@ struct Register<8> {
   using Type [[gnu::vector_size(64)]] = double;
 };
 
-/// W is the width of a register in numbers: 2, 4 or 8. It changes no bit, only what the code is compiled for.
+/// W is the width of a register in numbers: 2, 4 or 8. It changes no bit, only what the code is compiled for. The
+/// alignment is stated, since code with and without such registers shares duals.
 template <int N, int W = 2>
-class Dual {
+class alignas(8 * W) Dual {
   static_assert(N > 0, "a dual number has at least one derivative");
 
  public:

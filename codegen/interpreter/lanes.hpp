@@ -4,6 +4,8 @@
 // of the C library lane by lane, and a choice takes for each lane what that lane chooses. The blocks are compiled with
 // it for registers of 512 bits (lanes_code.cpp); has_wide_registers() says whether this processor has them.
 //
+// Alignments are stated: by itself a compiler aligns a vector as the processor that it compiles for asks.
+//
 // Every function is inlined wherever it is called: one kept as a function of its own would be compiled twice, with wide
 // registers and without, and the linker would keep one of them for all.
 #pragma once
@@ -51,7 +53,7 @@ void each_int_operation(Op op, const std::int32_t* a, const std::int32_t* b, std
 }  // namespace detail
 
 /// Truth values.
-struct LaneBools {
+struct alignas(64) LaneBools {
   detail::LaneChoices chosen;
   LaneBools() = default;
   HY_INLINE explicit LaneBools(bool value) : chosen(detail::LaneChoices{} - (value ? 1 : 0)) {}
@@ -66,7 +68,7 @@ struct LaneBools {
 };
 
 /// Integers (IEC DINT).
-struct LaneInts {
+struct alignas(32) LaneInts {
   detail::LaneIntegers numbers;
   LaneInts() = default;
   HY_INLINE explicit LaneInts(std::int32_t value) : numbers(detail::LaneIntegers{} + value) {}
@@ -74,14 +76,14 @@ struct LaneInts {
 };
 
 /// Words: the lower 16 bits of integers.
-struct LaneWords {
+struct alignas(32) LaneWords {
   detail::LaneIntegers numbers;
   LaneWords() = default;
   HY_INLINE explicit LaneWords(std::uint16_t value) : numbers(detail::LaneIntegers{} + value) {}
   HY_INLINE explicit LaneWords(const detail::LaneIntegers& values) : numbers(values & 0xFFFF) {}
 };
 
-struct Lanes {
+struct alignas(64) Lanes {
   detail::LaneNumbers numbers;
   Lanes() = default;
   HY_INLINE explicit Lanes(double value) : numbers(detail::LaneNumbers{} + value) {}

@@ -42,7 +42,7 @@ void scan(Model& model, Fit& best, Index first, Index count) {
 }
 
 /// One unknown, times a factor.
-struct Trial {
+struct TrialStep {
   Index unknown = 0;
   double factor = 1.0;
 };
@@ -50,14 +50,14 @@ struct Trial {
 /// Where the output jumps with a parameter, derivatives do not see the way: single steps by trial, then a last fit.
 /// `finest` is the last step, as a share.
 void pattern_search(Model& model, Fit& best, Index first, Index count, double finest) {
-  std::vector<Trial> trials;
+  std::vector<TrialStep> trials;
   for (const double share : {0.08, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4}) {
     for (Index j = first; j < first + count && share >= finest; ++j) {
       trials.push_back({.unknown = j, .factor = 1.0 + share});
       trials.push_back({.unknown = j, .factor = 1.0 - share});
     }
   }
-  const auto moved_by = [&](const Trial& trial) {
+  const auto moved_by = [&](const TrialStep& trial) {
     VectorXd x = best.x;
     x[trial.unknown] =
         std::clamp(x[trial.unknown] * trial.factor, model.lower()[trial.unknown], model.upper()[trial.unknown]);
